@@ -1,0 +1,88 @@
+// One Vulkan 1.3 device with one queue for graphics, compute and transfer.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace fovea::gpu {
+
+class ShaderCompiler;
+
+enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
+
+struct DeviceOptions {
+  std::string device;  // index or part of the name; "" takes the best one (discrete, integrated, CPU)
+  Validation validation = Validation::Off;
+  uint64_t memoryLimit = 0;             // bytes of device memory fovea may take; 0 means what the device reports
+  std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
+  bool useCache = true;
+};
+
+// What `fovea devices` lists.
+struct DeviceInfo {
+  uint32_t index = 0;
+  std::string name, type, driver, apiVersion;
+  uint64_t memoryBytes = 0;
+  std::vector<std::string> missing;  // required features it lacks; empty means usable
+};
+
+std::vector<DeviceInfo> listDevices();
+
+// Throws Error: NoDevice (no loader, no device, missing feature: each is named), OutOfMemory, DeviceLost.
+class Device {
+ public:
+  explicit Device(const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkInstance instance() const;
+  VkPhysicalDevice physical() const;
+  VkDevice handle() const;
+  VkQueue queue() const;
+  uint32_t queueFamily() const;
+  const VkPhysicalDeviceProperties& properties() const;
+  const VkPhysicalDeviceLimits& limits() const { return properties().limits; }
+  std::string name() const;  // "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6": goes into every report
+  bool isCpu() const;        // lavapipe and the like
+  float timestampPeriodNs() const;
+  VkPipelineCache pipelineCache() const;
+  ShaderCompiler& shaders() const;
+
+  // Memory. what names the resource in the out-of-memory message.
+  VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags, const std::string& what);
+  void release(VkDeviceMemory memory, uint64_t bytes);
+  uint64_t allocatedBytes() const;
+  uint64_t peakAllocatedBytes() const;
+
+  // Records, submits and waits: for set-up work only, never inside the frame loop.
+  void runOnce(const std::function<void(VkCommandBuffer)>& record);
+  void waitIdle();
+
+  // Debugger names and labels; no-ops when VK_EXT_debug_utils is absent.
+  void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
+  void beginLabel(VkCommandBuffer cmd, const char* name) const;
+  void endLabel(VkCommandBuffer cmd) const;
+  void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t set,
+                         const std::vector<VkWriteDescriptorSet>& writes) const;
+
+  // Validation messages (warnings and errors) so far; tests fail when there is one.
+  std::vector<std::string> validationMessages() const;
+  void clearValidationMessages();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Throws Error with the exit code that belongs to the result: OutOfMemory, DeviceLost, otherwise Internal.
+void check(VkResult result, const std::string& what);
+const char* resultName(VkResult result);
+
+}  // namespace fovea::gpu

@@ -1,0 +1,77 @@
+// Compute and graphics pipelines whose layout comes from reflection.
+// Set 0 belongs to the pass and is pushed (VK_KHR_push_descriptor); set 1 is shared by all passes of a frame.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/gpu/shader.h"
+
+namespace fovea::gpu {
+
+class Device;
+
+// What both kinds share: merged bindings of all stages, merged push constants.
+struct PipelineInterface {
+  std::vector<ReflectedBinding> bindings;  // set 0 only
+  std::vector<ReflectedConstant> constants;
+  uint32_t pushConstantBytes = 0;
+  VkShaderStageFlags stages = 0;
+  bool usesSharedSet = false;  // some stage has a binding in set 1
+  uint32_t localSize[3] = {1, 1, 1};
+};
+
+struct ComputePipelineDesc {
+  std::shared_ptr<const CompiledShader> shader;
+  VkDescriptorSetLayout sharedSet = VK_NULL_HANDLE;  // layout of set 1; required when the shader uses it
+};
+
+struct GraphicsPipelineDesc {
+  std::shared_ptr<const CompiledShader> vertex, fragment;  // fragment may be null (depth only)
+  VkDescriptorSetLayout sharedSet = VK_NULL_HANDLE;
+  std::vector<VkFormat> colorFormats;
+  VkFormat depthFormat = VK_FORMAT_UNDEFINED;
+  VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;  // front faces are counter-clockwise, as in glTF
+  bool depthTest = true, depthWrite = true;
+  VkCompareOp depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
+  bool additiveBlend = false;
+  float depthBiasConstant = 0, depthBiasSlope = 0;
+  uint32_t clipDistances = 0;
+};
+
+// Move-only. Dynamic state: viewport, scissor. Dynamic rendering, no vertex input (vertices are pulled).
+class Pipeline {
+ public:
+  Pipeline() = default;
+  Pipeline(Device& device, const ComputePipelineDesc& desc);
+  Pipeline(Device& device, const GraphicsPipelineDesc& desc);
+  ~Pipeline();
+  Pipeline(Pipeline&& other) noexcept;
+  Pipeline& operator=(Pipeline&& other) noexcept;
+
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+  VkPipeline handle() const { return handle_; }
+  VkPipelineLayout layout() const { return layout_; }
+  VkPipelineBindPoint bindPoint() const { return bindPoint_; }
+  const PipelineInterface& interface() const { return interface_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  void createLayout(const std::vector<std::shared_ptr<const CompiledShader>>& shaders, VkDescriptorSetLayout sharedSet);
+  void destroy();
+  Device* device_ = nullptr;
+  std::string name_;
+  PipelineInterface interface_;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline handle_ = VK_NULL_HANDLE;
+  VkPipelineBindPoint bindPoint_ = VK_PIPELINE_BIND_POINT_COMPUTE;
+};
+
+VkDescriptorType descriptorType(BindingKind kind);
+
+}  // namespace fovea::gpu

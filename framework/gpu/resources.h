@@ -1,0 +1,112 @@
+// Buffers and images that own their memory, or are placed into memory of the graph's transient heap.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace fovea::gpu {
+
+class Device;
+
+enum class MemoryKind { Device, Upload, Readback };  // Upload and Readback are mapped and coherent
+
+struct BufferDesc {
+  std::string name;
+  uint64_t bytes = 0;
+  VkBufferUsageFlags usage = 0;
+  MemoryKind memory = MemoryKind::Device;
+};
+
+// Move-only. Throws Error(OutOfMemory) naming the buffer and its size.
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(Device& device, const BufferDesc& desc);                                         // own memory
+  Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory, uint64_t offset);  // placed, memory not owned
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+  VkBuffer handle() const { return handle_; }
+  uint64_t bytes() const { return desc_.bytes; }
+  const std::string& name() const { return desc_.name; }
+  void* mapped() const { return mapped_; }  // null unless Upload or Readback
+  // Typed view of the whole buffer for uniform or storage texel buffers; created on first use and cached.
+  VkBufferView texelView(VkFormat format);
+
+ private:
+  void destroy();
+  Device* device_ = nullptr;
+  BufferDesc desc_;
+  VkBuffer handle_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  uint64_t memoryBytes_ = 0;
+  bool owned_ = false;
+  void* mapped_ = nullptr;
+  std::map<VkFormat, VkBufferView> views_;
+};
+
+struct ImageDesc {
+  std::string name;
+  VkImageType type = VK_IMAGE_TYPE_2D;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  uint32_t width = 1, height = 1, depth = 1, layers = 1, mips = 1;
+  bool array = false;  // the default view is an array view even with one layer
+  VkImageUsageFlags usage = 0;
+};
+
+// Move-only; optimal tiling, device memory.
+class Image {
+ public:
+  Image() = default;
+  Image(Device& device, const ImageDesc& desc);
+  Image(Device& device, const ImageDesc& desc, VkDeviceMemory memory, uint64_t offset);
+  ~Image();
+  Image(Image&& other) noexcept;
+  Image& operator=(Image&& other) noexcept;
+
+  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+  VkImage handle() const { return handle_; }
+  const ImageDesc& desc() const { return desc_; }
+  const std::string& name() const { return desc_.name; }
+  VkExtent3D extent() const { return {desc_.width, desc_.height, desc_.depth}; }
+  VkImageAspectFlags aspect() const;
+  // The whole image, or one mip level (all layers), or one layer of one mip; created on first use and cached.
+  VkImageView view();
+  VkImageView mipView(uint32_t mip);
+  VkImageView layerView(uint32_t mip, uint32_t layer);
+
+ private:
+  VkImageView makeView(uint32_t firstMip, uint32_t mips, uint32_t firstLayer, uint32_t layers, bool array);
+  void destroy();
+  Device* device_ = nullptr;
+  ImageDesc desc_;
+  VkImage handle_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  uint64_t memoryBytes_ = 0;
+  bool owned_ = false;
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, bool>, VkImageView> views_;
+};
+
+// Memory requirements without creating memory; what the aliasing phase is fed with.
+VkMemoryRequirements memoryRequirements(Device& device, const BufferDesc& desc);
+VkMemoryRequirements memoryRequirements(Device& device, const ImageDesc& desc);
+
+// Set-up time transfers: wait for completion. The image is left in `layout`.
+void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uint64_t offset = 0);
+void upload(Device& device, Image& image, std::span<const std::byte> texels, VkImageLayout layout);
+std::vector<std::byte> download(Device& device, const Buffer& buffer);
+// Tightly packed, layer after layer (mip 0); the image is in `layout` before and after.
+std::vector<std::byte> download(Device& device, const Image& image, VkImageLayout layout);
+
+// Shared samplers: nearest or linear, clamped or repeating.
+VkSampler sampler(Device& device, VkFilter filter, VkSamplerAddressMode mode);
+
+}  // namespace fovea::gpu

@@ -1,0 +1,76 @@
+// GLSL to SPIR-V at run time, with includes, a disk cache keyed by content, and reflection.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fovea::gpu {
+
+using Defines = std::map<std::string, std::string>;
+
+enum class BindingKind {
+  UniformBuffer, StorageBuffer, UniformTexelBuffer, StorageTexelBuffer, SampledImage, CombinedImageSampler, StorageImage,
+  Sampler
+};
+
+struct ReflectedBinding {
+  std::string name;  // instance name, or block name where the block has no instance name
+  uint32_t set = 0, binding = 0, count = 1;
+  BindingKind kind{};
+  bool readOnly = false, writeOnly = false;  // storage buffers and images
+  uint64_t blockBytes = 0;                   // uniform and storage blocks: fixed part
+  std::optional<VkFormat> imageFormat;       // storage images
+};
+
+struct ReflectedConstant {  // a member of the push constant block
+  std::string name;
+  uint32_t offset = 0, bytes = 0;
+  enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
+  uint32_t components = 1;
+};
+
+struct Reflection {
+  VkShaderStageFlagBits stage{};
+  std::vector<ReflectedBinding> bindings;  // sorted by set, then binding
+  std::vector<ReflectedConstant> constants;
+  uint32_t pushConstantBytes = 0;
+  uint32_t localSize[3] = {1, 1, 1};
+};
+
+struct CompiledShader {
+  std::string file;  // as the user knows it, e.g. "shaders/tonemap/tonemap.comp"
+  std::vector<uint32_t> spirv;
+  Reflection reflection;
+  uint64_t hash = 0;  // of the source with all includes, the defines and the compiler version
+};
+
+// Stage from the file name: .comp .vert .frag .
+class ShaderCompiler {
+ public:
+  // cacheDirectory empty: no disk cache.
+  explicit ShaderCompiler(std::filesystem::path cacheDirectory);
+  ~ShaderCompiler();
+  // Folders searched for shader files and #include, first match wins. The including file's own folder comes first.
+  void addSearchPath(std::filesystem::path path);
+  // name is relative to a search path ("tonemap/tonemap.comp"). Results are kept; a second call is a look-up.
+  // Throws Error(BadInput) with file and line of every compiler message, also inside included files.
+  std::shared_ptr<const CompiledShader> compile(const std::string& name, const Defines& defines = {});
+  // Source text instead of a file (tests).
+  std::shared_ptr<const CompiledShader> compileSource(const std::string& name, const std::string& source,
+                                                      const Defines& defines = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+Reflection reflect(const std::vector<uint32_t>& spirv);
+
+}  // namespace fovea::gpu

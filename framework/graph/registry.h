@@ -1,0 +1,50 @@
+// All pass types known to the process: linked in, or loaded from plug-ins.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/graph/declaration.h"
+#include "framework/graph/pass.h"
+
+namespace fovea::graph {
+
+class Registry {
+ public:
+  using Factory = std::unique_ptr<Pass> (*)();
+  static Registry& global();
+
+  // Throws Error(Internal) on a second registration of a type or on a declaration that contradicts itself
+  // (duplicate names, a default out of range, a size over an unknown parameter or port, ...).
+  void add(PassDeclaration declaration, Factory factory);
+  const PassDeclaration* find(std::string_view type) const;
+  std::unique_ptr<Pass> create(std::string_view type) const;
+  std::vector<std::string> types() const;  // sorted
+
+  // Loads a shared library whose static FOVEA_PASS registrations join this registry. Its shaders are looked up in a
+  // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+  void loadPlugin(const std::filesystem::path& file);
+  const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
+
+ private:
+  struct Entry {
+    std::unique_ptr<PassDeclaration> declaration;  // stable address
+    Factory factory;
+  };
+  std::vector<Entry> entries_;  // sorted by type
+  std::vector<std::filesystem::path> pluginShaderPaths_;
+};
+
+struct Registration {
+  Registration(PassDeclaration declaration, Registry::Factory factory);
+};
+
+}  // namespace fovea::graph
+
+// In the pass's .cpp, at namespace scope. Class has `static fovea::graph::PassDeclaration declaration()`.
+#define FOVEA_PASS(Class)                                                            \
+  static const ::fovea::graph::Registration registration_##Class(                    \
+      Class::declaration(), []() -> std::unique_ptr<::fovea::graph::Pass> { return std::make_unique<Class>(); })
