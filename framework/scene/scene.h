@@ -1,0 +1,160 @@
+// A scene on the CPU: what loaders produce and everything else reads.
+// Right-handed, Y up, metres; colours and reflectances linear; light units as in glTF KHR_lights_punctual.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fovea::scene {
+
+inline constexpr uint32_t kNoIndex = ~0u;
+
+enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
+
+// 8-bit RGBA, rows from the top. `srgb`: RGB is sRGB-encoded (alpha never is).
+struct Texture {
+  std::string name;
+  uint32_t width = 0, height = 0;
+  bool srgb = true;
+  std::vector<uint8_t> rgba;  // width * height * 4
+};
+
+// A texture as a material uses it. uv' = transform * (u, v, 1) (KHR_texture_transform).
+struct TextureUse {
+  uint32_t texture = kNoIndex;
+  Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+  glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  // columns: u axis, v axis, offset
+  explicit operator bool() const { return texture != kNoIndex; }
+};
+
+// Diffuse only: reflectance rho = baseColor * (1 - metallic).
+struct Material {
+  std::string name;
+  glm::vec4 baseColor{1};
+  TextureUse baseColorTexture;
+  float metallic = 0;
+  glm::vec3 emission{0};  // radiance, W/(sr m^2): factor times KHR_materials_emissive_strength
+  TextureUse emissionTexture;
+  bool masked = false;  // alphaMode MASK; BLEND is treated as MASK with cutoff 0.5
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+};
+
+// Triangles of one material. Positions, normals, uvs have one entry a vertex, in the space of the mesh.
+struct Primitive {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  // unit
+  std::vector<glm::vec2> uvs;      // zeros where the model has none
+  std::vector<uint32_t> indices;   // 3 a triangle
+  uint32_t material = 0;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct Node {
+  std::string name;
+  uint32_t parent = kNoIndex;  // always a smaller index
+  glm::vec3 translation{0};
+  glm::quat rotation{1, 0, 0, 0};
+  glm::vec3 scale{1};
+  std::optional<glm::mat4> matrix;  // instead of the three above, when the file gives one
+  uint32_t mesh = kNoIndex, camera = kNoIndex, light = kNoIndex;
+  bool dynamic = false;  // moves: its own object, drawn and voxelised anew every frame
+};
+
+enum class LightType : uint32_t { Directional = 0, Point = 1, Spot = 2 };
+
+// `color * intensity` is lux (W/m^2 per channel) for directional lights, candela (W/sr) for the others.
+struct Light {
+  std::string name;
+  LightType type = LightType::Directional;
+  glm::vec3 color{1};
+  float intensity = 1;
+  float range = 0;  // 0: unlimited
+  float innerConeAngle = 0, outerConeAngle = 0.78539816f;
+  glm::vec3 position{0};         // world space, metres
+  glm::vec3 direction{0, 0, -1};  // world space, unit, the way the light travels
+};
+
+struct Camera {
+  std::string name;
+  glm::vec3 position{0};
+  glm::quat orientation{1, 0, 0, 0};  // looks along its -Z, its +Y is up
+  float verticalFov = 0.8f;           // radians
+  float zNear = 0.05f, zFar = 0;      // zFar 0: from the scene's size
+};
+
+struct CameraKey {
+  float time = 0;
+  Camera camera;
+};
+
+// Normalised image coordinates, origin top-left.
+struct GazeSample {
+  float time = 0;
+  glm::vec2 position{0.5f};
+  bool valid = true;  // an invalid sample (blink) holds the last valid one
+};
+
+struct Scene {
+  std::string name, source;  // source: the scene file or model
+  std::vector<Texture> textures;
+  std::vector<Material> materials;  // at least one
+  std::vector<Mesh> meshes;
+  std::vector<Node> nodes;
+  std::vector<Light> lights;    // world space
+  std::vector<Camera> cameras;  // world space; [0] is the one to use
+  std::vector<CameraKey> cameraPath;  // empty: a still camera
+  std::vector<GazeSample> gaze;
+  float exposure = 1;           // display = sRGB(exposure * radiance)
+  glm::vec3 environment{0};     // radiance where nothing is hit
+  uint64_t hash = 0;            // of all content, for caches and reports
+};
+
+// World-space triangles of the whole scene at one time: static objects first.
+struct Object {
+  std::string name;
+  uint32_t firstTriangle = 0, triangleCount = 0;
+  uint32_t firstVertex = 0, vertexCount = 0;
+  uint32_t node = kNoIndex;
+  bool dynamic = false;
+};
+
+struct Triangle {
+  uint32_t v[3];
+  uint32_t materialAndObject;  // material in the low 16 bits, object in the high 16 bits
+  uint32_t material() const { return materialAndObject & 0xffffu; }
+  uint32_t object() const { return materialAndObject >> 16; }
+};
+
+struct Geometry {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> uvs;
+  std::vector<Triangle> triangles;
+  std::vector<Object> objects;
+  uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
+  glm::vec3 boundsMin{std::numeric_limits<float>::max()}, boundsMax{std::numeric_limits<float>::lowest()};
+  bool empty() const { return triangles.empty(); }
+};
+
+glm::mat4 localTransform(const Node& node);
+std::vector<glm::mat4> worldTransforms(const Scene& scene);
+// Object 0 is all static geometry; every dynamic node with a mesh is one more object.
+// Throws Error(BadInput) past 65535 materials or objects.
+Geometry flatten(const Scene& scene);
+
+// Bilinear LOD-0 look-up exactly as shaders/common/scene.glsl does it; linear RGBA. uv before the transform.
+glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv);
+// Diffuse reflectance and alpha of a material at uv.
+glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv);
+glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv);
+
+}  // namespace fovea::scene
