@@ -62,11 +62,11 @@ class Parameters {
 class SizeExpr {
  public:
   enum class Op : uint8_t { Constant, ViewWidth, ViewHeight, Parameter, PortWidth, PortHeight, PortLayers, PortCount,
-                            Add, Sub, Mul, Div /* rounds up */, Min, Max };
+                            Environment, Add, Sub, Mul, Div /* rounds up */, Min, Max };
   struct Term {
     Op op;
     int64_t constant = 0;
-    std::string name;  // parameter, or "port" / "port.member"
+    std::string name;  // parameter, environment quantity, or "port" / "port.member"
   };
   SizeExpr() : SizeExpr(1) {}
   SizeExpr(int64_t constant) : terms_{{Op::Constant, constant, {}}} {}  // NOLINT: implicit on purpose
@@ -91,6 +91,9 @@ SizeExpr widthOf(std::string port);
 SizeExpr heightOf(std::string port);
 SizeExpr layersOf(std::string port);
 SizeExpr countOf(std::string port);
+// A number about the scene, from Environment::quantities: "scene.triangles", "scene.vertices", "scene.shadow_layers",
+// "scene.lights". At least 1.
+SizeExpr environment(std::string name);
 
 // ---- Resources -------------------------------------------------------------------------------------------------
 
