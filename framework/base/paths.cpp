@@ -1,0 +1,86 @@
+#include "framework/base/paths.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "framework/base/diagnostic.h"
+
+namespace fovea {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Keeps the first of equal folders, and only what exists.
+void addFolder(std::vector<fs::path>& list, const fs::path& folder) {
+  std::error_code ignored;
+  if (folder.empty() || !fs::is_directory(folder, ignored)) return;
+  const fs::path canonical = fs::weakly_canonical(folder, ignored);
+  if (!canonical.empty() && std::find(list.begin(), list.end(), canonical) == list.end()) list.push_back(canonical);
+}
+
+// A program's or library's own folder is a data folder only when it holds data: /usr/bin is none.
+void addBeside(std::vector<fs::path>& list, const fs::path& folder) {
+  if (folder.empty()) return;
+  addFolder(list, folder / "../share/fovea");
+  addFolder(list, folder / "../../share/fovea");  // lib/<multiarch>/libfovea.so
+  std::error_code ignored;
+  for (const fs::path& own : {folder, folder / ".."})
+    if (fs::is_directory(own / "shaders", ignored) && fs::is_directory(own / "graphs", ignored)) addFolder(list, own);
+}
+
+fs::path libraryFolder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&libraryFolder), &info) == 0 || !info.dli_fname) return {};
+  std::error_code ignored;
+  return fs::weakly_canonical(info.dli_fname, ignored).parent_path();
+}
+
+void addFromEnvironment(std::vector<fs::path>& list) {
+  const char* variable = std::getenv("FOVEA_DATA");
+  const std::string text = variable ? variable : "";
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(':', begin), text.size());
+    const fs::path folder = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (folder.empty()) continue;
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
+      throw Error(ExitCode::BadInput, "FOVEA_DATA names `" + folder.string() + "`, which is not a folder",
+                  "unset FOVEA_DATA, or let it name a folder with shaders, graphs and scenes");
+    addFolder(list, folder);
+  }
+}
+
+}  // namespace
+
+fs::path programFolder() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  return failed ? fs::path() : program.parent_path();
+}
+
+std::vector<fs::path> dataDirectories() {
+  std::vector<fs::path> list;
+  addFromEnvironment(list);
+  addBeside(list, programFolder());
+  addBeside(list, libraryFolder());
+  addFolder(list, FOVEA_SOURCE_DIR);
+#ifdef FOVEA_DATA_DIR
+  addFolder(list, FOVEA_DATA_DIR);
+#endif
+  return list;
+}
+
+std::vector<fs::path> dataFolders(std::string_view kind) {
+  std::vector<fs::path> list;
+  for (const fs::path& directory : dataDirectories()) {
+    addFolder(list, directory / kind);
+    if (kind == "scenes") addFolder(list, directory / "samples/scenes");
+  }
+  return list;
+}
+
+}  // namespace fovea
