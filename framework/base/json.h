@@ -1,0 +1,118 @@
+// JSON with source positions: every value and key knows its file, line and column, so that a wrong value can
+// be reported where the user wrote it. Free of any meaning: graph files and scene files are both read through
+// it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/base/diagnostic.h"
+
+namespace fovea::json {
+
+// Lines and columns count from 1, columns in characters (UTF-8 code points). line 0: unknown.
+struct Position {
+  std::shared_ptr<const std::string> file;
+  int line = 0;
+  int column = 0;
+
+  SourceLocation location() const { return {file ? *file : std::string(), line, column}; }
+};
+
+struct Member;
+
+struct Value {
+  enum class Type : uint8_t { Null, Bool, Int, Real, String, Array, Object };
+
+  Type type = Type::Null;
+  bool boolean = false;
+  int64_t integer = 0;          // Int
+  double real = 0;              // Real and Int; always finite
+  std::string string;           // String
+  std::vector<Value> items;     // Array
+  std::vector<Member> members;  // Object, in the order of the file; no key twice
+  Position where;               // first character of the value
+
+  bool isNull() const { return type == Type::Null; }
+  bool isBool() const { return type == Type::Bool; }
+  bool isInt() const { return type == Type::Int; }
+  bool isNumber() const { return type == Type::Int || type == Type::Real; }
+  bool isString() const { return type == Type::String; }
+  bool isArray() const { return type == Type::Array; }
+  bool isObject() const { return type == Type::Object; }
+
+  const Member* findMember(std::string_view key) const;  // nullptr also when this is no object
+  const Value* find(std::string_view key) const;
+  // "an object", "the number 3.5", "the text \"abc\"": for messages that say what was found.
+  std::string describe() const;
+};
+
+struct Member {
+  std::string key;
+  Position keyWhere;
+  Value value;
+};
+
+inline constexpr int kMaxDepth = 64;                   // nesting of arrays and objects
+inline constexpr size_t kMaxBytes = size_t(64) << 20;  // of one file
+
+// Strict RFC 8259. `file` is the name used in messages. Throws Error(BadInput), with place, for: a syntax
+// error, text after the document, a byte-order mark, a NUL, invalid UTF-8, a number that no double holds,
+// nesting deeper than kMaxDepth, and keys that occur twice in one object (all of those at once).
+Value parse(std::string_view text, std::string_view file);
+// Throws Error(BadInput) also when the file cannot be read or is larger than kMaxBytes.
+Value parseFile(const std::filesystem::path& file);
+
+// Reads an object member by member. A value of a wrong type or out of range is reported and replaced by the
+// fallback (or nothing); finish() reports every member that nobody asked for, with the nearest name that
+// somebody did.
+//   ObjectReader r(value, "camera", diagnostics);
+//   camera.fov = r.number("fov_degrees", 60, 1, 179);
+//   r.finish();
+class ObjectReader {
+ public:
+  // Reports when `value` is no object; every member is then absent. `path` is the place inside the document.
+  ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics);
+
+  const Value* find(std::string_view key);     // any type; nullptr when absent
+  const Value* require(std::string_view key);  // reports when absent
+  const Value* object(std::string_view key);   // nullptr when absent or wrong
+  const Value* array(std::string_view key);
+  bool has(std::string_view key) const { return value_.find(key) != nullptr; }
+
+  double number(std::string_view key, double fallback, double min = -std::numeric_limits<double>::infinity(),
+                double max = std::numeric_limits<double>::infinity());
+  int64_t integer(std::string_view key, int64_t fallback, int64_t min = std::numeric_limits<int64_t>::min(),
+                  int64_t max = std::numeric_limits<int64_t>::max());
+  bool boolean(std::string_view key, bool fallback);
+  std::string text(std::string_view key, std::string fallback = {});
+  std::string choice(std::string_view key, std::string fallback, const std::vector<std::string>& choices);
+  // An array of exactly `count` numbers; nullopt when absent or wrong.
+  std::optional<std::vector<double>> numbers(std::string_view key, size_t count);
+
+  void finish();
+
+  std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
+  const Value& value() const { return value_; }
+  Diagnostics& diagnostics() { return diagnostics_; }
+
+ private:
+  const Value* take(std::string_view key);
+  void wrong(std::string_view key, const Value& value, const std::string& expected);
+  const Value& value_;
+  std::string path_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> known_;
+};
+
+// "a.b", or "b" when path is empty.
+std::string joinPath(std::string_view path, std::string_view key);
+
+}  // namespace fovea::json
