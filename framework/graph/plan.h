@@ -45,6 +45,9 @@ struct Access {
   bool reads = false, writes = false;
   bool previous = false;          // last frame's copy
   uint32_t version = 0;           // writes: the version made; reads: the version seen (0: before any write)
+  // Images: the layout while the pass runs, which its descriptors and attachments must name. One layout for all of a
+  // pass's accesses to the image, and for all readers of one version (GENERAL when they want different ones).
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
 struct BoundPass {
@@ -118,7 +121,8 @@ struct Plan {
   uint64_t hash = 0;
 };
 
-// Layout and synchronization scope of one access.
+// Layout and synchronization scope of one access by itself; the layout in force is Access::layout. Host passes reach
+// their resources through copies: HostRead is a transfer read (TRANSFER_SRC), HostWrite a transfer write.
 struct AccessScope {
   VkPipelineStageFlags2 stage = 0;
   VkAccessFlags2 access = 0;

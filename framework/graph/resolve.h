@@ -1,0 +1,116 @@
+// From JSON to a description: `extends` merged, sub-graphs instanced under their prefix, parameters and overrides put
+// in. Names are interned, wires are split; nothing is known about pass types yet.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "framework/base/diagnostic.h"
+#include "framework/base/json.h"
+#include "framework/graph/declaration.h"
+#include "framework/graph/plan.h"
+
+namespace fovea::graph {
+
+// --set name=value
+struct Override {
+  std::string name;   // "vpl_count" or "pass.param"
+  std::string value;  // as typed
+};
+
+struct LoadOptions {
+  std::vector<Override> overrides;
+  std::vector<std::filesystem::path> searchPaths;
+};
+
+// Strings numbered densely, so that later phases look things up in arrays.
+using Symbol = uint32_t;
+
+class SymbolTable {
+ public:
+  Symbol intern(std::string_view text);
+  Symbol find(std::string_view text) const;  // kNone when unknown
+  const std::string& operator[](Symbol symbol) const { return *strings_[symbol]; }
+  size_t size() const { return strings_.size(); }
+  uint64_t hash(Symbol symbol) const { return hashes_[symbol]; }
+
+ private:
+  std::unordered_map<std::string, Symbol> index_;
+  std::vector<const std::string*> strings_;  // the map's keys: stable
+  std::vector<uint64_t> hashes_;
+};
+
+// Where something stands in the files, for messages only.
+struct Place {
+  uint32_t file = 0;  // Description::files
+  int line = 0, column = 0;
+};
+
+// "pass.port.member@previous", split. "inputs.x" of a sub-graph has been replaced by what the parent wired.
+struct WireDescription {
+  Symbol target = kNone;          // input port of the reading pass, or name of the graph's output
+  Symbol pass = kNone;            // kNone with `external`
+  Symbol port = kNone;            // kNone: the only output
+  Symbol member = kNone;          // kNone: the whole port
+  uint32_t external = kNone;      // index into Description::externals
+  bool previous = false;
+  Symbol text = kNone;            // as written, for messages
+  Place keyPlace, place;
+};
+
+struct ParameterDescription {
+  Symbol name = kNone;
+  json::Value::Type type = json::Value::Type::Null;
+  bool fromCommandLine = false;   // String: still to be read as the parameter's own type
+  int64_t integer = 0;            // Int, Bool
+  double real = 0;
+  Symbol text = kNone;
+  Place keyPlace, place;
+};
+
+struct PassDescription {
+  Symbol name = kNone;            // with prefix: "left/deferred"
+  Symbol type = kNone;
+  Symbol view = kNone;            // explicit or inherited; kNone: the default view
+  bool ownView = false;           // written at the pass itself
+  uint32_t firstInput = 0, inputCount = 0;          // Description::wires
+  uint32_t firstParameter = 0, parameterCount = 0;  // Description::parameters
+  Place place, typePlace, viewPlace;
+  Symbol path = kNone;            // "passes.deferred": place inside its document
+};
+
+// An input of the whole graph: the caller's memory.
+struct ExternalDescription {
+  Symbol name = kNone;
+  Symbol bundle = kNone;
+  std::vector<Symbol> members;          // "" for a plain one
+  std::vector<ResourceDesc> resources;  // width 0: size of the default view
+  Place place;
+};
+
+struct Description {
+  std::string name;         // file stem
+  std::string description;
+  std::vector<std::string> files;
+  SymbolTable symbols;
+  std::vector<PassDescription> passes;  // declaration order, sub-graphs expanded in place
+  std::vector<WireDescription> wires;
+  std::vector<ParameterDescription> parameters;
+  std::vector<WireDescription> outputs;
+  std::vector<ExternalDescription> externals;
+
+  SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
+};
+
+// Merges `patch` over `base` as RFC 7396, base keys first; an object under "passes" whose "type" or "graph" differs
+// replaces the base's. A null that removes nothing is an error. Exposed for tests.
+json::Value mergeDocuments(const json::Value& base, const json::Value& patch, Diagnostics& diagnostics);
+
+Description resolve(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
+                    Diagnostics& diagnostics);
+
+}  // namespace fovea::graph
