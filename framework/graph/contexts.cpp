@@ -1,0 +1,222 @@
+// The contexts through which passes see the graph: names in, resources and commands out.
+#include <algorithm>
+#include <cstring>
+
+#include "framework/base/diagnostic.h"
+#include "framework/graph/execute_state.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::graph {
+namespace {
+
+std::string memberPath(const PortSpec& port, const MemberSpec& member) {
+  return member.name.empty() ? port.name : port.name + "." + member.name;
+}
+
+VkImageLayout layoutOfUnion(const BoundPass& pass, const BoundGraph& graph, const Access& access) {
+  // One pass may see a resource through several ports; the image then is in the layout of all usages together.
+  Usage usage = Usage::None;
+  bool reads = false, writes = false;
+  for (const Access& a : pass.accesses) {
+    if (a.resource != access.resource || a.previous != access.previous) continue;
+    usage = usage | a.usage;
+    reads |= a.reads;
+    writes |= a.writes;
+  }
+  const bool depth = graph.resources[access.resource].desc.format == VK_FORMAT_D32_SFLOAT;
+  return accessScope(pass.declaration->kind, usage, reads, writes, depth).layout;
+}
+
+}  // namespace
+
+PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation)
+    : state(&executorState),
+      bound(&executorState.plan->graph->passes[passIndex]),
+      index(passIndex),
+      pass(std::move(implementation)) {
+  for (uint32_t i = 0; i < bound->accesses.size(); ++i) {
+    const Access& a = bound->accesses[i];
+    const PortSpec& port = bound->declaration->ports[a.port];
+    const std::string path = memberPath(port, port.members[a.member]);
+    accessByPath.emplace(path, i);
+    accessByShader.emplace(shaderName(path), i);
+    const bool image = desc(a).kind == ResourceKind::Image;
+    layouts.push_back(image ? layoutOfUnion(*bound, *state->plan->graph, a) : VK_IMAGE_LAYOUT_UNDEFINED);
+  }
+  const auto& counters = bound->declaration->counters;
+  for (uint32_t i = 0; i < counters.size(); ++i) counterByName.emplace(counters[i].name, i);
+  counterValues.resize(counters.size());
+  counterSet.resize(counters.size());
+}
+
+std::vector<std::string> PassInstance::paths() const {
+  std::vector<std::string> names;
+  for (const auto& [path, i] : accessByPath) names.push_back(path);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const Access* PassInstance::findAccess(std::string_view path) const {
+  auto it = accessByPath.find(path);
+  return it == accessByPath.end() ? nullptr : &bound->accesses[it->second];
+}
+
+const Access& PassInstance::access(std::string_view path) const {
+  if (const Access* a = findAccess(path)) return *a;
+  std::string message = "pass `" + bound->name + "` (" + bound->declaration->type + ") asks for `" + std::string(path) +
+                        "`, which is not one of its wired ports";
+  const std::string nearest = nearestName(path, paths());
+  throw Error(ExitCode::Internal, message, nearest.empty() ? "" : "did you mean `" + nearest + "`?");
+}
+
+// ---- PrepareContext --------------------------------------------------------------------------------------------
+
+gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
+const Parameters& PrepareContext::parameters() const { return pass_.bound->parameters; }
+
+// A bundle is wired when one of its members is.
+static bool portWired(const PassInstance& pass, std::string_view port) {
+  if (pass.findAccess(port)) return true;
+  return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(), [&](const Access& a) {
+    return pass.bound->declaration->ports[a.port].name == port;
+  });
+}
+
+static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
+  const ResourceDesc& d = pass.desc(pass.access(port));
+  return {d.width, d.height, d.depth};
+}
+
+bool PrepareContext::has(std::string_view port) const { return portWired(pass_, port); }
+VkExtent3D PrepareContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint32_t PrepareContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
+uint64_t PrepareContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+// ---- RecordContext ---------------------------------------------------------------------------------------------
+
+RecordContext::RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame, uint64_t frameNumber)
+    : pass_(pass), cmd_(cmd), frame_(frame), frameNumber_(frameNumber) {}
+
+gpu::Device& RecordContext::device() const { return *pass_.state->device; }
+const Parameters& RecordContext::parameters() const { return pass_.bound->parameters; }
+const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
+bool RecordContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
+gpu::Image& RecordContext::image(std::string_view port) const { return pass_.state->image(pass_.access(port)); }
+gpu::Buffer& RecordContext::buffer(std::string_view port) const { return pass_.state->buffer(pass_.access(port)); }
+VkExtent3D RecordContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint64_t RecordContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+Commands RecordContext::use(Kernel kernel) {
+  if (!kernel.state_)
+    throw Error(ExitCode::Internal, "pass `" + pass_.bound->name + "` uses a kernel that was never made",
+                "make it in prepare()");
+  kernel.state_->overrides.clear();
+  return Commands(*this, *kernel.state_);
+}
+
+void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
+                           const std::function<void()>& body, uint32_t layers) {
+  const VkExtent3D e = extent(colors.empty() ? depth->port : colors.front().port);
+  render(colors, depth, VkRect2D{{0, 0}, {e.width, e.height}}, body, layers);
+}
+
+void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
+                           const std::function<void()>& body, uint32_t layers) {
+  auto describe = [&](const Attachment& a) {
+    const Access& access = pass_.access(a.port);
+    VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    info.imageView = pass_.state->image(access).view();
+    info.imageLayout = pass_.layouts[&access - pass_.bound->accesses.data()];
+    info.loadOp = a.load == Attachment::Load::Clear  ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                  : a.load == Attachment::Load::Keep ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                     : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    info.clearValue = a.clear;
+    return info;
+  };
+  std::vector<VkRenderingAttachmentInfo> colorInfos;
+  for (const Attachment& a : colors) colorInfos.push_back(describe(a));
+  VkRenderingAttachmentInfo depthInfo{};
+  if (depth) depthInfo = describe(*depth);
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = area;
+  info.layerCount = layers;
+  info.colorAttachmentCount = static_cast<uint32_t>(colorInfos.size());
+  info.pColorAttachments = colorInfos.data();
+  info.pDepthAttachment = depth ? &depthInfo : nullptr;
+  vkCmdBeginRendering(cmd_, &info);
+  const VkViewport viewport{float(area.offset.x), float(area.offset.y), float(area.extent.width),
+                            float(area.extent.height), 0.0f, 1.0f};
+  vkCmdSetViewport(cmd_, 0, 1, &viewport);
+  vkCmdSetScissor(cmd_, 0, 1, &area);
+  body();
+  vkCmdEndRendering(cmd_);
+}
+
+static void requireTransferWrite(const PassInstance& pass, const Access& access, std::string_view port) {
+  if (any(access.usage, Usage::TransferWrite)) return;
+  throw Error(ExitCode::Internal,
+              "pass `" + pass.bound->declaration->type + "` clears `" + std::string(port) +
+                  "` without declaring Usage::TransferWrite on it");
+}
+
+void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
+  const Access& access = pass_.access(bufferPort);
+  requireTransferWrite(pass_, access, bufferPort);
+  vkCmdFillBuffer(cmd_, pass_.state->buffer(access).handle(), 0, VK_WHOLE_SIZE, word);
+}
+
+void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
+  const Access& access = pass_.access(imagePort);
+  requireTransferWrite(pass_, access, imagePort);
+  gpu::Image& target = pass_.state->image(access);
+  const VkImageSubresourceRange range = wholeImage(target);
+  vkCmdClearColorImage(cmd_, target.handle(), pass_.layouts[&access - pass_.bound->accesses.data()], &value, 1, &range);
+}
+
+void RecordContext::barrier() {
+  VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &all;
+  vkCmdPipelineBarrier2(cmd_, &info);
+}
+
+static void setCounter(PassInstance& pass, std::string_view name, double value) {
+  auto it = pass.counterByName.find(name);
+  if (it == pass.counterByName.end())
+    throw Error(ExitCode::Internal,
+                "pass `" + pass.bound->declaration->type + "` has no counter `" + std::string(name) + "`");
+  pass.counterValues[it->second] = value;
+  pass.counterSet[it->second] = true;
+}
+
+void RecordContext::counter(std::string_view name, double value) { setCounter(pass_, name, value); }
+
+// ---- HostContext -----------------------------------------------------------------------------------------------
+
+HostContext::HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t frameNumber)
+    : pass_(pass), frame_(frame), frameNumber_(frameNumber) {}
+
+const Parameters& HostContext::parameters() const { return pass_.bound->parameters; }
+const scene::View& HostContext::view() const { return frame_.views[pass_.viewIndex]; }
+bool HostContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool HostContext::firstFrame() const { return pass_.state->viewReset; }
+VkExtent3D HostContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint64_t HostContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+static std::span<std::byte> stagingOf(PassInstance& pass, std::string_view port) {
+  const Access& access = pass.access(port);
+  HostStaging& staging = pass.staging.at(&access - pass.bound->accesses.data());
+  return {static_cast<std::byte*>(staging.slots[pass.state->slot].mapped()), resourceBytes(pass.desc(access))};
+}
+
+std::span<const std::byte> HostContext::input(std::string_view port) const { return stagingOf(pass_, port); }
+std::span<std::byte> HostContext::output(std::string_view port) const { return stagingOf(pass_, port); }
+void HostContext::counter(std::string_view name, double value) { setCounter(pass_, name, value); }
+
+}  // namespace fovea::graph

@@ -1,0 +1,87 @@
+// Replays a plan on a device, frame after frame, without allocating, compiling, waiting or reading back inside the loop.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/graph/plan.h"
+
+namespace fovea::gpu {
+class Device;
+}
+namespace fovea::scene {
+struct Frame;
+class GpuScene;
+}  // namespace fovea::scene
+
+namespace fovea::graph {
+
+class Registry;
+
+struct ExecutorOptions {
+  uint32_t framesInFlight = 2;
+  std::vector<std::string> readback;  // graph outputs that frames may ask to have read back
+};
+
+// Milliseconds. gpu: between the timestamps around the pass; cpu: recording it, or executing it if it is a host pass.
+struct PassTiming {
+  uint32_t pass = 0;  // index into BoundGraph::passes
+  double gpuMs = 0, cpuMs = 0;
+};
+
+struct OutputData {
+  ResourceDesc desc;
+  std::vector<std::byte> bytes;  // tightly packed, layer after layer, mip 0
+};
+
+struct FrameResult {
+  uint64_t frame = 0;     // Frame::index
+  double gpuMs = 0;       // first to last timestamp
+  double cpuMs = 0;       // recording and host passes
+  double wallMs = 0;      // since the previous frame was finished; the first frame: since it was submitted
+  std::vector<PassTiming> passes;                                    // in order of execution
+  std::vector<std::pair<std::string, double>> counters;              // "deferred.pairs"
+  std::map<std::string, OutputData> outputs;                         // only when asked for
+};
+
+// Vulkan usage flags and sizes that a bound resource will have on the device; feeds the aliasing phase.
+struct ResourceSize {
+  uint64_t bytes = 0, alignment = 1;
+  uint32_t memoryTypeBits = ~0u;
+};
+ResourceSize deviceSize(gpu::Device& device, const BoundResource& resource);
+
+class Executor {
+ public:
+  // Allocates all memory and prepares all passes (compiles their shaders). Throws Error(OutOfMemory) naming the resource
+  // and its size, Error(BadInput) for shaders that do not compile or bind.
+  Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry, scene::GpuScene& scene,
+           const ExecutorOptions& options = {});
+  ~Executor();
+
+  // Contents of an input of the whole graph ("radiance", "gbuffer.position"); kept until set again. Waits.
+  void setInput(const std::string& name, std::span<const std::byte> bytes);
+
+  // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that reads
+  // what this frame's GPU passes wrote.
+  void submit(const scene::Frame& frame, bool readOutputs = false);
+
+  // The oldest frame that has finished and was not returned yet; nullopt if there is none. Never blocks.
+  std::optional<FrameResult> poll();
+  // Waits for the oldest unreturned frame; nullopt when every submitted frame was returned.
+  std::optional<FrameResult> next();
+
+  uint64_t residentBytes() const;  // device memory held by this executor
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fovea::graph
