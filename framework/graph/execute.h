@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/graph/compile.h"
 #include "framework/graph/plan.h"
 
 namespace fovea::gpu {
@@ -17,6 +18,8 @@ class Device;
 }
 namespace fovea::scene {
 struct Frame;
+struct Geometry;
+struct Scene;
 class GpuScene;
 }  // namespace fovea::scene
 
@@ -50,12 +53,15 @@ struct FrameResult {
   std::map<std::string, OutputData> outputs;                         // only when asked for
 };
 
-// Vulkan usage flags and sizes that a bound resource will have on the device; feeds the aliasing phase.
-struct ResourceSize {
-  uint64_t bytes = 0, alignment = 1;
-  uint32_t memoryTypeBits = ~0u;
-};
-ResourceSize deviceSize(gpu::Device& device, const BoundResource& resource);
+// Memory that a bound resource needs on the device; feeds the aliasing phase.
+MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
+
+// compile() for a device: sizes as its driver reports them.
+CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph);
+
+// What a graph is bound to: views, the device's limits (device may be null: unknown) and the scene's quantities.
+Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,
+                             std::vector<std::pair<std::string, VkExtent2D>> views);
 
 class Executor {
  public:

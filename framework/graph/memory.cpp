@@ -5,6 +5,7 @@
 #include "framework/gpu/format.h"
 #include "framework/graph/execute.h"
 #include "framework/graph/execute_state.h"
+#include "framework/scene/scene.h"
 
 namespace fovea::graph {
 namespace {
@@ -132,12 +133,42 @@ gpu::ImageDesc imageDesc(const BoundResource& resource) {
   return desc;
 }
 
-ResourceSize deviceSize(gpu::Device& device, const BoundResource& resource) {
+MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource) {
   const VkMemoryRequirements r = resource.desc.kind == ResourceKind::Image
                                      ? gpu::memoryRequirements(device, imageDesc(resource))
                                      : gpu::memoryRequirements(device, bufferDesc(resource));
-  // Buffers and images may be neighbours in one heap.
-  return {r.size, std::max<uint64_t>(r.alignment, device.limits().bufferImageGranularity), r.memoryTypeBits};
+  return {r.size, r.alignment, r.memoryTypeBits};
+}
+
+CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph) {
+  CompileOptions options;
+  options.granularity = device.limits().bufferImageGranularity;
+  options.memory = [&device, graph](uint32_t resource) { return deviceMemory(device, graph->resources[resource]); };
+  return options;
+}
+
+Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,
+                             std::vector<std::pair<std::string, VkExtent2D>> views) {
+  Environment environment;
+  environment.views = std::move(views);
+  int64_t shadowLayers = 0;
+  for (const scene::Light& light : scene.lights) shadowLayers += light.type == scene::LightType::Point ? 6 : 1;
+  auto add = [&](const char* name, int64_t value) {
+    environment.quantities.emplace_back(name, std::max<int64_t>(1, value));
+  };
+  add("scene.triangles", static_cast<int64_t>(geometry.triangles.size()));
+  add("scene.vertices", static_cast<int64_t>(geometry.positions.size()));
+  add("scene.lights", static_cast<int64_t>(scene.lights.size()));
+  add("scene.shadow_layers", shadowLayers);
+  if (device) {
+    const VkPhysicalDeviceLimits& limits = device->limits();
+    environment.maxImageDimension2D = limits.maxImageDimension2D;
+    environment.maxImageDimension3D = limits.maxImageDimension3D;
+    environment.maxImageArrayLayers = limits.maxImageArrayLayers;
+    environment.maxStorageBufferRange = limits.maxStorageBufferRange;
+    environment.maxUniformBufferRange = limits.maxUniformBufferRange;
+  }
+  return environment;
 }
 
 void allocateResources(ExecutorState& state) {
