@@ -73,9 +73,11 @@ Pixels read(const std::filesystem::path& file) {
 
 Image8 decode8(const uint8_t* bytes, size_t size) {
   OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes), size);
-  const OIIO::ImageSpec config = readConfig();
+  OIIO::ImageSpec config = readConfig();
+  void* proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const bool png = size > 1 && bytes[0] == 0x89 && bytes[1] == 'P';
-  auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &config, &memory);
+  auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &config);
   if (!input) fail(OIIO::geterror());
   const OIIO::ImageSpec spec = input->spec();
   checkSize(spec);

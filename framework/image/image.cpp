@@ -125,7 +125,7 @@ Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
 }
 
 int channelRank(const std::string& name) {
-  const size_t rank = std::string_view("RGBAXYZ").find(name);
+  const size_t rank = std::string_view("RGBXYZA").find(name);
   return name.size() == 1 && rank != std::string_view::npos ? int(rank) : 100;
 }
 
@@ -264,6 +264,7 @@ void write(const fs::path& file, const std::vector<Layer>& layers, const Metadat
                   "`" + file.string() + "`: ." + extension + " cannot hold " + std::to_string(channels) + " channels",
                   "write an .exr");
     for (size_t c = 0; c < channels; ++c) pixels.channels[c] = channelName(uint32_t(c), uint32_t(channels));
+    if (channels == 2) pixels.channels = {"Y", "A"};
   }
   if (extension == "png") quantise(pixels);
   const RemoveOnExit temporary{temporaryName(file, extension)};
