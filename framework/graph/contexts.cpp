@@ -13,20 +13,6 @@ std::string memberPath(const PortSpec& port, const MemberSpec& member) {
   return member.name.empty() ? port.name : port.name + "." + member.name;
 }
 
-VkImageLayout layoutOfUnion(const BoundPass& pass, const BoundGraph& graph, const Access& access) {
-  // One pass may see a resource through several ports; the image then is in the layout of all usages together.
-  Usage usage = Usage::None;
-  bool reads = false, writes = false;
-  for (const Access& a : pass.accesses) {
-    if (a.resource != access.resource || a.previous != access.previous) continue;
-    usage = usage | a.usage;
-    reads |= a.reads;
-    writes |= a.writes;
-  }
-  const bool depth = graph.resources[access.resource].desc.format == VK_FORMAT_D32_SFLOAT;
-  return accessScope(pass.declaration->kind, usage, reads, writes, depth).layout;
-}
-
 }  // namespace
 
 PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation)
@@ -40,8 +26,6 @@ PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex, std
     const std::string path = memberPath(port, port.members[a.member]);
     accessByPath.emplace(path, i);
     accessByShader.emplace(shaderName(path), i);
-    const bool image = desc(a).kind == ResourceKind::Image;
-    layouts.push_back(image ? layoutOfUnion(*bound, *state->plan->graph, a) : VK_IMAGE_LAYOUT_UNDEFINED);
   }
   const auto& counters = bound->declaration->counters;
   for (uint32_t i = 0; i < counters.size(); ++i) counterByName.emplace(counters[i].name, i);
@@ -127,7 +111,7 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
     const Access& access = pass_.access(a.port);
     VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     info.imageView = pass_.state->image(access).view();
-    info.imageLayout = pass_.layouts[&access - pass_.bound->accesses.data()];
+    info.imageLayout = access.layout;
     info.loadOp = a.load == Attachment::Load::Clear  ? VK_ATTACHMENT_LOAD_OP_CLEAR
                   : a.load == Attachment::Load::Keep ? VK_ATTACHMENT_LOAD_OP_LOAD
                                                      : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
@@ -172,7 +156,7 @@ void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
   requireTransferWrite(pass_, access, imagePort);
   gpu::Image& target = pass_.state->image(access);
   const VkImageSubresourceRange range = wholeImage(target);
-  vkCmdClearColorImage(cmd_, target.handle(), pass_.layouts[&access - pass_.bound->accesses.data()], &value, 1, &range);
+  vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
 }
 
 void RecordContext::barrier() {

@@ -300,7 +300,7 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
   for (size_t i = 0; i < pass.staging.size(); ++i) {
     const Access& a = pass.bound->accesses[i];
     if (!a.reads) continue;
-    copyToStaging(cmd, state.resources[a.resource], state.copyIndex(a), pass.layouts[i],
+    copyToStaging(cmd, state.resources[a.resource], state.copyIndex(a), a.layout,
                   pass.staging[i].slots[state.slot], resourceBytes(pass.desc(a)));
     waits = true;
   }
@@ -314,7 +314,7 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
   for (size_t i = 0; i < pass.staging.size(); ++i) {
     const Access& a = pass.bound->accesses[i];
     if (!a.writes) continue;
-    copyFromStaging(cmd, state.resources[a.resource], state.copyIndex(a), pass.layouts[i],
+    copyFromStaging(cmd, state.resources[a.resource], state.copyIndex(a), a.layout,
                     pass.staging[i].slots[state.slot], resourceBytes(pass.desc(a)));
   }
 }

@@ -98,7 +98,6 @@ struct PassInstance {
   NameMap<uint32_t> accessByPath;   // "radiance", "gbuffer.position"
   NameMap<uint32_t> accessByShader;  // "radiance", "gbufferPosition"
   NameMap<uint32_t> counterByName;
-  std::vector<VkImageLayout> layouts;  // one an access
   std::deque<KernelState> kernels;     // stable addresses
   std::vector<double> counterValues;   // set by the CPU
   std::vector<bool> counterSet;

@@ -1,5 +1,6 @@
 // Kernels: pipelines whose bindings are found by name, and the commands that use them.
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "framework/base/diagnostic.h"
@@ -78,7 +79,7 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
   binding.source = KernelBinding::Source::Port;
   binding.reflected = b;
   binding.access = accessIndex;
-  binding.layout = pass.layouts[accessIndex];
+  binding.layout = access.layout;
   binding.port = port.name;
   if (b.kind == gpu::BindingKind::CombinedImageSampler)
     binding.sampler = gpu::sampler(*pass.state->device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
@@ -243,68 +244,91 @@ Commands& Commands::range(std::string_view port, uint64_t offset, uint64_t bytes
   return bind(shaderName(port), context_.buffer(port), offset, bytes);
 }
 
-void Commands::flush() {
-  const size_t count = kernel_.bindings.size();
-  ExecutorState& state = *context_.pass_.state;
-  std::vector<VkWriteDescriptorSet> writes(count);
-  std::vector<VkDescriptorImageInfo> images(count);
-  std::vector<VkDescriptorBufferInfo> buffers(count);
-  std::vector<VkBufferView> texels(count);
-  for (size_t i = 0; i < count; ++i) {
-    const KernelBinding& b = kernel_.bindings[i];
-    const KernelState::Override* over = nullptr;
-    for (const auto& o : kernel_.overrides)
-      if (o.binding == i) over = &o;
-    const Access* access = b.access == kNone ? nullptr : &context_.pass_.bound->accesses[b.access];
-    VkWriteDescriptorSet& w = writes[i];
-    w = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    w.dstBinding = b.reflected.binding;
-    w.descriptorCount = 1;
-    w.descriptorType = gpu::descriptorType(b.reflected.kind);
-    w.pImageInfo = &images[i];
-    w.pBufferInfo = &buffers[i];
-    w.pTexelBufferView = &texels[i];
-    images[i].sampler = b.sampler;
-    if (b.source == KernelBinding::Source::Sampler) continue;
-    if (b.source == KernelBinding::Source::Counters) {
-      buffers[i] = {state.counters.handle(), context_.pass_.counterOffset,
-                    context_.pass_.counterValues.size() * sizeof(uint32_t)};
-    } else if (over && over->view) {
-      images[i].imageView = over->view;
-      const bool storage = b.reflected.kind == gpu::BindingKind::StorageImage;
-      images[i].imageLayout = b.layout != VK_IMAGE_LAYOUT_UNDEFINED ? b.layout
-                              : storage                             ? VK_IMAGE_LAYOUT_GENERAL
-                                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    } else if (over) {
-      buffers[i] = {over->buffer, over->offset, over->range};
-    } else if (access && isImageBinding(b.reflected.kind)) {
-      images[i].imageView = state.image(*access).view();
-      images[i].imageLayout = b.layout;
-    } else if (access && b.reflected.kind == gpu::BindingKind::UniformTexelBuffer) {
-      // 16-byte elements are read as vec4, 4-byte ones as uint; the shader's declaration decides between the two.
-      texels[i] = state.buffer(*access).texelView(
-          context_.pass_.desc(*access).stride % 16 == 0 ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R32_UINT);
-    } else if (access) {
-      buffers[i] = {state.buffer(*access).handle(), 0, VK_WHOLE_SIZE};
-    } else {
-      throw Error(ExitCode::Internal,
-                  "pass `" + context_.pass_.bound->name + "`: binding `" + b.reflected.name + "` of shader " +
-                      kernel_.name + " is neither a wired port nor bound by hand",
-                  "nearest port: " + nearestName(b.reflected.name, context_.pass_.paths()));
-    }
+// One descriptor of set 0: a wired port, an override of this command, the counters or a sampler.
+struct Descriptor {
+  VkDescriptorImageInfo image{};
+  VkDescriptorBufferInfo buffer{};
+  VkBufferView texels = VK_NULL_HANDLE;
+};
+
+static void fillImage(const KernelBinding& b, VkImageView view, Descriptor& d) {
+  const bool storage = b.reflected.kind == gpu::BindingKind::StorageImage;
+  d.image = {b.sampler, view,
+             b.layout != VK_IMAGE_LAYOUT_UNDEFINED ? b.layout
+             : storage                             ? VK_IMAGE_LAYOUT_GENERAL
+                                                   : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+}
+
+static void fillPort(PassInstance& pass, const KernelBinding& b, Descriptor& d) {
+  const Access& access = pass.bound->accesses[b.access];
+  if (isImageBinding(b.reflected.kind)) {
+    fillImage(b, pass.state->image(access).view(), d);
+  } else if (b.reflected.kind == gpu::BindingKind::UniformTexelBuffer) {
+    // 16-byte elements are read as vec4, others as uint.
+    d.texels = pass.state->buffer(access).texelView(
+        pass.desc(access).stride % 16 == 0 ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R32_UINT);
+  } else {
+    d.buffer = {pass.state->buffer(access).handle(), 0, VK_WHOLE_SIZE};
   }
+}
+
+static void fillDescriptor(PassInstance& pass, const KernelState& kernel, uint32_t index, Descriptor& d) {
+  const KernelBinding& b = kernel.bindings[index];
+  d.image.sampler = b.sampler;
+  for (const KernelState::Override& o : kernel.overrides) {
+    if (o.binding != index) continue;
+    if (o.view)
+      fillImage(b, o.view, d);
+    else
+      d.buffer = {o.buffer, o.offset, o.range};
+    return;
+  }
+  switch (b.source) {
+    case KernelBinding::Source::Sampler: return;
+    case KernelBinding::Source::Port: fillPort(pass, b, d); return;
+    case KernelBinding::Source::Counters:
+      d.buffer = {pass.state->counters.handle(), pass.counterOffset, pass.counterValues.size() * sizeof(uint32_t)};
+      return;
+    case KernelBinding::Source::Manual: break;
+  }
+  const std::string nearest = nearestName(b.reflected.name, pass.paths());
+  bindingError(pass, kernel.name, "binding `" + b.reflected.name + "` is neither a wired port nor bound by hand",
+               nearest.empty() ? "name it after a port" : "did you mean port `" + nearest + "`?");
+}
+
+void Commands::checkConstants() const {
   for (size_t i = 0; i < kernel_.constants.size(); ++i)
     if (!(constantsSet_ >> i & 1))
       throw Error(ExitCode::Internal, "pass `" + context_.pass_.bound->name + "`: push constant `" +
                                           kernel_.constants[i].reflected.name + "` of shader " + kernel_.name +
                                           " was not set");
-  const gpu::Pipeline& p = kernel_.pipeline;
-  vkCmdBindPipeline(context_.cmd_, p.bindPoint(), p.handle());
-  if (!writes.empty()) state.device->pushDescriptorSet(context_.cmd_, p.bindPoint(), p.layout(), 0, writes);
-  if (p.interface().usesSharedSet) {
-    const uint32_t offset = context_.pass_.viewOffset;
-    vkCmdBindDescriptorSets(context_.cmd_, p.bindPoint(), p.layout(), 1, 1, &state.sharedSet, 1, &offset);
+}
+
+void Commands::flush() {
+  constexpr size_t kMaxBindings = 32;  // what every device with push descriptors can take
+  const size_t count = kernel_.bindings.size();
+  if (count > kMaxBindings)
+    throw Error(ExitCode::Internal, "shader " + kernel_.name + " has more than 32 bindings in set 0");
+  checkConstants();
+  std::array<Descriptor, kMaxBindings> descriptors;
+  std::array<VkWriteDescriptorSet, kMaxBindings> writes;
+  for (uint32_t i = 0; i < count; ++i) {
+    fillDescriptor(context_.pass_, kernel_, i, descriptors[i]);
+    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    writes[i].dstBinding = kernel_.bindings[i].reflected.binding;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = gpu::descriptorType(kernel_.bindings[i].reflected.kind);
+    writes[i].pImageInfo = &descriptors[i].image;
+    writes[i].pBufferInfo = &descriptors[i].buffer;
+    writes[i].pTexelBufferView = &descriptors[i].texels;
   }
+  const gpu::Pipeline& p = kernel_.pipeline;
+  ExecutorState& state = *context_.pass_.state;
+  vkCmdBindPipeline(context_.cmd_, p.bindPoint(), p.handle());
+  if (count) state.device->pushDescriptorSet(context_.cmd_, p.bindPoint(), p.layout(), 0, {writes.data(), count});
+  if (p.interface().usesSharedSet)
+    vkCmdBindDescriptorSets(context_.cmd_, p.bindPoint(), p.layout(), 1, 1, &state.sharedSet, 1,
+                            &context_.pass_.viewOffset);
   if (p.interface().pushConstantBytes)
     vkCmdPushConstants(context_.cmd_, p.layout(), p.interface().stages, 0, p.interface().pushConstantBytes, constants_);
 }

@@ -103,6 +103,7 @@ class Commands {
   friend class RecordContext;
   Commands(RecordContext& context, KernelState& kernel);
   Commands& constantBytes(std::string_view name, const void* data, size_t bytes);
+  void checkConstants() const;
   void flush();
   RecordContext& context_;
   KernelState& kernel_;
