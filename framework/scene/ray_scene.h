@@ -1,0 +1,63 @@
+// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+
+struct Ray {
+  glm::vec3 origin{0};     // world space, m
+  glm::vec3 direction{0};  // need not be unit: distances count in its length
+  float near = 0, far = std::numeric_limits<float>::infinity();
+};
+
+struct RayHit {
+  uint32_t triangle = kNoIndex;  // index into Geometry::triangles
+  float distance = 0;            // in lengths of the ray's direction
+  float u = 0, v = 0;            // barycentric weights of the triangle's second and third vertex
+  explicit operator bool() const { return triangle != kNoIndex; }
+};
+
+// A surface as light and eye meet it. Normals are as the model has them: not turned towards anything.
+struct SurfaceHit {
+  glm::vec3 position{0};         // world space, m
+  glm::vec3 geometricNormal{0};  // unit, counter-clockwise side
+  glm::vec3 shadingNormal{0};    // unit, interpolated; within 90 degrees of the geometric one
+  glm::vec2 uv{0};
+  uint32_t material = 0, object = 0;
+};
+
+// Immutable after construction; look-ups may run on many threads at once. Copies what it needs of the masked materials:
+// neither scene nor geometry has to outlive it.
+class RayScene {
+ public:
+  RayScene(const Scene& scene, const Geometry& geometry);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
+  bool occluded(const Ray& ray) const;
+
+  // The smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
+  float epsilon() const;
+  double surfaceArea() const;  // of all triangles, one side, m^2
+
+  // The acceleration structure of `geometry`, built when its content (or the masks of `scene`) differs from what was asked
+  // for last; the two most recent ones are kept. Thread-safe.
+  static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Attributes at a hit; `geometry` is the one the ray was traced in.
+SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit);
+
+}  // namespace fovea::scene

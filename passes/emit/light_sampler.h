@@ -1,0 +1,60 @@
+// Where light paths begin: the lights of a frame and the emissive triangles of its geometry.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "framework/scene/frame.h"
+#include "framework/scene/ray_scene.h"
+
+namespace fovea::passes {
+
+// Start of one light path. Means of `flux` over the samples are the sources' power.
+struct Emission {
+  scene::Ray ray;        // unit direction
+  glm::vec3 flux{0};     // W per channel that one path stands for if it were the only one
+  float range = 0;       // of the light, 0 unlimited: the window applies at the first hit
+  bool surface = false;  // begins on an emissive triangle, which is a VPL of its own
+  glm::vec3 normal{0};   // of that triangle, on the side that shines
+};
+
+// Sources are chosen in proportion to their power (mean of the channels). Directional lights send a parallel beam over the
+// silhouette of the scene's bounding box, so that nearly every ray meets it; spots are sampled by their falloff.
+class LightSampler {
+ public:
+  LightSampler(const scene::Frame& frame, bool emissiveTriangles, float epsilon);
+  bool empty() const { return sources_.empty(); }
+  bool hasSurfaces() const { return hasSurfaces_; }
+  glm::dvec3 power() const { return power_; }  // of all sources, W per channel
+  // Path `index`; uses the first two groups of four quasi-random dimensions (first: the source, second: a surface's direction).
+  Emission sample(uint32_t index, uint32_t seed) const;
+
+ private:
+  struct Source {
+    uint32_t light = scene::kNoIndex, triangle = scene::kNoIndex;
+    glm::dvec3 power{0};
+    double cumulative = 0;  // up to and with this source, of the mean of the channels
+  };
+  void add(Source source);
+  void addEmissiveTriangles();
+  void sampleLight(const scene::Light& light, const float u[4], Emission& e) const;
+  void sampleTriangle(const Source& source, double probability, const float u[4], uint32_t index, uint32_t seed,
+                      Emission& e) const;
+  glm::vec3 boxSilhouette(glm::vec3 direction) const;  // area of each pair of faces times |cosine|, m^2
+
+  const scene::Frame& frame_;
+  float epsilon_;
+  std::vector<Source> sources_;
+  glm::dvec3 power_{0};
+  bool hasSurfaces_ = false;
+};
+
+// Power of a light in W per channel; `beamArea` is the cross-section of a directional light's beam.
+glm::dvec3 lightPower(const scene::Light& light, double beamArea);
+// Cosine-distributed unit direction around the unit normal.
+glm::vec3 cosineDirection(glm::vec3 normal, float u, float v);
+// The window of KHR_lights_punctual at distance d: 1 near the light, 0 past its range.
+float rangeWindow(float distance, float range);
+
+}  // namespace fovea::passes
