@@ -1,0 +1,45 @@
+// Light that reaches the eye straight from the lights after one diffuse reflection, plus what surfaces emit.
+#include "framework/graph/registry.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class Direct : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("direct", "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
+    d.view();
+    d.input("gbuffer", "gbuffer",
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+             member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::Sampled),
+             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+             member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+            "surfaces seen by the eye");
+    d.input("maps", "shadow-maps",
+            {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
+             member("views", buffer("ShadowView", 112), Usage::Uniform)},
+            "what each light sees");
+    d.output("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
+             Usage::StorageWrite, "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
+    d.parameter("filter", choice("pcf", {"none", "pcf"}),
+                "shadow edges: `none` is one comparison (jagged), `pcf` the average over 3x3 texels, bilinear between them");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const bool pcf = ctx.parameters().text("filter") == "pcf";
+    kernel_ = ctx.compute("direct/direct.comp", {{"SHADOW_PCF", pcf ? "1" : "0"}});
+  }
+  void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("direct"); }
+
+ private:
+  Kernel kernel_;
+};
+
+FOVEA_PASS(Direct);
+
+}  // namespace
+}  // namespace fovea::passes

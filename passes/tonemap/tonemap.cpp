@@ -1,0 +1,41 @@
+// The display transform of METHOD section 4: T(x) = sRGB(clamp01(exposure * x)).
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class Tonemap : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("tonemap", "linear radiance to a display-referred picture with the exact sRGB transfer function");
+    d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
+    d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")), Usage::StorageWrite,
+             "rgb: sRGB-encoded, a: 1");
+    d.parameter("exposure", real(0, 0, 1e9), "factor from radiance to display intensity; 0: the scene's own exposure");
+    d.parameter("operator", choice("clamp", {"clamp", "reinhard"}),
+                "curve before encoding: `clamp` cuts at 1 (what every measure uses), `reinhard` is x / (1 + luminance)");
+    d.counter("non_finite", "pixels with a NaN (shown black) or an infinity in the radiance");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const bool reinhard = ctx.parameters().text("operator") == "reinhard";
+    kernel_ = ctx.compute("tonemap/tonemap.comp", {{"REINHARD", reinhard ? "1" : "0"}});
+  }
+
+  void record(RecordContext& ctx) override {
+    const float exposure = float(ctx.parameters().real("exposure"));
+    ctx.use(kernel_).constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure).dispatchOver("image");
+  }
+
+ private:
+  Kernel kernel_;
+};
+
+FOVEA_PASS(Tonemap);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,26 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+// mean_n = mean_(n-1) + (x_n - mean_(n-1)) / n. The count lives in alpha, which the graph zeroes on a reset together with
+// the mean, so that neither can outlive the other.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D value;
+layout(set = 0, binding = 1, rgba32f) uniform image2D mean;
+layout(set = 0, binding = 2, std430) buffer Counters { uint value[]; } counters;
+
+layout(push_constant) uniform Constants { float alpha; };
+
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(p, imageSize(mean)))) return;
+  vec3 x = texelFetch(value, p, 0).rgb;
+  // By bits: compilers may assume that floats are never NaN. One such value would stay in the mean for ever.
+  if (any(equal(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u)))) {
+    atomicAdd(counters.value[0], 1u);
+    return;
+  }
+  vec4 old = imageLoad(mean, p);
+  float count = old.a + 1.0;
+  imageStore(mean, p, vec4(old.rgb + (x - old.rgb) * max(1.0 / count, alpha), count));
+}

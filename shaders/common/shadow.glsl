@@ -1,0 +1,83 @@
+// Shadow maps of the scene's lights: how a light sees the scene, and whether a point is lit.
+// Needs common/scene.glsl. The views are made by shadow-map/views.comp.
+#ifndef FOVEA_SHADOW_GLSL
+#define FOVEA_SHADOW_GLSL
+
+const uint kMaxShadowLayers = 384u;  // 64 lights, six faces each
+
+// How one layer looks at the scene. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit):
+// with near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
+struct ShadowView {
+  mat4 worldToClip;
+  vec4 right;  // xyz: unit, image x axis in the world; w: width of a texel where clip.w = 1, m
+  vec4 up;     // xyz: unit, image y axis; w: height of a texel where clip.w = 1, m
+  vec4 bias;   // x: absolute, y: relative, in units of depth: rounding only, slopes are dealt with in lightVisibility
+};
+
+uint shadowLayers(Light light) { return uint(light.position.w) == kLightPoint ? 6u : 1u; }
+
+// Face of the cube around a point light: +X -X +Y -Y +Z -Z.
+uint shadowFace(vec3 fromLight) {
+  vec3 a = abs(fromLight);
+  if (a.x >= a.y && a.x >= a.z) return fromLight.x >= 0.0 ? 0u : 1u;
+  if (a.y >= a.z) return fromLight.y >= 0.0 ? 2u : 3u;
+  return fromLight.z >= 0.0 ? 4u : 5u;
+}
+
+// Shaders that look up shadows define SHADOW_BINDING, the first of two free bindings of set 0, and have an input port `maps`
+// of bundle `shadow-maps`.
+#ifdef SHADOW_BINDING
+#ifndef SHADOW_PCF
+#define SHADOW_PCF 1
+#endif
+
+layout(set = 0, binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
+layout(set = 0, binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+
+// Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
+// the side that is looked at. firstLayer: the sum of shadowLayers over the lights before.
+//
+// A texel stores the depth at its centre; on a slope that differs from the depth at the receiver, at most by the slope times
+// the distance r to the farthest centre looked at. Raised along its normal by
+//   h = r (|n.x| texel.x + |n.y| texel.y),   n in the axes of the map,
+// the receiver lies in front of its own plane at each of these centres: no acne, however steep, and h never exceeds
+// r sqrt(2) texels, so that shadows stay attached to what throws them.
+float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
+  uint layer = firstLayer;
+  if (uint(light.position.w) == kLightPoint) layer += shadowFace(position - light.position.xyz);
+  mat4 worldToClip = mapsViews.view[layer].worldToClip;
+  vec4 right = mapsViews.view[layer].right, up = mapsViews.view[layer].up, bias = mapsViews.view[layer].bias;
+
+  const float reach = SHADOW_PCF != 0 ? 2.0 : 0.5;  // texels, along each axis
+  float w = (worldToClip * vec4(position, 1.0)).w;
+  float raise = reach * w * (abs(dot(face, right.xyz)) * right.w + abs(dot(face, up.xyz)) * up.w);
+  vec4 clip = worldToClip * vec4(position + raise * face, 1.0);
+  if (clip.w <= 0.0) return 1.0;  // behind a spot light
+  float depth = clip.z / clip.w;
+  depth += bias.x + bias.y * depth;
+  ivec2 size = textureSize(mapsDepth, 0).xy;
+  vec2 p = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
+#if SHADOW_PCF
+  // 3x3 box over bilinear comparisons: 4x4 texels, the outer ones weighted by the fraction.
+  vec2 base = floor(p - 0.5);
+  vec2 f = p - 0.5 - base;
+  ivec2 corner = ivec2(base) - 1;
+  float lit = 0.0;
+  for (int y = 0; y < 4; ++y) {
+    float row = 0.0;
+    for (int x = 0; x < 4; ++x) {
+      ivec2 texel = clamp(corner + ivec2(x, y), ivec2(0), size - 1);
+      float open = depth >= texelFetch(mapsDepth, ivec3(texel, layer), 0).r ? 1.0 : 0.0;
+      row += open * (x == 0 ? 1.0 - f.x : x == 3 ? f.x : 1.0);
+    }
+    lit += row * (y == 0 ? 1.0 - f.y : y == 3 ? f.y : 1.0);
+  }
+  return lit * (1.0 / 9.0);
+#else
+  ivec2 texel = clamp(ivec2(floor(p)), ivec2(0), size - 1);
+  return depth >= texelFetch(mapsDepth, ivec3(texel, layer), 0).r ? 1.0 : 0.0;
+#endif
+}
+#endif  // SHADOW_BINDING
+
+#endif

@@ -1,0 +1,16 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_ARB_shader_viewport_layer_array : require
+// One instance a layer.
+#include "common/scene.glsl"
+#include "common/shadow.glsl"
+
+layout(set = 0, binding = 0, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+
+layout(location = 0) out vec2 uv;
+
+void main() {
+  gl_Layer = gl_InstanceIndex;
+  gl_Position = mapsViews.view[gl_InstanceIndex].worldToClip * vec4(texelFetch(scenePositions, gl_VertexIndex).xyz, 1.0);
+  uv = texelFetch(sceneAttributes, gl_VertexIndex).zw;
+}

@@ -1,0 +1,78 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// How each light sees the scene: one invocation a light.
+#include "common/scene.glsl"
+#include "common/paraboloid.glsl"
+#include "common/shadow.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0, std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
+
+layout(push_constant) uniform Constants { int size; };
+
+const float kGuard = 5.0;           // texels outside of what is asked for: a filter's reach plus the receiver's raise
+const float kMaxSpotAngle = 1.483;  // 85 degrees: no plane sees a half space. What lies outside is not shadowed.
+
+float guarded() { return float(size) / max(float(size) - 2.0 * kGuard, 1.0); }
+
+// Rows to a matrix.
+mat4 fromRows(vec4 x, vec4 y, vec4 z, vec4 w) { return transpose(mat4(x, y, z, w)); }
+
+// Perspective from `eye` along axes[2]; depth = near / distance along the axis.
+ShadowView perspective(vec3 eye, mat3 axes, float tanHalf, float near) {
+  float t = tanHalf * guarded();
+  vec3 at = -(eye * axes);
+  ShadowView v;
+  v.worldToClip = fromRows(vec4(axes[0], at.x) / t, vec4(axes[1], at.y) / t, vec4(0, 0, 0, near), vec4(axes[2], at.z));
+  v.right = vec4(axes[0], 2.0 * t / float(size));
+  v.up = vec4(axes[1], 2.0 * t / float(size));
+  v.bias = vec4(0.0, 1e-4, 0.0, 0.0);
+  return v;
+}
+
+// Orthographic around the whole scene, so that everything that may throw a shadow is in.
+ShadowView orthographic(mat3 axes) {
+  vec3 lo = vec3(3e38), hi = vec3(-3e38);
+  for (int i = 0; i < 8; ++i) {
+    vec3 corner = mix(frame.boundsMin.xyz, frame.boundsMax.xyz, bvec3(i & 1, i & 2, i & 4));
+    lo = min(lo, corner * axes);
+    hi = max(hi, corner * axes);
+  }
+  vec3 centre = 0.5 * (lo + hi), half_ = 0.5 * (hi - lo);
+  half_ = max(half_, 1e-3 * max(half_.x, max(half_.y, half_.z))) + 1e-6;  // flat scenes
+  half_.xy *= guarded();
+  half_.z *= 1.001;
+  ShadowView v;
+  v.worldToClip = fromRows(vec4(axes[0], -centre.x) / half_.x, vec4(axes[1], -centre.y) / half_.y,
+                           vec4(-0.5 * axes[2], 0.5 * (centre.z + half_.z)) / half_.z, vec4(0, 0, 0, 1));
+  v.right = vec4(axes[0], 2.0 * half_.x / float(size));
+  v.up = vec4(axes[1], 2.0 * half_.y / float(size));
+  v.bias = vec4(1e-5, 0.0, 0.0, 0.0);
+  return v;
+}
+
+mat3 cubeAxes(uint face) {
+  vec3 axis = vec3(equal(uvec3(face / 2u), uvec3(0u, 1u, 2u))) * ((face & 1u) == 0u ? 1.0 : -1.0);
+  return mat3(axis.yzx, axis.zxy, axis);
+}
+
+void main() {
+  uint index = gl_LocalInvocationID.x;
+  if (index >= frame.lightCount) return;
+  uint layer = 0u;
+  for (uint i = 0u; i < index; ++i) layer += shadowLayers(lights[i]);
+  Light light = lights[index];
+  uint type = uint(light.position.w);
+  // Near enough to the light to lose nothing that could matter; costs no precision (depth is reversed).
+  float near = 1e-4 * max(distance(frame.boundsMin.xyz, frame.boundsMax.xyz), 1e-3);
+  if (type == kLightDirectional) {
+    mapsViews.view[layer] = orthographic(orthonormalFrame(light.direction.xyz));
+  } else if (type == kLightSpot) {
+    float angle = min(acos(clamp(light.cone.y, -1.0, 1.0)), kMaxSpotAngle);
+    mapsViews.view[layer] = perspective(light.position.xyz, orthonormalFrame(light.direction.xyz), tan(angle), near);
+  } else {
+    for (uint face = 0u; face < 6u; ++face)
+      mapsViews.view[layer + face] = perspective(light.position.xyz, cubeAxes(face), 1.0, near);
+  }
+}

@@ -1,0 +1,307 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "tests/passes/shadow_view.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;  // receivers
+constexpr int kSize = 256;                // texels of a shadow map
+constexpr float kExtent = 2;              // receivers cover [-2, 2] x [-2, 2] of the plane y = 0
+
+const glm::vec3 kAlbedo(0.5f, 0.25f, 0.75f), kEmission(0.0625f, 0, 0.125f);
+const glm::vec3 kSphereCentre(0.1f, 0.7f, -0.1f);
+constexpr float kSphereRadius = 0.4f;
+
+glm::vec3 receiver(int x, int y) {
+  return {kExtent * (2 * (x + 0.5f) / kWidth - 1), 0, kExtent * (2 * (y + 0.5f) / kHeight - 1)};
+}
+
+std::vector<uint16_t> halves(const std::vector<float>& values) {
+  std::vector<uint16_t> packed;
+  for (const float v : values) packed.push_back(glm::packHalf1x16(v));
+  return packed;
+}
+
+scene::Scene lit(std::vector<scene::Light> lights) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  s.cameras.emplace_back();
+  s.lights = std::move(lights);
+  return s;
+}
+
+scene::Light sun(glm::vec3 direction) {
+  scene::Light light;
+  light.direction = glm::normalize(direction);
+  light.color = {1, 0.5f, 0.25f};
+  light.intensity = 3;
+  return light;
+}
+
+scene::Light point(glm::vec3 position) {
+  scene::Light light = sun({0, -1, 0});
+  light.type = scene::LightType::Point;
+  light.position = position;
+  light.intensity = 8;
+  return light;
+}
+
+scene::Light spot(glm::vec3 position, glm::vec3 direction) {
+  scene::Light light = point(position);
+  light.type = scene::LightType::Spot;
+  light.direction = glm::normalize(direction);
+  light.innerConeAngle = 0.3f;
+  light.outerConeAngle = 0.8f;
+  return light;
+}
+
+// Irradiance of the plane y = 0 at p by the formulas of METHOD section 6 and KHR_lights_punctual.
+glm::dvec3 irradiance(const scene::Light& light, glm::dvec3 p) {
+  const glm::dvec3 power = glm::dvec3(light.color) * double(light.intensity);
+  if (light.type == scene::LightType::Directional) return power * std::max(-double(light.direction.y), 0.0);
+  const glm::dvec3 to = glm::dvec3(light.position) - p;
+  const double d = glm::length(to);
+  double factor = to.y / d / (d * d);
+  if (light.range > 0) factor *= std::clamp(1 - std::pow(d / light.range, 4), 0.0, 1.0);
+  if (light.type == scene::LightType::Spot) {
+    const double cosine = -glm::dot(to, glm::dvec3(light.direction)) / d;
+    const double inner = std::cos(double(light.innerConeAngle)), outer = std::cos(double(light.outerConeAngle));
+    const double f = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
+    factor *= f * f;
+  }
+  return power * factor;
+}
+
+std::vector<ShadowView> shadowViews(const std::vector<scene::Light>& lights) {
+  std::vector<ShadowView> views;
+  for (const scene::Light& light : lights) {
+    if (light.type == scene::LightType::Directional) {
+      views.push_back(orthographicView({0, 0, 0}, light.direction, 3, kSize));
+    } else if (light.type == scene::LightType::Spot) {
+      views.push_back(perspectiveView(light.position, light.direction, std::tan(light.outerConeAngle) * 1.05f, 0.01f, kSize));
+    } else {
+      for (int face = 0; face < 6; ++face) {
+        glm::vec3 axis(0);
+        axis[face / 2] = face % 2 ? -1 : 1;
+        views.push_back(perspectiveView(light.position, axis, 1.05f, 0.01f, kSize));
+      }
+    }
+  }
+  views.resize(kMaxShadowLayers);
+  return views;
+}
+
+uint32_t layerCount(const std::vector<scene::Light>& lights) {
+  uint32_t layers = 0;
+  for (const scene::Light& light : lights) layers += light.type == scene::LightType::Point ? 6 : 1;
+  return std::max(layers, 1u);
+}
+
+// Nearest of sphere and plane along a ray; distance in lengths of the direction, < 0: nothing.
+double nearest(glm::dvec3 origin, glm::dvec3 direction) {
+  double best = -1;
+  if (direction.y < 0 && origin.y > 0) best = -origin.y / direction.y;
+  const glm::dvec3 c = origin - glm::dvec3(kSphereCentre);
+  const double a = glm::dot(direction, direction), b = glm::dot(c, direction);
+  const double discriminant = b * b - a * (glm::dot(c, c) - double(kSphereRadius) * kSphereRadius);
+  if (discriminant > 0) {
+    const double t = (-b - std::sqrt(discriminant)) / a;
+    if (t > 0 && (best < 0 || t < best)) best = t;
+  }
+  return best;
+}
+
+// Depth of sphere and plane through every texel's centre, by rays.
+std::vector<float> shadowDepth(const std::vector<ShadowView>& views, uint32_t layers) {
+  std::vector<float> depth;
+  for (uint32_t layer = 0; layer < layers; ++layer) {
+    const glm::dmat4 worldToClip(views[layer].worldToClip), clipToWorld = glm::inverse(worldToClip);
+    auto unproject = [&](double x, double y, double z) {
+      const glm::dvec4 p = clipToWorld * glm::dvec4(2 * x / kSize - 1, 2 * y / kSize - 1, z, 1);
+      return glm::dvec3(p) / p.w;
+    };
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const glm::dvec3 origin = unproject(x + 0.5, y + 0.5, 1);
+        const glm::dvec3 direction = unproject(x + 0.5, y + 0.5, 0.5) - origin;
+        const double t = nearest(origin, direction);
+        if (t < 0) {
+          depth.push_back(0);
+          continue;
+        }
+        const glm::dvec4 p = worldToClip * glm::dvec4(origin + t * direction, 1);
+        depth.push_back(float(p.z / p.w));
+      }
+  }
+  return depth;
+}
+
+struct Surface {
+  glm::vec3 normal{0, 1, 0};
+  glm::vec2 face{0, 1};  // octahedral (0, 1, 0)
+  float distance = 5;    // 0: background
+};
+
+// Direct radiance, RGBA, of the plane of receivers.
+std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vector<ShadowView>& views,
+                         const std::vector<float>& depth, const char* filter, const Surface& surface = {}) {
+  std::vector<float> position, normal, face, albedo, emission;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::vec3 p = receiver(x, y);
+      position.insert(position.end(), {p.x, p.y, p.z, surface.distance});
+      normal.insert(normal.end(), {surface.normal.x, surface.normal.y, surface.normal.z, 0});
+      face.insert(face.end(), {surface.face.x, surface.face.y});
+      albedo.insert(albedo.end(), {kAlbedo.r, kAlbedo.g, kAlbedo.b, 0});
+      emission.insert(emission.end(), {kEmission.r, kEmission.g, kEmission.b, 0});
+    }
+  PassTest test("direct");
+  test.param("filter", filter).viewSize(kWidth, kHeight).scene(lit(lights));
+  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, position);
+  test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(normal));
+  test.image("gbuffer.face", VK_FORMAT_R16G16_SFLOAT, kWidth, kHeight, 1, halves(face));
+  test.image("gbuffer.albedo", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(albedo));
+  test.image("gbuffer.emission", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(emission));
+  test.image("maps.depth", VK_FORMAT_D32_SFLOAT, kSize, kSize, layerCount(lights), depth);
+  test.buffer("maps.views", views, "ShadowView");
+  test.run();
+  return test.floats("direct");
+}
+
+std::vector<float> shadeUnshadowed(const std::vector<scene::Light>& lights, const Surface& surface = {}) {
+  return shade(lights, shadowViews(lights), std::vector<float>(size_t(kSize) * kSize * layerCount(lights), 0.0f), "pcf",
+               surface);
+}
+
+// visibility(light, x, y) in [0, 1], or < 0: leave this pixel out. Returns how many pixels were compared.
+int expectRadiance(const std::vector<float>& got, const std::vector<scene::Light>& lights,
+                   const std::function<double(const scene::Light&, glm::dvec3)>& visibility) {
+  int compared = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::dvec3 p(receiver(x, y));
+      glm::dvec3 e(0);
+      bool skip = false;
+      for (const scene::Light& light : lights) {
+        const double v = visibility(light, p);
+        skip |= v < 0;
+        e += v * irradiance(light, p);
+      }
+      if (skip) continue;
+      ++compared;
+      const glm::dvec3 want = glm::dvec3(kEmission) + glm::dvec3(kAlbedo) / glm::pi<double>() * e;
+      for (int c = 0; c < 3; ++c) {
+        const double value = got[4 * (size_t(y) * kWidth + x) + c];
+        // Half floats resolve 1/2048.
+        if (std::abs(value - want[c]) <= 1e-3 * want[c] + 1e-5) continue;
+        ADD_FAILURE() << "pixel " << x << ", " << y << ", channel " << c << ": " << value << ", not " << want[c];
+        return 0;
+      }
+    }
+  return compared;
+}
+
+double always(const scene::Light&, glm::dvec3) { return 1; }
+
+TEST(Direct, EachLightTypeEqualsTheClosedForm) {
+  scene::Light ranged = point({0.2f, 0.7f, 0.1f});
+  ranged.range = 1.5f;
+  for (const scene::Light& light :
+       {sun({0.3f, -1, 0.6f}), sun({0, 1, 0}), point({0.4f, 1.5f, -0.3f}), ranged,
+        spot({-0.5f, 2, 0.5f}, {0.4f, -1, 0}), spot({0, 1, 0}, {0, -1, 0})}) {
+    SCOPED_TRACE(int(light.type));
+    EXPECT_EQ(expectRadiance(shadeUnshadowed({light}), {light}, always), kWidth * kHeight);
+  }
+}
+
+TEST(Direct, LightsAddUp) {
+  const std::vector<scene::Light> lights = {point({1, 1, 1}), sun({0.3f, -1, 0}), spot({-1, 2, 0}, {0, -1, 0}),
+                                            point({-1, 0.5f, -1})};
+  EXPECT_EQ(expectRadiance(shadeUnshadowed(lights), lights, always), kWidth * kHeight);
+}
+
+TEST(Direct, WithoutLightOnlyEmission) {
+  EXPECT_EQ(expectRadiance(shadeUnshadowed({}), {}, always), kWidth * kHeight);
+}
+
+TEST(Direct, BackgroundShowsTheEnvironment) {
+  Surface background;
+  background.distance = 0;
+  EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({0, -1, 0})}, background), {}, always), kWidth * kHeight);
+}
+
+// The interpolated normal leans over to the light, but the face itself is turned away.
+TEST(Direct, FaceTurnedAwayIsDark) {
+  Surface terminator;
+  terminator.normal = glm::normalize(glm::vec3(0.9f, 0.5f, 0));
+  EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({-1, 0.1f, 0})}, terminator), {}, always), kWidth * kHeight);
+}
+
+// Does the sphere stand between p and the light? -1: too close to the rim of its shadow for a map of this resolution.
+double sphereVisibility(const scene::Light& light, glm::dvec3 p) {
+  const bool directional = light.type == scene::LightType::Directional;
+  const glm::dvec3 to = directional ? -glm::dvec3(light.direction) : glm::dvec3(light.position) - p;
+  const double distance = directional ? 10 : glm::length(to);
+  // Texel at the receiver; a cube face or cone sees texels up to 1.73 times as wide along the ray.
+  const double texel = directional ? 6.0 / kSize : 2 * 1.09 * 1.73 * distance / kSize;
+  const glm::dvec3 d = glm::normalize(to), c = glm::dvec3(kSphereCentre) - p;
+  const double along = glm::dot(c, d);
+  const double off = glm::length(c - along * d) - kSphereRadius;
+  if (std::abs(off) < 5 * texel) return -1;  // reach of the filter plus the receiver's raise
+  return off < 0 && along > 0 && along < distance ? 0 : 1;
+}
+
+void expectShadows(const std::vector<scene::Light>& lights, int atLeast) {
+  const auto views = shadowViews(lights);
+  const auto depth = shadowDepth(views, layerCount(lights));
+  for (const char* filter : {"none", "pcf"}) {
+    SCOPED_TRACE(filter);
+    EXPECT_GT(expectRadiance(shade(lights, views, depth, filter), lights, sphereVisibility), atLeast);
+  }
+}
+
+TEST(Direct, ShadowOfASphereEqualsRays) {
+  int shadowed = 0;
+  const scene::Light light = sun({0.5f, -1, 0.2f});
+  for (int i = 0; i < kWidth * kHeight; ++i)
+    shadowed += sphereVisibility(light, glm::dvec3(receiver(i % kWidth, i / kWidth))) == 0;
+  EXPECT_GT(shadowed, 20);  // the test tests something
+  expectShadows({light}, kWidth * kHeight / 2);
+  expectShadows({point({0.3f, 2.5f, 0.2f})}, kWidth * kHeight / 2);
+  expectShadows({spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})}, kWidth * kHeight / 2);
+  expectShadows({point({0.3f, 2.5f, 0.2f}), sun({0.5f, -1, 0.2f}), spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})},
+                kWidth * kHeight / 4);
+}
+
+// Light that just grazes the plane: the slope of the plane in the map is 1 to 11, a fixed bias would fail.
+TEST(Direct, NoAcneAtGrazingLight) {
+  expectShadows({sun({1, -0.09f, 0.3f})}, kWidth * kHeight / 3);
+  expectShadows({point({1.5f, 0.15f, 1.2f})}, kWidth * kHeight / 3);
+}
+
+TEST(Direct, FilterSoftensTheRim) {
+  const std::vector<scene::Light> lights = {sun({0.5f, -1, 0.2f})};
+  const auto views = shadowViews(lights);
+  const auto depth = shadowDepth(views, 1);
+  const double full = kEmission.r + kAlbedo.r / glm::pi<double>() * irradiance(lights[0], {}).r;
+  auto between = [&](const char* filter) {
+    int count = 0;
+    const auto radiance = shade(lights, views, depth, filter);
+    for (size_t i = 0; i < radiance.size(); i += 4)
+      count += radiance[i] > kEmission.r * 1.01 && radiance[i] < full * 0.99;
+    return count;
+  };
+  EXPECT_EQ(between("none"), 0);
+  EXPECT_GT(between("pcf"), 10);
+}
+
+}  // namespace
+}  // namespace fovea::test

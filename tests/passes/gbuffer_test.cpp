@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <vector>
+
+#include "framework/scene/load.h"
+#include "tests/passes/ray_reference.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr uint32_t kBackground = ~0u;
+
+glm::vec3 octDecode(glm::vec2 e) {
+  glm::vec3 n(e, 1 - std::abs(e.x) - std::abs(e.y));
+  const float t = std::max(-n.z, 0.0f);
+  n.x += n.x >= 0 ? -t : t;
+  n.y += n.y >= 0 ? -t : t;
+  return glm::normalize(n);
+}
+
+struct Pixel {
+  glm::vec4 position;
+  glm::vec3 normal, face, albedo, emission;
+  uint32_t id;
+};
+
+class Output {
+ public:
+  explicit Output(const PassTest& test)
+      : position_(test.floats("gbuffer.position")), normal_(test.floats("gbuffer.normal")),
+        face_(test.floats("gbuffer.face")), albedo_(test.floats("gbuffer.albedo")),
+        emission_(test.floats("gbuffer.emission")), id_(test.values<uint32_t>("gbuffer.id")) {}
+  Pixel at(size_t i) const {
+    auto vec = [i](const std::vector<float>& v) { return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]); };
+    return {vec(position_), glm::vec3(vec(normal_)), octDecode({face_[2 * i], face_[2 * i + 1]}), glm::vec3(vec(albedo_)),
+            glm::vec3(vec(emission_)), id_[i]};
+  }
+
+ private:
+  std::vector<float> position_, normal_, face_, albedo_, emission_;
+  std::vector<uint32_t> id_;
+};
+
+// Compares every pixel with the ray through its centre. A pixel may see something else only if a ray within 1/64 of a pixel
+// sees it too: rasterisers snap vertices to 1/256. Returns the share of such pixels.
+class Comparison {
+ public:
+  Comparison(const PassTest& test, const scene::Scene& scene, bool cull)
+      : scene_(scene), geometry_(test.geometry()), view_(test.lastFrame().views[0]), output_(test) {
+    options_.cullSingleSided = cull;
+    options_.tMin = 1e-9;
+  }
+
+  double run() {
+    size_t excused = 0;
+    const glm::uvec2 size = view_.size;
+    for (uint32_t y = 0; y < size.y; ++y)
+      for (uint32_t x = 0; x < size.x; ++x) {
+        const Pixel pixel = output_.at(size_t(y) * size.x + x);
+        const glm::vec2 centre(x + 0.5f, y + 0.5f);
+        if (matches(pixel, centre)) continue;
+        const float d = 1.0f / 64;
+        if (matches(pixel, centre + glm::vec2(d, d)) || matches(pixel, centre + glm::vec2(-d, d)) ||
+            matches(pixel, centre + glm::vec2(d, -d)) || matches(pixel, centre + glm::vec2(-d, -d))) {
+          ++excused;
+          continue;
+        }
+        ADD_FAILURE() << "pixel " << x << ", " << y << ": " << explain(pixel, centre);
+        if (++failures_ > 5) return 1;
+      }
+    return double(excused) / (size.x * size.y);
+  }
+
+  size_t hits() const { return hits_; }
+
+ private:
+  bool matches(const Pixel& pixel, glm::vec2 p) { return explain(pixel, p).empty(); }
+
+  // What differs; "" if nothing does.
+  std::string explain(const Pixel& pixel, glm::vec2 p) {
+    const glm::dvec3 eye(view_.eye), ray(view_.rayDirection(p));
+    const RayHit hit = castRay(scene_, geometry_, eye, ray, options_);
+    if (!hit) {
+      if (pixel.id != kBackground) return "id " + std::to_string(pixel.id) + " where there is only background";
+      if (pixel.position.w != 0) return "background with a distance";
+      return glm::length(pixel.emission - scene_.environment) < 1e-3f ? "" : "wrong environment";
+    }
+    ++hits_;
+    const scene::Triangle& triangle = geometry_.triangles[hit.triangle];
+    if (pixel.id != triangle.materialAndObject) return "id " + std::to_string(pixel.id);
+    return explainPosition(pixel, hit, eye, ray) + explainSurface(pixel, hit, ray);
+  }
+
+  std::string explainPosition(const Pixel& pixel, const RayHit& hit, glm::dvec3 eye, glm::dvec3 ray) const {
+    const glm::dvec3 want = eye + hit.t * ray, got(pixel.position);
+    const double distance = glm::length(want - eye);
+    const glm::dvec3 face = faceNormal(geometry_, hit.triangle);
+    if (std::abs(glm::dot(got - want, face)) > 2e-6 * (distance + glm::length(eye)))
+      return "off the surface by " + std::to_string(std::abs(glm::dot(got - want, face))) + " m ";
+    const double cosine = std::abs(glm::dot(face, ray)) / glm::length(ray);
+    const double pixelSize = distance * 2 * std::tan(0.5 * view_.verticalFov) / view_.size.y;
+    if (glm::length(got - want) > 0.01 * pixelSize / std::max(cosine, 1e-3) + 1e-5 * distance)
+      return "position off by " + std::to_string(glm::length(got - want)) + " m ";
+    if (std::abs(pixel.position.w - glm::length(got - eye)) > 1e-5 * distance) return "wrong distance ";
+    return "";
+  }
+
+  std::string explainSurface(const Pixel& pixel, const RayHit& hit, glm::dvec3 ray) const {
+    glm::dvec3 face = faceNormal(geometry_, hit.triangle);
+    if (glm::dot(face, ray) > 0) face = -face;
+    glm::dvec3 normal(glm::normalize(interpolate(geometry_, geometry_.normals, hit)));
+    if (glm::dot(normal, face) < 0) normal = -normal;
+    const scene::Material& material = scene_.materials[geometry_.triangles[hit.triangle].material()];
+    const glm::vec2 uv = interpolate(geometry_, geometry_.uvs, hit);
+    const glm::vec3 albedo(scene::reflectance(scene_, material, uv));
+    const glm::vec3 emission = scene::emission(scene_, material, uv);
+    if (glm::length(glm::dvec3(pixel.face) - face) > 3e-3) return "wrong face ";
+    if (glm::length(glm::dvec3(pixel.normal) - normal) > 6e-3) return "wrong normal ";
+    if (glm::length(pixel.albedo - albedo) > 4e-3f) return "wrong albedo ";
+    if (glm::length(pixel.emission - emission) > 1e-3f * (1 + glm::length(emission))) return "wrong emission ";
+    return "";
+  }
+
+  const scene::Scene& scene_;
+  const scene::Geometry& geometry_;
+  const scene::View& view_;
+  Output output_;
+  RayOptions options_;
+  size_t hits_ = 0;
+  int failures_ = 0;
+};
+
+TEST(GBuffer, EqualsRaysThroughPixelCentres) {
+  const scene::Scene scene = scene::builtin("cornellbox");
+  PassTest test("gbuffer");
+  test.viewSize(48, 48).scene(scene);
+  test.run();
+  Comparison comparison(test, scene, true);
+  EXPECT_LT(comparison.run(), 0.01);
+  EXPECT_GT(comparison.hits(), 48u * 48u / 2);
+}
+
+// A masked quad in front of a wall, one quad seen from behind per kind of material, a glowing one, a tilted one far away.
+scene::Scene materials() {
+  scene::Scene s;
+  s.name = "materials";
+  s.environment = {0.25f, 0.5f, 2};
+  s.textures.push_back(checkerTexture());
+  scene::TextureUse checker;
+  checker.texture = 0;
+  scene::Material masked, single, both, glowing, tiled;
+  masked.baseColorTexture = checker;
+  masked.masked = masked.doubleSided = true;
+  masked.metallic = 0.25f;
+  single.baseColor = {0.5f, 0.25f, 0.125f, 1};
+  both.baseColor = {0.2f, 0.3f, 0.4f, 1};
+  both.doubleSided = true;
+  glowing.emission = {3, 2, 1};
+  tiled.baseColorTexture = checker;  // opaque: its alpha counts for nothing
+  tiled.baseColorTexture.transform = {3, 0.5f, -0.5f, 2, 0.1f, 0.2f};
+  tiled.baseColorTexture.wrapV = scene::Wrap::Mirror;
+  s.materials = {masked, single, both, glowing, tiled};
+  addQuad(s, 0, {-2, -1, 1}, {-0.1f, -1, 1}, {-0.1f, 1, 1}, {-2, 1, 1});
+  addQuad(s, 4, {-2.5f, -1.5f, 0}, {2.5f, -1.5f, -1}, {2.5f, 1.5f, -1}, {-2.5f, 1.5f, 0});
+  addQuad(s, 1, {0.2f, 0, 1}, {0.2f, 1, 1}, {1, 1, 1}, {1, 0, 1});          // its back: not there
+  addQuad(s, 2, {0.2f, -1, 1}, {0.2f, -0.2f, 1}, {1, -0.2f, 1}, {1, -1, 1});  // its back: there
+  addQuad(s, 3, {1.2f, -1, 1}, {2, -1, 1.2f}, {2, 1, 1}, {1.2f, 1, 0.9f});
+  scene::Camera camera;
+  camera.position = {0.1f, 0.05f, 4};
+  camera.verticalFov = 1;
+  s.cameras.push_back(camera);
+  return s;
+}
+
+TEST(GBuffer, MaterialsAsGltfSays) {
+  const scene::Scene scene = materials();
+  for (const bool cull : {true, false}) {
+    PassTest test("gbuffer");
+    test.param("cull", cull ? "auto" : "none").viewSize(96, 64).scene(scene);
+    test.run();
+    Comparison comparison(test, scene, cull);
+    EXPECT_LT(comparison.run(), 0.02) << "cull " << cull;
+  }
+}
+
+// A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle to the horizon.
+TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  addQuad(s, 0, {-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50});
+  scene::Camera camera;
+  camera.position = {3, 0.2f, 7};
+  camera.zNear = 0.01f;
+  s.cameras.push_back(camera);
+  PassTest test("gbuffer");
+  test.viewSize(64, 64).scene(s);
+  test.run();
+  Comparison comparison(test, s, true);
+  EXPECT_LT(comparison.run(), 0.02);
+}
+
+}  // namespace
+}  // namespace fovea::test
