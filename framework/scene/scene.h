@@ -145,6 +145,9 @@ struct Geometry {
   bool empty() const { return triangles.empty(); }
 };
 
+// Of everything that a picture depends on (names do not count); loaders store it in Scene::hash.
+uint64_t contentHash(const Scene& scene);
+
 glm::mat4 localTransform(const Node& node);
 std::vector<glm::mat4> worldTransforms(const Scene& scene);
 // Object 0 is all static geometry; every dynamic node with a mesh is one more object.

@@ -1,0 +1,73 @@
+// Texture and material look-ups on the CPU, the reference for shaders/common/scene.glsl.
+#include <array>
+#include <cmath>
+
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+namespace {
+
+// IEC 61966-2-1, tabulated for the 256 stored values.
+const std::array<float, 256>& srgbTable() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (int i = 0; i < 256; ++i) {
+      const double e = i / 255.0;
+      t[size_t(i)] = float(e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4));
+    }
+    return t;
+  }();
+  return table;
+}
+
+int64_t wrapTexel(int64_t i, int64_t size, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::Clamp: return std::min(std::max(i, int64_t(0)), size - 1);
+    case Wrap::Mirror: {
+      const int64_t period = ((i % (2 * size)) + 2 * size) % (2 * size);
+      return period < size ? period : 2 * size - 1 - period;
+    }
+    case Wrap::Repeat: break;
+  }
+  return ((i % size) + size) % size;
+}
+
+glm::vec4 texel(const Texture& t, int64_t x, int64_t y) {
+  const uint8_t* p = &t.rgba[(size_t(y) * t.width + size_t(x)) * 4];
+  if (!t.srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  const auto& table = srgbTable();
+  return {table[p[0]], table[p[1]], table[p[2]], float(p[3]) / 255.0f};
+}
+
+// Coordinates past any texture's size times this are noise in a float; they must not overflow the integer conversion.
+float tame(float texels) { return std::isfinite(texels) ? std::min(std::max(texels, -1e9f), 1e9f) : 0.0f; }
+
+}  // namespace
+
+glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
+  if (!use || use.texture >= scene.textures.size()) return glm::vec4(1.0f);
+  const Texture& t = scene.textures[use.texture];
+  if (t.width == 0 || t.height == 0) return glm::vec4(1.0f);
+  const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
+  // Texel centres lie at half-integers; LOD 0, bilinear, each texel decoded before it is filtered.
+  const float u = tame(p.x * float(t.width) - 0.5f), v = tame(p.y * float(t.height) - 0.5f);
+  const float u0 = std::floor(u), v0 = std::floor(v);
+  const float fu = u - u0, fv = v - v0;
+  const int64_t w = t.width, h = t.height;
+  const int64_t x0 = wrapTexel(int64_t(u0), w, use.wrapU), x1 = wrapTexel(int64_t(u0) + 1, w, use.wrapU);
+  const int64_t y0 = wrapTexel(int64_t(v0), h, use.wrapV), y1 = wrapTexel(int64_t(v0) + 1, h, use.wrapV);
+  const glm::vec4 top = glm::mix(texel(t, x0, y0), texel(t, x1, y0), fu);
+  const glm::vec4 bottom = glm::mix(texel(t, x0, y1), texel(t, x1, y1), fu);
+  return glm::mix(top, bottom, fv);
+}
+
+glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv) {
+  const glm::vec4 color = material.baseColor * sampleTexture(scene, material.baseColorTexture, uv);
+  return {glm::vec3(color) * (1.0f - material.metallic), color.a};
+}
+
+glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv) {
+  return material.emission * glm::vec3(sampleTexture(scene, material.emissionTexture, uv));
+}
+
+}  // namespace fovea::scene
