@@ -45,7 +45,8 @@ std::string Diagnostic::format() const {
   std::string text;
   if (!where.file.empty()) {
     text += where.file;
-    if (where.line > 0) text += ':' + std::to_string(where.line) + ':' + std::to_string(where.column);
+    if (where.line > 0) text += ':' + std::to_string(where.line);
+    if (where.line > 0 && where.column > 0) text += ':' + std::to_string(where.column);
     text += ": ";
   }
   text += severityName(severity);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
 struct DeviceOptions {
   std::string device;  // index or part of the name; "" takes the best one (discrete, integrated, CPU)
   Validation validation = Validation::Off;
-  uint64_t memoryLimit = 0;             // bytes of device memory fovea may take; 0 means what the device reports
+  uint64_t memoryLimit = 0;  // bytes of device memory fovea may take; 0 means what the device reports
   std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
   bool useCache = true;
 };
@@ -32,9 +33,26 @@ struct DeviceInfo {
   std::vector<std::string> missing;  // required features it lacks; empty means usable
 };
 
+// All physical devices, usable or not; empty when there is no Vulkan driver.
 std::vector<DeviceInfo> listDevices();
 
-// Throws Error: NoDevice (no loader, no device, missing feature: each is named), OutOfMemory, DeviceLost.
+// What a device may have beyond the required features. Enabled when present.
+struct Features {
+  bool shaderInt64 = false;
+  bool bufferInt64Atomics = false, sharedInt64Atomics = false;
+  bool drawIndirectCount = false;
+  bool samplerAnisotropy = false;
+  bool depthClamp = false;
+  bool largePoints = false;               // gl_PointSize over 1
+  bool storageReadWithoutFormat = false;  // storage images without a format qualifier
+  bool storageWriteWithoutFormat = false;
+  bool sampledImageArrayDynamicIndexing = false;
+  uint32_t subgroupSize = 1;
+  VkSubgroupFeatureFlags subgroupOperations = 0;  // in compute shaders
+};
+
+// One thread at a time, except for allocate, release and the shader compiler. Throws Error: NoDevice (no
+// loader, no device, missing feature: each is named), OutOfMemory, DeviceLost.
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
@@ -51,15 +69,24 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return properties().limits; }
   std::string name() const;  // "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6": goes into every report
   bool isCpu() const;        // lavapipe and the like
+  const Features& features() const;
   float timestampPeriodNs() const;
+  uint32_t maxPushDescriptors() const;
+  uint64_t maxBufferBytes() const;
   VkPipelineCache pipelineCache() const;
   ShaderCompiler& shaders() const;
 
   // Memory. what names the resource in the out-of-memory message.
-  VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags, const std::string& what);
+  VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
+                          const std::string& what);
   void release(VkDeviceMemory memory, uint64_t bytes);
   uint64_t allocatedBytes() const;
   uint64_t peakAllocatedBytes() const;
+
+  uint64_t memoryLimit() const;  // what allocatedBytes() may reach
+
+  // Shared samplers: nearest or linear (between mips as well), all mips, clamped or repeating.
+  VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode);
 
   // Records, submits and waits: for set-up work only, never inside the frame loop.
   void runOnce(const std::function<void(VkCommandBuffer)>& record);
@@ -69,8 +96,8 @@ class Device {
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
   void beginLabel(VkCommandBuffer cmd, const char* name) const;
   void endLabel(VkCommandBuffer cmd) const;
-  void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t set,
-                         const std::vector<VkWriteDescriptorSet>& writes) const;
+  void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
+                         uint32_t set, std::span<const VkWriteDescriptorSet> writes) const;
 
   // Validation messages (warnings and errors) so far; tests fail when there is one.
   std::vector<std::string> validationMessages() const;

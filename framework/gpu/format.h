@@ -4,19 +4,21 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace fovea::gpu {
 
 struct FormatInfo {
   VkFormat format;
-  std::string_view name;      // "rgba16f", as in a GLSL layout qualifier where GLSL has one
+  std::string_view name;  // "rgba16f", as in a GLSL layout qualifier where GLSL has one
   uint32_t bytesPerTexel;
   uint32_t channels;
   bool depth;
   enum class Type : uint8_t { Float, Unorm, Snorm, Uint, Sint, Srgb } type;
 };
 
+std::span<const FormatInfo> formats();  // all of them
 // The formats fovea knows; throws Error(Internal) for others.
 const FormatInfo& formatInfo(VkFormat format);
 // VK_FORMAT_UNDEFINED when there is no such name.

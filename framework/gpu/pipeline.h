@@ -1,5 +1,6 @@
 // Compute and graphics pipelines whose layout comes from reflection.
 // Set 0 belongs to the pass and is pushed (VK_KHR_push_descriptor); set 1 is shared by all passes of a frame.
+// Layouts differ in set 0, so set 1 has to be bound again after each change of pipeline.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -14,7 +15,8 @@ namespace fovea::gpu {
 
 class Device;
 
-// What both kinds share: merged bindings of all stages, merged push constants.
+// What both kinds share: merged bindings of all stages, merged push constants. A name is one binding in all
+// stages; numbers the compiler chose are changed where stages disagree, written ones must agree.
 struct PipelineInterface {
   std::vector<ReflectedBinding> bindings;  // set 0 only
   std::vector<ReflectedConstant> constants;
@@ -61,7 +63,7 @@ class Pipeline {
   const std::string& name() const { return name_; }
 
  private:
-  void createLayout(const std::vector<std::shared_ptr<const CompiledShader>>& shaders, VkDescriptorSetLayout sharedSet);
+  void createLayout(VkDescriptorSetLayout sharedSet);
   void destroy();
   Device* device_ = nullptr;
   std::string name_;
@@ -73,5 +75,14 @@ class Pipeline {
 };
 
 VkDescriptorType descriptorType(BindingKind kind);
+
+// The stages of one pipeline brought into line. spirv[i] is shaders[i] with its final binding numbers.
+// Throws Error(BadInput) naming shaders and resource when they contradict each other, or on a set other than
+// 0 and 1.
+struct MergedStages {
+  PipelineInterface interface;
+  std::vector<std::vector<uint32_t>> spirv;
+};
+MergedStages mergeStages(const std::vector<std::shared_ptr<const CompiledShader>>& shaders);
 
 }  // namespace fovea::gpu

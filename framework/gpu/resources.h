@@ -27,8 +27,9 @@ struct BufferDesc {
 class Buffer {
  public:
   Buffer() = default;
-  Buffer(Device& device, const BufferDesc& desc);                                         // own memory
-  Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory, uint64_t offset);  // placed, memory not owned
+  Buffer(Device& device, const BufferDesc& desc);  // own memory
+  Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory,
+         uint64_t offset);  // placed, memory not owned
   ~Buffer();
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;

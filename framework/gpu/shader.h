@@ -16,7 +16,13 @@ namespace fovea::gpu {
 using Defines = std::map<std::string, std::string>;
 
 enum class BindingKind {
-  UniformBuffer, StorageBuffer, UniformTexelBuffer, StorageTexelBuffer, SampledImage, CombinedImageSampler, StorageImage,
+  UniformBuffer,
+  StorageBuffer,
+  UniformTexelBuffer,
+  StorageTexelBuffer,
+  SampledImage,
+  CombinedImageSampler,
+  StorageImage,
   Sampler
 };
 
@@ -27,18 +33,19 @@ struct ReflectedBinding {
   bool readOnly = false, writeOnly = false;  // storage buffers and images
   uint64_t blockBytes = 0;                   // uniform and storage blocks: fixed part
   std::optional<VkFormat> imageFormat;       // storage images
+  bool automatic = false;                    // no layout(binding): the compiler chose the number
 };
 
 struct ReflectedConstant {  // a member of the push constant block
   std::string name;
   uint32_t offset = 0, bytes = 0;
   enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
-  uint32_t components = 1;
+  uint32_t components = 1;  // of a matrix or a tightly packed array: all of them
 };
 
 struct Reflection {
   VkShaderStageFlagBits stage{};
-  std::vector<ReflectedBinding> bindings;  // sorted by set, then binding
+  std::vector<ReflectedBinding> bindings;  // what the entry point really uses; sorted by set, then binding
   std::vector<ReflectedConstant> constants;
   uint32_t pushConstantBytes = 0;
   uint32_t localSize[3] = {1, 1, 1};
@@ -51,13 +58,18 @@ struct CompiledShader {
   uint64_t hash = 0;  // of the source with all includes, the defines and the compiler version
 };
 
-// Stage from the file name: .comp .vert .frag .
+// Stage from the file name: .comp .vert .frag . Without #version a shader is GLSL 4.60; #include, #pragma
+// once and texelFetch on plain textures (GL_EXT_samplerless_texture_functions) are always on. Resources of
+// set 0 need no layout(binding): `uniform texture2D radiance;` is found by its name, and pipelines bring the
+// numbers of their stages into line. Resources of set 1 (shaders/common/scene.glsl) carry theirs. Safe to
+// call from several threads.
 class ShaderCompiler {
  public:
   // cacheDirectory empty: no disk cache.
   explicit ShaderCompiler(std::filesystem::path cacheDirectory);
   ~ShaderCompiler();
-  // Folders searched for shader files and #include, first match wins. The including file's own folder comes first.
+  // Folders searched for shader files and #include, first match wins. The including file's own folder comes
+  // first.
   void addSearchPath(std::filesystem::path path);
   // name is relative to a search path ("tonemap/tonemap.comp"). Results are kept; a second call is a look-up.
   // Throws Error(BadInput) with file and line of every compiler message, also inside included files.
@@ -66,11 +78,18 @@ class ShaderCompiler {
   std::shared_ptr<const CompiledShader> compileSource(const std::string& name, const std::string& source,
                                                       const Defines& defines = {});
 
+  // Where results came from so far.
+  struct Statistics {
+    uint32_t compiled = 0, fromDisk = 0, fromMemory = 0;
+  };
+  Statistics statistics() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
+// Throws Error(BadInput) on something that is not SPIR-V.
 Reflection reflect(const std::vector<uint32_t>& spirv);
 
 }  // namespace fovea::gpu

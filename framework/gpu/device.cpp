@@ -1,0 +1,488 @@
+#include "framework/gpu/device.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <unordered_map>
+#include <utility>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/disk_cache.h"
+#include "framework/gpu/physical_device.h"
+#include "framework/gpu/shader.h"
+
+namespace fovea::gpu {
+namespace {
+
+constexpr size_t kMaxMessages = 200;  // a mistake in a loop would otherwise fill the memory
+
+std::string mebibytes(uint64_t bytes) {
+  if (bytes < (1u << 20)) return std::to_string(bytes) + " bytes";
+  const uint64_t tenths = (bytes * 10 + (1u << 19)) >> 20;
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MiB";
+}
+
+// What the validation layers said.
+struct MessageLog {
+  Validation validation = Validation::Off;
+  std::mutex mutex;
+  std::vector<std::string> messages;
+};
+
+// Messages of the layers that say nothing about fovea.
+bool ignored(Validation validation, const VkDebugUtilsMessengerCallbackDataEXT& data) {
+  const std::string_view id = data.pMessageIdName ? data.pMessageIdName : "";
+  // GPU-assisted validation announces the features it switches on for itself.
+  if (validation == Validation::GpuAssisted && id == "UNASSIGNED-GPU-Assisted Validation Setup") return true;
+  return false;
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                         VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  auto& log = *static_cast<MessageLog*>(user);
+  if (ignored(log.validation, *data)) return VK_FALSE;
+  const std::lock_guard lock(log.mutex);
+  if (log.messages.size() < kMaxMessages) log.messages.emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+template <class F>
+F load(VkInstance instance, const char* name) {
+  return reinterpret_cast<F>(vkGetInstanceProcAddr(instance, name));
+}
+
+}  // namespace
+
+const char* resultName(VkResult result) {
+  switch (result) {
+    case VK_SUCCESS:
+      return "VK_SUCCESS";
+    case VK_NOT_READY:
+      return "VK_NOT_READY";
+    case VK_TIMEOUT:
+      return "VK_TIMEOUT";
+    case VK_INCOMPLETE:
+      return "VK_INCOMPLETE";
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_INITIALIZATION_FAILED:
+      return "VK_ERROR_INITIALIZATION_FAILED";
+    case VK_ERROR_DEVICE_LOST:
+      return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_MEMORY_MAP_FAILED:
+      return "VK_ERROR_MEMORY_MAP_FAILED";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      return "VK_ERROR_LAYER_NOT_PRESENT";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+      return "VK_ERROR_EXTENSION_NOT_PRESENT";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      return "VK_ERROR_INCOMPATIBLE_DRIVER";
+    case VK_ERROR_TOO_MANY_OBJECTS:
+      return "VK_ERROR_TOO_MANY_OBJECTS";
+    case VK_ERROR_FORMAT_NOT_SUPPORTED:
+      return "VK_ERROR_FORMAT_NOT_SUPPORTED";
+    case VK_ERROR_FRAGMENTED_POOL:
+      return "VK_ERROR_FRAGMENTED_POOL";
+    case VK_ERROR_OUT_OF_POOL_MEMORY:
+      return "VK_ERROR_OUT_OF_POOL_MEMORY";
+    case VK_ERROR_INVALID_EXTERNAL_HANDLE:
+      return "VK_ERROR_INVALID_EXTERNAL_HANDLE";
+    case VK_ERROR_UNKNOWN:
+      return "VK_ERROR_UNKNOWN";
+    default:
+      return "an unnamed VkResult";
+  }
+}
+
+void check(VkResult result, const std::string& what) {
+  if (result == VK_SUCCESS) return;
+  const std::string text = what + " failed: " + resultName(result);
+  switch (result) {
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      throw Error(ExitCode::OutOfMemory, text, "use a smaller image, fewer VPLs or smaller shadow maps");
+    case VK_ERROR_DEVICE_LOST:
+      throw Error(ExitCode::DeviceLost, text,
+                  "the driver gave up, often because one dispatch took too long: use a smaller image or "
+                  "fewer VPLs, or "
+                  "run with validation to find an out-of-range access");
+    default:
+      throw Error(ExitCode::Internal, text);
+  }
+}
+
+std::vector<DeviceInfo> listDevices() {
+  bool debugUtils = false;
+  const VkInstance instance = createInstance(Validation::Off, nullptr, debugUtils);
+  std::vector<DeviceInfo> list;
+  for (PhysicalDevice& d : physicalDevices(instance)) list.push_back(std::move(d.info));
+  if (instance) vkDestroyInstance(instance, nullptr);
+  return list;
+}
+
+struct Device::Impl {
+  ~Impl();
+  void createInstanceAndMessenger(const DeviceOptions& options);
+  void createDevice(const PhysicalDevice& chosen);
+  void queryFeatures(FeatureChain& enabled);
+  void createCaches(const DeviceOptions& options);
+  void savePipelineCache();
+  uint32_t memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const;  // ~0u: none
+
+  MessageLog log;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+  DeviceInfo info;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkPhysicalDeviceType type{};
+  VkPhysicalDeviceProperties properties{};
+  VkPhysicalDeviceMemoryProperties memory{};
+  uint64_t maxAllocation = 0, maxBuffer = 0;
+  uint32_t maxPushDescriptors = 0;
+  Features features;
+  VkDevice device = VK_NULL_HANDLE;
+  uint32_t queueFamily = 0;
+  VkQueue queue = VK_NULL_HANDLE;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+  std::filesystem::path pipelineCacheFile;  // empty: not kept on disk
+  uint64_t pipelineCacheHash = 0;           // of what was loaded
+  std::unique_ptr<ShaderCompiler> shaders;
+  std::map<std::pair<VkFilter, VkSamplerAddressMode>, VkSampler> samplers;
+
+  std::mutex memoryMutex;
+  uint64_t limit = 0;  // 0: each heap's size
+  uint64_t allocated = 0, peak = 0;
+  uint64_t heapAllocated[VK_MAX_MEMORY_HEAPS] = {};
+  std::unordered_map<VkDeviceMemory, std::pair<uint32_t, uint64_t>> allocations;  // heap, bytes
+
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptorSet = nullptr;
+  PFN_vkSetDebugUtilsObjectNameEXT setName = nullptr;
+  PFN_vkCmdBeginDebugUtilsLabelEXT beginLabel = nullptr;
+  PFN_vkCmdEndDebugUtilsLabelEXT endLabel = nullptr;
+};
+
+Device::Impl::~Impl() {
+  if (device) {
+    vkDeviceWaitIdle(device);
+    savePipelineCache();
+    for (const auto& [key, handle] : samplers) vkDestroySampler(device, handle, nullptr);
+    vkDestroyPipelineCache(device, pipelineCache, nullptr);
+    vkDestroyCommandPool(device, pool, nullptr);
+    vkDestroyDevice(device, nullptr);
+  }
+  if (messenger)
+    load<PFN_vkDestroyDebugUtilsMessengerEXT>(instance, "vkDestroyDebugUtilsMessengerEXT")(
+        instance, messenger, nullptr);
+  if (instance) vkDestroyInstance(instance, nullptr);
+}
+
+void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
+  log.validation = options.validation;
+  VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+  info.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  // GENERAL is the loader's talk about drivers without hardware; PERFORMANCE belongs to best practices.
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+  if (options.validation == Validation::BestPractices)
+    info.messageType |= VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  info.pfnUserCallback = onMessage;
+  info.pUserData = &log;
+  bool debugUtils = false;
+  instance = createInstance(options.validation, &info, debugUtils);
+  if (!instance || !debugUtils) return;
+  if (options.validation != Validation::Off) {
+    const auto create = load<PFN_vkCreateDebugUtilsMessengerEXT>(instance, "vkCreateDebugUtilsMessengerEXT");
+    check(create(instance, &info, nullptr, &messenger), "creating the validation messenger");
+  }
+  setName = load<PFN_vkSetDebugUtilsObjectNameEXT>(instance, "vkSetDebugUtilsObjectNameEXT");
+  beginLabel = load<PFN_vkCmdBeginDebugUtilsLabelEXT>(instance, "vkCmdBeginDebugUtilsLabelEXT");
+  endLabel = load<PFN_vkCmdEndDebugUtilsLabelEXT>(instance, "vkCmdEndDebugUtilsLabelEXT");
+}
+
+void Device::Impl::queryFeatures(FeatureChain& enabled) {
+  FeatureChain available;
+  vkGetPhysicalDeviceFeatures2(physical, &available.core);
+  for (const auto& [name, value] : enabled.required()) *value = VK_TRUE;
+  const FeatureChain::List from = available.optional(), to = enabled.optional();
+  for (size_t i = 0; i < from.size(); ++i) *to[i].second = *from[i].second;
+
+  const VkPhysicalDeviceFeatures& f = enabled.core.features;
+  features.shaderInt64 = f.shaderInt64;
+  features.bufferInt64Atomics = enabled.v12.shaderBufferInt64Atomics;
+  features.sharedInt64Atomics = enabled.v12.shaderSharedInt64Atomics;
+  features.drawIndirectCount = enabled.v12.drawIndirectCount;
+  features.samplerAnisotropy = f.samplerAnisotropy;
+  features.depthClamp = f.depthClamp;
+  features.largePoints = f.largePoints;
+  features.storageReadWithoutFormat = f.shaderStorageImageReadWithoutFormat;
+  features.storageWriteWithoutFormat = f.shaderStorageImageWriteWithoutFormat;
+  features.sampledImageArrayDynamicIndexing = f.shaderSampledImageArrayDynamicIndexing;
+  VkPhysicalDevicePushDescriptorPropertiesKHR push{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PUSH_DESCRIPTOR_PROPERTIES_KHR};
+  VkPhysicalDeviceVulkan13Properties v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES, &push};
+  VkPhysicalDeviceVulkan11Properties v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, &v13};
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &v11};
+  vkGetPhysicalDeviceProperties2(physical, &all);
+  properties = all.properties;
+  maxAllocation = v11.maxMemoryAllocationSize;
+  maxBuffer = v13.maxBufferSize;
+  maxPushDescriptors = push.maxPushDescriptors;
+  features.subgroupSize = v11.subgroupSize;
+  if (v11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT)
+    features.subgroupOperations = v11.subgroupSupportedOperations;
+}
+
+void Device::Impl::createDevice(const PhysicalDevice& chosen) {
+  physical = chosen.handle;
+  type = chosen.type;
+  info = chosen.info;
+  queueFamily = chosen.queueFamily;
+  FeatureChain enabled;
+  queryFeatures(enabled);
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queueInfo{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queueInfo.queueFamilyIndex = queueFamily;
+  queueInfo.queueCount = 1;
+  queueInfo.pQueuePriorities = &priority;
+  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  VkDeviceCreateInfo deviceInfo{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &enabled.core};
+  deviceInfo.queueCreateInfoCount = 1;
+  deviceInfo.pQueueCreateInfos = &queueInfo;
+  deviceInfo.enabledExtensionCount = 1;
+  deviceInfo.ppEnabledExtensionNames = extensions;
+  const VkResult result = vkCreateDevice(physical, &deviceInfo, nullptr, &device);
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_FEATURE_NOT_PRESENT)
+    throw Error(ExitCode::NoDevice, "device `" + info.name + "` refuses to start: " + resultName(result),
+                "choose another device or update its driver");
+  check(result, "creating the device `" + info.name + "`");
+  vkGetDeviceQueue(device, queueFamily, 0, &queue);
+  pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
+      vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));
+  VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  poolInfo.queueFamilyIndex = queueFamily;
+  check(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), "creating a command pool");
+}
+
+void Device::Impl::createCaches(const DeviceOptions& options) {
+  std::filesystem::path directory;
+  if (options.useCache)
+    directory = options.cacheDirectory.empty() ? defaultCacheDirectory() : options.cacheDirectory;
+  shaders = std::make_unique<ShaderCompiler>(directory);
+  std::vector<std::byte> initial;
+  if (!directory.empty()) {
+    // The UUID changes with driver and device; the driver checks the same once more in the blob's header.
+    std::string uuid;
+    for (uint8_t byte : properties.pipelineCacheUUID) {
+      uuid += "0123456789abcdef"[byte >> 4];
+      uuid += "0123456789abcdef"[byte & 15];
+    }
+    pipelineCacheFile = directory / ("pipelines-" + uuid + ".bin");
+    initial = readCacheFile(pipelineCacheFile).value_or(std::vector<std::byte>{});
+  }
+  VkPipelineCacheCreateInfo cacheInfo{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  cacheInfo.initialDataSize = initial.size();
+  cacheInfo.pInitialData = initial.data();
+  if (vkCreatePipelineCache(device, &cacheInfo, nullptr, &pipelineCache) != VK_SUCCESS) {
+    cacheInfo.initialDataSize = 0;
+    initial.clear();
+    check(vkCreatePipelineCache(device, &cacheInfo, nullptr, &pipelineCache), "creating the pipeline cache");
+  }
+  pipelineCacheHash = XXH3_64bits(initial.data(), initial.size());
+}
+
+void Device::Impl::savePipelineCache() {
+  if (pipelineCacheFile.empty() || !pipelineCache) return;
+  size_t bytes = 0;
+  if (vkGetPipelineCacheData(device, pipelineCache, &bytes, nullptr) != VK_SUCCESS || bytes == 0) return;
+  std::vector<std::byte> data(bytes);
+  if (vkGetPipelineCacheData(device, pipelineCache, &bytes, data.data()) != VK_SUCCESS) return;
+  data.resize(bytes);
+  if (XXH3_64bits(data.data(), data.size()) != pipelineCacheHash) writeCacheFile(pipelineCacheFile, data);
+}
+
+uint32_t Device::Impl::memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const {
+  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+    if ((bits & (1u << i)) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  }
+  return ~0u;
+}
+
+Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->createInstanceAndMessenger(options);
+  const std::vector<PhysicalDevice> devices = physicalDevices(impl_->instance);
+  impl_->createDevice(choose(devices, options.device));
+  impl_->limit = options.memoryLimit;
+  impl_->createCaches(options);
+}
+
+Device::~Device() = default;
+
+VkInstance Device::instance() const { return impl_->instance; }
+VkPhysicalDevice Device::physical() const { return impl_->physical; }
+VkDevice Device::handle() const { return impl_->device; }
+VkQueue Device::queue() const { return impl_->queue; }
+uint32_t Device::queueFamily() const { return impl_->queueFamily; }
+const VkPhysicalDeviceProperties& Device::properties() const { return impl_->properties; }
+std::string Device::name() const { return impl_->info.name + ", " + impl_->info.driver; }
+bool Device::isCpu() const { return impl_->type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+const Features& Device::features() const { return impl_->features; }
+float Device::timestampPeriodNs() const { return impl_->properties.limits.timestampPeriod; }
+uint32_t Device::maxPushDescriptors() const { return impl_->maxPushDescriptors; }
+uint64_t Device::maxBufferBytes() const { return impl_->maxBuffer; }
+VkPipelineCache Device::pipelineCache() const { return impl_->pipelineCache; }
+ShaderCompiler& Device::shaders() const { return *impl_->shaders; }
+
+VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
+                                const std::string& what) {
+  const uint32_t index = impl_->memoryType(memoryTypeBits, flags);
+  if (index == ~0u) throw Error(ExitCode::Internal, "no memory type of this device fits `" + what + "`");
+  const uint32_t heap = impl_->memory.memoryTypes[index].heapIndex;
+  const std::string remedy = "use a smaller image, fewer VPLs or smaller shadow maps" +
+                             std::string(impl_->limit ? ", or raise the memory limit" : "");
+  const std::lock_guard lock(impl_->memoryMutex);
+  const uint64_t used = impl_->limit ? impl_->allocated : impl_->heapAllocated[heap];
+  const uint64_t limit = impl_->limit ? impl_->limit : impl_->memory.memoryHeaps[heap].size;
+  const auto fail = [&](const std::string& why) {
+    throw Error(ExitCode::OutOfMemory, "out of memory: `" + what + "` needs " + mebibytes(bytes) + "; " + why,
+                remedy);
+  };
+  if (bytes > limit || used > limit - bytes)
+    fail(mebibytes(used) + " of " + mebibytes(limit) + " device memory are in use");
+  if (impl_->maxAllocation && bytes > impl_->maxAllocation)
+    fail("this device's maxMemoryAllocationSize is " + mebibytes(impl_->maxAllocation));
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  info.allocationSize = bytes;
+  info.memoryTypeIndex = index;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  const VkResult result = vkAllocateMemory(impl_->device, &info, nullptr, &memory);
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+    fail("the driver has no more (" + mebibytes(used) + " are in use)");
+  check(result, "allocating " + mebibytes(bytes) + " for `" + what + "`");
+  impl_->allocations.emplace(memory, std::pair(heap, bytes));
+  impl_->heapAllocated[heap] += bytes;
+  impl_->allocated += bytes;
+  impl_->peak = std::max(impl_->peak, impl_->allocated);
+  setName(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), what);
+  return memory;
+}
+
+void Device::release(VkDeviceMemory memory, uint64_t) {
+  if (!memory) return;
+  const std::lock_guard lock(impl_->memoryMutex);
+  if (const auto it = impl_->allocations.find(memory); it != impl_->allocations.end()) {
+    impl_->heapAllocated[it->second.first] -= it->second.second;
+    impl_->allocated -= it->second.second;
+    impl_->allocations.erase(it);
+  }
+  vkFreeMemory(impl_->device, memory, nullptr);
+}
+
+uint64_t Device::allocatedBytes() const {
+  const std::lock_guard lock(impl_->memoryMutex);
+  return impl_->allocated;
+}
+
+uint64_t Device::peakAllocatedBytes() const {
+  const std::lock_guard lock(impl_->memoryMutex);
+  return impl_->peak;
+}
+
+uint64_t Device::memoryLimit() const { return impl_->limit ? impl_->limit : impl_->info.memoryBytes; }
+
+VkSampler Device::sampler(VkFilter filter, VkSamplerAddressMode mode) {
+  VkSampler& handle = impl_->samplers[{filter, mode}];
+  if (handle) return handle;
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = filter;
+  info.mipmapMode =
+      filter == VK_FILTER_LINEAR ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = mode;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  check(vkCreateSampler(impl_->device, &info, nullptr, &handle), "creating a sampler");
+  setName(VK_OBJECT_TYPE_SAMPLER, reinterpret_cast<uint64_t>(handle),
+          filter == VK_FILTER_LINEAR ? "linear sampler" : "nearest sampler");
+  return handle;
+}
+
+void Device::runOnce(const std::function<void(VkCommandBuffer)>& record) {
+  // Both are released however this ends; freeing a command buffer that never ran is fine.
+  struct Scope {
+    Impl& d;
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    ~Scope() {
+      vkDestroyFence(d.device, fence, nullptr);
+      if (cmd) vkFreeCommandBuffers(d.device, d.pool, 1, &cmd);
+    }
+  } scope{*impl_};
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  allocate.commandPool = impl_->pool;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(impl_->device, &allocate, &scope.cmd), "allocating a command buffer");
+  const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+  check(vkCreateFence(impl_->device, &fenceInfo, nullptr, &scope.fence), "creating a fence");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(scope.cmd, &begin), "beginning a command buffer");
+  record(scope.cmd);
+  check(vkEndCommandBuffer(scope.cmd), "ending a command buffer");
+  VkCommandBufferSubmitInfo cmdInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+  cmdInfo.commandBuffer = scope.cmd;
+  VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  submit.commandBufferInfoCount = 1;
+  submit.pCommandBufferInfos = &cmdInfo;
+  check(vkQueueSubmit2(impl_->queue, 1, &submit, scope.fence), "submitting set-up work");
+  check(vkWaitForFences(impl_->device, 1, &scope.fence, VK_TRUE, UINT64_MAX), "waiting for set-up work");
+}
+
+void Device::waitIdle() { check(vkDeviceWaitIdle(impl_->device), "waiting for the device"); }
+
+void Device::setName(VkObjectType type, uint64_t handle, const std::string& name) const {
+  if (!impl_->setName || !handle) return;
+  VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+  info.objectType = type;
+  info.objectHandle = handle;
+  info.pObjectName = name.c_str();
+  impl_->setName(impl_->device, &info);
+}
+
+void Device::beginLabel(VkCommandBuffer cmd, const char* name) const {
+  if (!impl_->beginLabel) return;
+  VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+  label.pLabelName = name;
+  impl_->beginLabel(cmd, &label);
+}
+
+void Device::endLabel(VkCommandBuffer cmd) const {
+  if (impl_->endLabel) impl_->endLabel(cmd);
+}
+
+void Device::pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
+                               uint32_t set, std::span<const VkWriteDescriptorSet> writes) const {
+  if (!writes.empty())
+    impl_->pushDescriptorSet(cmd, point, layout, set, uint32_t(writes.size()), writes.data());
+}
+
+std::vector<std::string> Device::validationMessages() const {
+  const std::lock_guard lock(impl_->log.mutex);
+  return impl_->log.messages;
+}
+
+void Device::clearValidationMessages() {
+  const std::lock_guard lock(impl_->log.mutex);
+  impl_->log.messages.clear();
+}
+
+}  // namespace fovea::gpu

@@ -1,0 +1,333 @@
+#include "framework/gpu/physical_device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+
+#include "framework/base/diagnostic.h"
+
+namespace fovea::gpu {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+std::string versionText(uint32_t v) {
+  return std::to_string(VK_API_VERSION_MAJOR(v)) + "." + std::to_string(VK_API_VERSION_MINOR(v)) + "." +
+         std::to_string(VK_API_VERSION_PATCH(v));
+}
+
+const char* typeName(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "cpu";
+    default:
+      return "other";
+  }
+}
+
+// Higher is better.
+int rank(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+bool hasExtension(const std::vector<VkExtensionProperties>& list, const char* name) {
+  return std::any_of(list.begin(), list.end(),
+                     [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+std::vector<VkExtensionProperties> instanceExtensions(const char* layer) {
+  uint32_t count = 0;
+  vkEnumerateInstanceExtensionProperties(layer, &count, nullptr);
+  std::vector<VkExtensionProperties> list(count);
+  vkEnumerateInstanceExtensionProperties(layer, &count, list.data());
+  list.resize(count);
+  return list;
+}
+
+void requireValidationLayer() {
+  uint32_t count = 0;
+  vkEnumerateInstanceLayerProperties(&count, nullptr);
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  for (const VkLayerProperties& layer : layers) {
+    if (std::strcmp(layer.layerName, kValidationLayer) == 0) return;
+  }
+  throw Error(
+      ExitCode::NoDevice,
+      std::string("validation was asked for, but the Vulkan layer ") + kValidationLayer + " is not installed",
+      "install vulkan-validationlayers, or run without validation");
+}
+
+std::vector<VkValidationFeatureEnableEXT> validationEnables(Validation validation) {
+  switch (validation) {
+    case Validation::Synchronization:
+      return {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    case Validation::GpuAssisted:
+      return {VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+              VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
+    case Validation::BestPractices:
+      return {VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT};
+    case Validation::Off:
+    case Validation::On:
+      break;
+  }
+  return {};
+}
+
+// The first family that does everything and can be timed; -1 when there is none.
+int findQueueFamily(VkPhysicalDevice device) {
+  uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (uint32_t i = 0; i < count; ++i) {
+    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0) return int(i);
+  }
+  return -1;
+}
+
+std::vector<std::string> missingFeatures(VkPhysicalDevice device,
+                                         const VkPhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_3)
+    return {"Vulkan 1.3 (it offers " + versionText(properties.apiVersion) + ")"};
+  std::vector<std::string> missing;
+  FeatureChain features;
+  vkGetPhysicalDeviceFeatures2(device, &features.core);
+  for (const auto& [name, value] : features.required()) {
+    if (!*value) missing.push_back(name);
+  }
+  uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  if (!hasExtension(extensions, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
+    missing.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  if (findQueueFamily(device) < 0) missing.push_back("a queue with graphics, compute and timestamps");
+  return missing;
+}
+
+PhysicalDevice describe(VkPhysicalDevice handle, uint32_t index) {
+  PhysicalDevice d;
+  d.handle = handle;
+  VkPhysicalDeviceProperties base;
+  vkGetPhysicalDeviceProperties(handle, &base);
+  d.type = base.deviceType;
+  d.info.index = index;
+  d.info.name = base.deviceName;
+  d.info.type = typeName(base.deviceType);
+  d.info.apiVersion = versionText(base.apiVersion);
+  if (base.apiVersion >= VK_API_VERSION_1_2) {
+    VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
+    vkGetPhysicalDeviceProperties2(handle, &properties);
+    d.info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+  }
+  VkPhysicalDeviceMemoryProperties memory;
+  vkGetPhysicalDeviceMemoryProperties(handle, &memory);
+  for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+      d.info.memoryBytes = std::max<uint64_t>(d.info.memoryBytes, memory.memoryHeaps[i].size);
+  }
+  d.info.missing = missingFeatures(handle, base);
+  d.queueFamily = uint32_t(std::max(0, findQueueFamily(handle)));
+  return d;
+}
+
+std::string lower(std::string s) {
+  for (char& c : s) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return s;
+}
+
+std::string join(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& item : list) text += (text.empty() ? "" : ", ") + item;
+  return text;
+}
+
+std::string listing(const std::vector<PhysicalDevice>& devices) {
+  std::string text;
+  for (const PhysicalDevice& d : devices) {
+    text += "\n     " + std::to_string(d.info.index) + ": " + d.info.name + " (" + d.info.type + ")";
+    if (!d.info.missing.empty()) text += ", not usable: it lacks " + join(d.info.missing);
+  }
+  return text;
+}
+
+bool matches(const PhysicalDevice& d, const std::string& wanted) {
+  if (wanted.empty()) return true;
+  uint32_t index = 0;
+  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+  if (error == std::errc() && end == wanted.data() + wanted.size()) return d.info.index == index;
+  return lower(d.info.name).find(lower(wanted)) != std::string::npos;
+}
+
+}  // namespace
+
+FeatureChain::FeatureChain() {
+  core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
+  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  core.pNext = &v11;
+  v11.pNext = &v12;
+  v12.pNext = &v13;
+}
+
+FeatureChain::List FeatureChain::required() {
+  VkPhysicalDeviceFeatures& f = core.features;
+  return {
+      {"geometryShader", &f.geometryShader},  // gl_PrimitiveID in fragment shaders
+      {"shaderClipDistance", &f.shaderClipDistance},
+      {"multiDrawIndirect", &f.multiDrawIndirect},
+      {"drawIndirectFirstInstance", &f.drawIndirectFirstInstance},
+      {"fragmentStoresAndAtomics", &f.fragmentStoresAndAtomics},
+      {"vertexPipelineStoresAndAtomics", &f.vertexPipelineStoresAndAtomics},
+      {"independentBlend", &f.independentBlend},
+      {"imageCubeArray", &f.imageCubeArray},
+      {"shaderStorageImageExtendedFormats", &f.shaderStorageImageExtendedFormats},
+      {"shaderDrawParameters", &v11.shaderDrawParameters},  // gl_BaseInstance, gl_DrawID
+      {"hostQueryReset", &v12.hostQueryReset},
+      {"timelineSemaphore", &v12.timelineSemaphore},
+      {"shaderOutputLayer", &v12.shaderOutputLayer},  // gl_Layer from the vertex shader
+      {"scalarBlockLayout", &v12.scalarBlockLayout},
+      {"dynamicRendering", &v13.dynamicRendering},
+      {"synchronization2", &v13.synchronization2},
+      {"maintenance4", &v13.maintenance4},  // LocalSizeId, requirements without objects
+      {"shaderDemoteToHelperInvocation", &v13.shaderDemoteToHelperInvocation},
+      {"shaderTerminateInvocation", &v13.shaderTerminateInvocation},  // what `discard` becomes in SPIR-V 1.6
+  };
+}
+
+FeatureChain::List FeatureChain::optional() {
+  VkPhysicalDeviceFeatures& f = core.features;
+  return {
+      {"shaderInt64", &f.shaderInt64},
+      {"shaderFloat64", &f.shaderFloat64},
+      {"shaderInt16", &f.shaderInt16},
+      {"samplerAnisotropy", &f.samplerAnisotropy},
+      {"depthClamp", &f.depthClamp},
+      {"largePoints", &f.largePoints},
+      {"shaderImageGatherExtended", &f.shaderImageGatherExtended},
+      {"shaderStorageImageReadWithoutFormat", &f.shaderStorageImageReadWithoutFormat},
+      {"shaderStorageImageWriteWithoutFormat", &f.shaderStorageImageWriteWithoutFormat},
+      {"shaderUniformBufferArrayDynamicIndexing", &f.shaderUniformBufferArrayDynamicIndexing},
+      {"shaderStorageBufferArrayDynamicIndexing", &f.shaderStorageBufferArrayDynamicIndexing},
+      {"shaderSampledImageArrayDynamicIndexing", &f.shaderSampledImageArrayDynamicIndexing},
+      {"shaderBufferInt64Atomics", &v12.shaderBufferInt64Atomics},
+      {"shaderSharedInt64Atomics", &v12.shaderSharedInt64Atomics},
+      {"drawIndirectCount", &v12.drawIndirectCount},
+      {"storageBuffer8BitAccess", &v12.storageBuffer8BitAccess},
+      {"storageBuffer16BitAccess", &v11.storageBuffer16BitAccess},
+      {"bufferDeviceAddress", &v12.bufferDeviceAddress},  // GPU-assisted validation uses it
+      {"subgroupSizeControl", &v13.subgroupSizeControl},
+      {"computeFullSubgroups", &v13.computeFullSubgroups},
+      {"shaderZeroInitializeWorkgroupMemory", &v13.shaderZeroInitializeWorkgroupMemory},
+  };
+}
+
+VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
+                          bool& debugUtils) {
+  uint32_t loader = VK_API_VERSION_1_0;
+  vkEnumerateInstanceVersion(&loader);
+  if (loader < VK_API_VERSION_1_3) {
+    throw Error(ExitCode::NoDevice,
+                "the Vulkan loader is version " + versionText(loader) + "; fovea needs 1.3",
+                "install a newer libvulkan1");
+  }
+  std::vector<VkExtensionProperties> available = instanceExtensions(nullptr);
+  std::vector<const char*> layers, extensions;
+  if (validation != Validation::Off) {
+    requireValidationLayer();
+    layers.push_back(kValidationLayer);
+    for (const VkExtensionProperties& e : instanceExtensions(kValidationLayer)) available.push_back(e);
+    extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+  }
+  debugUtils = hasExtension(available, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  if (debugUtils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+
+  const std::vector<VkValidationFeatureEnableEXT> enables = validationEnables(validation);
+  VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
+  features.enabledValidationFeatureCount = uint32_t(enables.size());
+  features.pEnabledValidationFeatures = enables.data();
+  VkDebugUtilsMessengerCreateInfoEXT creationMessenger{};
+  if (debugUtils && messenger) {  // so that mistakes in creating and destroying the instance are seen too
+    creationMessenger = *messenger;
+    features.pNext = &creationMessenger;
+  }
+  VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+  app.pApplicationName = "fovea";
+  app.apiVersion = VK_API_VERSION_1_3;
+  VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  if (validation != Validation::Off) info.pNext = &features;
+  info.pApplicationInfo = &app;
+  info.enabledLayerCount = uint32_t(layers.size());
+  info.ppEnabledLayerNames = layers.data();
+  info.enabledExtensionCount = uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  VkInstance instance = VK_NULL_HANDLE;
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;
+  check(result, "creating the Vulkan instance");
+  return instance;
+}
+
+std::vector<PhysicalDevice> physicalDevices(VkInstance instance) {
+  uint32_t count = 0;
+  if (!instance || vkEnumeratePhysicalDevices(instance, &count, nullptr) != VK_SUCCESS) return {};
+  std::vector<VkPhysicalDevice> handles(count);
+  vkEnumeratePhysicalDevices(instance, &count, handles.data());
+  std::vector<PhysicalDevice> list;
+  for (uint32_t i = 0; i < count; ++i) list.push_back(describe(handles[i], i));
+  return list;
+}
+
+const PhysicalDevice& choose(const std::vector<PhysicalDevice>& devices, const std::string& wanted) {
+  if (devices.empty()) {
+    throw Error(ExitCode::NoDevice,
+                "no Vulkan device found: there is no driver, or none of them found its hardware",
+                "install the driver of your GPU, or mesa-vulkan-drivers for the software device (lavapipe)");
+  }
+  const PhysicalDevice* best = nullptr;
+  const PhysicalDevice* unusable = nullptr;
+  for (const PhysicalDevice& d : devices) {
+    if (!matches(d, wanted)) continue;
+    if (!d.info.missing.empty()) {
+      unusable = &d;
+    } else if (!best || rank(d.type) > rank(best->type)) {
+      best = &d;
+    }
+  }
+  if (best) return *best;
+  if (unusable && !wanted.empty()) {
+    throw Error(ExitCode::NoDevice,
+                "device `" + unusable->info.name + "` lacks " + join(unusable->info.missing),
+                "update its driver or choose another one:" + listing(devices));
+  }
+  if (unusable) {
+    throw Error(ExitCode::NoDevice, "no usable Vulkan device:" + listing(devices),
+                "update the driver, or install mesa-vulkan-drivers for the software device (lavapipe)");
+  }
+  throw Error(ExitCode::NoDevice, "no device has the index or name `" + wanted + "`",
+              "choose one of these:" + listing(devices));
+}
+
+}  // namespace fovea::gpu
