@@ -1,0 +1,18 @@
+# cmake --install: the library with its headers as the CMake package `fovea`, and the data files that graphs name.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS fovea_framework EXPORT fovea-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fovea
+  FILES_MATCHING PATTERN "*.h" PATTERN "cmake" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_SOURCE_DIR}/samples/scenes
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(FOVEA_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
+install(EXPORT fovea-targets NAMESPACE fovea:: DESTINATION ${FOVEA_PACKAGE_DIR})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fovea-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/fovea-config.cmake
+  INSTALL_DESTINATION ${FOVEA_PACKAGE_DIR})
+# Before 1.0 a minor version may change interfaces.
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
+  DESTINATION ${FOVEA_PACKAGE_DIR})

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# From a fresh clone to a globally lit picture: installs what is missing, builds, renders a built-in scene with a graph.
+# The picture lands in the folder this is called from. More arguments go to `fovea render` (e.g. --size 512x512).
+set -euo pipefail
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+"$top/samples/setup.sh"
+"$top/samples/build.sh" fovea
+exec "$top/build/release/bin/fovea" render ir_1000 --scene cornellbox -o fovea-demo.png "$@"

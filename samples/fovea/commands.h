@@ -1,0 +1,20 @@
+// The commands of the program `fovea`: each adds its options to the command line and hands over what to do when chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "framework/base/diagnostic.h"
+
+namespace fovea::cli {
+
+using Action = std::function<ExitCode()>;
+
+void addRender(CLI::App& program, Action& action);
+void addCheck(CLI::App& program, Action& action);
+void addPasses(CLI::App& program, Action& action);
+void addSchema(CLI::App& program, Action& action);
+void addDevices(CLI::App& program, Action& action);
+void addScene(CLI::App& program, Action& action);
+
+}  // namespace fovea::cli

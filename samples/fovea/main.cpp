@@ -1,0 +1,90 @@
+// The command-line program: render graphs, check them, list what there is.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/graph/registry.h"
+#include "samples/fovea/commands.h"
+
+namespace fovea::cli {
+namespace {
+
+constexpr const char* kFooter = R"(Exit codes: 0 done, 1 a defect of fovea, 2 wrong command line, 3 a graph, scene, image or shader
+that cannot be used, 4 no usable Vulkan device, 5 out of memory, 6 device lost, 7 a file could not be
+written, 130 interrupted.)";
+
+ExitCode report(ExitCode code, const std::string& text) {
+  std::fflush(stdout);
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    // Remedies are indented below their message.
+    std::fprintf(stderr, "%s%s\n", line.starts_with("  ") ? "" : "fovea: ", line.c_str());
+    begin = end + 1;
+  }
+  return code;
+}
+
+// The command whose help explains a usage error.
+std::string chosenCommand(const CLI::App& program) {
+  std::string name = "fovea";
+  for (const CLI::App* app = &program; !app->get_subcommands().empty();) {
+    app = app->get_subcommands().front();
+    name += ' ' + app->get_name();
+  }
+  return name;
+}
+
+ExitCode parseAndRun(int argc, char** argv) {
+  CLI::App program("Renders a scene with a render graph, and shows what graphs, passes, scenes and devices there are.",
+                   "fovea");
+  program.set_version_flag("--version", "fovea " FOVEA_VERSION, "Print the version");
+  program.footer(kFooter);
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  Action action;
+  addRender(program, action);
+  addCheck(program, action);
+  addPasses(program, action);
+  addSchema(program, action);
+  addDevices(program, action);
+  addScene(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return ExitCode(program.exit(e));  // --help, --version
+    return report(ExitCode::Usage, std::string(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
+  }
+  graph::Registry::throwIfRegistrationsFailed();
+  return action();
+}
+
+ExitCode run(int argc, char** argv) {
+  try {
+    return parseAndRun(argc, argv);
+  } catch (const Error& e) {
+    return report(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return report(ExitCode::OutOfMemory,
+                  "error: the computer's memory is exhausted\n  -> render a smaller --size, or a smaller scene");
+  } catch (const std::exception& e) {
+    return report(ExitCode::Internal, std::string("error: a defect of fovea, not of your input: ") + e.what());
+  } catch (...) {
+    return report(ExitCode::Internal, "error: a defect of fovea, not of your input: an unknown exception");
+  }
+}
+
+}  // namespace
+}  // namespace fovea::cli
+
+int main(int argc, char** argv) {
+  const fovea::ExitCode code = fovea::cli::run(argc, argv);
+  if (std::fflush(stdout) != 0 && code == fovea::ExitCode::Ok) {
+    std::fputs("fovea: error: standard output could not be written\n", stderr);
+    return int(fovea::ExitCode::CannotWrite);
+  }
+  return int(code);
+}

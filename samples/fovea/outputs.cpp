@@ -1,0 +1,200 @@
+#include "samples/fovea/outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/format.h"
+#include "framework/graph/plan.h"
+#include "samples/fovea/arguments.h"
+
+namespace fovea::cli {
+namespace {
+
+using Type = gpu::FormatInfo::Type;
+
+constexpr const char* kDisplay = "image";
+constexpr const char* kLinear = "radiance";
+
+bool isPicture(const graph::ResourceDesc& desc) {
+  return desc.kind == graph::ResourceKind::Image && !desc.volume && desc.layers == 1;
+}
+
+bool isFloat(const graph::ResourceDesc& desc) { return gpu::formatInfo(desc.format).type == Type::Float; }
+
+enum class Content { AllFloat, Display, Linear };
+
+Content contentOf(const std::string& extension) {
+  if (extension == "exr") return Content::AllFloat;
+  return extension == "pfm" ? Content::Linear : Content::Display;
+}
+
+template <class Accept>
+std::vector<std::string> pictureNames(const graph::BoundGraph& graph, Accept accept) {
+  std::vector<std::string> names;
+  for (const graph::BoundOutput& output : graph.outputs) {
+    const graph::ResourceDesc& desc = graph.resources[output.resource].desc;
+    if (isPicture(desc) && accept(desc)) names.push_back(output.name);
+  }
+  return names;
+}
+
+template <class T>
+T load(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+float channelAt(const std::byte* texel, uint32_t channel, uint32_t bytesPerChannel, Type type) {
+  const std::byte* at = texel + size_t(channel) * bytesPerChannel;
+  if (type == Type::Float) return bytesPerChannel == 2 ? glm::unpackHalf1x16(load<uint16_t>(at)) : load<float>(at);
+  return bytesPerChannel == 1 ? float(load<uint8_t>(at)) / 255.0f : float(load<uint16_t>(at)) / 65535.0f;
+}
+
+// Alpha of a graph's images means nothing to a viewer of the file.
+image::Image withoutAlpha(const image::Image& image) {
+  if (image.channels != 4) return image;
+  image::Image rgb{image.width, image.height, 3, {}};
+  rgb.data.reserve(size_t(image.width) * image.height * 3);
+  for (size_t i = 0; i < image.data.size(); i += 4)
+    rgb.data.insert(rgb.data.end(), image.data.begin() + ptrdiff_t(i), image.data.begin() + ptrdiff_t(i + 3));
+  return rgb;
+}
+
+}  // namespace
+
+image::Image toImage(const graph::OutputData& output) {
+  const gpu::FormatInfo& format = gpu::formatInfo(output.desc.format);
+  const uint32_t bytesPerChannel = format.bytesPerTexel / format.channels;
+  const bool known = (format.type == Type::Float && (bytesPerChannel == 2 || bytesPerChannel == 4)) ||
+                     ((format.type == Type::Unorm || format.type == Type::Srgb) && bytesPerChannel <= 2);
+  if (!known)
+    throw Error(ExitCode::Internal, fmt::format("images of format {} cannot be written to files yet", format.name));
+  image::Image image{output.desc.width, output.desc.height, format.channels, {}};
+  const size_t texels = size_t(image.width) * image.height;
+  if (output.bytes.size() < texels * format.bytesPerTexel)
+    throw Error(ExitCode::Internal, "an output that was read back is shorter than its image");
+  image.data.resize(texels * format.channels);
+  for (size_t i = 0; i < texels; ++i)
+    for (uint32_t c = 0; c < format.channels; ++c)
+      image.data[i * format.channels + c] =
+          channelAt(output.bytes.data() + i * format.bytesPerTexel, c, bytesPerChannel, format.type);
+  return image;
+}
+
+std::string OutputFiles::File::extension() const {
+  std::string text = std::filesystem::path(name).extension().string();
+  if (!text.empty()) text.erase(0, 1);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+std::string OutputFiles::File::path(uint64_t frame) const {
+  return sequence ? fmt::format("{}{:0{}}{}", prefix, frame, digits, suffix) : name;
+}
+
+OutputFiles::File OutputFiles::parse(const std::string& name) {
+  File file;
+  file.name = name;
+  const size_t percent = name.find('%');
+  if (percent == std::string::npos) return file;
+  size_t end = percent + 1;
+  while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+  const bool good = end < name.size() && name[end] == 'd' && end - percent <= 3 && name.find('%', end) == name.npos &&
+                    (end == percent + 1 || name[percent + 1] == '0');
+  if (!good)
+    throw Error(ExitCode::Usage, "the output name `" + name + "` has a % that is not one frame number",
+                "write %d or %04d once, e.g. out_%04d.exr");
+  file.sequence = true;
+  file.digits = end == percent + 1 ? 1 : std::max(1, std::stoi(name.substr(percent + 1, end - percent - 1)));
+  file.prefix = name.substr(0, percent);
+  file.suffix = name.substr(end + 1);
+  return file;
+}
+
+OutputFiles::OutputFiles(std::vector<std::string> names) {
+  const std::vector<std::string> known = image::writableExtensions();
+  for (const std::string& name : names) {
+    File file = parse(name);
+    if (std::find(known.begin(), known.end(), file.extension()) == known.end())
+      throw Error(ExitCode::Usage, fmt::format("cannot tell a picture format from the output name `{}`", name),
+                  "this build writes " + quoteList(known));
+    for (const File& other : files_)
+      if (other.name == name) throw Error(ExitCode::Usage, "the output `" + name + "` is given twice", "name it once");
+    files_.push_back(std::move(file));
+  }
+}
+
+bool OutputFiles::hasSequence() const {
+  return std::any_of(files_.begin(), files_.end(), [](const File& f) { return f.sequence; });
+}
+
+void OutputFiles::checkWritable() const {
+  for (const File& file : files_) image::checkWritable(file.path(0));
+}
+
+std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, glm::uvec2 size) const {
+  const std::vector<std::string> all = pictureNames(graph, [](const graph::ResourceDesc&) { return true; });
+  const std::vector<std::string> layers = pictureNames(graph, [&](const graph::ResourceDesc& desc) {
+    return isFloat(desc) && desc.width == size.x && desc.height == size.y;
+  });
+  std::set<std::string> names;
+  for (const File& file : files_) {
+    if (contentOf(file.extension()) == Content::AllFloat) {
+      names.insert(layers.begin(), layers.end());
+      if (!layers.empty()) continue;
+      throw Error(ExitCode::BadInput,
+                  fmt::format("graph `{}` has no floating-point output of {}x{} pixels for `{}`; its pictures are {}",
+                              graph.name, size.x, size.y, file.name, quoteList(all)),
+                  "add one to \"outputs\" in the graph, e.g. \"radiance\": \"deferred.radiance\"");
+    }
+    const std::string wanted = contentOf(file.extension()) == Content::Linear ? kLinear : kDisplay;
+    if (std::find(all.begin(), all.end(), wanted) == all.end())
+      throw Error(ExitCode::BadInput,
+                  fmt::format("graph `{}` has no output `{}`, which `{}` would show; its pictures are {}", graph.name,
+                              wanted, file.name, quoteList(all)),
+                  "name it in \"outputs\" of the graph, e.g. \"image\": \"tonemap.image\", or write .exr");
+    names.insert(wanted);
+  }
+  return {names.begin(), names.end()};
+}
+
+void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Metadata metadata) {
+  const Content content = contentOf(file.extension());
+  metadata["frame"] = std::to_string(frame.frame);
+  std::vector<image::Layer> layers;
+  for (const auto& [name, output] : frame.outputs) {
+    if (content == Content::AllFloat) {
+      if (isFloat(output.desc)) layers.push_back({name, withoutAlpha(toImage(output))});
+    } else if (name == (content == Content::Linear ? kLinear : kDisplay)) {
+      layers.push_back({"", withoutAlpha(toImage(output))});
+    }
+  }
+  const std::string path = file.path(frame.frame);
+  image::write(path, layers, metadata);
+  if (file.first.empty()) file.first = path;
+  file.last = path;
+}
+
+void OutputFiles::writeFrame(const graph::FrameResult& frame, const image::Metadata& metadata) {
+  for (File& file : files_)
+    if (file.sequence) write(file, frame, metadata);
+}
+
+void OutputFiles::writeLast(const graph::FrameResult& frame, const image::Metadata& metadata) {
+  for (File& file : files_)
+    if (!file.sequence) write(file, frame, metadata);
+}
+
+std::vector<std::string> OutputFiles::written() const {
+  std::vector<std::string> list;
+  for (const File& file : files_)
+    if (!file.first.empty()) list.push_back(file.first == file.last ? file.first : file.first + " ... " + file.last);
+  return list;
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,32 @@
+// What the user waits for, on one line of the terminal.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace fovea::cli {
+
+// Writes to stderr, and only when that is a terminal. The line is wiped when the object goes, so that errors and results
+// stand alone.
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  ~Progress() { clear(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void stage(const std::string& what);  // "loading sponza"
+  // Frames done so far; the remaining time follows from those done.
+  void frames(uint64_t done, uint64_t total);
+  void clear();
+
+ private:
+  bool enabled_ = false, shown_ = false;
+  std::chrono::steady_clock::time_point start_;
+  void show(const std::string& line);
+};
+
+std::string formatDuration(double seconds);  // "0.8 s", "12 s", "3 min 20 s"
+
+}  // namespace fovea::cli

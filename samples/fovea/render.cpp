@@ -1,0 +1,311 @@
+// fovea render: a graph over a scene, to pictures, times and traces.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <memory>
+#include <optional>
+
+#include "framework/base/paths.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/shader.h"
+#include "framework/graph/compile.h"
+#include "framework/graph/execute.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/gpu_scene.h"
+#include "framework/scene/load.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/commands.h"
+#include "samples/fovea/files.h"
+#include "samples/fovea/interrupt.h"
+#include "samples/fovea/outputs.h"
+#include "samples/fovea/progress.h"
+#include "samples/fovea/timings.h"
+#include "samples/fovea/trace.h"
+
+namespace fovea::cli {
+namespace {
+
+// A frame slower than this is read back at once, in case Ctrl-C makes it the last; after quicker ones another is rendered.
+constexpr double kSlowFrameMs = 500;
+
+struct RenderOptions {
+  GraphOptions graph;
+  std::string scene, size = "1024x1024", gaze, device, timings, trace;
+  std::vector<std::string> outputs;
+  uint32_t frames = 1, warmup = 0, seed = 1;
+  bool quiet = false, validation = false;
+};
+
+void stopIfInterrupted() {
+  if (interrupted())
+    throw Error(ExitCode::Interrupted, "interrupted before the first frame was finished", "nothing was written");
+}
+
+uint64_t peakHostBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+// One run of the command, stage by stage.
+class Render {
+ public:
+  explicit Render(const RenderOptions& options);
+  ExitCode run();
+
+ private:
+  void checkFiles();
+  void chooseOutputs();
+  void loadInputs();
+  void buildPlan();
+  void buildExecutor();
+  void renderFrames();
+  void take(graph::FrameResult result);
+  void takeFinished();
+  void writeResults();
+  void report() const;
+  scene::Frame frame(uint64_t index) const;
+  image::Metadata metadata() const;
+
+  const RenderOptions& options_;
+  Progress progress_;
+  glm::uvec2 size_;
+  std::optional<glm::vec2> gaze_;
+  std::unique_ptr<OutputFiles> outputs_;
+  std::vector<std::string> readback_;
+  Diagnostics messages_;
+  graph::Description description_;
+  scene::Scene scene_;
+  scene::Geometry geometry_;
+  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<const graph::Plan> plan_;
+  std::unique_ptr<scene::GpuScene> gpuScene_;
+  std::unique_ptr<graph::Executor> executor_;
+  std::unique_ptr<Timings> timings_;
+  RunInfo info_;
+  uint32_t inFlight_ = 2;
+  uint64_t finished_ = 0;
+  double lastWallMs_ = 0;
+  std::optional<graph::FrameResult> picture_;  // the last frame that was read back
+  std::vector<std::string> files_;             // written beside the pictures
+};
+
+Render::Render(const RenderOptions& options)
+    : options_(options), progress_(options.quiet), size_(parseSize(options.size)) {
+  if (!options.gaze.empty()) gaze_ = parseGaze(options.gaze);
+  outputs_ = std::make_unique<OutputFiles>(options.outputs);
+}
+
+// Before anything slow: what cannot be written at the end need not be rendered.
+void Render::checkFiles() {
+  const auto has = [](const std::string& file, std::string_view extension) {
+    return std::filesystem::path(file).extension() == extension;
+  };
+  if (!options_.timings.empty() && !has(options_.timings, ".json") && !has(options_.timings, ".csv"))
+    throw Error(ExitCode::Usage, "cannot tell a format from --timings `" + options_.timings + "`",
+                "name it .json or .csv");
+  outputs_->checkWritable();
+  for (const std::string& file : {options_.timings, options_.trace})
+    if (!file.empty()) checkTextWritable(file);
+}
+
+// A run that is asked for nothing else makes a picture.
+void Render::chooseOutputs() {
+  if (!outputs_->empty() || !options_.timings.empty() || !options_.trace.empty()) return;
+  outputs_ = std::make_unique<OutputFiles>(std::vector<std::string>{description_.name + "-" + scene_.name + ".png"});
+  outputs_->checkWritable();
+}
+
+void Render::loadInputs() {
+  description_ = loadGraph(options_.graph, messages_);
+  // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
+  Diagnostics early = messages_;
+  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, {{"main", {size_.x, size_.y}}}), early);
+  progress_.stage("loading scene " + options_.scene);
+  scene_ = scene::load(options_.scene, messages_);
+  geometry_ = scene::flatten(scene_);
+  chooseOutputs();
+  stopIfInterrupted();
+}
+
+void Render::buildPlan() {
+  gpu::DeviceOptions deviceOptions;
+  deviceOptions.device = options_.device;
+  if (options_.validation) deviceOptions.validation = gpu::Validation::On;
+  device_ = std::make_unique<gpu::Device>(deviceOptions);
+  const uint32_t limit = device_->limits().maxImageDimension2D;
+  if (size_.x > limit || size_.y > limit)
+    throw Error(ExitCode::Usage,
+                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size_.x, size_.y, limit),
+                "render a smaller picture");
+  std::vector<std::pair<std::string, VkExtent2D>> views;
+  for (const scene::View& view : frame(0).views) views.push_back({view.name, {view.size.x, view.size.y}});
+  auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
+      description_, graph::sceneEnvironment(device_.get(), scene_, geometry_, std::move(views)), messages_));
+  readback_ = outputs_->outputsOf(*bound, size_);
+  plan_ = std::make_shared<const graph::Plan>(graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
+  graph::warnAboutPlan(*plan_, messages_);
+  progress_.clear();
+  printWarnings(messages_);
+}
+
+void Render::buildExecutor() {
+  progress_.stage("preparing " + description_.name);
+  // On a CPU device two frames at once only take each other's cores.
+  inFlight_ = device_->isCpu() ? 1 : 2;
+  gpuScene_ = std::make_unique<scene::GpuScene>(*device_, scene_, geometry_, inFlight_);
+  graph::ExecutorOptions executorOptions;
+  executorOptions.framesInFlight = inFlight_;
+  executorOptions.readback = readback_;
+  executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_, executorOptions);
+  timings_ = std::make_unique<Timings>(plan_);
+  info_ = {device_->name(), description_.name, formatHash(plan_->graph->hash), scene_.name, size_.x, size_.y,
+           options_.warmup, options_.seed, 0, 0};
+  stopIfInterrupted();
+}
+
+scene::Frame Render::frame(uint64_t index) const {
+  scene::Frame f = scene::makeFrame(scene_, geometry_, size_, index, options_.seed);
+  if (gaze_)
+    for (scene::View& view : f.views) view.gaze = *gaze_;
+  f.gpu = gpuScene_.get();
+  return f;
+}
+
+image::Metadata Render::metadata() const {
+  const scene::Frame first = frame(0);
+  std::string set;
+  for (const std::string& text : options_.graph.set) set += (set.empty() ? "" : " ") + text;
+  image::Metadata data = {{"version", FOVEA_VERSION},
+                          {"graph", info_.graph},
+                          {"graph_hash", info_.graphHash},
+                          {"scene", info_.scene},
+                          {"scene_hash", formatHash(scene_.hash)},
+                          {"device", info_.device},
+                          {"seed", std::to_string(info_.seed)},
+                          {"size", fmt::format("{}x{}", size_.x, size_.y)}};
+  if (!first.views.empty()) data["gaze"] = fmt::format("{},{}", first.views[0].gaze.x, first.views[0].gaze.y);
+  if (!set.empty()) data["set"] = set;
+  return data;
+}
+
+void Render::take(graph::FrameResult result) {
+  const bool warm = finished_++ < options_.warmup;
+  lastWallMs_ = result.wallMs;
+  progress_.frames(finished_, uint64_t(options_.warmup) + options_.frames);
+  if (warm) return;
+  timings_->add(result);
+  if (result.outputs.empty()) return;
+  outputs_->writeFrame(result, metadata());
+  picture_ = std::move(result);
+}
+
+void Render::takeFinished() {
+  if (inFlight_ == 1) {
+    while (auto result = executor_->next()) take(std::move(*result));
+  } else {
+    while (auto result = executor_->poll()) take(std::move(*result));
+  }
+}
+
+void Render::renderFrames() {
+  const uint64_t total = uint64_t(options_.warmup) + options_.frames;
+  const bool pictures = !readback_.empty();
+  progress_.frames(0, total);
+  uint64_t index = 0;
+  for (; index < total && !interrupted(); ++index) {
+    const bool keep = outputs_->hasSequence() || index + 1 == total || lastWallMs_ > kSlowFrameMs;
+    executor_->submit(frame(index), pictures && keep && index >= options_.warmup);
+    takeFinished();
+  }
+  while (auto result = executor_->next()) take(std::move(*result));
+  if (interrupted() && pictures && !picture_ && index >= options_.warmup) {
+    executor_->submit(frame(index), true);
+    while (auto result = executor_->next()) take(std::move(*result));
+  }
+  progress_.clear();
+}
+
+void Render::writeResults() {
+  if (timings_->frames().empty()) stopIfInterrupted();
+  if (picture_) outputs_->writeLast(*picture_, metadata());
+  picture_.reset();
+  info_.peakDeviceBytes = device_->peakAllocatedBytes();
+  info_.peakHostBytes = peakHostBytes();
+  if (!options_.timings.empty()) {
+    timings_->write(options_.timings, info_);
+    files_.push_back(options_.timings);
+  }
+  if (!options_.trace.empty()) {
+    writeText(options_.trace, chromeTrace(*timings_, info_));
+    files_.push_back(options_.trace);
+  }
+}
+
+void Render::report() const {
+  if (options_.quiet) return;
+  std::printf("%s on %s, %ux%u, seed %u\n%s\n\n%s\n", info_.graph.c_str(), info_.scene.c_str(), size_.x, size_.y,
+              info_.seed, info_.device.c_str(), timings_->table().c_str());
+  std::printf("peak memory: %s on the device, %s on the host%s\n", formatBytes(info_.peakDeviceBytes).c_str(),
+              formatBytes(info_.peakHostBytes).c_str(), device_->isCpu() ? " (device memory included)" : "");
+  std::vector<std::string> files = outputs_->written();
+  files.insert(files.end(), files_.begin(), files_.end());
+  for (const std::string& file : files) std::printf("wrote %s\n", file.c_str());
+}
+
+ExitCode Render::run() {
+  checkFiles();
+  catchInterrupts();
+  loadInputs();
+  buildPlan();
+  buildExecutor();
+  renderFrames();
+  writeResults();
+  report();
+  const std::vector<std::string> validation = device_->validationMessages();
+  if (!validation.empty())
+    throw Error(ExitCode::Internal, fmt::format("the validation layers object {} times, first: {}", validation.size(),
+                                                validation.front()));
+  return interrupted() ? ExitCode::Interrupted : ExitCode::Ok;
+}
+
+void addOutputOptions(CLI::App& command, RenderOptions& options) {
+  addList(command, "-o,--output", options.outputs,
+          "Picture: .png shows the graph's output `image`, .exr holds every floating-point output as a layer; "
+          "out_%04d.exr writes every frame; may be repeated. Default: GRAPH-SCENE.png, none with --timings or --trace")
+      ->type_name("FILE");
+  command.add_option("--timings", options.timings, "Times and counters: .json (median, min, p95) or .csv (every frame)")
+      ->type_name("FILE");
+  command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")->type_name("FILE.json");
+  command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
+}
+
+}  // namespace
+
+void addRender(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("render", "Render a scene with a graph");
+  auto options = std::make_shared<RenderOptions>();
+  addGraphOptions(*command, options->graph);
+  command->add_option("--scene", options->scene, "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
+      ->required()
+      ->type_name("SCENE");
+  addOutputOptions(*command, *options);
+  command->add_option("--size", options->size, "Picture size, 1 to 16384 pixels a side; default 1024x1024")
+      ->type_name("WxH");
+  command->add_option("--frames", options->frames, "Frames to render and measure; default 1")
+      ->type_name("N")
+      ->check(CLI::Range(1u, 10'000'000u));
+  command->add_option("--warmup", options->warmup, "Frames before those, neither measured nor written; default 0")
+      ->type_name("N")
+      ->check(CLI::Range(0u, 10'000'000u));
+  command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")->type_name("S");
+  command->add_option("--gaze", options->gaze, "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
+      ->type_name("X,Y");
+  command->add_option("--device", options->device, "Vulkan device by number or part of its name; see `fovea devices`")
+      ->type_name("D");
+  command->add_flag("--validation", options->validation, "Run under the Vulkan validation layers (slow)");
+  command->callback([options, &action] { action = [options] { return Render(*options).run(); }; });
+}
+
+}  // namespace fovea::cli

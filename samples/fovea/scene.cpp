@@ -1,0 +1,86 @@
+// fovea scene info: what a scene holds, as loaded.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "framework/scene/load.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/commands.h"
+
+namespace fovea::cli {
+namespace {
+
+using scene::Scene;
+
+void line(const char* what, const std::string& value) { fmt::print("{:<10}  {}\n", what, value); }
+
+std::string formatVector(const glm::vec3& v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
+
+std::string formatLight(const scene::Light& light) {
+  const glm::vec3 strength = light.color * light.intensity;
+  switch (light.type) {
+    case scene::LightType::Directional:
+      return fmt::format("directional, {} lux, towards {}", formatVector(strength), formatVector(light.direction));
+    case scene::LightType::Point:
+      return fmt::format("point, {} cd, at {}", formatVector(strength), formatVector(light.position));
+    case scene::LightType::Spot:
+      return fmt::format("spot, {} cd, at {}, towards {}, cone {:.3g} degrees", formatVector(strength),
+                         formatVector(light.position), formatVector(light.direction),
+                         2 * glm::degrees(light.outerConeAngle));
+  }
+  return {};
+}
+
+void printContents(const Scene& s, const scene::Geometry& geometry) {
+  size_t textureBytes = 0, masked = 0, emissive = 0;
+  for (const scene::Texture& t : s.textures) textureBytes += t.rgba.size();
+  for (const scene::Material& m : s.materials) {
+    masked += m.masked;
+    emissive += glm::any(glm::greaterThan(m.emission, glm::vec3(0)));
+  }
+  size_t dynamic = 0;
+  for (const scene::Object& o : geometry.objects) dynamic += o.dynamic;
+  line("triangles", fmt::format("{} ({} of them moving)", geometry.triangles.size(),
+                                geometry.triangles.size() - geometry.staticTriangles));
+  line("vertices", fmt::format("{}", geometry.positions.size()));
+  line("objects", fmt::format("{} ({} of them moving)", geometry.objects.size(), dynamic));
+  line("materials", fmt::format("{} ({} masked, {} emissive)", s.materials.size(), masked, emissive));
+  line("textures", fmt::format("{} ({})", s.textures.size(), formatBytes(textureBytes)));
+  if (geometry.empty()) return line("bounds", "none: there is no geometry");
+  line("bounds", fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));
+}
+
+ExitCode info(const std::string& name) {
+  Diagnostics messages;
+  const Scene s = scene::load(name, messages);
+  const scene::Geometry geometry = scene::flatten(s);
+  printWarnings(messages);
+  line("scene", s.name);
+  if (!s.source.empty()) line("source", s.source);
+  printContents(s, geometry);
+  for (const scene::Light& light : s.lights) line("light", formatLight(light));
+  for (const scene::Camera& c : s.cameras)
+    line("camera", fmt::format("at {}, towards {}, {:.3g} degrees high", formatVector(c.position),
+                               formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
+  if (!s.cameraPath.empty())
+    line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
+  if (!s.gaze.empty()) line("gaze", fmt::format("{} samples over {:.3g} s", s.gaze.size(), s.gaze.back().time));
+  line("exposure", fmt::format("{:.4g}", s.exposure));
+  line("sky", formatVector(s.environment) + " W/(sr m^2)");
+  line("hash", formatHash(s.hash));
+  return ExitCode::Ok;
+}
+
+}  // namespace
+
+void addScene(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("scene", "Look into scenes")->require_subcommand(1);
+  CLI::App* infoCommand = command->add_subcommand("info", "Print what a scene holds");
+  auto name = std::make_shared<std::string>();
+  infoCommand->add_option("SCENE", *name, "A .json, .gltf or .glb file, or a bare name (cornellbox)")
+      ->required()
+      ->type_name("");
+  infoCommand->callback([name, &action] { action = [name] { return info(*name); }; });
+}
+
+}  // namespace fovea::cli

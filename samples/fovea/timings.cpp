@@ -1,0 +1,185 @@
+#include "samples/fovea/timings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "framework/graph/plan.h"
+#include "samples/fovea/files.h"
+
+namespace fovea::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double medianOf(std::vector<double> values) { return spreadOf(std::move(values)).median; }
+
+// Microseconds are what the clocks resolve; more digits would only pretend.
+double rounded(double ms) { return std::round(ms * 1000.0) / 1000.0; }
+
+Json toJson(const Spread& s) { return {{"median", rounded(s.median)}, {"min", rounded(s.min)}, {"p95", rounded(s.p95)}}; }
+
+std::string formatMs(double ms) {
+  if (ms >= 1000) return fmt::format("{:.0f}", ms);
+  return ms >= 100 ? fmt::format("{:.1f}", ms) : fmt::format("{:.2f}", ms);
+}
+
+std::string formatCount(double value) {
+  if (value == std::floor(value) && std::abs(value) < 1e15) {
+    std::string digits = fmt::format("{:.0f}", std::abs(value));
+    for (size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+    return (value < 0 ? "-" : "") + digits;
+  }
+  return fmt::format("{:.6g}", value);
+}
+
+// The counters of one pass as "vpls=1000;paths=2048".
+std::string countersOf(const graph::FrameResult& frame, const std::string& pass) {
+  std::string text;
+  for (const auto& [name, value] : frame.counters) {
+    const size_t dot = name.rfind('.');
+    if (dot == std::string::npos || name.compare(0, dot, pass) != 0) continue;
+    if (!text.empty()) text += ';';
+    text += fmt::format("{}={:.17g}", name.substr(dot + 1), value);
+  }
+  return text;
+}
+
+}  // namespace
+
+Spread spreadOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  const double median = n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+  return {median, values.front(), values[(n * 95 + 99) / 100 - 1]};
+}
+
+void Timings::add(const graph::FrameResult& result) {
+  frames_.push_back({result.frame, result.gpuMs, result.cpuMs, result.wallMs, result.passes, result.counters, {}});
+}
+
+std::vector<Timings::Row> Timings::rows() const {
+  std::vector<uint32_t> order;
+  std::map<uint32_t, std::pair<std::vector<double>, std::vector<double>>> values;
+  for (const graph::FrameResult& frame : frames_)
+    for (const graph::PassTiming& t : frame.passes) {
+      auto [entry, isNew] = values.try_emplace(t.pass);
+      if (isNew) order.push_back(t.pass);
+      entry->second.first.push_back(t.gpuMs);
+      entry->second.second.push_back(t.cpuMs);
+    }
+  std::vector<Row> rows;
+  for (uint32_t index : order) {
+    const bool host = pass(index).declaration->kind == graph::PassKind::Host;
+    rows.push_back({index, host, spreadOf(values[index].first), spreadOf(values[index].second)});
+  }
+  return rows;
+}
+
+std::vector<std::pair<std::string, double>> Timings::counters() const {
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<double>> values;
+  for (const graph::FrameResult& frame : frames_)
+    for (const auto& [name, value] : frame.counters) {
+      auto [entry, isNew] = values.try_emplace(name);
+      if (isNew) order.push_back(name);
+      entry->second.push_back(value);
+    }
+  std::vector<std::pair<std::string, double>> result;
+  for (const std::string& name : order) result.emplace_back(name, medianOf(values[name]));
+  return result;
+}
+
+template <class Get>
+Spread Timings::frameSpread(Get get) const {
+  std::vector<double> values;
+  for (const graph::FrameResult& frame : frames_) values.push_back(get(frame));
+  return spreadOf(std::move(values));
+}
+
+std::string Timings::table() const {
+  const std::vector<Row> all = rows();
+  size_t nameWidth = 5, typeWidth = 4;
+  double total = 0;
+  for (const Row& row : all) {
+    nameWidth = std::max(nameWidth, pass(row.pass).name.size());
+    typeWidth = std::max(typeWidth, pass(row.pass).declaration->type.size());
+    total += row.time();
+  }
+  const auto line = [&](const std::string& name, const std::string& type, const Spread& gpu, const std::string& cpu,
+                        const std::string& share) {
+    return fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", name, nameWidth, type, typeWidth,
+                       formatMs(gpu.median), formatMs(gpu.min), formatMs(gpu.p95), cpu, share);
+  };
+  std::string text = fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", "pass", nameWidth, "type",
+                                 typeWidth, "gpu ms", "min", "p95", "cpu ms", "share");
+  const std::string rule(text.size() - 1, '-');
+  text += rule + '\n';
+  for (const Row& row : all) {
+    const double share = total > 0 ? 100 * row.time() / total : 0;
+    text += line(pass(row.pass).name, pass(row.pass).declaration->type, row.gpu, formatMs(row.cpu.median),
+                 fmt::format("{:.1f}%", share));
+  }
+  const Spread gpu = frameSpread([](const auto& f) { return f.gpuMs; });
+  const Spread cpu = frameSpread([](const auto& f) { return f.cpuMs; });
+  const Spread wall = frameSpread([](const auto& f) { return f.wallMs; });
+  text += rule + '\n' + line("frame", "", gpu, formatMs(cpu.median), "");
+  text += fmt::format("wall time of a frame: median {} ms, min {} ms, p95 {} ms over {} frame{}\n", formatMs(wall.median),
+                      formatMs(wall.min), formatMs(wall.p95), frames_.size(), frames_.size() == 1 ? "" : "s");
+  const auto counted = counters();
+  size_t counterWidth = 0;
+  for (const auto& [name, value] : counted) counterWidth = std::max(counterWidth, name.size());
+  if (!counted.empty()) text += "\ncounters, median of a frame\n";
+  for (const auto& [name, value] : counted)
+    text += fmt::format("  {:<{}}  {:>16}\n", name, counterWidth, formatCount(value));
+  return text;
+}
+
+std::string Timings::json(const RunInfo& run) const {
+  Json passes = Json::array();
+  for (const Row& row : rows())
+    passes.push_back({{"name", pass(row.pass).name},
+                      {"type", pass(row.pass).declaration->type},
+                      {"gpu_ms", toJson(row.gpu)},
+                      {"cpu_ms", toJson(row.cpu)}});
+  Json counted = Json::object();
+  for (const auto& [name, value] : counters()) counted[name] = value;
+  const Json document = {
+      {"device", run.device},
+      {"graph", run.graph},
+      {"graph_hash", run.graphHash},
+      {"scene", run.scene},
+      {"size", {run.width, run.height}},
+      {"frames", frames_.size()},
+      {"warmup", run.warmup},
+      {"seed", run.seed},
+      {"frame",
+       {{"gpu_ms", toJson(frameSpread([](const auto& f) { return f.gpuMs; }))},
+        {"cpu_ms", toJson(frameSpread([](const auto& f) { return f.cpuMs; }))},
+        {"wall_ms", toJson(frameSpread([](const auto& f) { return f.wallMs; }))}}},
+      {"passes", passes},
+      {"counters", counted},
+      {"peak_bytes", {{"device", run.peakDeviceBytes}, {"host", run.peakHostBytes}}},
+  };
+  return document.dump(2) + '\n';
+}
+
+std::string Timings::csv() const {
+  std::string text = "frame,pass,type,gpu_ms,cpu_ms,frame_gpu_ms,frame_cpu_ms,frame_wall_ms,counters\n";
+  for (const graph::FrameResult& frame : frames_)
+    for (const graph::PassTiming& t : frame.passes)
+      text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame.frame, pass(t.pass).name,
+                          pass(t.pass).declaration->type, t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs, frame.wallMs,
+                          countersOf(frame, pass(t.pass).name));
+  return text;
+}
+
+void Timings::write(const std::filesystem::path& file, const RunInfo& run) const {
+  writeText(file, file.extension() == ".csv" ? csv() : json(run));
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Installs fovea to an empty prefix and uses it from there as a stranger would: every installed header compiles, the
+# sample pass builds against the package, renders through --plugin, and changes the picture as its parameter says.
+# Usage: own_pass_test.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+build=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+unset FOVEA_DATA
+prefix=$work/prefix
+
+cmake --install "$build" --prefix "$prefix" >"$work/log" || { cat "$work/log"; exit 1; }
+for file in bin/fovea share/fovea/graphs/direct.json share/fovea/shaders/tonemap/tonemap.comp share/fovea/scenes; do
+  [ -e "$prefix/$file" ] || { echo "the installation lacks $file"; exit 1; }
+done
+
+echo "== installed headers"
+(cd "$prefix/include/fovea" && find framework -name '*.h' | sort | sed 's/.*/#include "&"/') >"$work/headers.cpp"
+grep -c include "$work/headers.cpp"
+c++ -std=c++20 -fsyntax-only -Wall -Wextra -Wno-missing-field-initializers -I"$prefix/include/fovea" "$work/headers.cpp"
+
+echo "== the sample, built against the package"
+cp -r "$source/samples/own_pass" "$work/own_pass"
+cmake -S "$work/own_pass" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release >"$work/log" ||
+  { cat "$work/log"; exit 1; }
+cmake --build "$work/build"
+
+echo "== rendered through"
+fovea=$prefix/bin/fovea
+plugin=$work/build/own_pass.so
+"$fovea" passes outline --plugin "$plugin" | grep -q strength
+# Data files come from the installation, not from the sources: this graph is only there.
+echo '{ "extends": "direct.json" }' >"$prefix/share/fovea/graphs/only_installed.json"
+(cd "$work" && "$fovea" check only_installed)
+common=(--scene cornellbox --size 96x96 --set vpl_count=32 --quiet)
+cd "$work"
+"$fovea" render ir_1000 "${common[@]}" -o stock.png
+"$fovea" render own_pass/outlined.json "${common[@]}" --plugin "$plugin" -o outlined.png
+"$fovea" render own_pass/outlined.json "${common[@]}" --plugin "$plugin" --set outline.strength=0 -o plain.png
+idiff stock.png plain.png || { echo "without strength the outline pass must change nothing"; exit 1; }
+if idiff stock.png outlined.png >"$work/log"; then
+  echo "the outline pass changed nothing"
+  exit 1
+fi
+mean() { oiiotool --stats "$1" | sed -n 's/.*Stats Avg: *\([0-9.]*\).*/\1/p'; }
+echo "mean of red: stock $(mean stock.png), outlined $(mean outlined.png)"
+awk -v a="$(mean stock.png)" -v b="$(mean outlined.png)" 'BEGIN { exit !(b > 0.5 * a && b < a) }' ||
+  { echo "outlines must darken the picture a little"; exit 1; }
+echo "passed"

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds the preset `release` and runs every test. Arguments go to ctest (e.g. -L unit).
+set -euo pipefail
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+started=$SECONDS
+
+"$top/samples/setup.sh"
+"$top/samples/build.sh"
+cd "$top"
+built=$SECONDS
+status=0
+ctest --preset release -j2 --output-on-failure --timeout 600 "$@" || status=$?
+printf 'set-up and build took %d s, the tests %d s\n' $((built - started)) $((SECONDS - built))
+if [ "$status" -ne 0 ]; then
+  echo "tests: some FAILED, see above; again with: ctest --preset release --rerun-failed" >&2
+  exit "$status"
+fi
+echo "tests: all passed"
