@@ -120,7 +120,8 @@ Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
   for (size_t c = 0; c < stride; ++c)
     for (size_t i = 0; i < count; ++i)
       pixels.data[i * stride + c] = sources[c].image->data[i * sources[c].image->channels + sources[c].channel];
-  for (const auto& [key, value] : metadata) pixels.metadata[std::string(kPrefix) + key] = value;
+  for (const auto& [key, value] : metadata)
+    if (!value.empty()) pixels.metadata[std::string(kPrefix) + key] = value;
   return pixels;
 }
 

@@ -41,7 +41,9 @@ struct Image8 {
 std::vector<std::string> writableExtensions();
 
 // By extension. EXR: all layers, 32-bit float, channel names "layer.R"; PFM: one 1- or 3-channel layer.
-// PNG: one layer that is display-referred already (values 0..1 become 8 bits, rounded, no transfer curve applied).
+// PNG: one layer that is display-referred already (values 0..1 become 8 bits, rounded, no transfer curve applied); a
+// pixel with a NaN becomes magenta. EXR and PFM keep NaN and infinity. Layers of one file have one size.
+// EXR and PNG hold the metadata under "fovea.<key>" (UTF-8); entries with an empty value are left out.
 // Written under a temporary name, read back, compared, renamed: an existing file survives every failure.
 // Throws Error(CannotWrite) naming file and reason, Error(BadInput) for an unknown extension.
 void write(const std::filesystem::path& file, const std::vector<Layer>& layers, const Metadata& metadata = {});

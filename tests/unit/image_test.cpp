@@ -71,7 +71,11 @@ TEST_F(ImageFiles, ExrKeepsLayersBitsAndMetadata) {
   layers[1].image.at(36, 20, 2) = std::numeric_limits<float>::quiet_NaN();
   layers[1].image.at(0, 1, 0) = -std::numeric_limits<float>::infinity();
   layers[2].image.at(5, 5, 0) = 1e-40f;  // a denormal
-  const Metadata metadata{{"graph", "ir_1000"}, {"scene", "caf\xc3\xa9, \"quoted\""}, {"size", "37x21"}, {"seed", "7"}};
+  Metadata metadata{{"graph", "ir_1000"},
+                    {"scene", "caf\xc3\xa9, \"quoted\""},
+                    {"size", "37x21"},
+                    {"seed", "7"},
+                    {"note", ""}};
   write(file, layers, metadata);
   const File back = read(file);
   ASSERT_EQ(back.layers.size(), 3u);
@@ -80,6 +84,7 @@ TEST_F(ImageFiles, ExrKeepsLayersBitsAndMetadata) {
     expectSameBits(layer.image, *back.find(layer.name));
   }
   EXPECT_EQ(back.find("direct"), nullptr);
+  metadata.erase("note");  // empty entries are left out
   EXPECT_EQ(back.metadata, metadata);
   EXPECT_EQ(filesInFolder(), 1u);  // no temporary file stays
 }
@@ -245,7 +250,7 @@ TEST_F(ImageFiles, AnExistingFileSurvivesAFailedWrite) {
     rlimit limit{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
     const auto handler = signal(SIGXFSZ, SIG_IGN);
-    for (rlim_t bytes : {rlim_t(0), rlim_t(100), rlim_t(3000)}) {
+    for (rlim_t bytes : {rlim_t(0), rlim_t(100), rlim_t(1000)}) {
       const rlimit small{bytes, limit.rlim_max};
       ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
       try {
