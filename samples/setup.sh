@@ -15,6 +15,8 @@ packages=(
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   # models, images, rays, mesh simplification
   libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libtbb-dev libmeshoptimizer-dev
+  # images without OpenImageIO, for the preset `portable`
+  libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema
 )

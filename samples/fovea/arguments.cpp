@@ -29,14 +29,16 @@ CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std
 }
 
 void addPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
-  addList(command, "--plugin", plugins, "Shared library with more passes; may be repeated")->type_name("FILE.so");
+  addList(command, "--plugin", plugins, "Shared library with more passes; may be repeated")
+      ->type_name("FILE.so");
 }
 
 void addGraphOptions(CLI::App& command, GraphOptions& options) {
   command.add_option("GRAPH", options.graph, "Graph: a file, or the bare name of a stock graph (ir_1000)")
       ->required()
       ->type_name("");
-  addList(command, "--set", options.set, "Override a graph parameter (vpl_count=500) or a pass's (deferred.kernel=disc)")
+  addList(command, "--set", options.set,
+          "Override a graph parameter (vpl_count=500) or a pass's (deferred.kernel=disc)")
       ->type_name("NAME=VALUE");
   addPluginOption(command, options.plugins);
 }
@@ -46,11 +48,13 @@ glm::uvec2 parseSize(std::string_view text) {
   const auto width = parseNumber<uint64_t>(text.substr(0, x));
   const auto height = x == text.npos ? std::nullopt : parseNumber<uint64_t>(text.substr(x + 1));
   if (!width || !height)
-    throw Error(ExitCode::Usage, fmt::format("--size `{}` is not WIDTHxHEIGHT", text), "e.g. --size 1024x768");
+    throw Error(ExitCode::Usage, fmt::format("--size `{}` is not WIDTHxHEIGHT", text),
+                "e.g. --size 1024x768");
   if (*width < 1 || *height < 1 || *width > kMaxSize || *height > kMaxSize)
-    throw Error(ExitCode::Usage,
-                fmt::format("--size {} is out of range: width and height go from 1 to {} pixels", text, kMaxSize),
-                "the default is 1024x1024");
+    throw Error(
+        ExitCode::Usage,
+        fmt::format("--size {} is out of range: width and height go from 1 to {} pixels", text, kMaxSize),
+        "the default is 1024x1024");
   return {uint32_t(*width), uint32_t(*height)};
 }
 
@@ -82,7 +86,8 @@ void printWarnings(const Diagnostics& messages) {
   static std::set<std::string> printed;
   for (const Diagnostic& d : messages.list()) {
     const std::string text = d.format();
-    if (d.severity != Severity::Error && printed.insert(text).second) std::fprintf(stderr, "fovea: %s\n", text.c_str());
+    if (d.severity != Severity::Error && printed.insert(text).second)
+      std::fprintf(stderr, "fovea: %s\n", text.c_str());
   }
 }
 

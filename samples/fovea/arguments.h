@@ -31,7 +31,8 @@ glm::uvec2 parseSize(std::string_view text);
 glm::vec2 parseGaze(std::string_view text);
 
 void loadPlugins(const std::vector<std::string>& plugins);
-// The plug-ins, then the graph with its overrides; mistakes inside the file go to `messages`, and bind() throws them.
+// The plug-ins, then the graph with its overrides; mistakes inside the file go to `messages`, and bind()
+// throws them.
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages);
 
 // Warnings and notes to stderr, each text once in the life of the process.

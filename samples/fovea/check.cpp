@@ -22,8 +22,8 @@ ExitCode check(const CheckOptions& options) {
   const glm::uvec2 size = parseSize(options.size);
   Diagnostics messages;
   const graph::Description description = loadGraph(options.graph, messages);
-  auto bound = std::make_shared<const graph::BoundGraph>(
-      graph::bind(description, graph::sceneEnvironment(nullptr, {}, {}, {{"main", {size.x, size.y}}}), messages));
+  auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
+      description, graph::sceneEnvironment(nullptr, {}, {}, {{"main", {size.x, size.y}}}), messages));
   const graph::Plan plan = graph::compile(bound);
   graph::warnAboutPlan(plan, messages);
   printWarnings(messages);
@@ -38,8 +38,8 @@ ExitCode check(const CheckOptions& options) {
     for (const bool l : plan.passLive) live += l;
     std::vector<std::string> outputs;
     for (const graph::BoundOutput& output : bound->outputs) outputs.push_back(output.name);
-    fmt::print("graph `{}` is right: {} passes ({} run), outputs {}\n", bound->name, bound->passes.size(), live,
-               quoteList(outputs));
+    fmt::print("graph `{}` is right: {} passes ({} run), outputs {}\n", bound->name, bound->passes.size(),
+               live, quoteList(outputs));
   }
   return ExitCode::Ok;
 }
@@ -53,7 +53,8 @@ void addCheck(CLI::App& program, Action& action) {
   command->add_option("--plan", options->plan, "Print order, barriers and memory as text, dot or json")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"text", "dot", "json"}));
-  command->add_option("--size", options->size, "Picture size the plan is for; default 1024x1024")->type_name("WxH");
+  command->add_option("--size", options->size, "Picture size the plan is for; default 1024x1024")
+      ->type_name("WxH");
   command->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

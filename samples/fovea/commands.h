@@ -1,4 +1,5 @@
-// The commands of the program `fovea`: each adds its options to the command line and hands over what to do when chosen.
+// The commands of the program `fovea`: each adds its options to the command line and hands over what to do
+// when chosen.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -20,7 +20,8 @@ ExitCode listAll() {
     name = std::max(name, d.name.size());
     type = std::max(type, d.type.size());
   }
-  fmt::print("{:>2}  {:<{}}  {:<{}}  {:<8}  {:>9}  {}\n", "#", "name", name, "type", type, "Vulkan", "memory", "driver");
+  fmt::print("{:>2}  {:<{}}  {:<{}}  {:<8}  {:>9}  {}\n", "#", "name", name, "type", type, "Vulkan", "memory",
+             "driver");
   for (const gpu::DeviceInfo& d : devices) {
     fmt::print("{:>2}  {:<{}}  {:<{}}  {:<8}  {:>9}  {}\n", d.index, d.name, name, d.type, type, d.apiVersion,
                formatBytes(d.memoryBytes), d.driver);

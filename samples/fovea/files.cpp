@@ -37,7 +37,8 @@ void writeText(const fs::path& file, const std::string& text) {
     fs::remove(temporary, ignored);
     fail(file, std::strerror(error));
   };
-  if (std::fwrite(text.data(), 1, text.size(), out.get()) != text.size() || std::fflush(out.get()) != 0) giveUp(errno);
+  if (std::fwrite(text.data(), 1, text.size(), out.get()) != text.size() || std::fflush(out.get()) != 0)
+    giveUp(errno);
   if (std::fclose(out.release()) != 0) giveUp(errno);  // a full disk may show only here
   if (std::rename(temporary.c_str(), file.c_str()) != 0) giveUp(errno);
 }

@@ -21,7 +21,7 @@ extern "C" void onInterrupt(int) {
 }  // namespace
 
 void catchInterrupts() {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = onInterrupt;
   action.sa_flags = SA_RESTART | SA_RESETHAND;  // the second signal finds the default action
   sigemptyset(&action.sa_mask);

@@ -12,7 +12,8 @@
 namespace fovea::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Exit codes: 0 done, 1 a defect of fovea, 2 wrong command line, 3 a graph, scene, image or shader
+constexpr const char* kFooter =
+    R"(Exit codes: 0 done, 1 a defect of fovea, 2 wrong command line, 3 a graph, scene, image or shader
 that cannot be used, 4 no usable Vulkan device, 5 out of memory, 6 device lost, 7 a file could not be
 written, 130 interrupted.)";
 
@@ -39,8 +40,9 @@ std::string chosenCommand(const CLI::App& program) {
 }
 
 ExitCode parseAndRun(int argc, char** argv) {
-  CLI::App program("Renders a scene with a render graph, and shows what graphs, passes, scenes and devices there are.",
-                   "fovea");
+  CLI::App program(
+      "Renders a scene with a render graph, and shows what graphs, passes, scenes and devices there are.",
+      "fovea");
   program.set_version_flag("--version", "fovea " FOVEA_VERSION, "Print the version");
   program.footer(kFooter);
   program.require_subcommand(1);
@@ -56,7 +58,8 @@ ExitCode parseAndRun(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return ExitCode(program.exit(e));  // --help, --version
-    return report(ExitCode::Usage, std::string(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
+    return report(ExitCode::Usage,
+                  std::string(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
   }
   graph::Registry::throwIfRegistrationsFailed();
   return action();
@@ -68,10 +71,12 @@ ExitCode run(int argc, char** argv) {
   } catch (const Error& e) {
     return report(e.code(), e.what());
   } catch (const std::bad_alloc&) {
-    return report(ExitCode::OutOfMemory,
-                  "error: the computer's memory is exhausted\n  -> render a smaller --size, or a smaller scene");
+    return report(
+        ExitCode::OutOfMemory,
+        "error: the computer's memory is exhausted\n  -> render a smaller --size, or a smaller scene");
   } catch (const std::exception& e) {
-    return report(ExitCode::Internal, std::string("error: a defect of fovea, not of your input: ") + e.what());
+    return report(ExitCode::Internal,
+                  std::string("error: a defect of fovea, not of your input: ") + e.what());
   } catch (...) {
     return report(ExitCode::Internal, "error: a defect of fovea, not of your input: an unknown exception");
   }

@@ -51,7 +51,8 @@ T load(const std::byte* from) {
 
 float channelAt(const std::byte* texel, uint32_t channel, uint32_t bytesPerChannel, Type type) {
   const std::byte* at = texel + size_t(channel) * bytesPerChannel;
-  if (type == Type::Float) return bytesPerChannel == 2 ? glm::unpackHalf1x16(load<uint16_t>(at)) : load<float>(at);
+  if (type == Type::Float)
+    return bytesPerChannel == 2 ? glm::unpackHalf1x16(load<uint16_t>(at)) : load<float>(at);
   return bytesPerChannel == 1 ? float(load<uint8_t>(at)) / 255.0f : float(load<uint16_t>(at)) / 65535.0f;
 }
 
@@ -73,7 +74,8 @@ image::Image toImage(const graph::OutputData& output) {
   const bool known = (format.type == Type::Float && (bytesPerChannel == 2 || bytesPerChannel == 4)) ||
                      ((format.type == Type::Unorm || format.type == Type::Srgb) && bytesPerChannel <= 2);
   if (!known)
-    throw Error(ExitCode::Internal, fmt::format("images of format {} cannot be written to files yet", format.name));
+    throw Error(ExitCode::Internal,
+                fmt::format("images of format {} cannot be written to files yet", format.name));
   image::Image image{output.desc.width, output.desc.height, format.channels, {}};
   const size_t texels = size_t(image.width) * image.height;
   if (output.bytes.size() < texels * format.bytesPerTexel)
@@ -89,7 +91,8 @@ image::Image toImage(const graph::OutputData& output) {
 std::string OutputFiles::File::extension() const {
   std::string text = std::filesystem::path(name).extension().string();
   if (!text.empty()) text.erase(0, 1);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   return text;
 }
 
@@ -104,8 +107,8 @@ OutputFiles::File OutputFiles::parse(const std::string& name) {
   if (percent == std::string::npos) return file;
   size_t end = percent + 1;
   while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
-  const bool good = end < name.size() && name[end] == 'd' && end - percent <= 3 && name.find('%', end) == name.npos &&
-                    (end == percent + 1 || name[percent + 1] == '0');
+  const bool good = end < name.size() && name[end] == 'd' && end - percent <= 3 &&
+                    name.find('%', end) == name.npos && (end == percent + 1 || name[percent + 1] == '0');
   if (!good)
     throw Error(ExitCode::Usage, "the output name `" + name + "` has a % that is not one frame number",
                 "write %d or %04d once, e.g. out_%04d.exr");
@@ -121,10 +124,12 @@ OutputFiles::OutputFiles(std::vector<std::string> names) {
   for (const std::string& name : names) {
     File file = parse(name);
     if (std::find(known.begin(), known.end(), file.extension()) == known.end())
-      throw Error(ExitCode::Usage, fmt::format("cannot tell a picture format from the output name `{}`", name),
+      throw Error(ExitCode::Usage,
+                  fmt::format("cannot tell a picture format from the output name `{}`", name),
                   "this build writes " + quoteList(known));
     for (const File& other : files_)
-      if (other.name == name) throw Error(ExitCode::Usage, "the output `" + name + "` is given twice", "name it once");
+      if (other.name == name)
+        throw Error(ExitCode::Usage, "the output `" + name + "` is given twice", "name it once");
     files_.push_back(std::move(file));
   }
 }
@@ -147,16 +152,17 @@ std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, 
     if (contentOf(file.extension()) == Content::AllFloat) {
       names.insert(layers.begin(), layers.end());
       if (!layers.empty()) continue;
-      throw Error(ExitCode::BadInput,
-                  fmt::format("graph `{}` has no floating-point output of {}x{} pixels for `{}`; its pictures are {}",
-                              graph.name, size.x, size.y, file.name, quoteList(all)),
-                  "add one to \"outputs\" in the graph, e.g. \"radiance\": \"deferred.radiance\"");
+      throw Error(
+          ExitCode::BadInput,
+          fmt::format("graph `{}` has no floating-point output of {}x{} pixels for `{}`; its pictures are {}",
+                      graph.name, size.x, size.y, file.name, quoteList(all)),
+          "add one to \"outputs\" in the graph, e.g. \"radiance\": \"deferred.radiance\"");
     }
     const std::string wanted = contentOf(file.extension()) == Content::Linear ? kLinear : kDisplay;
     if (std::find(all.begin(), all.end(), wanted) == all.end())
       throw Error(ExitCode::BadInput,
-                  fmt::format("graph `{}` has no output `{}`, which `{}` would show; its pictures are {}", graph.name,
-                              wanted, file.name, quoteList(all)),
+                  fmt::format("graph `{}` has no output `{}`, which `{}` would show; its pictures are {}",
+                              graph.name, wanted, file.name, quoteList(all)),
                   "name it in \"outputs\" of the graph, e.g. \"image\": \"tonemap.image\", or write .exr");
     names.insert(wanted);
   }
@@ -193,7 +199,8 @@ void OutputFiles::writeLast(const graph::FrameResult& frame, const image::Metada
 std::vector<std::string> OutputFiles::written() const {
   std::vector<std::string> list;
   for (const File& file : files_)
-    if (!file.first.empty()) list.push_back(file.first == file.last ? file.first : file.first + " ... " + file.last);
+    if (!file.first.empty())
+      list.push_back(file.first == file.last ? file.first : file.first + " ... " + file.last);
   return list;
 }
 

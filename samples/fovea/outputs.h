@@ -13,12 +13,12 @@
 
 namespace fovea::cli {
 
-// EXR: every floating-point output of the graph that has the view's size is a layer of its name. Other formats show the output `image`, or, for
-// PFM (floating-point, one layer), the output `radiance`.
+// EXR: every floating-point output of the graph that has the view's size is a layer of its name. Other
+// formats show the output `image`, or, for PFM (floating-point, one layer), the output `radiance`.
 class OutputFiles {
  public:
-  // Names as on the command line; "out_%04d.exr" is a sequence with a file per frame. Throws Error(Usage) on a bad
-  // pattern, an unknown extension or a file named twice.
+  // Names as on the command line; "out_%04d.exr" is a sequence with a file per frame. Throws Error(Usage) on
+  // a bad pattern, an unknown extension or a file named twice.
   explicit OutputFiles(std::vector<std::string> names);
 
   bool empty() const { return files_.empty(); }
@@ -41,7 +41,7 @@ class OutputFiles {
     bool sequence = false;
     std::string prefix, suffix;  // of a sequence, around the number
     int digits = 0;
-    std::string first, last;     // written so far
+    std::string first, last;  // written so far
     std::string path(uint64_t frame) const;
     std::string extension() const;  // lower case, without the dot
   };

@@ -37,10 +37,14 @@ void printRows(const std::string& title, const std::vector<Row>& rows) {
 
 std::string kindName(PassKind kind) {
   switch (kind) {
-    case PassKind::Compute: return "compute";
-    case PassKind::Graphics: return "graphics";
-    case PassKind::ComputeAndGraphics: return "compute and graphics";
-    case PassKind::Host: return "on the CPU";
+    case PassKind::Compute:
+      return "compute";
+    case PassKind::Graphics:
+      return "graphics";
+    case PassKind::ComputeAndGraphics:
+      return "compute and graphics";
+    case PassKind::Host:
+      return "on the CPU";
   }
   return {};
 }
@@ -63,9 +67,12 @@ std::string describe(const ResourceSpec& r, bool sized) {
 
 std::string lifetimeName(Lifetime lifetime) {
   switch (lifetime) {
-    case Lifetime::Transient: return {};
-    case Lifetime::View: return ", kept until a camera cut";
-    case Lifetime::Scene: return ", kept with the scene";
+    case Lifetime::Transient:
+      return {};
+    case Lifetime::View:
+      return ", kept until a camera cut";
+    case Lifetime::Scene:
+      return ", kept with the scene";
   }
   return {};
 }
@@ -82,7 +89,8 @@ std::vector<Row> portRows(const PassDeclaration& pass, Direction direction) {
       continue;
     }
     rows.push_back({port.name, "bundle " + port.bundle + suffix, port.doc});
-    for (const MemberSpec& m : port.members) rows.push_back({"  ." + m.name, describe(m.resource, sized), m.doc});
+    for (const MemberSpec& m : port.members)
+      rows.push_back({"  ." + m.name, describe(m.resource, sized), m.doc});
   }
   return rows;
 }
@@ -125,8 +133,9 @@ ExitCode showType(const std::string& type) {
     throw Error(ExitCode::BadInput, "there is no pass type `" + type + "`",
                 nearest.empty() ? "`fovea passes` lists them" : "did you mean `" + nearest + "`?");
   }
-  fmt::print("{} ({}{}{})\n  {}\n", pass->type, kindName(pass->kind), pass->usesView ? ", looks through a view" : "",
-             pass->sideEffects ? ", never culled" : "", pass->doc);
+  fmt::print("{} ({}{}{})\n  {}\n", pass->type, kindName(pass->kind),
+             pass->usesView ? ", looks through a view" : "", pass->sideEffects ? ", never culled" : "",
+             pass->doc);
   printRows("inputs", portRows(*pass, Direction::Input));
   printRows("updated in place", portRows(*pass, Direction::InOut));
   printRows("outputs", portRows(*pass, Direction::Output));
@@ -150,7 +159,8 @@ struct PassesOptions {
 void addPasses(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("passes", "List the pass types, or show all about one");
   auto options = std::make_shared<PassesOptions>();
-  command->add_option("TYPE", options->type, "Show this type's ports, parameters and counters")->type_name("");
+  command->add_option("TYPE", options->type, "Show this type's ports, parameters and counters")
+      ->type_name("");
   addPluginOption(*command, options->plugins);
   command->callback([options, &action] {
     action = [options] {

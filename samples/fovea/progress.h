@@ -7,8 +7,8 @@
 
 namespace fovea::cli {
 
-// Writes to stderr, and only when that is a terminal. The line is wiped when the object goes, so that errors and results
-// stand alone.
+// Writes to stderr, and only when that is a terminal. The line is wiped when the object goes, so that errors
+// and results stand alone.
 class Progress {
  public:
   explicit Progress(bool quiet);

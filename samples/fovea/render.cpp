@@ -26,7 +26,8 @@
 namespace fovea::cli {
 namespace {
 
-// A frame slower than this is read back at once, in case Ctrl-C makes it the last; after quicker ones another is rendered.
+// A frame slower than this is read back at once, in case Ctrl-C makes it the last; after quicker ones another
+// is rendered.
 constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
@@ -39,7 +40,8 @@ struct RenderOptions {
 
 void stopIfInterrupted() {
   if (interrupted())
-    throw Error(ExitCode::Interrupted, "interrupted before the first frame was finished", "nothing was written");
+    throw Error(ExitCode::Interrupted, "interrupted before the first frame was finished",
+                "nothing was written");
 }
 
 uint64_t peakHostBytes() {
@@ -113,7 +115,8 @@ void Render::checkFiles() {
 // A run that is asked for nothing else makes a picture.
 void Render::chooseOutputs() {
   if (!outputs_->empty() || !options_.timings.empty() || !options_.trace.empty()) return;
-  outputs_ = std::make_unique<OutputFiles>(std::vector<std::string>{description_.name + "-" + scene_.name + ".png"});
+  outputs_ =
+      std::make_unique<OutputFiles>(std::vector<std::string>{description_.name + "-" + scene_.name + ".png"});
   outputs_->checkWritable();
 }
 
@@ -137,14 +140,16 @@ void Render::buildPlan() {
   const uint32_t limit = device_->limits().maxImageDimension2D;
   if (size_.x > limit || size_.y > limit)
     throw Error(ExitCode::Usage,
-                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size_.x, size_.y, limit),
+                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size_.x,
+                            size_.y, limit),
                 "render a smaller picture");
   std::vector<std::pair<std::string, VkExtent2D>> views;
   for (const scene::View& view : frame(0).views) views.push_back({view.name, {view.size.x, view.size.y}});
   auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
       description_, graph::sceneEnvironment(device_.get(), scene_, geometry_, std::move(views)), messages_));
   readback_ = outputs_->outputsOf(*bound, size_);
-  plan_ = std::make_shared<const graph::Plan>(graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
+  plan_ = std::make_shared<const graph::Plan>(
+      graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
   graph::warnAboutPlan(*plan_, messages_);
   progress_.clear();
   printWarnings(messages_);
@@ -158,10 +163,19 @@ void Render::buildExecutor() {
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
-  executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_, executorOptions);
+  executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_,
+                                                executorOptions);
   timings_ = std::make_unique<Timings>(plan_);
-  info_ = {device_->name(), description_.name, formatHash(plan_->graph->hash), scene_.name, size_.x, size_.y,
-           options_.warmup, options_.seed, 0, 0};
+  info_ = {device_->name(),
+           description_.name,
+           formatHash(plan_->graph->hash),
+           scene_.name,
+           size_.x,
+           size_.y,
+           options_.warmup,
+           options_.seed,
+           0,
+           0};
   stopIfInterrupted();
 }
 
@@ -245,8 +259,8 @@ void Render::writeResults() {
 
 void Render::report() const {
   if (options_.quiet) return;
-  std::printf("%s on %s, %ux%u, seed %u\n%s\n\n%s\n", info_.graph.c_str(), info_.scene.c_str(), size_.x, size_.y,
-              info_.seed, info_.device.c_str(), timings_->table().c_str());
+  std::printf("%s on %s, %ux%u, seed %u\n%s\n\n%s\n", info_.graph.c_str(), info_.scene.c_str(), size_.x,
+              size_.y, info_.seed, info_.device.c_str(), timings_->table().c_str());
   std::printf("peak memory: %s on the device, %s on the host%s\n", formatBytes(info_.peakDeviceBytes).c_str(),
               formatBytes(info_.peakHostBytes).c_str(), device_->isCpu() ? " (device memory included)" : "");
   std::vector<std::string> files = outputs_->written();
@@ -265,19 +279,24 @@ ExitCode Render::run() {
   report();
   const std::vector<std::string> validation = device_->validationMessages();
   if (!validation.empty())
-    throw Error(ExitCode::Internal, fmt::format("the validation layers object {} times, first: {}", validation.size(),
-                                                validation.front()));
+    throw Error(ExitCode::Internal, fmt::format("the validation layers object {} times, first: {}",
+                                                validation.size(), validation.front()));
   return interrupted() ? ExitCode::Interrupted : ExitCode::Ok;
 }
 
 void addOutputOptions(CLI::App& command, RenderOptions& options) {
-  addList(command, "-o,--output", options.outputs,
-          "Picture: .png shows the graph's output `image`, .exr holds every floating-point output as a layer; "
-          "out_%04d.exr writes every frame; may be repeated. Default: GRAPH-SCENE.png, none with --timings or --trace")
+  addList(
+      command, "-o,--output", options.outputs,
+      "Picture: .png shows the graph's output `image`, .exr holds every floating-point output as a layer; "
+      "out_%04d.exr writes every frame; may be repeated. Default: GRAPH-SCENE.png, none with --timings or "
+      "--trace")
       ->type_name("FILE");
-  command.add_option("--timings", options.timings, "Times and counters: .json (median, min, p95) or .csv (every frame)")
+  command
+      .add_option("--timings", options.timings,
+                  "Times and counters: .json (median, min, p95) or .csv (every frame)")
       ->type_name("FILE");
-  command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")->type_name("FILE.json");
+  command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")
+      ->type_name("FILE.json");
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
 
@@ -287,7 +306,9 @@ void addRender(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("render", "Render a scene with a graph");
   auto options = std::make_shared<RenderOptions>();
   addGraphOptions(*command, options->graph);
-  command->add_option("--scene", options->scene, "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
+  command
+      ->add_option("--scene", options->scene,
+                   "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("SCENE");
   addOutputOptions(*command, *options);
@@ -296,13 +317,19 @@ void addRender(CLI::App& program, Action& action) {
   command->add_option("--frames", options->frames, "Frames to render and measure; default 1")
       ->type_name("N")
       ->check(CLI::Range(1u, 10'000'000u));
-  command->add_option("--warmup", options->warmup, "Frames before those, neither measured nor written; default 0")
+  command
+      ->add_option("--warmup", options->warmup,
+                   "Frames before those, neither measured nor written; default 0")
       ->type_name("N")
       ->check(CLI::Range(0u, 10'000'000u));
   command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")->type_name("S");
-  command->add_option("--gaze", options->gaze, "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
+  command
+      ->add_option("--gaze", options->gaze,
+                   "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
       ->type_name("X,Y");
-  command->add_option("--device", options->device, "Vulkan device by number or part of its name; see `fovea devices`")
+  command
+      ->add_option("--device", options->device,
+                   "Vulkan device by number or part of its name; see `fovea devices`")
       ->type_name("D");
   command->add_flag("--validation", options->validation, "Run under the Vulkan validation layers (slow)");
   command->callback([options, &action] { action = [options] { return Render(*options).run(); }; });

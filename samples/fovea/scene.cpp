@@ -20,7 +20,8 @@ std::string formatLight(const scene::Light& light) {
   const glm::vec3 strength = light.color * light.intensity;
   switch (light.type) {
     case scene::LightType::Directional:
-      return fmt::format("directional, {} lux, towards {}", formatVector(strength), formatVector(light.direction));
+      return fmt::format("directional, {} lux, towards {}", formatVector(strength),
+                         formatVector(light.direction));
     case scene::LightType::Point:
       return fmt::format("point, {} cd, at {}", formatVector(strength), formatVector(light.position));
     case scene::LightType::Spot:
@@ -47,7 +48,8 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
   line("materials", fmt::format("{} ({} masked, {} emissive)", s.materials.size(), masked, emissive));
   line("textures", fmt::format("{} ({})", s.textures.size(), formatBytes(textureBytes)));
   if (geometry.empty()) return line("bounds", "none: there is no geometry");
-  line("bounds", fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));
+  line("bounds",
+       fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));
 }
 
 ExitCode info(const std::string& name) {
@@ -60,11 +62,13 @@ ExitCode info(const std::string& name) {
   printContents(s, geometry);
   for (const scene::Light& light : s.lights) line("light", formatLight(light));
   for (const scene::Camera& c : s.cameras)
-    line("camera", fmt::format("at {}, towards {}, {:.3g} degrees high", formatVector(c.position),
-                               formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
+    line("camera",
+         fmt::format("at {}, towards {}, {:.3g} degrees high", formatVector(c.position),
+                     formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
-  if (!s.gaze.empty()) line("gaze", fmt::format("{} samples over {:.3g} s", s.gaze.size(), s.gaze.back().time));
+  if (!s.gaze.empty())
+    line("gaze", fmt::format("{} samples over {:.3g} s", s.gaze.size(), s.gaze.back().time));
   line("exposure", fmt::format("{:.4g}", s.exposure));
   line("sky", formatVector(s.environment) + " W/(sr m^2)");
   line("hash", formatHash(s.hash));

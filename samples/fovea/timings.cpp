@@ -20,7 +20,9 @@ double medianOf(std::vector<double> values) { return spreadOf(std::move(values))
 // Microseconds are what the clocks resolve; more digits would only pretend.
 double rounded(double ms) { return std::round(ms * 1000.0) / 1000.0; }
 
-Json toJson(const Spread& s) { return {{"median", rounded(s.median)}, {"min", rounded(s.min)}, {"p95", rounded(s.p95)}}; }
+Json toJson(const Spread& s) {
+  return {{"median", rounded(s.median)}, {"min", rounded(s.min)}, {"p95", rounded(s.p95)}};
+}
 
 std::string formatMs(double ms) {
   if (ms >= 1000) return fmt::format("{:.0f}", ms);
@@ -59,7 +61,8 @@ Spread spreadOf(std::vector<double> values) {
 }
 
 void Timings::add(const graph::FrameResult& result) {
-  frames_.push_back({result.frame, result.gpuMs, result.cpuMs, result.wallMs, result.passes, result.counters, {}});
+  frames_.push_back(
+      {result.frame, result.gpuMs, result.cpuMs, result.wallMs, result.passes, result.counters, {}});
 }
 
 std::vector<Timings::Row> Timings::rows() const {
@@ -110,13 +113,13 @@ std::string Timings::table() const {
     typeWidth = std::max(typeWidth, pass(row.pass).declaration->type.size());
     total += row.time();
   }
-  const auto line = [&](const std::string& name, const std::string& type, const Spread& gpu, const std::string& cpu,
-                        const std::string& share) {
+  const auto line = [&](const std::string& name, const std::string& type, const Spread& gpu,
+                        const std::string& cpu, const std::string& share) {
     return fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", name, nameWidth, type, typeWidth,
                        formatMs(gpu.median), formatMs(gpu.min), formatMs(gpu.p95), cpu, share);
   };
-  std::string text = fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", "pass", nameWidth, "type",
-                                 typeWidth, "gpu ms", "min", "p95", "cpu ms", "share");
+  std::string text = fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", "pass", nameWidth,
+                                 "type", typeWidth, "gpu ms", "min", "p95", "cpu ms", "share");
   const std::string rule(text.size() - 1, '-');
   text += rule + '\n';
   for (const Row& row : all) {
@@ -128,8 +131,9 @@ std::string Timings::table() const {
   const Spread cpu = frameSpread([](const auto& f) { return f.cpuMs; });
   const Spread wall = frameSpread([](const auto& f) { return f.wallMs; });
   text += rule + '\n' + line("frame", "", gpu, formatMs(cpu.median), "");
-  text += fmt::format("wall time of a frame: median {} ms, min {} ms, p95 {} ms over {} frame{}\n", formatMs(wall.median),
-                      formatMs(wall.min), formatMs(wall.p95), frames_.size(), frames_.size() == 1 ? "" : "s");
+  text += fmt::format("wall time of a frame: median {} ms, min {} ms, p95 {} ms over {} frame{}\n",
+                      formatMs(wall.median), formatMs(wall.min), formatMs(wall.p95), frames_.size(),
+                      frames_.size() == 1 ? "" : "s");
   const auto counted = counters();
   size_t counterWidth = 0;
   for (const auto& [name, value] : counted) counterWidth = std::max(counterWidth, name.size());
@@ -173,8 +177,8 @@ std::string Timings::csv() const {
   for (const graph::FrameResult& frame : frames_)
     for (const graph::PassTiming& t : frame.passes)
       text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame.frame, pass(t.pass).name,
-                          pass(t.pass).declaration->type, t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs, frame.wallMs,
-                          countersOf(frame, pass(t.pass).name));
+                          pass(t.pass).declaration->type, t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs,
+                          frame.wallMs, countersOf(frame, pass(t.pass).name));
   return text;
 }
 

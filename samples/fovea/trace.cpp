@@ -17,14 +17,20 @@ Json trackName(int track, const char* name) {
 }
 
 // Times in milliseconds; the format counts microseconds.
-Json slice(const std::string& name, const char* category, int track, double start, double duration, Json arguments) {
-  return {{"ph", "X"},          {"pid", 1},
-          {"tid", track},       {"name", name},
-          {"cat", category},    {"ts", start * 1000.0},
-          {"dur", duration * 1000.0}, {"args", std::move(arguments)}};
+Json slice(const std::string& name, const char* category, int track, double start, double duration,
+           Json arguments) {
+  return {{"ph", "X"},
+          {"pid", 1},
+          {"tid", track},
+          {"name", name},
+          {"cat", category},
+          {"ts", start * 1000.0},
+          {"dur", duration * 1000.0},
+          {"args", std::move(arguments)}};
 }
 
-void addTrack(Json& events, const Timings& timings, const graph::FrameResult& frame, int track, double start) {
+void addTrack(Json& events, const Timings& timings, const graph::FrameResult& frame, int track,
+              double start) {
   const auto time = [&](const graph::PassTiming& t) { return track == kGpuTrack ? t.gpuMs : t.cpuMs; };
   double sum = 0;
   for (const graph::PassTiming& t : frame.passes) sum += time(t);
@@ -51,7 +57,8 @@ std::string chromeTrace(const Timings& timings, const RunInfo& run) {
     addTrack(events, timings, frame, kGpuTrack, start);
     addTrack(events, timings, frame, kCpuTrack, start);
     for (const auto& [name, value] : frame.counters)
-      events.push_back({{"ph", "C"}, {"pid", 1}, {"name", name}, {"ts", start * 1000.0}, {"args", {{"value", value}}}});
+      events.push_back(
+          {{"ph", "C"}, {"pid", 1}, {"name", name}, {"ts", start * 1000.0}, {"args", {{"value", value}}}});
     start += std::max({frame.wallMs, frame.gpuMs, frame.cpuMs});
   }
   const Json document = {
