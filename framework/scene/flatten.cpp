@@ -8,7 +8,8 @@
 namespace fovea::scene {
 namespace {
 
-// A few bytes of JSON can instance a mesh a million times; this many triangles are past what any device here takes.
+// A few bytes of JSON can instance a mesh a million times; this many triangles are past what any device here
+// takes.
 constexpr uint64_t kMaxTriangles = uint64_t(1) << 26;
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -61,9 +62,9 @@ class Flattener {
     }
     if (triangles > kMaxTriangles || vertices > kMaxTriangles)
       throw Error(ExitCode::BadInput,
-                  "scene `" + scene_.name + "`: its nodes draw " + std::to_string(triangles) + " triangles with " +
-                      std::to_string(vertices) + " vertices; at most " + std::to_string(kMaxTriangles) +
-                      " of either can be used",
+                  "scene `" + scene_.name + "`: its nodes draw " + std::to_string(triangles) +
+                      " triangles with " + std::to_string(vertices) + " vertices; at most " +
+                      std::to_string(kMaxTriangles) + " of either can be used",
                   "simplify the model or instance it less often");
   }
 
@@ -97,8 +98,8 @@ class Flattener {
   }
 
   void appendVertices(const Primitive& p, const glm::mat4& m, const Node& node) {
-    // The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det, and it
-    // exists for flattened (singular) transforms too.
+    // The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of
+    // det, and it exists for flattened (singular) transforms too.
     const glm::mat3 a(m);
     const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;
     const glm::mat3 cofactor =
@@ -107,8 +108,9 @@ class Flattener {
       const glm::vec3 position(m * glm::vec4(p.positions[i], 1.0f));
       if (!isFinite(position))
         throw Error(ExitCode::BadInput,
-                    "scene `" + scene_.name + "`: node `" + node.name + "` moves vertex " + std::to_string(i) +
-                        " of mesh `" + scene_.meshes[node.mesh].name + "` to a place that is not finite",
+                    "scene `" + scene_.name + "`: node `" + node.name + "` moves vertex " +
+                        std::to_string(i) + " of mesh `" + scene_.meshes[node.mesh].name +
+                        "` to a place that is not finite",
                     "check the scales and matrices of the node and of those above it");
       out_.positions.push_back(position);
       out_.boundsMin = glm::min(out_.boundsMin, position);

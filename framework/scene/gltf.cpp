@@ -12,8 +12,9 @@ void Context::warn(std::string path, std::string message, std::string remedy) co
 }
 
 void Context::fail(std::string path, std::string message, std::string remedy) const {
-  throw Error(ExitCode::BadInput, {{Severity::Error, {source.name, 0, 0}, std::move(path), std::move(message),
-                                    std::move(remedy)}});
+  throw Error(
+      ExitCode::BadInput,
+      {{Severity::Error, {source.name, 0, 0}, std::move(path), std::move(message), std::move(remedy)}});
 }
 
 std::string nameOf(std::string_view array, size_t index, const std::string& name) {
@@ -39,7 +40,8 @@ Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings) {
     gltf::buildMeshes(c);
     gltf::buildNodes(c);
     if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
-    if (scene.meshes.empty() || scene.nodes.empty()) c.warn("", "the model shows nothing: no scene with a mesh in it");
+    if (scene.meshes.empty() || scene.nodes.empty())
+      c.warn("", "the model shows nothing: no scene with a mesh in it");
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory, file.string() + ": not enough memory to load the model");
   }

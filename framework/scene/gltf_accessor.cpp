@@ -18,10 +18,13 @@ struct Span {
 size_t componentBytes(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
-    default: return 4;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
+    default:
+      return 4;
   }
 }
 
@@ -51,21 +54,27 @@ float component(const uint8_t* p, int type, bool normalized) {
       const float v = load<uint16_t>(p);
       return normalized ? v / 65535.0f : v;
     }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return float(load<uint32_t>(p));
-    default: return load<float>(p);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return float(load<uint32_t>(p));
+    default:
+      return load<float>(p);
   }
 }
 
 uint32_t integer(const uint8_t* p, int type) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<uint8_t>(p);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<uint16_t>(p);
-    default: return load<uint32_t>(p);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<uint8_t>(p);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<uint16_t>(p);
+    default:
+      return load<uint32_t>(p);
   }
 }
 
 // Second line of defence behind checkDocument, on what tinygltf really loaded.
-Span span(const Context& c, int view, size_t offset, size_t count, size_t bytes, bool strided, const std::string& path) {
+Span span(const Context& c, int view, size_t offset, size_t count, size_t bytes, bool strided,
+          const std::string& path) {
   const tinygltf::BufferView& v = c.model.bufferViews.at(size_t(view));
   const auto& buffer = c.model.buffers.at(size_t(v.buffer)).data;
   const size_t stride = strided && v.byteStride != 0 ? v.byteStride : bytes;
@@ -78,12 +87,18 @@ Span span(const Context& c, int view, size_t offset, size_t count, size_t bytes,
 
 const char* typeName(int type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR: return "SCALAR";
-    case TINYGLTF_TYPE_VEC2: return "VEC2";
-    case TINYGLTF_TYPE_VEC3: return "VEC3";
-    case TINYGLTF_TYPE_VEC4: return "VEC4";
-    case TINYGLTF_TYPE_MAT4: return "MAT4";
-    default: return "another type";
+    case TINYGLTF_TYPE_SCALAR:
+      return "SCALAR";
+    case TINYGLTF_TYPE_VEC2:
+      return "VEC2";
+    case TINYGLTF_TYPE_VEC3:
+      return "VEC3";
+    case TINYGLTF_TYPE_VEC4:
+      return "VEC4";
+    case TINYGLTF_TYPE_MAT4:
+      return "MAT4";
+    default:
+      return "another type";
   }
 }
 
@@ -102,7 +117,8 @@ SparseView sparseView(const Context& c, const tinygltf::Accessor& a, size_t byte
   return s;
 }
 
-size_t sparseIndex(const Context& c, const tinygltf::Accessor& a, const SparseView& s, size_t i, const std::string& path) {
+size_t sparseIndex(const Context& c, const tinygltf::Accessor& a, const SparseView& s, size_t i,
+                   const std::string& path) {
   const uint32_t index = integer(s.indices.data + i * s.indices.stride, a.sparse.indices.componentType);
   if (index >= a.count)
     c.fail(path + ".sparse.indices", "index " + std::to_string(index) + " of an accessor with " +
@@ -114,14 +130,18 @@ size_t sparseIndex(const Context& c, const tinygltf::Accessor& a, const SparseVi
 
 std::vector<float> readFloats(const Context& c, int accessor, int components, const std::string& path) {
   const tinygltf::Accessor& a = c.model.accessors.at(size_t(accessor));
-  const int expected = components == 16 ? TINYGLTF_TYPE_MAT4 : components == 1 ? TINYGLTF_TYPE_SCALAR : components;
+  const int expected = components == 16  ? TINYGLTF_TYPE_MAT4
+                       : components == 1 ? TINYGLTF_TYPE_SCALAR
+                                         : components;
   if (a.type != expected)
-    c.fail(path, std::string("expected an accessor of ") + typeName(expected) + ", found " + typeName(a.type));
+    c.fail(path,
+           std::string("expected an accessor of ") + typeName(expected) + ", found " + typeName(a.type));
   const size_t size = componentBytes(a.componentType), bytes = size * size_t(components);
   std::vector<float> out(a.count * size_t(components), 0.0f);
   const auto copy = [&](const uint8_t* from, size_t element) {
     for (int k = 0; k < components; ++k)
-      out[element * size_t(components) + size_t(k)] = component(from + size_t(k) * size, a.componentType, a.normalized);
+      out[element * size_t(components) + size_t(k)] =
+          component(from + size_t(k) * size, a.componentType, a.normalized);
   };
   if (a.bufferView >= 0) {
     const Span s = span(c, a.bufferView, a.byteOffset, a.count, bytes, true, path);
@@ -129,7 +149,8 @@ std::vector<float> readFloats(const Context& c, int accessor, int components, co
   }
   if (a.sparse.isSparse) {
     const SparseView s = sparseView(c, a, bytes, path);
-    for (size_t i = 0; i < s.count; ++i) copy(s.values.data + i * s.values.stride, sparseIndex(c, a, s, i, path));
+    for (size_t i = 0; i < s.count; ++i)
+      copy(s.values.data + i * s.values.stride, sparseIndex(c, a, s, i, path));
   }
   return out;
 }
@@ -139,8 +160,8 @@ std::vector<uint32_t> readIndices(const Context& c, int accessor, const std::str
   if (a.type != TINYGLTF_TYPE_SCALAR || (a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
                                          a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
                                          a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-    c.fail(path, std::string("indices must be unsigned SCALARs, found ") + typeName(a.type) + " of component type " +
-                     std::to_string(a.componentType));
+    c.fail(path, std::string("indices must be unsigned SCALARs, found ") + typeName(a.type) +
+                     " of component type " + std::to_string(a.componentType));
   const size_t bytes = componentBytes(a.componentType);
   std::vector<uint32_t> out(a.count, 0);
   if (a.bufferView >= 0) {

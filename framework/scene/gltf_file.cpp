@@ -14,28 +14,34 @@ uint32_t readU32(const std::vector<uint8_t>& bytes, size_t offset) {
 }
 
 [[noreturn]] void badGlb(const Source& s, const std::string& what) {
-  throw Error(ExitCode::BadInput, s.name + ": " + what, "the file is damaged or cut short; export or download it again");
+  throw Error(ExitCode::BadInput, s.name + ": " + what,
+              "the file is damaged or cut short; export or download it again");
 }
 
-// GLB container, glTF 2.0 section 4: a 12-byte header, the JSON chunk, then at most one BIN chunk that is used.
+// GLB container, glTF 2.0 section 4: a 12-byte header, the JSON chunk, then at most one BIN chunk that is
+// used.
 void splitGlb(Source& s) {
   const std::vector<uint8_t>& b = s.bytes;
   if (b.size() < 12) badGlb(s, "a GLB header has 12 bytes, the file only " + std::to_string(b.size()));
   const uint32_t version = readU32(b, 4);
   if (version != 2)
-    throw Error(ExitCode::BadInput, s.name + ": GLB version " + std::to_string(version) + "; only version 2 can be read",
+    throw Error(ExitCode::BadInput,
+                s.name + ": GLB version " + std::to_string(version) + "; only version 2 can be read",
                 "convert the model to glTF 2.0");
   const uint64_t length = readU32(b, 8);
   if (length > b.size())
-    badGlb(s, "the GLB header promises " + std::to_string(length) + " bytes, the file has " + std::to_string(b.size()));
-  if (length < 20) badGlb(s, "the GLB header gives a length of " + std::to_string(length) + " bytes; no JSON chunk fits");
+    badGlb(s, "the GLB header promises " + std::to_string(length) + " bytes, the file has " +
+                  std::to_string(b.size()));
+  if (length < 20)
+    badGlb(s, "the GLB header gives a length of " + std::to_string(length) + " bytes; no JSON chunk fits");
   const uint64_t jsonLength = readU32(b, 12);
   if (std::memcmp(&b[16], "JSON", 4) != 0) badGlb(s, "the first GLB chunk is not JSON");
   if (jsonLength == 0 || 20 + jsonLength > length)
     badGlb(s, "the JSON chunk claims " + std::to_string(jsonLength) + " bytes, the file holds " +
                   std::to_string(length - 20) + " after its header");
   s.json = std::string_view(reinterpret_cast<const char*>(&b[20]), size_t(jsonLength));
-  while (!s.json.empty() && s.json.back() == '\0') s.json.remove_suffix(1);  // some exporters pad with NUL, not spaces
+  while (!s.json.empty() && s.json.back() == '\0')
+    s.json.remove_suffix(1);  // some exporters pad with NUL, not spaces
   const uint64_t next = 20 + jsonLength;
   if (next == length) return;
   if (next + 8 > length) badGlb(s, "the GLB file ends inside the header of its second chunk");
@@ -79,12 +85,14 @@ std::vector<uint8_t> readFile(const fs::path& file) {
   const fs::file_status status = fs::status(file, ec);
   if (!fs::exists(status)) throw Error(ExitCode::BadInput, file.string() + ": there is no such file");
   // Devices and pipes never end; folders read as nothing.
-  if (!fs::is_regular_file(status)) throw Error(ExitCode::BadInput, file.string() + ": is not a regular file");
+  if (!fs::is_regular_file(status))
+    throw Error(ExitCode::BadInput, file.string() + ": is not a regular file");
   const uint64_t size = fs::file_size(file, ec);
   if (ec) throw Error(ExitCode::BadInput, file.string() + ": " + ec.message());
   if (size > kMaxFileBytes)
-    throw Error(ExitCode::BadInput, file.string() + ": " + std::to_string(size) + " bytes; models and their parts may have " +
-                                        std::to_string(kMaxFileBytes) + " each",
+    throw Error(ExitCode::BadInput,
+                file.string() + ": " + std::to_string(size) + " bytes; models and their parts may have " +
+                    std::to_string(kMaxFileBytes) + " each",
                 "split the model's buffer");
   std::ifstream in(file, std::ios::binary);
   std::vector<uint8_t> bytes(size);

@@ -1,14 +1,15 @@
 // The parts of the glTF loader; private to framework/scene.
 //
 //   file      bytes -> JSON text and binary chunk, GLB headers checked
-//   check     the project's own JSON parser and every rule that keeps tinygltf and the code below inside their buffers
-//   parse     tinygltf, shut off from the file system except for the buffers that `check` allowed
-//   build     materials, meshes, nodes
+//   check     the project's own JSON parser and every rule that keeps tinygltf and the code below inside
+//   their buffers parse     tinygltf, shut off from the file system except for the buffers that `check`
+//   allowed build     materials, meshes, nodes
 //
-// What tinygltf 2.7 does unguarded, measured: it overflows the stack on deep `extras`, throws on image uri ".", opens
-// absolute and ../ paths and files of the working folder, reads past a buffer for an image's bufferView and past the
-// end of a GLB whose BIN chunk lies about its length, truncates large integers, drops primitives and properties of a
-// wrong type silently, and never looks at accessor bounds, node cycles or extensionsRequired.
+// What tinygltf 2.7 does unguarded, measured: it overflows the stack on deep `extras`, throws on image uri
+// ".", opens absolute and ../ paths and files of the working folder, reads past a buffer for an image's
+// bufferView and past the end of a GLB whose BIN chunk lies about its length, truncates large integers, drops
+// primitives and properties of a wrong type silently, and never looks at accessor bounds, node cycles or
+// extensionsRequired.
 #pragma once
 
 #include <cstdint>
@@ -44,9 +45,9 @@ struct Source {
   std::filesystem::path folder;  // absolute; nothing outside it is read
   std::string name;              // as the user gave it, for messages
   std::vector<uint8_t> bytes;
-  bool binary = false;           // GLB
-  std::string_view json;         // inside bytes
-  uint64_t binarySize = 0;       // of the BIN chunk
+  bool binary = false;      // GLB
+  std::string_view json;    // inside bytes
+  uint64_t binarySize = 0;  // of the BIN chunk
 };
 
 Source readSource(const std::filesystem::path& file);
@@ -91,7 +92,8 @@ struct Context {
   [[noreturn]] void fail(std::string path, std::string message, std::string remedy = {}) const;
 };
 
-// `components` floats an element, normalised integers converted, sparse values applied. Finite or not: the caller looks.
+// `components` floats an element, normalised integers converted, sparse values applied. Finite or not: the
+// caller looks.
 std::vector<float> readFloats(const Context& c, int accessor, int components, const std::string& path);
 std::vector<uint32_t> readIndices(const Context& c, int accessor, const std::string& path);
 

@@ -1,4 +1,5 @@
-// Materials and textures. Only images that a diffuse surface needs are decoded: base colour, emission, metalness.
+// Materials and textures. Only images that a diffuse surface needs are decoded: base colour, emission,
+// metalness.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -25,14 +26,18 @@ glm::vec2 pairOr(const tinygltf::Value& object, const char* key, glm::vec2 fallb
 
 Wrap wrapOf(int mode) {
   switch (mode) {
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::Clamp;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::Mirror;
-    default: return Wrap::Repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::Clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Wrap::Mirror;
+    default:
+      return Wrap::Repeat;
   }
 }
 
-// KHR_texture_transform: translation * rotation * scale. The listing in the extension's text turns the other way than its
-// sample model and every implementation (KhronosGroup/glTF issue 1563); positive angles turn u towards -v.
+// KHR_texture_transform: translation * rotation * scale. The listing in the extension's text turns the other
+// way than its sample model and every implementation (KhronosGroup/glTF issue 1563); positive angles turn u
+// towards -v.
 glm::mat3x2 textureTransform(const tinygltf::Value& t) {
   const glm::vec2 offset = pairOr(t, "offset", glm::vec2(0.0f)), scale = pairOr(t, "scale", glm::vec2(1.0f));
   const float angle = float(numberOr(t, "rotation", 0.0));
@@ -51,16 +56,17 @@ class MaterialBuilder {
     Material m;
     m.name = from.name.empty() ? "material " + std::to_string(index) : from.name;
     for (int i = 0; i < 4; ++i)
-      m.baseColor[i] = unitValue(pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[size_t(i)] : 1.0, "baseColorFactor");
-    // A material without this object (often one of another, ignored extension) is no metal, whatever the default says.
-    const bool hasPbr = c_.root.find("materials")->items[index].find("pbrMetallicRoughness") != nullptr;
-    m.metallic = hasPbr ? unitValue(pbr.metallicFactor, "metallicFactor") : 0.0f;
+      m.baseColor[i] = unitValue(pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[size_t(i)] : 1.0,
+                                 "baseColorFactor");
+    m.metallic = metallicFactor(pbr, index);
 
     int colorSet = 0, emissionSet = 0;
     m.baseColorTexture = use(pbr.baseColorTexture, "baseColorTexture", colorSet);
     emission(from, m, emissionSet);
     if (m.baseColorTexture && m.emissionTexture && colorSet != emissionSet)
-      c_.warn(place_, "emissiveTexture uses other texture coordinates than baseColorTexture; it is read with those of the latter");
+      c_.warn(place_,
+              "emissiveTexture uses other texture coordinates than baseColorTexture; it is read with those "
+              "of the latter");
     c_.texCoordOfMaterial.push_back(m.baseColorTexture ? colorSet : emissionSet);
     metalness(pbr, m);
     alpha(from, m);
@@ -73,6 +79,14 @@ class MaterialBuilder {
     if (v < -1e-4 || v > 1.0001)
       c_.warn(place_, std::string(what) + " " + std::to_string(v) + " lies outside 0..1 and is clamped");
     return float(std::clamp(v, 0.0, 1.0));
+  }
+
+  // glTF's default is 1, a pure metal, which a diffuse renderer shows black. Where nothing in the file says
+  // metal, it is almost always an exporter that wrote no material, not one that meant a mirror.
+  float metallicFactor(const tinygltf::PbrMetallicRoughness& pbr, size_t index) {
+    const json::Value* written = c_.root.find("materials")->items[index].find("pbrMetallicRoughness");
+    const bool said = written && (written->find("metallicFactor") || pbr.metallicRoughnessTexture.index >= 0);
+    return said ? unitValue(pbr.metallicFactor, "metallicFactor") : 0.0f;
   }
 
   void emission(const tinygltf::Material& from, Material& m, int& set) {
@@ -105,7 +119,8 @@ class MaterialBuilder {
       m.metallic *= float(double(sum) / (255.0 * double(std::max<size_t>(image.rgba.size() / 4, 1))));
     }
     if (m.metallic > 0.99f && m.emission == glm::vec3(0.0f))
-      c_.warn(place_, "a pure metal reflects nothing diffusely and is shown black", "set metallicFactor to 0");
+      c_.warn(place_, "a pure metal reflects nothing diffusely and is shown black",
+              "set metallicFactor to 0");
   }
 
   TextureUse use(const tinygltf::TextureInfo& info, const char* what, int& set) {
@@ -114,7 +129,8 @@ class MaterialBuilder {
     set = info.texCoord;
     const tinygltf::Texture& texture = c_.model.textures[size_t(info.index)];
     if (texture.source < 0) {
-      c_.warn(place_, std::string(what) + " names a texture without an image that can be read; it is ignored");
+      c_.warn(place_,
+              std::string(what) + " names a texture without an image that can be read; it is ignored");
       return u;
     }
     u.texture = textureOf(size_t(texture.source));
@@ -165,9 +181,11 @@ class MaterialBuilder {
       bytes = &file;
     }
     image::Image8 pixels = image::decode8(bytes->data(), bytes->size(), name);
-    if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMaxTextureSize || pixels.height > kMaxTextureSize)
-      c_.fail(name, "the texture has " + std::to_string(pixels.width) + " x " + std::to_string(pixels.height) +
-                        " pixels; 1 to " + std::to_string(kMaxTextureSize) + " a side can be used");
+    if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMaxTextureSize ||
+        pixels.height > kMaxTextureSize)
+      c_.fail(name, "the texture has " + std::to_string(pixels.width) + " x " +
+                        std::to_string(pixels.height) + " pixels; 1 to " + std::to_string(kMaxTextureSize) +
+                        " a side can be used");
     return pixels;
   }
 

@@ -59,7 +59,8 @@ class MeshBuilder {
 
   void checkCount(int accessor, size_t count, const std::string& path) const {
     if (countOf(accessor) != count)
-      c_.fail(path, "has " + std::to_string(countOf(accessor)) + " elements, POSITION has " + std::to_string(count));
+      c_.fail(path, "has " + std::to_string(countOf(accessor)) + " elements, POSITION has " +
+                        std::to_string(count));
   }
 
   bool primitive(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
@@ -148,8 +149,8 @@ class MeshBuilder {
     indices = readIndices(c_, from.indices, path);
     for (size_t i = 0; i < indices.size(); ++i)
       if (indices[i] >= count)
-        c_.fail(path, "index number " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", but there are only " +
-                          std::to_string(count) + " vertices");
+        c_.fail(path, "index number " + std::to_string(i) + " is " + std::to_string(indices[i]) +
+                          ", but there are only " + std::to_string(count) + " vertices");
     return indices;
   }
 
@@ -231,9 +232,11 @@ void buildMeshes(Context& c) {
   if (c.degenerateTriangles > 0)
     c.warn("meshes", std::to_string(c.degenerateTriangles) + " triangles without area were left out");
   if (c.badNormals > 0)
-    c.warn("meshes", std::to_string(c.badNormals) + " normals were zero or not finite; they now follow their triangles");
+    c.warn("meshes", std::to_string(c.badNormals) +
+                         " normals were zero or not finite; they now follow their triangles");
   if (!builder.colorsIgnored_.empty())
-    c.warn(*builder.colorsIgnored_.begin(), "vertex colours (COLOR_0) of " + std::to_string(builder.colorsIgnored_.size()) +
+    c.warn(*builder.colorsIgnored_.begin(), "vertex colours (COLOR_0) of " +
+                                                std::to_string(builder.colorsIgnored_.size()) +
                                                 " mesh(es) are ignored");
 }
 

@@ -35,7 +35,8 @@ class NodeBuilder {
       stack.pop_back();
       const uint32_t index = add(size_t(from), parent);
       const std::vector<int>& children = c_.model.nodes[size_t(from)].children;
-      for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, index});
+      for (auto child = children.rbegin(); child != children.rend(); ++child)
+        stack.push_back({*child, index});
     }
     world_ = worldTransforms(c_.scene);
     for (size_t i = 0; i < nodeOf_.size(); ++i)
@@ -75,7 +76,8 @@ class NodeBuilder {
     const size_t before = roots.size();
     roots.erase(std::remove_if(roots.begin(), roots.end(), underListed), roots.end());
     if (roots.size() != before)
-      c_.warn("scenes", "the scene lists nodes that are children of others; they are shown once, with their parents");
+      c_.warn("scenes",
+              "the scene lists nodes that are children of others; they are shown once, with their parents");
     return roots;
   }
 
@@ -89,7 +91,8 @@ class NodeBuilder {
       for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = float(n.matrix[size_t(i)]);
       node.matrix = m;
     } else {
-      if (n.translation.size() == 3) node.translation = {n.translation[0], n.translation[1], n.translation[2]};
+      if (n.translation.size() == 3)
+        node.translation = {n.translation[0], n.translation[1], n.translation[2]};
       if (n.scale.size() == 3) node.scale = {n.scale[0], n.scale[1], n.scale[2]};
       if (n.rotation.size() == 4) node.rotation = rotationOf(n, from);
     }
@@ -122,7 +125,8 @@ class NodeBuilder {
     const auto extension = n.extensions.find("KHR_lights_punctual");
     if (extension == n.extensions.end() || !extension->second.Has("light")) return;
     const int light = extension->second.Get("light").GetNumberAsInt();
-    if (light < 0 || size_t(light) >= c_.model.lights.size()) c_.fail(nameOf("nodes", from, n.name), "names no light");
+    if (light < 0 || size_t(light) >= c_.model.lights.size())
+      c_.fail(nameOf("nodes", from, n.name), "names no light");
     node.light = uint32_t(c_.scene.lights.size());
     c_.scene.lights.push_back(lightAt(c_.model.lights[size_t(light)], size_t(light), world));
   }
@@ -150,7 +154,8 @@ class NodeBuilder {
     light.type = from.type == "directional" ? LightType::Directional
                  : from.type == "spot"      ? LightType::Spot
                                             : LightType::Point;
-    if (from.color.size() == 3) light.color = glm::max(glm::vec3(from.color[0], from.color[1], from.color[2]), 0.0f);
+    if (from.color.size() == 3)
+      light.color = glm::max(glm::vec3(from.color[0], from.color[1], from.color[2]), 0.0f);
     light.intensity = float(from.intensity);
     light.range = float(from.range);
     if (light.type == LightType::Spot) {

@@ -1,4 +1,5 @@
-// The one place that calls tinygltf, with callbacks that reach nothing but the buffers `checkDocument` has seen.
+// The one place that calls tinygltf, with callbacks that reach nothing but the buffers `checkDocument` has
+// seen.
 #include <tiny_gltf.h>
 
 #include <set>
@@ -13,7 +14,9 @@ struct Allowed {
   std::map<std::string, uint64_t> files;
 };
 
-bool fileExists(const std::string& name, void* user) { return static_cast<Allowed*>(user)->files.count(name) > 0; }
+bool fileExists(const std::string& name, void* user) {
+  return static_cast<Allowed*>(user)->files.count(name) > 0;
+}
 
 std::string expandPath(const std::string& name, void*) { return name; }  // no ~, no variables, no wordexp
 
@@ -32,18 +35,21 @@ bool readWholeFile(std::vector<unsigned char>* out, std::string* err, const std:
   }
   if (out->size() < found->second) {
     if (err)
-      *err = "the file has " + std::to_string(out->size()) + " bytes, the buffer needs " + std::to_string(found->second);
+      *err = "the file has " + std::to_string(out->size()) + " bytes, the buffer needs " +
+             std::to_string(found->second);
     return false;
   }
   out->resize(found->second);  // longer is legal, tinygltf insists on equal
   return true;
 }
 
-bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
 
 // Keeps the encoded bytes; buildMaterials decodes the images that are used.
-bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                 int size, void*) {
+bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                 const unsigned char* bytes, int size, void*) {
   image->as_is = true;
   image->image.assign(bytes, bytes + size);
   return true;
@@ -89,11 +95,11 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   bool ok = false;
   try {
     if (source.binary)
-      ok = loader.LoadBinaryFromMemory(&model, &error, &warning, source.bytes.data(), unsigned(source.bytes.size()),
-                                       source.folder.string());
+      ok = loader.LoadBinaryFromMemory(&model, &error, &warning, source.bytes.data(),
+                                       unsigned(source.bytes.size()), source.folder.string());
     else
-      ok = loader.LoadASCIIFromString(&model, &error, &warning, source.json.data(), unsigned(source.json.size()),
-                                      source.folder.string());
+      ok = loader.LoadASCIIFromString(&model, &error, &warning, source.json.data(),
+                                      unsigned(source.json.size()), source.folder.string());
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory, source.name + ": not enough memory for the model's buffers");
   } catch (const std::exception& e) {
@@ -104,7 +110,8 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   const auto same = [&](const char* key, size_t size) {
     const json::Value* list = root.find(key);
     if ((list ? list->items.size() : 0) != size)
-      throw Error(ExitCode::BadInput, source.name + ": `" + key + "` was only partly understood: " + shorten(error));
+      throw Error(ExitCode::BadInput,
+                  source.name + ": `" + key + "` was only partly understood: " + shorten(error));
   };
   same("accessors", model.accessors.size());
   same("bufferViews", model.bufferViews.size());

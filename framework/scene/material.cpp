@@ -22,12 +22,14 @@ const std::array<float, 256>& srgbTable() {
 
 int64_t wrapTexel(int64_t i, int64_t size, Wrap wrap) {
   switch (wrap) {
-    case Wrap::Clamp: return std::min(std::max(i, int64_t(0)), size - 1);
+    case Wrap::Clamp:
+      return std::min(std::max(i, int64_t(0)), size - 1);
     case Wrap::Mirror: {
       const int64_t period = ((i % (2 * size)) + 2 * size) % (2 * size);
       return period < size ? period : 2 * size - 1 - period;
     }
-    case Wrap::Repeat: break;
+    case Wrap::Repeat:
+      break;
   }
   return ((i % size) + size) % size;
 }
@@ -39,7 +41,8 @@ glm::vec4 texel(const Texture& t, int64_t x, int64_t y) {
   return {table[p[0]], table[p[1]], table[p[2]], float(p[3]) / 255.0f};
 }
 
-// Coordinates past any texture's size times this are noise in a float; they must not overflow the integer conversion.
+// Coordinates past any texture's size times this are noise in a float; they must not overflow the integer
+// conversion.
 float tame(float texels) { return std::isfinite(texels) ? std::min(std::max(texels, -1e9f), 1e9f) : 0.0f; }
 
 }  // namespace

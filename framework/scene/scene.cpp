@@ -7,7 +7,8 @@
 namespace fovea::scene {
 namespace {
 
-// Streaming content hash. Every variable-length field is preceded by its length, so that neighbours cannot trade bytes.
+// Streaming content hash. Every variable-length field is preceded by its length, so that neighbours cannot
+// trade bytes.
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }

@@ -1,6 +1,6 @@
-// The paper's Cornell box: 5.5 m a side, about 5.8k triangles, a yellow cube close to the white back wall, and one spot
-// light under the ceiling that reaches only the middle of the floor and the objects, so that walls and ceiling live on
-// indirect light and the cube's yellow on the wall shows.
+// The paper's Cornell box: 5.5 m a side, about 5.8k triangles, a yellow cube close to the white back wall,
+// and one spot light under the ceiling that reaches only the middle of the floor and the objects, so that
+// walls and ceiling live on indirect light and the cube's yellow on the wall shows.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -11,8 +11,8 @@
 namespace fovea::scene {
 namespace {
 
-constexpr float kHalf = 2.75f;      // half of the inner width and depth, m
-constexpr float kHeight = 5.5f;     // inner height; the floor is y = 0
+constexpr float kHalf = 2.75f;       // half of the inner width and depth, m
+constexpr float kHeight = 5.5f;      // inner height; the floor is y = 0
 constexpr float kThickness = 0.12f;  // of the walls
 
 enum MaterialIndex : uint32_t { kWhite, kRed, kGreen, kYellow, kBlue, kGrey, kMaterialCount };
@@ -40,17 +40,18 @@ void addQuad(Primitive& p, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
     p.positions.push_back(v);
     p.normals.push_back(n);
   }
-  for (const glm::vec2& uv : {glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0), glm::vec2(0, 0)}) p.uvs.push_back(uv);
+  for (const glm::vec2& uv : {glm::vec2(0, 1), glm::vec2(1, 1), glm::vec2(1, 0), glm::vec2(0, 0)})
+    p.uvs.push_back(uv);
   for (uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) p.indices.push_back(base + i);
 }
 
-// Inner faces, outer faces and the rim around the open front. Neighbours share exact corners: no light leaks at seams, and
-// the walls are as thick as they look to a voxeliser.
+// Inner faces, outer faces and the rim around the open front. Neighbours share exact corners: no light leaks
+// at seams, and the walls are as thick as they look to a voxeliser.
 Mesh shell() {
   std::vector<Primitive> byMaterial(kMaterialCount);
   for (uint32_t i = 0; i < kMaterialCount; ++i) byMaterial[i].material = i;
   const float o = kHalf + kThickness;
-  const glm::vec3 in[8] = {{-kHalf, 0, kHalf},       {kHalf, 0, kHalf},       {kHalf, 0, -kHalf},
+  const glm::vec3 in[8] = {{-kHalf, 0, kHalf},       {kHalf, 0, kHalf},        {kHalf, 0, -kHalf},
                            {-kHalf, 0, -kHalf},      {-kHalf, kHeight, kHalf}, {kHalf, kHeight, kHalf},
                            {kHalf, kHeight, -kHalf}, {-kHalf, kHeight, -kHalf}};
   const float low = -kThickness, high = kHeight + kThickness;
@@ -82,18 +83,20 @@ Mesh cube(MaterialIndex material) {
   p.material = material;
   const glm::vec3 v[8] = {{-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, {-0.5f, 0, -0.5f},
                           {-0.5f, 1, 0.5f}, {0.5f, 1, 0.5f}, {0.5f, 1, -0.5f}, {-0.5f, 1, -0.5f}};
-  const int faces[6][4] = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  const int faces[6][4] = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                           {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
   for (const auto& f : faces) addQuad(p, v[f[0]], v[f[1]], v[f[2]], v[f[3]]);
   return {"cube", {std::move(p)}};
 }
 
-// A closed profile (x = radius, y = height) with its normals, turned about the y axis. Points on the axis become poles.
+// A closed profile (x = radius, y = height) with its normals, turned about the y axis. Points on the axis
+// become poles.
 struct ProfilePoint {
   glm::vec2 position, normal;
 };
 
-Mesh lathe(const char* name, const std::vector<ProfilePoint>& profile, uint32_t segments, MaterialIndex material,
-           bool closed) {
+Mesh lathe(const char* name, const std::vector<ProfilePoint>& profile, uint32_t segments,
+           MaterialIndex material, bool closed) {
   Primitive p;
   p.material = material;
   const uint32_t rows = uint32_t(profile.size());
@@ -145,7 +148,9 @@ Mesh torus(float major, float minor, uint32_t segments, uint32_t sides, Material
 Mesh vase(uint32_t segments, uint32_t steps, MaterialIndex material) {
   constexpr float kHeightOfVase = 1.9f, kWall = 0.06f;
   const auto radius = [](float t) { return 0.42f + 0.20f * std::sin(5.2f * t + 0.3f) - 0.10f * t; };
-  const auto slope = [](float t) { return (5.2f * 0.20f * std::cos(5.2f * t + 0.3f) - 0.10f) / kHeightOfVase; };
+  const auto slope = [](float t) {
+    return (5.2f * 0.20f * std::cos(5.2f * t + 0.3f) - 0.10f) / kHeightOfVase;
+  };
   std::vector<ProfilePoint> profile;
   profile.push_back({{0, 0}, {0, -1}});
   profile.push_back({{radius(0), 0}, {0, -1}});
@@ -162,7 +167,8 @@ Mesh vase(uint32_t segments, uint32_t steps, MaterialIndex material) {
   return lathe("vase", profile, segments, material, false);
 }
 
-void place(Scene& scene, const char* name, uint32_t mesh, glm::vec3 position, glm::quat rotation, glm::vec3 scale) {
+void place(Scene& scene, const char* name, uint32_t mesh, glm::vec3 position, glm::quat rotation,
+           glm::vec3 scale) {
   Node n;
   n.name = name;
   n.mesh = mesh;
@@ -178,7 +184,8 @@ Scene cornellBox() {
   Scene s;
   s.name = s.source = "cornellbox";
   s.materials = materials();
-  s.meshes = {shell(), cube(kYellow), sphere(40, 20, kWhite), torus(0.62f, 0.24f, 44, 25, kBlue), vase(40, 11, kWhite)};
+  s.meshes = {shell(), cube(kYellow), sphere(40, 20, kWhite), torus(0.62f, 0.24f, 44, 25, kBlue),
+              vase(40, 11, kWhite)};
   const glm::quat upright(1, 0, 0, 0);
   const glm::vec3 up(0, 1, 0), one(1);
   place(s, "room", 0, glm::vec3(0), upright, one);
