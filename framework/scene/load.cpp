@@ -1,8 +1,126 @@
 #include "framework/scene/load.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <glm/gtc/matrix_transform.hpp>
+#include <sstream>
+
+#include "framework/base/paths.h"
 #include "framework/scene/builtin/builtin.h"
+#include "framework/scene/scene_file.h"
 
 namespace fovea::scene {
+namespace fs = std::filesystem;
+namespace {
+
+void addFolder(std::vector<fs::path>& list, const fs::path& folder) {
+  std::error_code ec;
+  if (!fs::is_directory(folder, ec)) return;
+  const fs::path real = fs::weakly_canonical(folder, ec);
+  for (const fs::path& known : list)
+    if (known == real) return;
+  list.push_back(real);
+}
+
+uint32_t shifted(uint32_t index, size_t by) { return index == kNoIndex ? kNoIndex : index + uint32_t(by); }
+
+bool isModelFile(const fs::path& file) { return file.extension() == ".gltf" || file.extension() == ".glb"; }
+
+// A model on its own: something to see it by.
+Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
+  Scene scene = loadGltf(file, warnings);
+  const Geometry geometry = flatten(scene);
+  const SourceLocation where{file.string(), 0, 0};
+  if (scene.cameras.empty()) {
+    addDefaultCamera(scene, geometry);
+    warnings.warning(where, "", "the model has no camera: the whole of it is shown from its front",
+                     "write a scene file that names the model and a camera");
+  }
+  bool emits = false;
+  for (const Material& m : scene.materials) emits = emits || m.emission != glm::vec3(0);
+  if (scene.lights.empty() && !emits) {
+    addDefaultLight(scene);
+    warnings.warning(where, "", "the model has no light: a sun is added",
+                     "write a scene file that names the model and its lights");
+  }
+  scene.hash = contentHash(scene);
+  return scene;
+}
+
+Scene loadFile(const fs::path& file, Diagnostics& warnings) {
+  Scene scene = isModelFile(file) ? loadBareModel(file, warnings) : loadSceneFile(file, warnings);
+  uint64_t indices = 0;
+  for (const Node& n : scene.nodes)
+    if (n.mesh != kNoIndex)
+      for (const Primitive& p : scene.meshes[n.mesh].primitives) indices += p.indices.size();
+  if (indices == 0)
+    throw Error(ExitCode::BadInput, file.string() + ": the scene has no triangles",
+                "give it a model with meshes");
+  return scene;
+}
+
+std::vector<std::string> knownNames() {
+  std::vector<std::string> names = builtinNames();
+  std::error_code ec;
+  for (const fs::path& folder : sceneSearchPath())
+    for (const fs::directory_entry& e : fs::directory_iterator(folder, ec))
+      if (e.path().extension() == ".json") names.push_back(e.path().stem().string());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+[[noreturn]] void unknownScene(const std::string& name) {
+  const std::vector<std::string> names = knownNames();
+  std::string list;
+  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+  const std::string nearest = nearestName(name, names);
+  throw Error(ExitCode::BadInput, "there is no scene `" + name + "`",
+              (nearest.empty() ? "" : "did you mean `" + nearest + "`? ") + "known scenes: " + list +
+                  "; or give a .json, .gltf or .glb file");
+}
+
+}  // namespace
+
+std::vector<fs::path> modelSearchPath() {
+  std::vector<fs::path> list;
+  if (const char* variable = std::getenv("FOVEA_SCENES")) {
+    std::stringstream folders(variable);
+    for (std::string folder; std::getline(folders, folder, ':');)
+      if (!folder.empty()) addFolder(list, folder);
+  }
+  addFolder(list, fs::path(FOVEA_SOURCE_DIR) / ".." / "shared" / "scenes");
+  std::error_code ec;
+  addFolder(list, fs::current_path(ec) / ".." / "shared" / "scenes");
+  return list;
+}
+
+std::vector<fs::path> sceneSearchPath() { return dataFolders("scenes"); }
+
+Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
+  const fs::path file(nameOrFile);
+  const bool asFile = file.has_parent_path() || file.extension() == ".json" || isModelFile(file);
+  std::error_code ec;
+  if (!asFile) {
+    for (const std::string& name : builtinNames())
+      if (name == nameOrFile) return builtin(name);
+    for (const fs::path& folder : sceneSearchPath())
+      if (const fs::path found = folder / (nameOrFile + ".json"); fs::is_regular_file(found, ec))
+        return loadFile(found, warnings);
+    unknownScene(nameOrFile);
+  }
+  if (fs::exists(file, ec)) {
+    if (!isModelFile(file) && file.extension() != ".json")
+      throw Error(ExitCode::BadInput,
+                  nameOrFile + ": is neither a scene file (.json) nor a model (.gltf, .glb)");
+    return loadFile(file, warnings);
+  }
+  if (!file.is_absolute())
+    for (const fs::path& folder : isModelFile(file) ? modelSearchPath() : sceneSearchPath())
+      if (fs::is_regular_file(folder / file, ec)) return loadFile(folder / file, warnings);
+  throw Error(ExitCode::BadInput, nameOrFile + ": there is no such scene or model file");
+}
 
 std::vector<std::string> builtinNames() { return {"cornellbox"}; }
 
@@ -11,6 +129,81 @@ Scene builtin(const std::string& name) {
   const std::string nearest = nearestName(name, builtinNames());
   throw Error(ExitCode::BadInput, "there is no built-in scene `" + name + "`",
               nearest.empty() ? "the built-in scenes are: cornellbox" : "did you mean `" + nearest + "`?");
+}
+
+glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {
+  const glm::vec3 back = -glm::normalize(direction);
+  glm::vec3 right = glm::cross(up, back);
+  // Looking along `up`: any roll will do, but always the same.
+  if (glm::length(right) < 1e-5f)
+    right = glm::cross(std::abs(back.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0), back);
+  right = glm::normalize(right);
+  return glm::normalize(glm::quat_cast(glm::mat3(right, glm::cross(back, right), back)));
+}
+
+void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
+  Node root;
+  root.name = placement.name;
+  root.translation = placement.translation;
+  root.rotation = placement.rotation;
+  root.scale = placement.scale;
+  const glm::mat4 world = localTransform(root);
+  const size_t textures = scene.textures.size(), materials = scene.materials.size(),
+               meshes = scene.meshes.size(), lights = scene.lights.size(), cameras = scene.cameras.size();
+  const uint32_t rootIndex = uint32_t(scene.nodes.size());
+  scene.nodes.push_back(root);
+  for (Node& n : model.nodes) {
+    n.parent = n.parent == kNoIndex ? rootIndex : n.parent + rootIndex + 1;
+    n.mesh = shifted(n.mesh, meshes);
+    n.light = placement.lights ? shifted(n.light, lights) : kNoIndex;
+    n.camera = shifted(n.camera, cameras);
+    scene.nodes.push_back(std::move(n));
+  }
+  for (Texture& t : model.textures) scene.textures.push_back(std::move(t));
+  for (Material& m : model.materials) {
+    m.baseColorTexture.texture = shifted(m.baseColorTexture.texture, textures);
+    m.emissionTexture.texture = shifted(m.emissionTexture.texture, textures);
+    scene.materials.push_back(std::move(m));
+  }
+  for (Mesh& mesh : model.meshes) {
+    for (Primitive& p : mesh.primitives) p.material += uint32_t(materials);
+    scene.meshes.push_back(std::move(mesh));
+  }
+  for (Light& l : model.lights) {
+    if (!placement.lights) break;
+    l.position = glm::vec3(world * glm::vec4(l.position, 1.0f));
+    l.direction = placement.rotation * l.direction;
+    scene.lights.push_back(std::move(l));
+  }
+  for (Camera& c : model.cameras) {
+    c.position = glm::vec3(world * glm::vec4(c.position, 1.0f));
+    c.orientation = placement.rotation * c.orientation;
+    scene.cameras.push_back(std::move(c));
+  }
+}
+
+void addDefaultCamera(Scene& scene, const Geometry& geometry) {
+  Camera c;
+  c.name = "default";
+  if (!geometry.empty()) {
+    const glm::vec3 centre = 0.5f * (geometry.boundsMin + geometry.boundsMax);
+    const float radius = std::max(0.5f * glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
+    // Slightly from above and from the side: flat models are seen, too.
+    const glm::vec3 from = glm::normalize(glm::vec3(0.35f, 0.30f, 1.0f));
+    const float distance = radius / std::sin(0.5f * c.verticalFov);
+    c.position = centre + distance * from;
+    c.orientation = lookAlong(-from, {0, 1, 0});
+    c.zNear = 0.01f * distance;
+  }
+  scene.cameras.push_back(c);
+}
+
+void addDefaultLight(Scene& scene) {
+  Light sun;
+  sun.name = "default sun";
+  sun.intensity = 3.0f;  // lux: a white surface facing it has radiance 0.95, just below display white
+  sun.direction = glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f));
+  scene.lights.push_back(sun);
 }
 
 }  // namespace fovea::scene
