@@ -52,7 +52,7 @@ void main() {
   if (gl_GlobalInvocationID.x >= triangleCount) return;
   uint index = firstTriangle + gl_GlobalInvocationID.x;
   Triangle triangle = loadTriangle(index);
-  bool masked = alphaMask != 0u && isMasked(triangle);
+  bool masked = alphaMask != 0u && isMasked(index);
 
   // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant places of
   // a uniform buffer are read once for all lanes.

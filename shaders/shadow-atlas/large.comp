@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;  // 8 * kLargePerGroup
 layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
 layout(set = 0, std430) readonly buffer StepsBlock { Step list[]; } steps;
 layout(set = 0, std430) readonly buffer PairsBlock { uint list[]; } pairs;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
 layout(set = 0, r32ui) uniform uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
@@ -26,10 +27,13 @@ layout(push_constant) uniform Constants {
 void main() {
   uint group = gl_WorkGroupID.y * kGroupsPerRow + gl_WorkGroupID.x;
   uint entry = group * kLargePerGroup + gl_LocalInvocationIndex / 8u;
+  bool counts = slice == 0u && entry == 0u && gl_LocalInvocationIndex == 0u;
 #ifdef MASKED
+  if (counts) atomicAdd(counters.masked, steps.list[step_].maskedCount);
   if (entry >= steps.list[step_].maskedCount) return;
   uint pair = pairs.list[capacity + entry];
 #else
+  if (counts) atomicAdd(counters.large, steps.list[step_].largeCount);
   if (entry >= steps.list[step_].largeCount) return;
   uint pair = pairs.list[capacity - 1u - entry];
 #endif

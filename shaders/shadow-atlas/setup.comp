@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(set = 0, std430) writeonly buffer BatchBlock { VplView views[]; } batch;
 layout(set = 0, std430) writeonly buffer StepsBlock { Step list[]; } steps;
-layout(set = 0, std430) buffer CountersBlock { uint maps; uint small; uint large; uint masked; } counters;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
 
 layout(push_constant) uniform Constants {
   uint slots;

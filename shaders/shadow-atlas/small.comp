@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;  // kSmallPerGroup
 layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
 layout(set = 0, std430) readonly buffer StepsBlock { Step list[]; } steps;
 layout(set = 0, std430) readonly buffer PairsBlock { uint list[]; } pairs;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
 layout(set = 0, r32ui) uniform uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
@@ -22,6 +23,7 @@ layout(push_constant) uniform Constants {
 
 void main() {
   uint entry = (gl_WorkGroupID.y * kGroupsPerRow + gl_WorkGroupID.x) * kSmallPerGroup + gl_LocalInvocationIndex;
+  if (entry == 0u) atomicAdd(counters.small, steps.list[step_].smallCount);
   if (entry >= steps.list[step_].smallCount) return;
   uint pair = pairs.list[entry];
   VplView view = batch.views[pair >> kTriangleBits];

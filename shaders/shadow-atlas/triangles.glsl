@@ -2,10 +2,10 @@
 #ifndef FOVEA_SHADOW_ATLAS_TRIANGLES_GLSL
 #define FOVEA_SHADOW_ATLAS_TRIANGLES_GLSL
 
-#ifdef SIMPLIFIED
-layout(set = 0) uniform samplerBuffer simplified;  // three vertices a triangle
-#else
 #include "common/scene.glsl"
+
+#ifdef SIMPLIFIED
+layout(set = 0) uniform samplerBuffer simplified;  // SimplifiedMesh::corners of framework/scene/simplify.h
 #endif
 
 struct Triangle {
@@ -14,20 +14,30 @@ struct Triangle {
   uint material;
 };
 
-#ifdef SIMPLIFIED
-Triangle loadTriangle(uint index) {
-  int i = 3 * int(index);
-  return Triangle(texelFetch(simplified, i).xyz, texelFetch(simplified, i + 1).xyz, texelFetch(simplified, i + 2).xyz,
-                  uvec3(0), 0u);
-}
-bool isMasked(Triangle t) { return false; }  // masked triangles are never simplified
-#else
-Triangle loadTriangle(uint index) {
+Triangle sceneTriangle(uint index) {
   uvec4 t = texelFetch(sceneTriangles, int(index));
   return Triangle(texelFetch(scenePositions, int(t.x)).xyz, texelFetch(scenePositions, int(t.y)).xyz,
                   texelFetch(scenePositions, int(t.z)).xyz, t.xyz, t.w & 0xffffu);
 }
-bool isMasked(Triangle t) { return loadMaterial(t.material).alphaCutoff > 0.0; }
+
+#ifdef SIMPLIFIED
+bool isMasked(uint index) { return texelFetch(simplified, 3 * int(index)).w > 0.0; }
+
+Triangle loadTriangle(uint index) {
+#ifdef MASKED
+  return sceneTriangle(uint(texelFetch(simplified, 3 * int(index)).w) - 1u);
+#else
+  int i = 3 * int(index);
+  return Triangle(texelFetch(simplified, i).xyz, texelFetch(simplified, i + 1).xyz, texelFetch(simplified, i + 2).xyz,
+                  uvec3(0u), 0u);
+#endif
+}
+#else
+bool isMasked(uint index) {
+  return loadMaterial(texelFetch(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff > 0.0;
+}
+
+Triangle loadTriangle(uint index) { return sceneTriangle(index); }
 #endif
 
 vec3 seenFrom(VplView v, vec3 p) {

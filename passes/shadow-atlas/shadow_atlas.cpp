@@ -1,0 +1,211 @@
+// Paraboloid shadow maps of all VPLs: an r32ui image array, one map a slot, every texel the distance from the VPL to the
+// nearest surface along the texel's direction. A compute rasteriser in two passes over batches of VPLs: cull.comp lists
+// the (VPL, triangle) pairs that may cover a texel's centre, small.comp and large.comp test the texels against the planes
+// through the VPL and the triangle's edges, which is exact where rasterising straight edges between projected vertices is
+// not (edges are arcs), and keep the smallest distance with an integer atomic, whose result no order can change.
+//
+// The technique `simplified` runs the same rasteriser over a coarser mesh: the hardware rasteriser would be bound by its
+// front end (one layer of the image a VPL, the whole mesh each) and would bend the edges of just the triangles that
+// simplification makes large.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "framework/gpu/device.h"
+#include "framework/gpu/resources.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/paraboloid.h"
+#include "framework/scene/simplify.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kBatch = 16;               // VPLs that share one reading of the triangles
+constexpr uint32_t kViewBytes = 64;           // VplView in shaders/shadow-atlas/step.glsl
+constexpr uint32_t kStepBytes = 64;           // Step, likewise
+constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists of pairs to 64 MiB
+constexpr uint32_t kCullGroup = 128;          // triangles a work group of cull.comp
+constexpr uint32_t kSliceTexels = 1 << 18;    // 8 invocations * 32,768 turns: below the 65,535 turns of a loop
+
+class ShadowAtlas : public Pass {
+ public:
+  static PassDeclaration declaration();
+  void prepare(PrepareContext& ctx) override;
+  void record(RecordContext& ctx) override;
+
+ private:
+  struct Kernels {
+    Kernel cull, small, large, masked;
+  };
+  struct Range {  // triangles of one step
+    const Kernels* kernels;
+    uint32_t first, count;
+    float planeEpsilon;  // m
+  };
+  static Kernels makeKernels(PrepareContext& ctx, bool simplified);
+  std::vector<Range> ranges(RecordContext& ctx);
+  void simplifyScene(RecordContext& ctx);
+  void recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range);
+
+  Kernel setup_;
+  Kernels exact_, simplified_;
+  bool simplify_ = false, uploaded_ = false;
+  uint32_t simplifiedTriangles_ = 0;
+  float simplifiedError_ = 0;
+  gpu::Buffer staging_;  // holds the simplified mesh until its copy has run
+};
+
+PassDeclaration ShadowAtlas::declaration() {
+  PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
+  d.input("vpls", buffer("Vpl", 48), Usage::StorageRead, "lights; a slot whose intensity is 0 keeps an empty map");
+  // `layout` counts as its index: 0 layers, 1 tiled.
+  const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
+  d.output("atlas",
+           image2DArray(VK_FORMAT_R32_UINT, parameter("size") * tiles, parameter("size"),
+                        ceilDiv(countOf("vpls"), tiles)),
+           Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
+           "bits of the distance in m, as float, to the nearest surface in the direction of the texel's centre; inf: none "
+           "(shaders/common/paraboloid.glsl)")
+      .keep(Lifetime::View);
+  const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
+  d.scratch("batch", buffer("VplView", kViewBytes, batches * kBatch), Usage::StorageWrite | Usage::Uniform,
+            "VPLs whose maps are drawn, packed");
+  d.scratch("steps", buffer("AtlasStep", kStepBytes, batches * (ceilDiv(triangles, kRangeTriangles) + 2)),
+            Usage::StorageRead | Usage::StorageWrite | Usage::Indirect, "dispatches and lengths of lists");
+  d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
+            Usage::StorageRead | Usage::StorageWrite, "pairs to rasterise; as long as every pair of a step");
+  d.scratch("simplified", buffer("SimplifiedTriangle", 48, max(1, triangles * parameter("technique"))),
+            Usage::TexelRead | Usage::TransferWrite, "simplified mesh")
+      .keep(Lifetime::Scene);
+
+  ParameterSpec size = integer(128, 4, 1024);
+  size.unit = "texels";
+  d.parameter("size", size, "width and height of a map");
+  d.parameter("technique", choice("exact", {"exact", "simplified"}),
+              "exact: every triangle; simplified: a coarser mesh, several times faster");
+  d.parameter("simplify_ratio", real(0.1, 0, 1), "share of the opaque static triangles that `simplified` keeps");
+  d.parameter("layout", choice("layers", {"layers", "tiled"}),
+              "layers: a layer of the image for each map; tiled: 16 maps a layer, for more VPLs than the device has layers");
+  d.parameter("alpha_mask", flag(true), "holes of alpha-masked materials let light through");
+  d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
+              "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and blocks nothing");
+  d.counter("maps", "maps drawn");
+  d.counter("small_pairs", "pairs of a VPL and a triangle that covers at most 16 texels' box");
+  d.counter("large_pairs", "pairs of a VPL and a larger triangle");
+  d.counter("masked_pairs", "pairs of a VPL and a triangle with an alpha mask");
+  return d;
+}
+
+ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplified) {
+  gpu::Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
+  if (simplified) defines["SIMPLIFIED"] = "1";
+  Kernels k;
+  k.cull = ctx.compute("shadow-atlas/cull.comp", defines);
+  k.small = ctx.compute("shadow-atlas/small.comp", defines);
+  k.large = ctx.compute("shadow-atlas/large.comp", defines);
+  if (!ctx.parameters().flag("alpha_mask")) return k;
+  defines["MASKED"] = "1";
+  k.masked = ctx.compute("shadow-atlas/large.comp", defines);
+  return k;
+}
+
+void ShadowAtlas::prepare(PrepareContext& ctx) {
+  simplify_ = ctx.parameters().text("technique") == "simplified";
+  setup_ = ctx.compute("shadow-atlas/setup.comp", {{"BATCH", std::to_string(kBatch) + "u"}});
+  exact_ = makeKernels(ctx, false);
+  if (simplify_) simplified_ = makeKernels(ctx, true);
+}
+
+// Once a scene: the copy is part of the first frame's commands.
+void ShadowAtlas::simplifyScene(RecordContext& ctx) {
+  const scene::SimplifiedMesh mesh = scene::simplify(*ctx.frame().scene, *ctx.frame().geometry,
+                                                     float(ctx.parameters().real("simplify_ratio")));
+  simplifiedTriangles_ = mesh.triangles();
+  simplifiedError_ = mesh.error;
+  uploaded_ = true;
+  if (mesh.corners.empty()) return;
+  const uint64_t bytes = mesh.corners.size() * sizeof(glm::vec4);
+  staging_ = gpu::Buffer(ctx.device(), {"simplified mesh", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                        gpu::MemoryKind::Upload});
+  std::memcpy(staging_.mapped(), mesh.corners.data(), bytes);
+  const VkBufferCopy copy{0, 0, bytes};
+  vkCmdCopyBuffer(ctx.cmd(), staging_.handle(), ctx.buffer("simplified").handle(), 1, &copy);
+  ctx.barrier();
+}
+
+std::vector<ShadowAtlas::Range> ShadowAtlas::ranges(RecordContext& ctx) {
+  const scene::Geometry& geometry = *ctx.frame().geometry;
+  const float diagonal = geometry.empty() ? 0.0f : glm::length(geometry.boundsMax - geometry.boundsMin);
+  const float own = float(ctx.parameters().real("self_shadow_distance")) * diagonal;
+  std::vector<Range> list;
+  auto add = [&](const Kernels& kernels, uint32_t first, uint32_t end, float epsilon) {
+    for (; first < end; first += kRangeTriangles)
+      list.push_back({&kernels, first, std::min(end - first, kRangeTriangles), epsilon});
+  };
+  const uint32_t all = uint32_t(geometry.triangles.size());
+  if (simplify_) add(simplified_, 0, simplifiedTriangles_, own + simplifiedError_);
+  add(exact_, simplify_ ? std::min(geometry.staticTriangles, all) : 0, all, own);
+  return list;
+}
+
+void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
+  const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes, stepOffset = uint64_t(step) * kStepBytes;
+  const uint32_t capacity = uint32_t(ctx.count("pairs") / 2), size = uint32_t(ctx.parameters().integer("size"));
+  ctx.use(range.kernels->cull)
+      .range("batch", viewOffset, kBatch * kViewBytes)
+      .constant("step_", step)
+      .constant("firstTriangle", range.first)
+      .constant("triangleCount", range.count)
+      .constant("capacity", capacity)
+      .dispatchIndirect("steps", stepOffset);
+  ctx.barrier();
+  ctx.use(range.kernels->small)
+      .range("batch", viewOffset, kBatch * kViewBytes)
+      .constant("step_", step)
+      .constant("planeEpsilon", range.planeEpsilon)
+      .dispatchIndirect("steps", stepOffset + 16);
+  const uint32_t slices = (size * size + kSliceTexels - 1) / kSliceTexels;
+  for (uint32_t list = 0; list < 2; ++list) {
+    const Kernel& kernel = list == 0 ? range.kernels->large : range.kernels->masked;
+    for (uint32_t slice = 0; kernel && slice < slices; ++slice)
+      ctx.use(kernel)
+          .range("batch", viewOffset, kBatch * kViewBytes)
+          .constant("step_", step)
+          .constant("capacity", capacity)
+          .constant("slice", slice)
+          .constant("slices", slices)
+          .constant("planeEpsilon", range.planeEpsilon)
+          .dispatchIndirect("steps", stepOffset + 32 + 16 * list);
+  }
+  ctx.barrier();
+}
+
+void ShadowAtlas::record(RecordContext& ctx) {
+  if (simplify_ && !uploaded_) simplifyScene(ctx);
+  VkClearColorValue nothing{};
+  nothing.uint32[0] = scene::kParaboloidEmpty;
+  ctx.clear("atlas", nothing);
+
+  const std::vector<Range> steps = ranges(ctx);
+  uint32_t largest = 0;
+  for (const Range& r : steps) largest = std::max(largest, r.count);
+  const uint32_t slots = uint32_t(ctx.count("vpls"));
+  ctx.use(setup_)
+      .constant("slots", slots)
+      .constant("ranges", uint32_t(steps.size()))
+      .constant("cullGroups", (largest + kCullGroup - 1) / kCullGroup)
+      .dispatch(1);
+  ctx.barrier();
+  for (uint32_t batch = 0; batch * kBatch < slots; ++batch)
+    for (uint32_t i = 0; i < steps.size(); ++i)
+      recordStep(ctx, batch, batch * uint32_t(steps.size()) + i, steps[i]);
+}
+
+FOVEA_PASS(ShadowAtlas);
+
+}  // namespace
+}  // namespace fovea::passes
