@@ -1,10 +1,9 @@
 // One depth map a light (six for a point light), as layers of one image.
-#include <algorithm>
-
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
+#include "framework/scene/lights.h"
 
 namespace fovea::passes {
 namespace {
@@ -45,7 +44,7 @@ class ShadowMap : public Pass {
     ctx.use(views_).dispatch(1);
     ctx.barrier();
     const Attachment depth{"maps.depth", Attachment::Load::Clear, {.depthStencil = {0.0f, 0}}};
-    const uint32_t layers = layerCount(ctx.frame());
+    const uint32_t layers = scene::shadowLayers(ctx.frame().lights);
     ctx.render({}, &depth, [&] {
       const scene::GpuScene& gpu = *ctx.frame().gpu;
       if (layers > 0) ctx.use(draw_).drawIndexed(gpu.indices().handle(), 3 * gpu.triangleCount(), 0, layers);
@@ -53,11 +52,6 @@ class ShadowMap : public Pass {
   }
 
  private:
-  static uint32_t layerCount(const scene::Frame& frame) {
-    uint32_t layers = 0;
-    for (const scene::Light& light : frame.lights) layers += light.type == scene::LightType::Point ? 6 : 1;
-    return layers;
-  }
   Kernel views_, draw_;
 };
 

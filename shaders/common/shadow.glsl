@@ -14,8 +14,6 @@ struct ShadowView {
   vec4 bias;   // x: absolute, y: relative, in units of depth: rounding only, slopes are dealt with in lightVisibility
 };
 
-uint shadowLayers(Light light) { return uint(light.position.w) == kLightPoint ? 6u : 1u; }
-
 // Face of the cube around a point light: +X -X +Y -Y +Z -Z.
 uint shadowFace(vec3 fromLight) {
   vec3 a = abs(fromLight);
@@ -35,7 +33,7 @@ layout(set = 0, binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
 layout(set = 0, binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
 
 // Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
-// the side that is looked at. firstLayer: the sum of shadowLayers over the lights before.
+// the side that is looked at. firstLayer: firstShadowLayer(light).
 //
 // A texel stores the depth at its centre; on a slope that differs from the depth at the receiver, at most by the slope times
 // the distance r to the farthest centre looked at. Raised along its normal by

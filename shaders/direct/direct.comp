@@ -23,12 +23,12 @@ void main() {
   vec3 face = octDecode(texelFetch(gbufferFace, p, 0).xy);
   vec3 irradiance = vec3(0.0);
   uint lightCount = position.w > 0.0 ? frame.lightCount : 0u;  // background: nothing to light
-  for (uint i = 0u, layer = 0u; i < lightCount; layer += shadowLayers(lights[i]), ++i) {
+  for (uint i = 0u; i < lightCount; ++i) {
     LightSample light = sampleLight(lights[i], position.xyz);
     float cosine = dot(normal, light.direction);
     // A face turned away is dark, whatever its interpolated normal says.
     if (cosine <= 0.0 || dot(face, light.direction) <= 0.0 || light.irradiance == vec3(0.0)) continue;
-    irradiance += light.irradiance * (cosine * lightVisibility(lights[i], layer, position.xyz, face));
+    irradiance += light.irradiance * (cosine * lightVisibility(lights[i], firstShadowLayer(lights[i]), position.xyz, face));
   }
   vec3 radiance = texelFetch(gbufferEmission, p, 0).rgb + texelFetch(gbufferAlbedo, p, 0).rgb * irradiance * (1.0 / kPi);
   imageStore(direct, p, vec4(min(radiance, 65504.0), 1.0));

@@ -15,17 +15,16 @@ layout(location = 4) out vec4 outEmission;
 layout(location = 5) out uint outId;
 
 void main() {
-  uvec4 triangle = texelFetch(sceneTriangles, gl_PrimitiveID);
-  Material material = loadMaterial(triangle.w & 0xffffu);
+  uvec4 triangle = sceneTriangle(uint(gl_PrimitiveID));
+  Material material = loadMaterial(materialOf(triangle));
 #if CULL
   if (!gl_FrontFacing && !material.doubleSided) discard;
 #endif
-  SurfacePoint surface = surfaceAt(triangle.w & 0xffffu, uv);
+  SurfacePoint surface = surfaceAt(materialOf(triangle), uv);
   if (surface.alpha < material.alphaCutoff) discard;
 
-  vec3 a = texelFetch(scenePositions, int(triangle.x)).xyz;
-  vec3 face = normalize(cross(texelFetch(scenePositions, int(triangle.y)).xyz - a,
-                              texelFetch(scenePositions, int(triangle.z)).xyz - a));
+  vec3 a = scenePosition(triangle.x);
+  vec3 face = normalize(cross(scenePosition(triangle.y) - a, scenePosition(triangle.z) - a));
   if (dot(face, view.eye.xyz - a) < 0.0) face = -face;
   vec3 n = normalize(normal);
   if (dot(n, face) < 0.0) n = -n;

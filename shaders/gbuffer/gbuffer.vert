@@ -7,7 +7,7 @@ layout(location = 1) out vec3 normal;
 layout(location = 2) out vec2 uv;
 
 void main() {
-  position = texelFetch(scenePositions, gl_VertexIndex).xyz;
+  position = scenePosition(gl_VertexIndex);
   vec4 attributes = texelFetch(sceneAttributes, gl_VertexIndex);
   normal = octDecode(attributes.xy);
   uv = attributes.zw;

@@ -6,9 +6,6 @@
 
 layout(location = 0) in vec2 uv;
 
-layout(push_constant) uniform Constants { uint firstTriangle; };
-
 void main() {
-  uint material = texelFetch(sceneTriangles, int(firstTriangle) + gl_PrimitiveID).w & 0xffffu;
-  if (!alphaTest(material, uv)) discard;
+  if (!alphaTest(materialOf(sceneTriangle(uint(gl_PrimitiveID))), uv)) discard;
 }

@@ -11,6 +11,6 @@ layout(location = 0) out vec2 uv;
 
 void main() {
   gl_Layer = gl_InstanceIndex;
-  gl_Position = mapsViews.view[gl_InstanceIndex].worldToClip * vec4(texelFetch(scenePositions, gl_VertexIndex).xyz, 1.0);
-  uv = texelFetch(sceneAttributes, gl_VertexIndex).zw;
+  gl_Position = mapsViews.view[gl_InstanceIndex].worldToClip * vec4(scenePosition(gl_VertexIndex), 1.0);
+  uv = sceneUv(gl_VertexIndex);
 }

@@ -60,9 +60,8 @@ mat3 cubeAxes(uint face) {
 void main() {
   uint index = gl_LocalInvocationID.x;
   if (index >= frame.lightCount) return;
-  uint layer = 0u;
-  for (uint i = 0u; i < index; ++i) layer += shadowLayers(lights[i]);
   Light light = lights[index];
+  uint layer = firstShadowLayer(light);
   uint type = uint(light.position.w);
   // Near enough to the light to lose nothing that could matter; costs no precision (depth is reversed).
   float near = 1e-4 * max(distance(frame.boundsMin.xyz, frame.boundsMax.xyz), 1e-3);
