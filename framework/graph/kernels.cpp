@@ -1,6 +1,7 @@
 // Kernels: pipelines whose bindings are found by name, and the commands that use them.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
 
 #include "framework/base/diagnostic.h"
@@ -86,7 +87,15 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
   return binding;
 }
 
-KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, const gpu::ReflectedBinding& b) {
+// A block without an instance name is known by the block's own, which starts with a capital: `buffer Total {...};`.
+std::string portSpelling(const std::string& binding) {
+  std::string name = binding;
+  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, gpu::ReflectedBinding b) {
+  b.name = portSpelling(b.name);
   if (auto it = pass.accessByShader.find(b.name); it != pass.accessByShader.end())
     return resolvePort(pass, shader, b, it->second);
   KernelBinding binding;
@@ -259,14 +268,19 @@ static void fillImage(const KernelBinding& b, VkImageView view, Descriptor& d) {
                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
+// How a texel buffer is read: elements of whole 16 bytes as four components a texel, of 8 bytes as two, else one.
+static VkFormat texelFormat(uint32_t stride, bool integer) {
+  if (stride % 16 == 0) return integer ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (stride % 8 == 0) return integer ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32_SFLOAT;
+  return integer ? VK_FORMAT_R32_UINT : VK_FORMAT_R32_SFLOAT;
+}
+
 static void fillPort(PassInstance& pass, const KernelBinding& b, Descriptor& d) {
   const Access& access = pass.bound->accesses[b.access];
   if (isImageBinding(b.reflected.kind)) {
     fillImage(b, pass.state->image(access).view(), d);
   } else if (b.reflected.kind == gpu::BindingKind::UniformTexelBuffer) {
-    // 16-byte elements are read as vec4, others as uint.
-    d.texels = pass.state->buffer(access).texelView(
-        pass.desc(access).stride % 16 == 0 ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R32_UINT);
+    d.texels = pass.state->buffer(access).texelView(texelFormat(pass.desc(access).stride, b.reflected.integerTexels));
   } else {
     d.buffer = {pass.state->buffer(access).handle(), 0, VK_WHOLE_SIZE};
   }
