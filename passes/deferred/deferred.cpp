@@ -1,0 +1,132 @@
+// Deferred shading with VPLs: interleaved sampling and a geometry-aware filter on the irradiance (METHOD Eq. 2).
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/resources.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/vpl.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kTileWidth = 16, kTileHeight = 8;  // work groups of shade.comp
+
+// A subset with fewer VPLs than this is no estimate of anything; fewer subsets cost little then.
+constexpr uint64_t kSmallestSubset = 4;
+
+uint32_t subsetsPerSide(int64_t wanted, uint64_t vplCount) {
+  uint32_t n = uint32_t(wanted);
+  while (n > 1 && vplCount < kSmallestSubset * n * n) n /= 2;
+  return n;
+}
+
+class Deferred : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("deferred", "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered");
+    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
+    d.input("gbuffer", "gbuffer",
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+             member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::Sampled),
+             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+            "surfaces seen by the eye");
+    d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform, "light sources; empty slots have no intensity");
+    d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled,
+            "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
+        .makeOptional();
+    d.input("direct", image2D(), Usage::Sampled, "rgb: radiance to add the indirect light to").makeOptional();
+    const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
+    d.output("irradiance", color, Usage::StorageWrite,
+             "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is `indirect`; background 0");
+    d.output("indirect", color, Usage::StorageWrite, "rgb: indirect radiance rho E / pi towards the eye; background 0");
+    d.output("radiance", color, Usage::StorageWrite, "rgb: `direct` (if wired) plus `indirect`");
+    d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite, "every pixel's estimate from its own subset");
+    addParameters(d);
+    d.counter("pixels", "pixels that show a surface");
+    d.counter("incomplete", "pixels for which most subsets had to be guessed from the others");
+    d.counter("vpls_per_pixel", "VPLs that shade one pixel, on average: times `pixels` the number of pixel-VPL pairs");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const Parameters& p = ctx.parameters();
+    const int64_t interleave = p.integer("interleave");
+    if ((interleave & (interleave - 1)) != 0)
+      throw Error(ExitCode::BadInput, "pass `deferred`: interleave " + std::to_string(interleave) + " is not a power of two",
+                  "use 1, 2, 4 or 8");
+    count_ = uint32_t(ctx.count("vpls"));
+    side_ = subsetsPerSide(interleave, count_);
+    gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)},
+                         {"KERNEL_DISC", p.text("kernel") == "disc" ? "1" : "0"},
+                         {"SHADOWED", ctx.has("atlas") ? "1" : "0"},
+                         {"TILED", "0"}};
+    if (ctx.has("atlas")) {
+      const VkExtent3D maps = ctx.extent("atlas");
+      const uint64_t perLayer = std::max(maps.width / std::max(maps.height, 1u), 1u);
+      if (perLayer * ctx.layers("atlas") < count_)
+        throw Error(ExitCode::BadInput, "pass `deferred`: the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) +
+                                            " maps for " + std::to_string(count_) + " VPLs",
+                    "wire the same VPLs to the atlas and to the shading");
+      defines["TILED"] = perLayer > 1 ? "1" : "0";
+    }
+    // Kernels by the number of VPLs in a page, a constant in the shader: a full first page, full further ones, the rest.
+    for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
+      defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
+      defines["ACCUMULATE"] = first > 0 ? "1" : "0";
+      pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage ? pages_.back()
+                                                                             : ctx.compute("deferred/shade.comp", defines));
+    }
+    resolve_ = ctx.compute("deferred/resolve.comp", {{"INTERLEAVE", std::to_string(side_)},
+                                                     {"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
+  }
+
+  void record(RecordContext& ctx) override {
+    const Parameters& p = ctx.parameters();
+    const VkExtent3D size = ctx.extent("partial");
+    const auto groups = [&](uint32_t pixels, uint32_t tile) {
+      return (pixels + tile * side_ - 1) / (tile * side_) * side_;
+    };
+    for (uint32_t page = 0; page < pages_.size(); ++page) {
+      const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
+      if (page > 0) ctx.barrier();
+      Commands commands = ctx.use(pages_[page]);
+      commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
+      commands.constant("firstSlot", first);
+      commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
+    }
+    ctx.barrier();
+    ctx.use(resolve_)
+        .constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f))
+        .dispatchOver("irradiance");
+    ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
+  }
+
+ private:
+  static void addParameters(PassDeclaration& d) {
+    d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
+                "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
+                "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
+    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "for kernel `clamp`; 0: no clamp");
+    d.parameter("interleave", integer(4, 1, 8),
+                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset would have under 4");
+    d.parameter("shadow_bias", real(1, 0, 100),
+                "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
+    d.parameter("filter_angle", real(40, 1, 90, "degrees"), "normals that differ by more do not mix");
+    d.parameter("filter_plane", real(0.004, 1e-6, 1),
+                "distance from the tangent plane, in parts of the distance to the eye, at which a weight falls to 1 / e");
+  }
+
+  uint32_t count_ = 0, side_ = 1;
+  std::vector<Kernel> pages_;
+  Kernel resolve_;
+};
+
+FOVEA_PASS(Deferred);
+
+}  // namespace
+}  // namespace fovea::passes
