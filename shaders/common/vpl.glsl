@@ -13,4 +13,24 @@ struct Vpl {
 
 const uint kVplPage = 1024u;
 
+// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. 96 bytes.
+struct VplState {
+  vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame
+  vec4 normalAge;           // xyz: unit, world space; w: frames since creation, -1: an empty slot
+  vec4 reflectanceSide;     // rgb: reflectance; w: voxel side (bits of a uint), kNoSide: none
+  vec4 localPosition;       // xyz: in the space of its object, so that it follows; w: object
+  vec4 localNormal;         // xyz: unit, in the space of its object; w: importance of the frame before (Eq. 1)
+  vec4 extra;               // x: density p_A of its generator, 1/m^2, 0: unknown; y: frame of the last map refresh
+};
+
+const uint kNoSide = 0xffffffffu;
+
+// A VPL that could be. 64 bytes.
+struct Candidate {
+  vec4 positionSide;        // xyz: world space; w: voxel side (bits of a uint), kNoSide: an attempt that escaped
+  vec4 normalObject;        // xyz: unit, world space; w: object
+  vec4 reflectanceDensity;  // rgb: reflectance; w: density p_A of the generator, 1/m^2, 0: unknown
+  vec4 localLuminance;      // xyz: position in the space of its object; w: luminance of the side's radiance, if known
+};
+
 #endif

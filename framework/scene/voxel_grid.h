@@ -1,0 +1,35 @@
+// The voxel grid that VPLs are found in. The same formulas as shaders/common/voxel.glsl.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace fovea::scene {
+
+// Cubic cells, `resolution` of them along the longest axis of the scene's bounds; the volume is a cube of cells.
+struct VoxelGrid {
+  glm::vec3 origin{0};  // world space, corner of cell (0, 0, 0)
+  float cell = 1;       // edge, m
+  int resolution = 1;
+
+  glm::vec3 worldToVoxel(glm::vec3 position) const { return (position - origin) / cell; }
+  glm::vec3 voxelToWorld(glm::vec3 voxel) const { return origin + voxel * cell; }
+};
+
+inline VoxelGrid voxelGrid(glm::vec3 boundsMin, glm::vec3 boundsMax, int resolution) {
+  const glm::vec3 extent = glm::max(boundsMax - boundsMin, glm::vec3(0.0f));
+  const float longest = std::max(std::max(extent.x, extent.y), std::max(extent.z, 1e-3f));
+  const float pad = 1e-3f * longest;
+  return {boundsMin - pad, (longest + 2.0f * pad) / float(resolution), resolution};
+}
+
+// 0 or 1: see shaders/common/voxel.glsl.
+inline uint32_t voxelSideOf(glm::vec3 normal) {
+  const glm::vec3 a = glm::abs(normal);
+  const float dominant = a.x >= a.y && a.x >= a.z ? normal.x : a.y >= a.z ? normal.y : normal.z;
+  return dominant < 0.0f ? 1u : 0u;
+}
+
+}  // namespace fovea::scene

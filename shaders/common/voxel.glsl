@@ -1,0 +1,43 @@
+// The voxel grid that VPLs are found in. The same formulas as framework/scene/voxel_grid.h. Needs common/scene.glsl.
+#ifndef FOVEA_VOXEL_GLSL
+#define FOVEA_VOXEL_GLSL
+
+// Cubic cells, `resolution` of them along the longest axis of the scene's bounds; the volume is a cube of cells.
+struct VoxelGrid {
+  vec3 origin;      // world space, corner of cell (0, 0, 0)
+  float cell;       // edge, m
+  int resolution;
+};
+
+VoxelGrid voxelGrid(uint resolution) {
+  vec3 extent = max(frame.boundsMax.xyz - frame.boundsMin.xyz, vec3(0.0));
+  float longest = max(max(extent.x, extent.y), max(extent.z, 1e-3));
+  float pad = 1e-3 * longest;
+  return VoxelGrid(frame.boundsMin.xyz - pad, (longest + 2.0 * pad) / float(resolution), int(resolution));
+}
+
+vec3 worldToVoxel(VoxelGrid grid, vec3 position) { return (position - grid.origin) / grid.cell; }
+vec3 voxelToWorld(VoxelGrid grid, vec3 voxel) { return grid.origin + voxel * grid.cell; }
+bool insideGrid(VoxelGrid grid, ivec3 cell) {
+  return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(grid.resolution)));
+}
+
+// A voxel has two opposing sides. A surface belongs to side 1 when the largest component of its geometric normal is
+// negative (ties: x before y before z), so that the faces of a thin wall fall on different sides.
+uint voxelSideOf(vec3 normal) {
+  vec3 a = abs(normal);
+  float dominant = a.x >= a.y && a.x >= a.z ? normal.x : a.y >= a.z ? normal.y : normal.z;
+  return dominant < 0.0 ? 1u : 0u;
+}
+
+// voxels.surface, 3 texels a side; side = 2 * voxel + voxelSideOf(normal).
+const int kVoxelSideTexels = 3;
+struct VoxelSide {
+  vec3 position;     // average over the side's surface, world space
+  float area;        // m^2 of surface, 0: an empty side
+  vec3 normal;       // average, unit
+  float object;
+  vec3 reflectance;  // average
+};
+
+#endif
