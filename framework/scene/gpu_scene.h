@@ -18,13 +18,16 @@ namespace fovea::scene {
 inline constexpr uint32_t kMaxLights = 64;
 inline constexpr uint32_t kMaxViews = 8;
 
+// Works for a scene without triangles, lights or textures too.
 class GpuScene {
  public:
-  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more than kMaxLights.
+  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more than
+  // kMaxLights or a texture larger than the device takes.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
   ~GpuScene();
 
   // Writes this frame's uniforms (frame, views, lights) into the slot of the frame in flight; no GPU wait, no allocation.
+  // Throws Error(BadInput) on more than kMaxViews or kMaxLights.
   void update(const Frame& frame, uint32_t slot);
 
   VkDescriptorSetLayout setLayout() const;
@@ -32,7 +35,12 @@ class GpuScene {
   VkDescriptorSet set(uint32_t slot) const;
   uint32_t viewOffset(uint32_t view) const;
 
-  gpu::Buffer& indices() const;       // uint32, 3 a triangle, for indexed draws
+  gpu::Buffer& indices() const;     // uint32, 3 a triangle, for indexed draws
+  // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the device.
+  gpu::Buffer& triangles() const;   // uvec4: 3 vertices, material | object << 16
+  gpu::Buffer& positions() const;   // vec4: world space, m; w 1
+  gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
+  gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;
 

@@ -37,20 +37,59 @@ const uint kLightSpot = 2u;
 struct Light {
   vec4 position;         // xyz world, w: type as float
   vec4 direction;        // xyz unit, the way light travels; w: range, 0 unlimited
-  vec4 intensity;        // rgb: lux or candela; w unused
+  vec4 intensity;        // rgb: lux or candela; w: its first layer in the shadow maps
   vec4 cone;             // x: cos inner, y: cos outer, z: 1 / (cos inner - cos outer)
 };
 
 layout(set = 1, binding = 2) uniform LightBlock { Light lights[64]; };
 
-layout(set = 1, binding = 3) uniform usamplerBuffer sceneTriangles;   // xyz: vertices, w: material | object << 16
-layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;    // xyz world
-layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;   // xy: octahedral normal, zw: uv
-layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;    // kMaterialTexels texels each
-layout(set = 1, binding = 7) uniform texture2DArray sceneTexturesSrgb;  // pages; texelFetch gives linear light
+layout(set = 1, binding = 3) uniform usamplerBuffer sceneTriangles;     // xyz: vertices, w: material | object << 16
+layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;      // xyz world
+layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;     // xy: octahedral normal, zw: uv
+layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // kMaterialTexels texels each
+layout(set = 1, binding = 7) uniform sampler2DArray sceneTexturesSrgb;    // pages; texelFetch gives linear light
+layout(set = 1, binding = 8) uniform sampler2DArray sceneTexturesLinear;  // pages of textures stored linearly
+
+// ---- Geometry ----------------------------------------------------------------------------------------------------
+
+// Unit vectors as octahedra (Meyer et al. 2010): both components in [-1, 1].
+vec2 octEncode(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z);
+  vec2 s = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+  return n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * s;
+}
+
+vec3 octDecode(vec2 e) {
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  float t = max(-n.z, 0.0);
+  n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
+  return normalize(n);
+}
+
+uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
+vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
+vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int(vertex)).xy); }
+vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
+uint materialOf(uvec4 triangle) { return triangle.w & 0xffffu; }
+uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
+
+// ---- Materials ---------------------------------------------------------------------------------------------------
+
+// Texels of one material:
+//   0  rgb: base colour times (1 - metallic); a: alpha
+//   1  rgb: emission; a: alpha cutoff, 0: opaque
+//   2  base colour texture: x: page, -1: none; yz: corner in the page; w: flags
+//   3  base colour texture: xy: size in texels; zw: offset of the uv transform
+//   4  base colour texture: xy: u axis, zw: v axis of the uv transform
+//   5, 6, 7  the same for emission
+const int kMaterialTexels = 8;
+const uint kWrapClamp = 1u;             // flags, bits 0-1: wrap of u, bits 2-3: of v; 0 repeats
+const uint kWrapMirror = 2u;
+const uint kTextureLinear = 16u;        // flags: not sRGB-encoded
+const uint kMaterialDoubleSided = 32u;  // flags of texel 2
 
 struct Material {
-  vec3 baseColor;        // times (1 - metallic): diffuse reflectance
+  vec3 baseColor;        // times (1 - metallic): diffuse reflectance where the texture is white
   float alpha;
   vec3 emission;         // W/(sr m^2)
   float alphaCutoff;     // 0: opaque
@@ -63,4 +102,104 @@ struct SurfacePoint {    // a material looked up at a point
   vec3 emission;
 };
 
-// The rest (materials, textures, lights) is implemented below.
+Material loadMaterial(uint material) {
+  int first = int(material) * kMaterialTexels;
+  vec4 color = texelFetch(sceneMaterials, first);
+  vec4 emission = texelFetch(sceneMaterials, first + 1);
+  uint flags = uint(texelFetch(sceneMaterials, first + 2).w);
+  return Material(color.rgb, color.a, emission.rgb, emission.a, (flags & kMaterialDoubleSided) != 0u);
+}
+
+int wrapTexel(int i, int size, uint wrap) {
+  if (wrap == kWrapClamp) return clamp(i, 0, size - 1);
+  int period = wrap == kWrapMirror ? 2 * size : size;
+  int r = i >= 0 ? i % period : period - 1 - (-1 - i) % period;  // % of negative numbers is undefined
+  return r < size ? r : period - 1 - r;
+}
+
+vec4 sceneTexel(ivec3 p, bool linear) {
+  return linear ? texelFetch(sceneTexturesLinear, p, 0) : texelFetch(sceneTexturesSrgb, p, 0);
+}
+
+// Bilinear LOD 0, texels decoded before they are filtered; the same as scene::sampleTexture. `texel`: the first of the
+// three texels that describe the texture.
+vec4 sampleSceneTexture(int texel, vec2 uv) {
+  vec4 place = texelFetch(sceneMaterials, texel);
+  if (place.x < 0.0) return vec4(1.0);
+  vec4 extent = texelFetch(sceneMaterials, texel + 1);
+  vec4 axes = texelFetch(sceneMaterials, texel + 2);
+  vec2 p = (axes.xy * uv.x + axes.zw * uv.y + extent.zw) * extent.xy - 0.5;
+  p = mix(clamp(p, vec2(-1e9), vec2(1e9)), vec2(0.0), isnan(p));
+  vec2 base = floor(p);
+  vec2 f = p - base;
+  ivec2 size = ivec2(extent.xy), i = ivec2(base), corner = ivec2(place.yz);
+  uint flags = uint(place.w), wrapU = flags & 3u, wrapV = flags >> 2 & 3u;
+  bool linear = (flags & kTextureLinear) != 0u;
+  ivec2 a = corner + ivec2(wrapTexel(i.x, size.x, wrapU), wrapTexel(i.y, size.y, wrapV));
+  ivec2 b = corner + ivec2(wrapTexel(i.x + 1, size.x, wrapU), wrapTexel(i.y + 1, size.y, wrapV));
+  int page = int(place.x);
+  vec4 top = mix(sceneTexel(ivec3(a, page), linear), sceneTexel(ivec3(b.x, a.y, page), linear), f.x);
+  vec4 bottom = mix(sceneTexel(ivec3(a.x, b.y, page), linear), sceneTexel(ivec3(b, page), linear), f.x);
+  return mix(top, bottom, f.y);
+}
+
+// rgb: diffuse reflectance, a: alpha.
+vec4 materialReflectance(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  return texelFetch(sceneMaterials, first) * sampleSceneTexture(first + 2, uv);
+}
+
+vec3 materialEmission(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
+  if (emission == vec3(0.0)) return emission;
+  return emission * sampleSceneTexture(first + 5, uv).rgb;
+}
+
+SurfacePoint surfaceAt(uint material, vec2 uv) {
+  vec4 color = materialReflectance(material, uv);
+  return SurfacePoint(color.rgb, color.a, materialEmission(material, uv));
+}
+
+// Whether the surface is there at uv (alpha MASK).
+bool alphaTest(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  float cutoff = texelFetch(sceneMaterials, first + 1).a;
+  if (cutoff <= 0.0) return true;
+  return texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + 2, uv).a >= cutoff;
+}
+
+// ---- Lights ------------------------------------------------------------------------------------------------------
+
+struct LightSample {
+  vec3 irradiance;  // on a surface that faces the light, W/m^2; nothing in between
+  vec3 direction;   // unit, to the light
+  float distance;   // m; directional: kFarAway
+};
+
+const float kFarAway = 1e30;
+
+// The same as scene::sampleLight (framework/scene/lights.h).
+LightSample sampleLight(Light light, vec3 position) {
+  uint type = uint(light.position.w);
+  if (type == kLightDirectional) return LightSample(light.intensity.rgb, -light.direction.xyz, kFarAway);
+  vec3 d = light.position.xyz - position;
+  float d2 = max(dot(d, d), 1e-12);
+  float distance = sqrt(d2);
+  vec3 direction = d / distance;
+  float falloff = 1.0 / d2;
+  if (type == kLightSpot) {
+    float s = clamp((dot(-direction, light.direction.xyz) - light.cone.y) * light.cone.z, 0.0, 1.0);
+    falloff *= s * s;
+  }
+  float range = light.direction.w;
+  if (range > 0.0) {  // the window that KHR_lights_punctual recommends
+    float x = distance / range;
+    falloff *= clamp(1.0 - x * x * x * x, 0.0, 1.0);
+  }
+  return LightSample(light.intensity.rgb * falloff, direction, distance);
+}
+
+uint firstShadowLayer(Light light) { return uint(light.intensity.w); }
+
+#endif
