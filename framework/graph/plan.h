@@ -25,6 +25,7 @@ struct ResourceDesc {
   uint32_t width = 1, height = 1, depth = 1, layers = 1, mips = 1;
   uint32_t stride = 0;
   uint64_t count = 0;  // bytes = stride * count
+  std::string element;  // buffers
 };
 
 struct BoundResource {

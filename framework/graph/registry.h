@@ -29,13 +29,19 @@ class Registry {
   void loadPlugin(const std::filesystem::path& file);
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
 
+  // FOVEA_PASS registrations run where nobody can catch; what went wrong in them is thrown here, as Error(Internal).
+  // Call it once at the start of a program.
+  static void throwIfRegistrationsFailed();
+
  private:
+  bool loaded(const std::filesystem::path& plugin) const;
   struct Entry {
     std::unique_ptr<PassDeclaration> declaration;  // stable address
     Factory factory;
   };
   std::vector<Entry> entries_;  // sorted by type
   std::vector<std::filesystem::path> pluginShaderPaths_;
+  std::vector<std::filesystem::path> plugins_;
 };
 
 struct Registration {

@@ -1,5 +1,5 @@
-// From JSON to a description: `extends` merged, sub-graphs instanced under their prefix, parameters and overrides put
-// in. Names are interned, wires are split; nothing is known about pass types yet.
+// From JSON to a description: `extends` merged, sub-graphs instanced under their prefix, parameters and
+// overrides put in. Names are interned, wires are split; nothing is known about pass types yet.
 #pragma once
 
 #include <filesystem>
@@ -32,6 +32,9 @@ using Symbol = uint32_t;
 
 class SymbolTable {
  public:
+  SymbolTable() = default;
+  SymbolTable(SymbolTable&&) = default;
+  SymbolTable& operator=(SymbolTable&&) = default;
   Symbol intern(std::string_view text);
   Symbol find(std::string_view text) const;  // kNone when unknown
   const std::string& operator[](Symbol symbol) const { return *strings_[symbol]; }
@@ -39,8 +42,12 @@ class SymbolTable {
   uint64_t hash(Symbol symbol) const { return hashes_[symbol]; }
 
  private:
-  std::unordered_map<std::string, Symbol> index_;
-  std::vector<const std::string*> strings_;  // the map's keys: stable
+  struct Hash {
+    using is_transparent = void;
+    size_t operator()(std::string_view text) const { return std::hash<std::string_view>()(text); }
+  };
+  std::unordered_map<std::string, Symbol, Hash, std::equal_to<>> index_;
+  std::vector<const std::string*> strings_;  // the map's keys: stable, also when moved
   std::vector<uint64_t> hashes_;
 };
 
@@ -52,35 +59,35 @@ struct Place {
 
 // "pass.port.member@previous", split. "inputs.x" of a sub-graph has been replaced by what the parent wired.
 struct WireDescription {
-  Symbol target = kNone;          // input port of the reading pass, or name of the graph's output
-  Symbol pass = kNone;            // kNone with `external`
-  Symbol port = kNone;            // kNone: the only output
-  Symbol member = kNone;          // kNone: the whole port
-  uint32_t external = kNone;      // index into Description::externals
+  Symbol target = kNone;      // input port of the reading pass, or name of the graph's output
+  Symbol pass = kNone;        // kNone with `external`
+  Symbol port = kNone;        // kNone: the only output
+  Symbol member = kNone;      // kNone: the whole port
+  uint32_t external = kNone;  // index into Description::externals
   bool previous = false;
-  Symbol text = kNone;            // as written, for messages
+  Symbol text = kNone;  // as written, for messages
   Place keyPlace, place;
 };
 
 struct ParameterDescription {
   Symbol name = kNone;
   json::Value::Type type = json::Value::Type::Null;
-  bool fromCommandLine = false;   // String: still to be read as the parameter's own type
-  int64_t integer = 0;            // Int, Bool
+  bool fromCommandLine = false;  // String: still to be read as the parameter's own type
+  int64_t integer = 0;           // Int, Bool
   double real = 0;
   Symbol text = kNone;
   Place keyPlace, place;
 };
 
 struct PassDescription {
-  Symbol name = kNone;            // with prefix: "left/deferred"
+  Symbol name = kNone;  // with prefix: "left/deferred"
   Symbol type = kNone;
-  Symbol view = kNone;            // explicit or inherited; kNone: the default view
-  bool ownView = false;           // written at the pass itself
+  Symbol view = kNone;                              // explicit or inherited; kNone: the default view
+  bool ownView = false;                             // written at the pass itself
   uint32_t firstInput = 0, inputCount = 0;          // Description::wires
   uint32_t firstParameter = 0, parameterCount = 0;  // Description::parameters
   Place place, typePlace, viewPlace;
-  Symbol path = kNone;            // "passes.deferred": place inside its document
+  Symbol path = kNone;  // "passes.deferred": place inside its document
 };
 
 // An input of the whole graph: the caller's memory.
@@ -93,7 +100,7 @@ struct ExternalDescription {
 };
 
 struct Description {
-  std::string name;         // file stem
+  std::string name;  // file stem
   std::string description;
   std::vector<std::string> files;
   SymbolTable symbols;
@@ -106,9 +113,22 @@ struct Description {
   SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
 };
 
-// Merges `patch` over `base` as RFC 7396, base keys first; an object under "passes" whose "type" or "graph" differs
-// replaces the base's. A null that removes nothing is an error. Exposed for tests.
-json::Value mergeDocuments(const json::Value& base, const json::Value& patch, Diagnostics& diagnostics);
+// Merges `patch` over `base` as RFC 7396, base keys first; an object under "passes" whose "type" or "graph"
+// differs replaces the base's. A null that removes nothing is an error. Exposed for tests.
+json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnostics& diagnostics);
+
+// The document with everything it extends merged in, its "extends" gone.
+json::Value mergeExtends(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
+                         Diagnostics& diagnostics);
+
+// `name` relative to the folder of `from`, else in the search paths, with or without ".json"; empty when not
+// found.
+std::filesystem::path findGraphFile(const std::string& name, const std::filesystem::path& from,
+                                    const std::vector<std::filesystem::path>& searchPaths);
+
+// What a graph file may hold. More is refused, so that a file cannot exhaust the memory.
+inline constexpr size_t kMaxPasses = 10000;
+inline constexpr int kMaxInstanceDepth = 16;
 
 Description resolve(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
                     Diagnostics& diagnostics);

@@ -1,0 +1,119 @@
+#include "framework/graph/alias.h"
+
+#include <algorithm>
+
+namespace fovea::graph {
+namespace {
+
+struct Range {
+  uint64_t begin, end;
+};
+
+// What is taken in one heap, level by level, as sorted ranges that do not touch each other. Resources that
+// are placed side by side melt into one range, so that a level with hundreds of them still has few ranges.
+class Occupancy {
+ public:
+  void grow(uint32_t levels) {
+    if (levels_.size() < levels) levels_.resize(levels);
+  }
+
+  // Tightest gap for `bytes` that is free in all levels of the interval; aligned.
+  uint64_t findGap(const Interval& interval, uint64_t bytes, uint64_t alignment) {
+    const std::vector<Range>* taken = &levels_[interval.first];
+    if (interval.last > interval.first) {
+      merged_.clear();
+      for (uint32_t l = interval.first; l <= interval.last; ++l)
+        merged_.insert(merged_.end(), levels_[l].begin(), levels_[l].end());
+      std::sort(merged_.begin(), merged_.end(),
+                [](const Range& a, const Range& b) { return a.begin < b.begin; });
+      taken = &merged_;
+    }
+    uint64_t end = 0, best = 0, bestRoom = ~0ull;
+    for (const Range& range : *taken) {
+      const uint64_t at = alignUp(end, alignment);
+      if (range.begin >= at && range.begin - at >= bytes && range.begin - at < bestRoom) {
+        best = at;
+        bestRoom = range.begin - at;
+      }
+      end = std::max(end, range.end);
+    }
+    return bestRoom == ~0ull ? alignUp(end, alignment) : best;
+  }
+
+  void take(const Interval& interval, Range range) {
+    for (uint32_t l = interval.first; l <= interval.last; ++l) {
+      std::vector<Range>& taken = levels_[l];
+      auto next = std::lower_bound(taken.begin(), taken.end(), range,
+                                   [](const Range& a, const Range& b) { return a.begin < b.begin; });
+      const bool joinsNext = next != taken.end() && next->begin == range.end;
+      const bool joinsLast = next != taken.begin() && (next - 1)->end == range.begin;
+      if (joinsLast && joinsNext) {
+        (next - 1)->end = next->end;
+        taken.erase(next);
+      } else if (joinsLast) {
+        (next - 1)->end = range.end;
+      } else if (joinsNext) {
+        next->begin = range.begin;
+      } else {
+        taken.insert(next, range);
+      }
+    }
+  }
+
+  static uint64_t alignUp(uint64_t v, uint64_t alignment) {
+    return (v + alignment - 1) / alignment * alignment;
+  }
+
+ private:
+  std::vector<std::vector<Range>> levels_;
+  std::vector<Range> merged_;
+};
+
+}  // namespace
+
+AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t granularity, bool alias) {
+  AliasResult result;
+  result.placements.resize(requests.size());
+  if (requests.empty()) return result;
+  std::vector<Occupancy> heaps;
+  std::vector<uint32_t> order(requests.size());
+  uint32_t levels = 0;
+  for (uint32_t i = 0; i < requests.size(); ++i) {
+    order[i] = i;
+    levels = std::max(levels, requests[i].interval.last + 1);
+  }
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const AliasRequest &x = requests[a], &y = requests[b];
+    if (x.need.bytes != y.need.bytes) return x.need.bytes > y.need.bytes;
+    if (x.interval.first != y.interval.first) return x.interval.first < y.interval.first;
+    return x.resource < y.resource;
+  });
+  for (uint32_t i = 0; i < requests.size(); ++i) {  // heaps in the order of appearance
+    uint32_t h = 0;
+    while (h < result.heaps.size() && result.heaps[h].memoryTypeBits != requests[i].need.memoryTypeBits) ++h;
+    if (h == result.heaps.size()) {
+      result.heaps.push_back({0, requests[i].need.memoryTypeBits});
+      heaps.emplace_back().grow(alias ? levels : 1);
+    }
+    result.placements[i].heap = h;
+  }
+  for (const uint32_t i : order) {
+    const AliasRequest& request = requests[i];
+    Placement& placement = result.placements[i];
+    const uint64_t alignment = std::max<uint64_t>({request.need.alignment, granularity, 1});
+    const uint64_t bytes = Occupancy::alignUp(std::max<uint64_t>(request.need.bytes, 1), alignment);
+    const Interval interval = alias ? request.interval : Interval{0, 0};
+    Occupancy& heap = heaps[placement.heap];
+    placement.resource = request.resource;
+    placement.bytes = bytes;
+    placement.offset = heap.findGap(interval, bytes, alignment);
+    heap.take(interval, {placement.offset, placement.offset + bytes});
+    result.heaps[placement.heap].bytes =
+        std::max(result.heaps[placement.heap].bytes, placement.offset + bytes);
+    result.bytesUnaliased += bytes;
+  }
+  for (const Plan::Heap& heap : result.heaps) result.bytesAliased += heap.bytes;
+  return result;
+}
+
+}  // namespace fovea::graph

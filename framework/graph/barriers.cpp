@@ -1,0 +1,298 @@
+#include "framework/graph/barriers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "framework/graph/validate.h"
+
+namespace fovea::graph {
+namespace {
+
+constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                   VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                                   VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
+
+// One pass touching one copy of one resource, all its ports taken together.
+struct Touch {
+  uint32_t resource;
+  uint32_t version;  // index into Planner::groups_: the version read or made
+  AccessScope scope;
+  bool reads, writes, previous;
+};
+
+// What is known about one copy of a resource at a point of the frame.
+struct State {
+  VkPipelineStageFlags2 pendingStage = 0;  // a write that nothing has waited for yet
+  VkAccessFlags2 pendingAccess = 0;
+  VkPipelineStageFlags2 writeStage = 0;  // the last write, waited for or not
+  VkAccessFlags2 writeAccess = 0;
+  VkPipelineStageFlags2 readStage = 0;  // readers since, and layout changes made for them
+  VkPipelineStageFlags2 seenStage = 0;  // where the contents are visible
+  VkAccessFlags2 seenAccess = 0;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+// All readers of one version.
+struct ReadGroup {
+  VkPipelineStageFlags2 stage = 0;
+  VkAccessFlags2 access = 0;
+  bool served = false;
+};
+
+// Piece of a heap that no placement splits, and how its last occupant left it.
+struct Segment {
+  VkPipelineStageFlags2 stage = 0;
+  VkAccessFlags2 access = 0;
+};
+
+class Planner {
+ public:
+  Planner(const BoundGraph& graph, const Schedule& schedule, Plan& plan)
+      : graph_(graph), schedule_(schedule), plan_(plan), levels_(schedule.levels()) {}
+
+  void run() {
+    collectTouches();
+    makeSegments();
+    current_.assign(graph_.resources.size(), {});
+    bool history = false;
+    for (const BoundResource& r : graph_.resources) history |= r.history;
+    if (history) previous_.assign(graph_.resources.size(), {});
+    // Copies that change places need two rounds until both carry the state of a whole frame.
+    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) frame(false);
+    plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
+    plan_.endLayout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
+    for (size_t r = 0; r < graph_.resources.size(); ++r) {
+      if (isTransient(graph_.resources[r])) continue;
+      plan_.startLayout[r][0] = current_[r].layout;
+      if (graph_.resources[r].history) plan_.startLayout[r][1] = previous_[r].layout;
+    }
+    frame(true);
+    for (size_t r = 0; r < graph_.resources.size(); ++r) {
+      const bool swapped = graph_.resources[r].history;
+      plan_.endLayout[r] = swapped ? previous_[r].layout : current_[r].layout;
+    }
+  }
+
+ private:
+  void collectTouches();
+  void makeSegments();
+  void frame(bool record);
+  void touch(const Touch& t, BarrierBatch& batch, bool record);
+  void read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch, bool record);
+  void write(const Touch& t, State& state, BarrierBatch& batch, bool record);
+  void occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const;
+  void leave(uint32_t resource);
+
+  static void global(BarrierBatch& batch, VkPipelineStageFlags2 srcStage, VkAccessFlags2 srcAccess,
+                     VkPipelineStageFlags2 dstStage, VkAccessFlags2 dstAccess) {
+    batch.srcStage |= srcStage;
+    batch.srcAccess |= srcAccess;
+    batch.dstStage |= dstStage;
+    batch.dstAccess |=
+        srcAccess ? dstAccess : 0;  // without a write to wait for there is nothing to make visible
+  }
+
+  const BoundGraph& graph_;
+  const Schedule& schedule_;
+  Plan& plan_;
+  const uint32_t levels_;
+  std::vector<Touch> touches_;
+  std::vector<uint32_t> touchFirst_;  // per level
+  std::vector<ReadGroup> groups_;     // per resource: versions 0.., then last frame's copy
+  std::vector<uint32_t> groupFirst_;
+  std::vector<State> current_, previous_;
+  std::vector<uint32_t> placementOf_;                             // per resource, kNone
+  std::vector<std::pair<uint32_t, uint32_t>> placementSegments_;  // per placement: [first, last)
+  std::vector<Segment> segments_;
+  std::vector<uint32_t> leaving_, leavingFirst_;  // resources by the last level of their life
+};
+
+void Planner::collectTouches() {
+  const size_t resources = graph_.resources.size();
+  groupFirst_.assign(resources + 1, 3);
+  for (const uint32_t p : schedule_.order)
+    for (const Access& a : graph_.passes[p].accesses)
+      groupFirst_[a.resource] = std::max(groupFirst_[a.resource], a.version + 3);
+  uint32_t sum = 0;
+  for (uint32_t& first : groupFirst_) sum += std::exchange(first, sum);
+  groups_.assign(sum, {});
+  struct Seen {
+    uint32_t pass = kNone, touch = 0;
+  };
+  std::vector<Seen> seen(resources * 2);
+  touchFirst_.assign(levels_ + 1, 0);
+  touches_.reserve(schedule_.order.size() * 2);
+  for (uint32_t l = 0; l < levels_; ++l) {
+    touchFirst_[l] = static_cast<uint32_t>(touches_.size());
+    for (uint32_t i = schedule_.levelFirst[l]; i < schedule_.levelFirst[l + 1]; ++i) {
+      const uint32_t p = schedule_.order[i];
+      const BoundPass& pass = graph_.passes[p];
+      for (const Access& a : pass.accesses) {
+        const bool depth = isDepthFormat(graph_.resources[a.resource].desc.format);
+        AccessScope scope = accessScope(pass.declaration->kind, a.usage, a.reads, a.writes, depth);
+        const uint32_t slot =
+            a.previous ? groupFirst_[a.resource + 1] - 1 : groupFirst_[a.resource] + a.version;
+        scope.layout = a.layout;
+        if (!a.writes) {
+          groups_[slot].stage |= scope.stage;
+          groups_[slot].access |= scope.access;
+        }
+        Seen& s = seen[a.resource * 2 + a.previous];
+        if (s.pass != p) {
+          s = {p, static_cast<uint32_t>(touches_.size())};
+          touches_.push_back({a.resource, slot, scope, a.reads, a.writes, a.previous});
+          continue;
+        }
+        Touch& t = touches_[s.touch];
+        t.scope.stage |= scope.stage;
+        t.scope.access |= scope.access;
+        t.reads |= a.reads;
+        t.writes |= a.writes;
+      }
+    }
+  }
+  touchFirst_[levels_] = static_cast<uint32_t>(touches_.size());
+}
+
+void Planner::makeSegments() {
+  placementOf_.assign(graph_.resources.size(), kNone);
+  std::vector<std::pair<uint64_t, uint32_t>> edges;  // heap and offset, placement * 2 + end
+  edges.reserve(plan_.placements.size() * 2);
+  for (uint32_t i = 0; i < plan_.placements.size(); ++i) {
+    const Placement& p = plan_.placements[i];
+    placementOf_[p.resource] = i;
+    edges.emplace_back(uint64_t(p.heap) << 56 | p.offset, i * 2);
+    edges.emplace_back(uint64_t(p.heap) << 56 | (p.offset + p.bytes), i * 2 + 1);
+  }
+  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  placementSegments_.resize(plan_.placements.size());
+  uint32_t segment = 0;
+  for (size_t i = 0; i < edges.size(); ++i) {
+    if (i > 0 && edges[i].first != edges[i - 1].first) ++segment;
+    auto& range = placementSegments_[edges[i].second / 2];
+    (edges[i].second & 1 ? range.second : range.first) = segment;
+  }
+  segments_.assign(segment + 1, {});
+  // Resources by the last level of their life; outputs leave after the end of the frame.
+  leavingFirst_.assign(levels_ + 2, 0);
+  const std::vector<Interval> intervals = lifetimes(graph_, schedule_);
+  for (const Placement& p : plan_.placements) ++leavingFirst_[intervals[p.resource].last + 1];
+  for (uint32_t l = 1; l < levels_ + 2; ++l) leavingFirst_[l] += leavingFirst_[l - 1];
+  std::vector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end());
+  leaving_.resize(plan_.placements.size());
+  for (const Placement& p : plan_.placements) leaving_[at[intervals[p.resource].last]++] = p.resource;
+}
+
+void Planner::occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const {
+  const auto [first, last] = placementSegments_[placementOf_[resource]];
+  for (uint32_t s = first; s < last; ++s) {
+    stage |= segments_[s].stage;
+    access |= segments_[s].access;
+  }
+}
+
+// Whoever comes next waits for this occupant, which itself waited for the one before.
+void Planner::leave(uint32_t resource) {
+  const auto [first, last] = placementSegments_[placementOf_[resource]];
+  const State& state = current_[resource];
+  const Segment left{state.pendingStage | state.readStage, state.pendingAccess};
+  for (uint32_t s = first; s < last; ++s) segments_[s] = left;
+}
+
+void Planner::frame(bool record) {
+  if (record) plan_.levels.resize(levels_);
+  for (ReadGroup& group : groups_) group.served = false;
+  BarrierBatch scrap;
+  for (uint32_t l = 0; l < levels_; ++l) {
+    BarrierBatch& batch = record ? plan_.levels[l].before : scrap;
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], batch, record);
+    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
+    if (record)
+      plan_.levels[l].passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
+                                    schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+  }
+  const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};
+  std::vector<uint8_t> done(graph_.resources.size(), 0);
+  for (const BoundOutput& output : graph_.outputs) {
+    if (std::exchange(done[output.resource], 1)) continue;
+    Touch t{output.resource, 0, {}, true, false, false};
+    t.scope.layout = graph_.resources[output.resource].desc.kind == ResourceKind::Image
+                         ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+                         : VK_IMAGE_LAYOUT_UNDEFINED;
+    read(t, current_[output.resource], transfer, record ? plan_.end : scrap, record);
+  }
+  for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i) leave(leaving_[i]);
+  for (size_t r = 0; r < previous_.size(); ++r)
+    if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
+}
+
+void Planner::touch(const Touch& t, BarrierBatch& batch, bool record) {
+  if (t.scope.stage == 0) return;  // only its size is used
+  State& state = t.previous ? previous_[t.resource] : current_[t.resource];
+  if (t.writes) return write(t, state, batch, record);
+  ReadGroup& group = groups_[t.version];
+  if (!std::exchange(group.served, true)) read(t, state, group, batch, record);
+}
+
+void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch, bool record) {
+  const bool image = graph_.resources[t.resource].desc.kind == ResourceKind::Image;
+  if (image && state.layout != t.scope.layout) {
+    if (record)
+      batch.images.push_back({t.resource, t.previous, state.writeStage | state.readStage, group.stage,
+                              state.writeAccess, group.access, state.layout, t.scope.layout});
+    // The change of layout is itself a write, which only this barrier's second scope has waited for.
+    state.writeStage = state.seenStage = group.stage;
+    state.writeAccess = 0;
+    state.seenAccess = group.access;
+    state.readStage = 0;
+    state.layout = t.scope.layout;
+  } else if (group.stage & ~state.seenStage || group.access & ~state.seenAccess) {
+    // Readers of another group may have waited for the write; these have not.
+    if (state.writeStage) global(batch, state.writeStage, state.writeAccess, group.stage, group.access);
+    state.seenStage |= group.stage;
+    state.seenAccess |= group.access;
+  }
+  state.pendingStage = 0;
+  state.pendingAccess = 0;
+  state.readStage |= group.stage;
+}
+
+void Planner::write(const Touch& t, State& state, BarrierBatch& batch, bool record) {
+  const BoundResource& resource = graph_.resources[t.resource];
+  const bool first = !t.reads && isTransient(resource);
+  VkPipelineStageFlags2 source = 0;
+  VkAccessFlags2 sourceAccess = 0;
+  if (first) {
+    occupy(t.resource, source, sourceAccess);
+    state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  } else {
+    source = state.pendingStage | state.readStage;
+    sourceAccess = state.pendingAccess;
+    if (t.reads) {
+      source |= state.writeStage;
+      sourceAccess |= state.writeAccess;
+    }
+  }
+  const bool change = resource.desc.kind == ResourceKind::Image && state.layout != t.scope.layout;
+  // An image's barrier speaks of that image only, so writes of other occupants of its memory need the global
+  // one.
+  if (source && (!change || (first && sourceAccess)))
+    global(batch, source, sourceAccess, t.scope.stage, t.scope.access);
+  if (change && record)
+    batch.images.push_back({t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
+                            state.layout, t.scope.layout});
+  state.pendingStage = state.writeStage = t.scope.stage;
+  state.pendingAccess = state.writeAccess = t.scope.access & kWrites;
+  state.readStage = state.seenStage = 0;
+  state.seenAccess = 0;
+  state.layout = t.scope.layout;
+}
+
+}  // namespace
+
+void placeBarriers(const BoundGraph& graph, const Schedule& schedule, Plan& plan) {
+  Planner(graph, schedule, plan).run();
+}
+
+}  // namespace fovea::graph

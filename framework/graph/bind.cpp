@@ -1,0 +1,428 @@
+// Bind: from names to a checked graph of passes and resources.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "framework/gpu/format.h"
+#include "framework/graph/binder.h"
+#include "framework/graph/hash.h"
+
+namespace fovea::graph {
+
+BoundGraph bind(const Description& description, const Environment& environment, Diagnostics& diagnostics) {
+  return detail::Binder(description, environment, diagnostics).run();
+}
+
+namespace detail {
+
+Binder::Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics)
+    : description_(description),
+      environment_(environment),
+      diagnostics_(diagnostics),
+      registry_(environment.registry ? *environment.registry : Registry::global()) {}
+
+BoundGraph Binder::run() {
+  graph_.name = description_.name;
+  graph_.description = description_.description;
+  declare();
+  assignWires();
+  makeExternals();
+  makeResources();
+  followValues();
+  checkTypes();
+  orderPasses();
+  makeVersions();
+  evaluateSizes();
+  makeAccesses();
+  bindOutputs();
+  if (history_) markHistory();
+  if (inPlace_) checkInPlace();
+  diagnostics_.throwIfErrors();
+  chooseLayouts();
+  graph_.hash = hash();
+  return std::move(graph_);
+}
+
+void Binder::error(const Place& place, std::string path, std::string message, std::string remedy) {
+  diagnostics_.error(description_.location(place), std::move(path), std::move(message), std::move(remedy));
+}
+
+std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
+  return json::joinPath(text(description_.passes[pass].path), rest);
+}
+
+// ---- Passes and parameters
+// -------------------------------------------------------------------------------------
+
+void Binder::declare() {
+  const size_t count = description_.passes.size();
+  graph_.passes.resize(count);
+  firstPort_.resize(count + 1);
+  passBySymbol_.assign(description_.symbols.size(), kNone);
+  std::vector<const PassDeclaration*> types(description_.symbols.size(), nullptr);
+  if (environment_.views.empty()) {
+    graph_.views.push_back("main");
+    viewExtents_.push_back({1, 1});
+  } else {
+    graph_.views.push_back(environment_.views[0].first);
+    viewExtents_.push_back(environment_.views[0].second);
+  }
+  for (uint32_t p = 0; p < count; ++p) {
+    const PassDescription& from = description_.passes[p];
+    BoundPass& pass = graph_.passes[p];
+    pass.name = text(from.name);
+    passBySymbol_[from.name] = p;
+    firstPort_[p] = static_cast<uint32_t>(ports_.size());
+    if (from.type == kNone) continue;
+    const PassDeclaration*& type = types[from.type];
+    if (!type) type = registry_.find(text(from.type));
+    if (!type) {
+      const std::string nearest = nearestName(text(from.type), registry_.types());
+      error(from.typePlace, passPath(p, "type"), fmt::format("no pass type `{}`", text(from.type)),
+            nearest.empty() ? std::string("`fovea passes` lists them")
+                            : fmt::format("did you mean `{}`?", nearest));
+      continue;
+    }
+    pass.declaration = type;
+    bindView(pass, from);
+    bindParameters(pass, from);
+    for (size_t i = 0; i < type->ports.size(); ++i) {
+      PortState& port = ports_.emplace_back();
+      port.pass = p;
+      port.index = static_cast<uint16_t>(i);
+    }
+  }
+  firstPort_[count] = static_cast<uint32_t>(ports_.size());
+  if (description_.outputs.empty() && !diagnostics_.hasErrors()) {
+    const bool effects = std::any_of(graph_.passes.begin(), graph_.passes.end(), [](const BoundPass& p) {
+      return p.declaration && p.declaration->sideEffects;
+    });
+    if (!effects)
+      diagnostics_.error({description_.files.empty() ? description_.name : description_.files[0], 1, 1},
+                         "outputs", "the graph has no outputs, so nothing would run",
+                         "add \"outputs\": {\"image\": \"pass.port\"}");
+  }
+}
+
+void Binder::bindView(BoundPass& pass, const PassDescription& from) {
+  if (from.view == kNone) return;
+  const std::string& name = text(from.view);
+  const auto at = std::find(graph_.views.begin(), graph_.views.end(), name);
+  pass.view = static_cast<uint32_t>(at - graph_.views.begin());
+  if (at == graph_.views.end()) {
+    const auto known = std::find_if(environment_.views.begin(), environment_.views.end(),
+                                    [&](const auto& view) { return view.first == name; });
+    if (known == environment_.views.end()) {
+      std::vector<std::string> names;
+      for (const auto& [view, extent] : environment_.views) names.push_back(view);
+      if (names.empty()) names.push_back("main");
+      pass.view = 0;
+      const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
+      error(from.viewPlace, passPath(p, "view"), fmt::format("no view `{}`", name),
+            fmt::format("there is: {}", fmt::join(names, ", ")));
+      return;
+    }
+    graph_.views.push_back(name);
+    viewExtents_.push_back(known->second);
+  }
+  if (!from.ownView || pass.declaration->usesView) return;
+  for (const PortSpec& port : pass.declaration->ports)
+    for (const MemberSpec& member : port.members)
+      for (const SizeExpr* size : {&member.resource.width, &member.resource.height, &member.resource.count})
+        for (const SizeExpr::Term& term : size->terms())
+          if (term.op == SizeExpr::Op::ViewWidth || term.op == SizeExpr::Op::ViewHeight) return;
+  const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
+  error(from.viewPlace, passPath(p, "view"),
+        fmt::format("`{}` passes do not look through a camera", pass.declaration->type), "remove `view`");
+}
+
+void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
+  const std::vector<ParameterSpec>& specs = pass.declaration->parameters;
+  std::vector<Value> values;
+  values.reserve(specs.size());
+  for (const ParameterSpec& spec : specs) values.push_back(spec.defaultValue);
+  for (uint32_t i = 0; i < from.parameterCount; ++i) {
+    const ParameterDescription& given = description_.parameters[from.firstParameter + i];
+    const std::string& name = text(given.name);
+    size_t k = 0;
+    while (k < specs.size() && specs[k].name != name) ++k;
+    if (k < specs.size()) {
+      readParameter(specs[k], given, from, values[k]);
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const ParameterSpec& spec : specs) names.push_back(spec.name);
+    const std::string nearest = nearestName(name, names);
+    const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
+    error(given.keyPlace, passPath(p, "params." + name),
+          fmt::format("`{}` has no parameter `{}`", pass.declaration->type, name),
+          !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
+          : names.empty()  ? std::string("it has none")
+                           : fmt::format("it has: {}", fmt::join(names, ", ")));
+  }
+  pass.parameters = Parameters(&specs, std::move(values));
+}
+
+namespace {
+
+// What the user gave, for a message.
+std::string describeGiven(const ParameterDescription& given, const SymbolTable& symbols) {
+  switch (given.type) {
+    case json::Value::Type::Bool:
+      return given.integer ? "true" : "false";
+    case json::Value::Type::Int:
+      return std::to_string(given.integer);
+    case json::Value::Type::Real:
+      return fmt::format("{}", given.real);
+    default:
+      return "`" + symbols[given.text] + "`";
+  }
+}
+
+// Command-line text as a number or flag; leaves what cannot be read a text.
+ParameterDescription parseTyped(ParameterDescription given, const std::string& text,
+                                ParameterSpec::Type type) {
+  const char* end = text.data() + text.size();
+  if (type == ParameterSpec::Type::Bool &&
+      (text == "true" || text == "false" || text == "0" || text == "1")) {
+    given.type = json::Value::Type::Bool;
+    given.integer = text == "true" || text == "1";
+  } else if (type == ParameterSpec::Type::Int || type == ParameterSpec::Type::Real) {
+    if (const auto r = std::from_chars(text.data(), end, given.integer);
+        r.ec == std::errc() && r.ptr == end) {
+      given.type = json::Value::Type::Int;
+      given.real = static_cast<double>(given.integer);
+    } else if (const auto d = std::from_chars(text.data(), end, given.real);
+               d.ec == std::errc() && d.ptr == end) {
+      given.type = json::Value::Type::Real;
+    }
+  }
+  return given;
+}
+
+std::string rangeText(const ParameterSpec& spec) {
+  const char* kind = spec.type == ParameterSpec::Type::Int ? "a whole number" : "a number";
+  if (std::isinf(spec.min) && std::isinf(spec.max)) return kind;
+  if (std::isinf(spec.max)) return fmt::format("{} of at least {}", kind, spec.min);
+  if (std::isinf(spec.min)) return fmt::format("{} of at most {}", kind, spec.max);
+  return fmt::format("{} from {} to {}", kind, spec.min, spec.max);
+}
+
+}  // namespace
+
+bool Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& from,
+                           const PassDescription& pass, Value& out) {
+  using Type = ParameterSpec::Type;
+  using Json = json::Value::Type;
+  const bool typed = from.fromCommandLine && from.type == Json::String;
+  const ParameterDescription given = typed ? parseTyped(from, text(from.text), spec.type) : from;
+  const bool number = given.type == Json::Int || given.type == Json::Real;
+  const bool inRange =
+      number && std::isfinite(given.real) && given.real >= spec.min && given.real <= spec.max;
+  std::string expected, remedy;
+  switch (spec.type) {
+    case Type::Bool:
+      if (given.type == Json::Bool) return out = given.integer != 0, true;
+      expected = "true or false";
+      break;
+    case Type::Int:
+      if (given.type == Json::Int && inRange) return out = given.integer, true;
+      expected = rangeText(spec);
+      break;
+    case Type::Real:
+      if (inRange) return out = given.real, true;
+      expected = rangeText(spec);
+      break;
+    case Type::Choice:
+      if (given.type == Json::String &&
+          std::find(spec.choices.begin(), spec.choices.end(), text(given.text)) != spec.choices.end())
+        return out = text(given.text), true;
+      expected = fmt::format("one of {}", fmt::join(spec.choices, ", "));
+      if (given.type == Json::String) remedy = nearestName(text(given.text), spec.choices);
+      break;
+    case Type::Text:
+      if (given.type == Json::String) return out = text(given.text), true;
+      expected = "a text";
+      break;
+  }
+  const uint32_t p = static_cast<uint32_t>(&pass - description_.passes.data());
+  error(given.place, passPath(p, "params." + spec.name),
+        fmt::format("parameter `{}`: expected {}, found {}", spec.name, expected,
+                    describeGiven(given, description_.symbols)),
+        remedy.empty() ? std::string() : fmt::format("did you mean `{}`?", remedy));
+  return false;
+}
+
+// ---- Resources
+// -------------------------------------------------------------------------------------------------
+
+void Binder::makeExternals() {
+  for (const ExternalDescription& external : description_.externals) {
+    externalFirst_.push_back(static_cast<uint32_t>(graph_.resources.size()));
+    for (size_t m = 0; m < external.members.size(); ++m) {
+      BoundResource& resource = graph_.resources.emplace_back();
+      resource.name = "inputs." + text(external.name);
+      if (!text(external.members[m]).empty()) resource.name += "." + text(external.members[m]);
+      resource.desc = external.resources[m];
+      if (resource.desc.kind == ResourceKind::Image && resource.desc.width == 0)
+        resource.desc.width = viewExtents_[0].width;
+      if (resource.desc.kind == ResourceKind::Image && resource.desc.height == 0)
+        resource.desc.height = viewExtents_[0].height;
+      resource.external = true;
+      resourcePass_.push_back(kNone);
+    }
+  }
+}
+
+void Binder::makeResources() {
+  size_t count = graph_.resources.size();
+  for (const PortState& port : ports_) {
+    const PortSpec& spec = specOf(port);
+    if (spec.direction == Direction::Output || spec.direction == Direction::Scratch)
+      count += spec.members.size();
+  }
+  graph_.resources.reserve(count);
+  resourcePass_.reserve(count);
+  for (PortState& port : ports_) {
+    const PortSpec& spec = specOf(port);
+    if (spec.direction != Direction::Output && spec.direction != Direction::Scratch) continue;
+    port.value = {static_cast<uint32_t>(graph_.resources.size()), static_cast<uint32_t>(spec.members.size()),
+                  &spec, kNone, kNone};
+    port.state = 2;
+    const std::string& pass = graph_.passes[port.pass].name;
+    for (const MemberSpec& member : spec.members) {
+      BoundResource& resource = graph_.resources.emplace_back();
+      resource.name.reserve(pass.size() + spec.name.size() + member.name.size() + 2);
+      resource.name.append(pass).append(1, '.').append(spec.name);
+      if (!member.name.empty()) resource.name.append(1, '.').append(member.name);
+      resource.lifetime = spec.lifetime;
+      resourcePass_.push_back(port.pass);
+    }
+  }
+  lastVersion_.assign(graph_.resources.size(), 0);
+}
+
+// ---- Accesses
+// --------------------------------------------------------------------------------------------------
+
+void Binder::makeAccesses() {
+  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+    BoundPass& pass = graph_.passes[p];
+    if (!pass.declaration) continue;
+    size_t count = 0;
+    for (uint32_t i = 0; i < portCount(p); ++i) count += pass.declaration->ports[i].members.size();
+    pass.accesses.reserve(count);
+    for (uint32_t i = 0; i < portCount(p); ++i) addAccesses(pass, portsOf(p)[i], pass.declaration->ports[i]);
+  }
+}
+
+void Binder::addAccesses(BoundPass& pass, PortState& port, const PortSpec& spec) {
+  if (port.value.first == kNone) return;
+  const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
+  const bool kept = spec.lifetime != Lifetime::Transient;
+  for (uint32_t m = 0; m < spec.members.size(); ++m) {
+    Access access;
+    access.resource = resourceOf(port, spec, m);
+    if (access.resource == kNone) continue;
+    access.port = port.index;
+    access.member = static_cast<uint16_t>(m);
+    access.usage = spec.members[m].usage;
+    access.reads = input || inout || kept;  // what was there before matters
+    access.writes = !input;
+    access.previous = port.previous;
+    if (port.previous)
+      history_ = true;
+    else if (input)
+      access.version = versionSeen(port, access.resource);
+    else if (inout)
+      access.version = versions_[port.firstVersion + (access.resource - port.value.first)];
+    else
+      access.version = 1;
+    graph_.resources[access.resource].usage |= static_cast<uint32_t>(access.usage);
+    pass.accesses.push_back(access);
+  }
+}
+
+void Binder::bindOutputs() {
+  graph_.outputs.reserve(description_.outputs.size());
+  for (const WireDescription& wire : description_.outputs) {
+    const std::string path = "outputs." + text(wire.target);
+    PortState port;
+    port.pass = kNone;
+    connectWire(port, wire);
+    if (port.value.first == kNone) continue;
+    const bool bundle = port.value.origin && port.value.member == kNone && !port.value.origin->bundle.empty();
+    for (uint32_t m = 0; m < port.value.count; ++m) {
+      const uint32_t resource = port.value.first + m;
+      BoundOutput output;
+      output.name = text(wire.target);
+      if (bundle) output.name += "." + port.value.origin->members[m].name;
+      output.resource = resource;
+      output.version = versionSeen(port, resource);
+      if (output.version != lastVersion_[resource])
+        error(wire.place, path, fmt::format("`{}` is updated in place later in the frame", text(wire.text)),
+              "wire the output to the last pass that updates it");
+      graph_.resources[resource].output = true;
+      graph_.resources[resource].usage |= static_cast<uint32_t>(Usage::TransferRead);
+      graph_.outputs.push_back(std::move(output));
+    }
+  }
+}
+
+// A history edge reads what the resource held at the end of the last frame.
+void Binder::markHistory() {
+  for (PortState& port : ports_) {
+    if (!port.previous || port.value.first == kNone) continue;
+    const WireDescription& wire = description_.wires[port.wire];
+    for (uint32_t m = 0; m < specOf(port).members.size(); ++m) {
+      const uint32_t r = resourceOf(port, specOf(port), m);
+      if (r == kNone) continue;
+      BoundResource& resource = graph_.resources[r];
+      resource.history = true;
+      if (resource.external)
+        error(wire.place, wirePath(port), "an input of the graph has no history",
+              "wire it without `@previous`");
+      else if (resource.lifetime != Lifetime::Transient)
+        error(wire.place, wirePath(port),
+              fmt::format("`{}` is kept and updated in place, so last frame's value is gone", resource.name),
+              "wire it without `@previous`, or make its pass declare it without keep()");
+      else if (port.source != kNone && versionSeen(port, r) != lastVersion_[r])
+        error(wire.place, wirePath(port),
+              fmt::format("`{}` is updated in place later in the frame", text(wire.text)),
+              "`@previous` holds the last update: wire the pass that makes it");
+    }
+  }
+}
+
+uint64_t Binder::hash() const {
+  Hasher h;
+  for (size_t p = 0; p < graph_.passes.size(); ++p) {
+    const BoundPass& pass = graph_.passes[p];
+    h.add(description_.symbols.hash(description_.passes[p].name));
+    h.add(description_.symbols.hash(description_.passes[p].type));
+    h.add(pass.view);
+    for (const Value& value : pass.parameters.values()) h.addValue(value);
+    for (const Access& a : pass.accesses) {
+      h.add(uint64_t(a.resource) << 32 | uint64_t(a.port) << 16 | a.member);
+      h.add(uint64_t(a.version) << 32 | uint64_t(a.usage) << 3 | uint64_t(a.previous) << 2 |
+            uint64_t(a.reads) << 1 | uint64_t(a.writes));
+    }
+  }
+  for (const BoundResource& r : graph_.resources) {
+    const ResourceDesc& d = r.desc;
+    h.add(uint64_t(d.width) << 32 | d.height);
+    h.add(uint64_t(d.depth) << 32 | d.layers);
+    h.add(uint64_t(d.format) << 32 | uint64_t(d.mips) << 8 | uint64_t(d.kind) << 7 | uint64_t(d.volume) << 6 |
+          uint64_t(d.array) << 5 | uint64_t(r.external) << 4 | uint64_t(r.history) << 3 |
+          uint64_t(r.output) << 2 | uint64_t(r.lifetime));
+    h.add(d.count * 31 + d.stride);
+  }
+  for (const BoundOutput& o : graph_.outputs) h.add(o.name), h.add(o.resource);
+  for (const std::string& view : graph_.views) h.add(view);
+  return h.value();
+}
+
+}  // namespace detail
+}  // namespace fovea::graph

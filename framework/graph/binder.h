@@ -1,0 +1,121 @@
+// Inside bind: flat tables over the ports of all passes. Names were turned into numbers by resolve, so
+// binding is a few walks over arrays; texts are only put together for a message.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/graph/compile.h"
+
+namespace fovea::graph::detail {
+
+// What a port carries: consecutive resources, made by one output port or given by the caller.
+struct PortValue {
+  uint32_t first = kNone;  // kNone: nothing, or a mistake that has been reported
+  uint32_t count = 0;
+  const PortSpec* origin = nullptr;  // nullptr: external
+  uint32_t member = kNone;           // one member of a bundle, as a plain value
+  uint32_t external = kNone;
+};
+
+struct PortState {
+  uint32_t pass = 0;
+  uint16_t index = 0;       // in the declaration
+  uint32_t wire = kNone;    // Description::wires
+  uint32_t source = kNone;  // producing port
+  bool previous = false;
+  uint8_t state = 0;  // value: 0 unknown, 1 being followed, 2 known
+  PortValue value;
+  uint32_t firstVersion = kNone;  // producing ports: versions_, one per resource of the value
+};
+
+class Binder {
+ public:
+  Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics);
+  BoundGraph run();
+
+ private:
+  // bind.cpp: passes, parameters, accesses, outputs
+  void declare();
+  void bindView(BoundPass& pass, const PassDescription& from);
+  void bindParameters(BoundPass& pass, const PassDescription& from);
+  bool readParameter(const ParameterSpec& spec, const ParameterDescription& from, const PassDescription& pass,
+                     Value& out);
+  void makeExternals();
+  void makeResources();
+  void makeAccesses();
+  void addAccesses(BoundPass& pass, PortState& port, const PortSpec& spec);
+  void bindOutputs();
+  void markHistory();
+  uint64_t hash() const;
+
+  // connect.cpp: wires
+  void assignWires();
+  void connectWire(PortState& port, const WireDescription& wire);
+  bool selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member);
+  void followValues();
+  void followValue(uint32_t port);
+  void checkTypes();
+  void checkPort(const PortState& port, const PortSpec& spec);
+  bool fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const;
+  // The resource that member `m` of this port stands for; kNone when it has none.
+  uint32_t resourceOf(const PortState& port, const PortSpec& spec, uint32_t m) const;
+  std::string missingRemedy(const PortSpec& spec) const;
+  std::string describeValue(const PortValue& value) const;
+  std::string describeWanted(const PortSpec& spec) const;
+
+  // order.cpp: order, versions, hazards that no order can avoid
+  void orderPasses();
+  void reportCycle(const std::vector<uint32_t>& waiting);
+  void makeVersions();
+  void checkInPlace();
+  uint32_t versionSeen(const PortState& port, uint32_t resource) const;
+  void chooseLayouts();
+
+  // sizes.cpp
+  void evaluateSizes();
+  bool evaluatePass(uint32_t pass, int depth);
+  bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
+                        BoundResource& resource, int depth);
+  bool evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why);
+  bool evaluateTerm(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);
+  bool sizeOfPort(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);
+  void checkLimits(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
+                   const BoundResource& resource);
+  std::string parametersOf(const ResourceSpec& spec) const;
+  std::string otherChoices(uint32_t p, const ResourceSpec& spec) const;
+
+  const std::string& text(Symbol symbol) const { return description_.symbols[symbol]; }
+  void error(const Place& place, std::string path, std::string message, std::string remedy = {});
+  std::string passPath(uint32_t pass, std::string_view rest = {}) const;
+  std::string wirePath(const PortState& port) const;
+  const PortSpec& specOf(const PortState& port) const {
+    return graph_.passes[port.pass].declaration->ports[port.index];
+  }
+  PortState* portsOf(uint32_t pass) { return ports_.data() + firstPort_[pass]; }
+  uint32_t portCount(uint32_t pass) const { return firstPort_[pass + 1] - firstPort_[pass]; }
+
+  const Description& description_;
+  const Environment& environment_;
+  Diagnostics& diagnostics_;
+  const Registry& registry_;
+  BoundGraph graph_;
+  std::vector<uint32_t> passBySymbol_;
+  std::vector<uint32_t> firstPort_;  // per pass, and one past the last
+  std::vector<PortState> ports_;
+  std::vector<uint32_t> versions_;
+  std::vector<uint32_t> lastVersion_;    // per resource
+  std::vector<uint32_t> order_;          // passes, producers first; incomplete after a cycle
+  std::vector<uint32_t> externalFirst_;  // first resource of each external
+  std::vector<VkExtent2D> viewExtents_;  // per BoundGraph::views
+  std::vector<uint32_t> resourcePass_;   // producing pass, kNone for externals
+  std::vector<uint8_t> sized_;           // per pass: 0 not yet, 1 being done, 2 done, 3 failed
+  bool inPlace_ = false, history_ = false;
+};
+
+// "image rgba16f", "buffer of Vpl (64 bytes each)"
+std::string describeResource(ResourceKind kind, VkFormat format, bool volume, bool array,
+                             std::string_view element, uint32_t stride);
+
+}  // namespace fovea::graph::detail

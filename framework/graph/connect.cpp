@@ -1,0 +1,362 @@
+// Bind, wires: every wired port gets the resources it stands for, and types are compared.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/gpu/format.h"
+#include "framework/graph/binder.h"
+#include "framework/graph/validate.h"
+
+namespace fovea::graph::detail {
+
+namespace {
+
+std::string formatName(VkFormat format) {
+  for (const gpu::FormatInfo& info : gpu::formats())
+    if (info.format == format) return std::string(info.name);
+  return fmt::format("VkFormat {}", static_cast<int>(format));
+}
+
+bool producing(const PortSpec& spec) {
+  return spec.direction == Direction::Output || spec.direction == Direction::InOut;
+}
+
+}  // namespace
+
+std::string describeResource(ResourceKind kind, VkFormat format, bool volume, bool array,
+                             std::string_view element, uint32_t stride) {
+  if (kind == ResourceKind::Buffer) return fmt::format("a buffer of {} ({} bytes each)", element, stride);
+  const char* shape = volume ? "a 3D image" : array ? "an image array" : "an image";
+  if (format == VK_FORMAT_UNDEFINED) return fmt::format("{} of floating-point texels", shape);
+  return fmt::format("{} of {}", shape, formatName(format));
+}
+
+std::string Binder::describeValue(const PortValue& value) const {
+  if (value.origin && !value.origin->bundle.empty() && value.member == kNone)
+    return fmt::format("a bundle `{}`", value.origin->bundle);
+  if (value.external != kNone && value.member == kNone) {
+    const std::string& bundle = text(description_.externals[value.external].bundle);
+    if (!bundle.empty()) return fmt::format("a bundle `{}`", bundle);
+  }
+  if (value.origin) {
+    const ResourceSpec& r = value.origin->members[value.member == kNone ? 0 : value.member].resource;
+    return describeResource(r.kind, r.format, r.volume, r.array, r.element, r.stride);
+  }
+  const ResourceDesc& d = graph_.resources[value.first].desc;
+  return describeResource(d.kind, d.format, d.volume, d.array, d.element, d.stride);
+}
+
+std::string Binder::describeWanted(const PortSpec& spec) const {
+  if (!spec.bundle.empty()) return fmt::format("a bundle `{}`", spec.bundle);
+  const ResourceSpec& r = spec.members[0].resource;
+  return describeResource(r.kind, r.format, r.volume, r.array, r.element, r.stride);
+}
+
+std::string Binder::wirePath(const PortState& port) const {
+  const WireDescription& wire = description_.wires[port.wire];
+  return passPath(port.pass, "inputs." + text(wire.target));
+}
+
+// ---- From names to ports
+// ---------------------------------------------------------------------------------------
+
+void Binder::assignWires() {
+  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+    const PassDescription& from = description_.passes[p];
+    const PassDeclaration* declaration = graph_.passes[p].declaration;
+    if (!declaration) continue;
+    const std::vector<PortSpec>& specs = declaration->ports;
+    // Inputs are mostly wired in the order of the declaration: start looking where the last one was found.
+    size_t guess = 0;
+    for (uint32_t i = 0; i < from.inputCount; ++i) {
+      const WireDescription& wire = description_.wires[from.firstInput + i];
+      const std::string& name = text(wire.target);
+      size_t k = 0;
+      for (; k < specs.size(); ++k, ++guess) {
+        if (guess >= specs.size()) guess = 0;
+        if (specs[guess].name == name) break;
+      }
+      const bool wired = k < specs.size() && (specs[guess].direction == Direction::Input ||
+                                              specs[guess].direction == Direction::InOut);
+      if (wired) {
+        portsOf(p)[guess].wire = from.firstInput + i;
+        ++guess;
+        continue;
+      }
+      std::vector<std::string> names;
+      for (const PortSpec& spec : specs)
+        if (spec.direction == Direction::Input || spec.direction == Direction::InOut)
+          names.push_back(spec.name);
+      const std::string nearest = nearestName(name, names);
+      error(wire.keyPlace, passPath(p, "inputs." + name),
+            k < specs.size() ? fmt::format("`{}` is an output of `{}`, not an input", name, declaration->type)
+                             : fmt::format("`{}` has no input `{}`", declaration->type, name),
+            !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
+            : names.empty()  ? std::string("it has none")
+                             : fmt::format("it has: {}", fmt::join(names, ", ")));
+    }
+  }
+}
+
+// The port of `pass` that the wire names; false and a message when there is none.
+bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member) {
+  const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
+  port = member = kNone;
+  uint32_t only = kNone, offered = 0;
+  for (uint32_t k = 0; k < specs.size(); ++k) {
+    if (!producing(specs[k])) continue;
+    only = k;
+    ++offered;
+    if (wire.port != kNone && specs[k].name == text(wire.port)) port = k;
+  }
+  Symbol memberName = wire.member;
+  if (port == kNone && offered == 1 && (wire.port == kNone || wire.member == kNone)) {
+    port = only;  // "gbuffer", or "gbuffer.position": a member of the only output
+    if (wire.port != kNone) memberName = wire.port;
+  }
+  if (port != kNone && memberName == kNone) return true;
+  if (port != kNone) {
+    const std::vector<MemberSpec>& members = specs[port].members;
+    for (uint32_t m = 0; m < members.size(); ++m)
+      if (members[m].name == text(memberName)) member = m;
+    if (member != kNone) return true;
+  }
+  return false;
+}
+
+void Binder::connectWire(PortState& port, const WireDescription& wire) {
+  const std::string path = port.pass == kNone ? "outputs." + text(wire.target) : std::string();
+  auto wrong = [&](std::string message, std::string remedy) {
+    error(wire.place, port.pass == kNone ? path : wirePath(port), std::move(message), std::move(remedy));
+    port.state = 2;
+  };
+  port.previous = wire.previous;
+  if (wire.external != kNone) {
+    const ExternalDescription& external = description_.externals[wire.external];
+    port.value = {externalFirst_[wire.external], static_cast<uint32_t>(external.members.size()), nullptr,
+                  kNone, wire.external};
+    port.state = 2;
+    if (wire.member == kNone) return;
+    const auto at = std::find(external.members.begin(), external.members.end(), wire.member);
+    port.value.member = static_cast<uint32_t>(at - external.members.begin());
+    port.value.first += port.value.member;
+    port.value.count = 1;
+    if (at != external.members.end()) return;
+    port.value = {};
+    return wrong(fmt::format("the input `{}` has no member `{}`", text(external.name), text(wire.member)),
+                 {});
+  }
+  const uint32_t pass = passBySymbol_[wire.pass];
+  if (pass == kNone || !graph_.passes[pass].declaration) {
+    port.state = 2;  // the unknown pass or its unknown type has been reported
+    return;
+  }
+  uint32_t index, member;
+  if (!selectPort(wire, pass, index, member)) {
+    std::vector<std::string> names;
+    const std::string& name = text(description_.passes[pass].name);
+    for (const PortSpec& spec : graph_.passes[pass].declaration->ports) {
+      if (!producing(spec)) continue;
+      names.push_back(name + "." + spec.name);
+      if (wire.member == kNone && spec.bundle.empty()) continue;
+      for (const MemberSpec& m : spec.members)
+        if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
+    }
+    const std::string nearest = nearestName(text(wire.text), names);
+    return wrong(wire.port == kNone
+                     ? fmt::format("`{}` has {} outputs: name one", text(wire.text), names.size())
+                     : fmt::format("no output `{}`", text(wire.text)),
+                 !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
+                 : names.empty()                        ? fmt::format("`{}` has no outputs", name)
+                                 : fmt::format("there is: {}", fmt::join(names, ", ")));
+  }
+  port.source = firstPort_[pass] + index;
+  if (port.pass == kNone) {  // an output of the graph: values are known by now
+    port.value = ports_[port.source].value;
+    port.state = 2;
+  }
+  if (member == kNone) return;
+  if (port.pass != kNone)
+    port.value.member = member;  // applied when the value is followed
+  else if (port.value.first != kNone)
+    port.value = {port.value.first + member, 1, port.value.origin, member, port.value.external};
+}
+
+// ---- Values
+// ----------------------------------------------------------------------------------------------------
+
+void Binder::followValues() {
+  for (PortState& port : ports_)
+    if (port.wire != kNone) connectWire(port, description_.wires[port.wire]);
+  for (uint32_t i = 0; i < ports_.size(); ++i)
+    if (ports_[i].state == 0) followValue(i);
+}
+
+// An in-out port offers what it is wired to: walk up to a port whose value is known, then down again.
+void Binder::followValue(uint32_t port) {
+  std::vector<uint32_t> chain;
+  uint32_t at = port;
+  while (at != kNone && ports_[at].state == 0) {
+    ports_[at].state = 1;
+    chain.push_back(at);
+    at = ports_[at].source;
+  }
+  if (at != kNone && ports_[at].state == 1 && ports_[at].wire != kNone) {
+    error(description_.wires[ports_[at].wire].place, wirePath(ports_[at]),
+          "in-place updates wired in a circle: no pass makes the first value",
+          "wire one of them to an output");
+  }
+  for (size_t i = chain.size(); i-- > 0;) {
+    PortState& state = ports_[chain[i]];
+    const uint32_t member = state.value.member;
+    state.state = 2;
+    state.value = state.source == kNone ? PortValue{} : ports_[state.source].value;
+    if (state.value.first == kNone || member == kNone) continue;
+    // The member's name was looked up in the source's declaration; an in-out port there may list fewer
+    // members.
+    const std::string& name = specOf(ports_[state.source]).members[member].name;
+    state.value.member = member;
+    const PortSpec* origin = state.value.origin;
+    if (origin)
+      for (uint32_t m = 0; m < origin->members.size(); ++m)
+        if (origin->members[m].name == name) state.value.member = m;
+    state.value.first += state.value.member;
+    state.value.count = 1;
+  }
+}
+
+uint32_t Binder::resourceOf(const PortState& port, const PortSpec& spec, uint32_t m) const {
+  const PortValue& value = port.value;
+  if (value.first == kNone) return kNone;
+  if (value.count == 1 && spec.bundle.empty()) return value.first;
+  if (value.origin == &spec) return value.first + m;
+  const std::string& name = spec.members[m].name;
+  if (value.origin) {
+    const std::vector<MemberSpec>& members = value.origin->members;
+    for (uint32_t k = 0; k < members.size(); ++k)
+      if (members[k].name == name) return value.first + k;
+  } else {
+    const std::vector<Symbol>& members = description_.externals[value.external].members;
+    for (uint32_t k = 0; k < members.size(); ++k)
+      if (text(members[k]) == name) return value.first + k;
+  }
+  return kNone;
+}
+
+// ---- Types
+// -----------------------------------------------------------------------------------------------------
+
+void Binder::checkTypes() {
+  for (const PortState& port : ports_) {
+    const PortSpec& spec = specOf(port);
+    if (spec.direction == Direction::Output || spec.direction == Direction::Scratch) continue;
+    inPlace_ = inPlace_ || spec.direction == Direction::InOut;
+    checkPort(port, spec);
+  }
+}
+
+void Binder::checkPort(const PortState& port, const PortSpec& spec) {
+  if (port.wire == kNone) {
+    // A wire that was given but could not be resolved has been reported already.
+    if (spec.optional || diagnostics_.hasErrors()) {
+      const PassDescription& pass = description_.passes[port.pass];
+      const std::string path = passPath(port.pass, "inputs." + spec.name);
+      const bool said = std::any_of(diagnostics_.list().begin(), diagnostics_.list().end(),
+                                    [&](const Diagnostic& d) { return d.path == path; });
+      if (spec.optional || said || pass.type == kNone) return;
+    }
+    error(description_.passes[port.pass].place, passPath(port.pass, "inputs"),
+          fmt::format("`{}`: the input `{}` ({}) is not wired", graph_.passes[port.pass].name, spec.name,
+                      describeWanted(spec)),
+          missingRemedy(spec));
+    return;
+  }
+  if (port.value.first == kNone) return;
+  const WireDescription& wire = description_.wires[port.wire];
+  if (port.previous && spec.direction == Direction::InOut)
+    error(wire.place, wirePath(port),
+          fmt::format("`{}` is updated in place, last frame's value cannot be", spec.name),
+          "wire it without `@previous`");
+  const bool single = port.value.member != kNone;
+  std::string bundle;
+  if (!single && port.value.origin) bundle = port.value.origin->bundle;
+  if (!single && port.value.external != kNone)
+    bundle = text(description_.externals[port.value.external].bundle);
+  std::string why;
+  bool good = bundle == spec.bundle;
+  for (uint32_t m = 0; good && m < spec.members.size(); ++m) {
+    const uint32_t resource = resourceOf(port, spec, m);
+    if (resource == kNone) {
+      good = false;
+      why = fmt::format("it lacks the member `{}`", spec.members[m].name);
+    } else {
+      good = fits(spec.members[m], resource, why);
+    }
+  }
+  if (good) return;
+  std::string remedy;
+  if (!bundle.empty() && spec.bundle.empty() && port.value.origin)
+    for (const MemberSpec& member : port.value.origin->members) {
+      const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
+      if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
+          remedy.empty())
+        remedy = fmt::format("wire a member of it, such as `{}.{}`", text(wire.text), member.name);
+    }
+  error(wire.place, wirePath(port),
+        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), text(wire.text),
+                    describeValue(port.value), why.empty() ? why : ": " + why),
+        remedy);
+}
+
+bool Binder::fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const {
+  const ResourceSpec& want = wanted.resource;
+  ResourceKind kind = ResourceKind::Image;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  bool volume = false, array = false;
+  uint32_t stride = 0;
+  std::string_view element;
+  auto read = [&](const auto& have) {
+    kind = have.kind, format = have.format, volume = have.volume, array = have.array, stride = have.stride;
+    element = have.element;
+  };
+  // Sizes are evaluated later, so compare declarations.
+  const uint32_t pass = resourcePass_[resource];
+  if (pass == kNone) {
+    read(graph_.resources[resource].desc);
+  } else {
+    const PortState* ports = ports_.data() + firstPort_[pass];
+    const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
+    for (uint32_t k = 0; k < specs.size(); ++k) {
+      const bool makes = specs[k].direction == Direction::Output || specs[k].direction == Direction::Scratch;
+      if (makes && resource - ports[k].value.first < specs[k].members.size()) {
+        read(specs[k].members[resource - ports[k].value.first].resource);
+        break;
+      }
+    }
+  }
+  bool good = kind == want.kind;
+  if (good && kind == ResourceKind::Buffer) good = element == want.element && stride == want.stride;
+  if (good && kind == ResourceKind::Image)
+    good = volume == want.volume && array == want.array &&
+           (format == want.format || (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(format)));
+  if (!good && !wanted.name.empty())
+    why = fmt::format("its member `{}` is {}", wanted.name,
+                      describeResource(kind, format, volume, array, element, stride));
+  return good;
+}
+
+std::string Binder::missingRemedy(const PortSpec& spec) const {
+  std::vector<std::string> names;
+  const MemberSpec& wanted = spec.members[0];
+  for (const PortState& port : ports_) {
+    const PortSpec& other = specOf(port);
+    if (other.direction != Direction::Output || other.bundle != spec.bundle || names.size() >= 6) continue;
+    std::string why;
+    if (spec.bundle.empty() && !fits(wanted, port.value.first, why)) continue;
+    names.push_back(fmt::format("{}.{}", graph_.passes[port.pass].name, other.name));
+  }
+  if (names.empty()) return "no pass of the graph makes one";
+  return fmt::format("these would fit: {}", fmt::join(names, ", "));
+}
+
+}  // namespace fovea::graph::detail

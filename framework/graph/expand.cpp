@@ -1,0 +1,563 @@
+// Resolve, structure: scopes, parameters, overrides and sub-graphs become one flat list of passes.
+#include "framework/graph/expand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "framework/gpu/format.h"
+
+namespace fovea::graph::detail {
+
+using json::Member;
+using Type = json::Value::Type;
+
+Scope::Parameter* Scope::findParameter(std::string_view name) {
+  for (Parameter& p : parameters)
+    if (p.name == name) return &p;
+  return nullptr;
+}
+
+Scope::Input* Scope::findInput(std::string_view name) {
+  for (Input& i : inputs)
+    if (i.name == name) return &i;
+  return nullptr;
+}
+
+Expander::Expander(Description& description, const LoadOptions& options, Diagnostics& diagnostics)
+    : description_(description), options_(options), diagnostics_(diagnostics) {
+  for (const Override& o : options.overrides) {
+    const size_t dot = o.name.rfind('.');
+    PendingOverride pending;
+    pending.source = &o;
+    if (dot != std::string::npos) pending.target = o.name.substr(0, dot);
+    pending.name = dot == std::string::npos ? o.name : o.name.substr(dot + 1);
+    overrides_.push_back(std::move(pending));
+  }
+}
+
+void Expander::error(const json::Position& where, const std::string& path, std::string message,
+                     std::string remedy) {
+  // A wire through a sub-graph's output is looked at once for the output and once for each reader.
+  for (const Diagnostic& d : diagnostics_.list())
+    if (d.where.line == where.line && d.where.column == where.column && d.message == message &&
+        d.where.file == (where.file ? *where.file : std::string()))
+      return;
+  diagnostics_.error(where.location(), path, std::move(message), std::move(remedy));
+}
+
+std::string Expander::nearestRemedy(std::string_view word, const std::vector<std::string>& names) {
+  const std::string nearest = nearestName(word, names);
+  if (!nearest.empty()) return fmt::format("did you mean `{}`?", nearest);
+  if (names.empty() || names.size() > 40) return {};
+  return fmt::format("there is: {}", fmt::join(names, ", "));
+}
+
+Place Expander::place(const json::Position& position) {
+  const auto [at, added] = fileIndex_.try_emplace(position.file.get(), 0);
+  if (added) {
+    keepFiles_.push_back(position.file);  // keeps the address from being used again
+    const std::string name = position.file ? *position.file : std::string();
+    const auto known = std::find(description_.files.begin(), description_.files.end(), name);
+    at->second = static_cast<uint32_t>(known - description_.files.begin());
+    if (known == description_.files.end()) description_.files.push_back(name);
+  }
+  return {at->second, position.line, position.column};
+}
+
+// ---- Scopes
+// ----------------------------------------------------------------------------------------------------
+
+void Expander::expandRoot(json::Value document, const std::filesystem::path& file) {
+  Scope& root = scopes_.emplace_back();
+  root.file = file;
+  root.document = std::move(document);
+  fileStack_.push_back(file.lexically_normal());
+  readParameters(0, nullptr, {});
+  readRootInputs(root);
+  expandScope(0);
+}
+
+namespace {
+
+bool goodName(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+}  // namespace
+
+void Expander::expandScope(size_t index) {
+  Scope& scope = scopes_[index];
+  json::ObjectReader reader(scope.document, {}, diagnostics_);
+  reader.text("$schema");
+  const std::string text = reader.text("description");
+  if (index == 0) description_.description = text;
+  reader.object("parameters");  // read by readParameters
+  reader.object("inputs");      // read by readRootInputs or readInputs
+  reader.object("outputs");     // read by wiring
+  if (const json::Value* passes = reader.object("passes"))
+    for (const Member& member : passes->members) expandPass(index, member);
+  reader.finish();
+}
+
+void Expander::readParameters(size_t index, const json::Value* given, const std::string& givenPath) {
+  Scope& scope = scopes_[index];
+  if (const json::Value* own = scope.document.find("parameters"); own && own->isObject()) {
+    for (const Member& member : own->members) {
+      const std::string path = json::joinPath("parameters", member.key);
+      Scope::Parameter parameter;
+      parameter.name = member.key;
+      const json::Value& v = member.value;
+      if (!goodName(member.key))
+        error(member.keyWhere, path, fmt::format("`{}` is no name for a parameter", member.key),
+              "letters, digits, _ and -");
+      if (v.isString() && v.string.size() > 1 && v.string[0] == '$' && v.string[1] != '$') {
+        error(v.where, path, "a parameter's default cannot be another parameter", "write the value itself");
+        continue;
+      }
+      if (readScalar(scope, v, path, parameter.value)) {
+        parameter.value.keyPlace = place(member.keyWhere);
+        scope.parameters.push_back(std::move(parameter));
+      }
+    }
+  }
+  if (given && given->isObject()) {
+    for (const Member& member : given->members) {
+      const std::string path = json::joinPath(givenPath, member.key);
+      Scope::Parameter* parameter = scope.findParameter(member.key);
+      if (!parameter) {
+        std::vector<std::string> names;
+        for (const Scope::Parameter& p : scope.parameters) names.push_back(p.name);
+        error(member.keyWhere, path, fmt::format("the sub-graph has no parameter `{}`", member.key),
+              nearestRemedy(member.key, names));
+        continue;
+      }
+      ParameterDescription value;
+      if (!readScalar(scopes_[scope.parent], member.value, path, value)) continue;
+      const bool number = value.type == Type::Int || value.type == Type::Real;
+      const bool wanted = parameter->value.type == Type::Int || parameter->value.type == Type::Real;
+      if (number != wanted || (!number && value.type != parameter->value.type && !value.fromCommandLine)) {
+        error(member.value.where, path,
+              fmt::format("expected {}, as the sub-graph's default, found {}",
+                          wanted                                ? "a number"
+                          : parameter->value.type == Type::Bool ? "true or false"
+                                                                : "a text",
+                          member.value.describe()));
+        continue;
+      }
+      parameter->value = value;
+    }
+  }
+  overrideParameters(scope);
+}
+
+void Expander::overrideParameters(Scope& scope) {
+  const std::string target =
+      scope.prefix.empty() ? std::string() : scope.prefix.substr(0, scope.prefix.size() - 1);
+  for (PendingOverride& o : overrides_) {
+    if (o.target != target) continue;
+    Scope::Parameter* parameter = scope.findParameter(o.name);
+    if (!parameter) continue;
+    o.used = true;
+    parameter->value = overrideValue(parameter->value, *o.source);
+  }
+}
+
+// The override read as the type of the value it replaces.
+ParameterDescription Expander::overrideValue(const ParameterDescription& current, const Override& source) {
+  json::Position where;
+  where.file = std::make_shared<const std::string>(fmt::format("--set {}={}", source.name, source.value));
+  ParameterDescription value;
+  value.keyPlace = value.place = place(where);
+  value.fromCommandLine = true;
+  value.type = Type::String;
+  value.text = intern(source.value);
+  if (current.type == Type::String || current.fromCommandLine) return value;
+  const std::string& text = source.value;
+  const char* end = text.data() + text.size();
+  if (current.type == Type::Bool) {
+    value.type = Type::Bool;
+    value.integer = text == "true" || text == "1";
+    if (text != "true" && text != "false" && text != "0" && text != "1")
+      error(where, {}, fmt::format("`{}` is true or false, not `{}`", source.name, text));
+    return value;
+  }
+  if (const auto [at, ec] = std::from_chars(text.data(), end, value.integer);
+      ec == std::errc() && at == end) {
+    value.type = Type::Int;
+    value.real = static_cast<double>(value.integer);
+    return value;
+  }
+  value.type = Type::Real;
+  const auto [at, ec] = std::from_chars(text.data(), end, value.real);
+  if (ec != std::errc() || at != end || !std::isfinite(value.real)) {
+    value.real = current.real;
+    error(where, {}, fmt::format("`{}` is a number, not `{}`", source.name, text));
+  }
+  return value;
+}
+
+bool Expander::readScalar(Scope& scope, const json::Value& value, const std::string& path,
+                          ParameterDescription& out) {
+  out.type = value.type;
+  out.place = place(value.where);
+  switch (value.type) {
+    case Type::Bool:
+      out.integer = value.boolean;
+      return true;
+    case Type::Int:
+      out.integer = value.integer;
+      [[fallthrough]];
+    case Type::Real:
+      out.real = value.real;
+      return true;
+    case Type::String:
+      break;
+    default:
+      error(value.where, path,
+            fmt::format("expected true, false, a number or a text, found {}", value.describe()));
+      return false;
+  }
+  const std::string& text = value.string;
+  if (text.size() < 2 || text[0] != '$' || text[1] == '$') {  // "$$" stands for one '$'
+    out.text = intern(text.size() >= 2 && text[0] == '$' ? std::string_view(text).substr(1)
+                                                         : std::string_view(text));
+    return true;
+  }
+  Scope::Parameter* parameter = scope.findParameter(text.substr(1));
+  if (!parameter) {
+    std::vector<std::string> names;
+    for (const Scope::Parameter& p : scope.parameters) names.push_back("$" + p.name);
+    error(value.where, path, fmt::format("no graph parameter `{}`", text), nearestRemedy(text, names));
+    return false;
+  }
+  parameter->used = true;
+  const Place here = out.place;
+  out = parameter->value;
+  // A wrong value is reported where it was typed on the command line, else where it is used.
+  if (!out.fromCommandLine) out.place = here;
+  return true;
+}
+
+Symbol Expander::readView(Scope& scope, const json::Value& value, const std::string& path) {
+  ParameterDescription name;
+  if (!readScalar(scope, value, path, name)) return kNone;
+  if (name.type == Type::String) return name.text;
+  error(value.where, path, fmt::format("expected the name of a view, found {}", value.describe()));
+  return kNone;
+}
+
+// ---- Inputs
+// ----------------------------------------------------------------------------------------------------
+
+int64_t Expander::readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback) {
+  const json::Value* value = reader.find(key);
+  if (!value) return fallback;
+  ParameterDescription size;
+  if (!readScalar(scope, *value, reader.pathOf(key), size)) return fallback;
+  int64_t number = size.integer;
+  if (size.type == Type::String && size.fromCommandLine) {
+    const std::string& text = description_.symbols[size.text];
+    const auto [at, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (ec == std::errc() && at == text.data() + text.size()) size.type = Type::Int;
+  }
+  if (size.type == Type::Int && number >= 1 && number <= int64_t(1) << 31) return number;
+  error(value->where, reader.pathOf(key),
+        fmt::format("`{}`: expected a whole number from 1 to {}, found {}", key, int64_t(1) << 31,
+                    value->describe()));
+  return fallback;
+}
+
+ResourceDesc Expander::readResource(Scope& scope, json::ObjectReader& reader) {
+  ResourceDesc desc;
+  if (const json::Value* format = reader.has("format") ? reader.find("format") : nullptr) {
+    desc.format = format->isString() ? gpu::formatFromName(format->string) : VK_FORMAT_UNDEFINED;
+    if (desc.format == VK_FORMAT_UNDEFINED) {
+      std::vector<std::string> names;
+      for (const gpu::FormatInfo& info : gpu::formats()) names.emplace_back(info.name);
+      error(format->where, reader.pathOf("format"), fmt::format("no texel format: {}", format->describe()),
+            nearestRemedy(format->string, names));
+    }
+    desc.volume = reader.has("depth");
+    desc.array = reader.has("layers");
+    desc.width = static_cast<uint32_t>(readSize(scope, reader, "width", 0));
+    desc.height = static_cast<uint32_t>(readSize(scope, reader, "height", 0));
+    desc.depth = static_cast<uint32_t>(readSize(scope, reader, "depth", 1));
+    desc.layers = static_cast<uint32_t>(readSize(scope, reader, "layers", 1));
+    desc.mips = static_cast<uint32_t>(readSize(scope, reader, "mips", 1));
+    if (desc.mips > 32) desc.mips = 32;
+    if (desc.volume && desc.array)
+      error(reader.value().where, reader.pathOf("layers"), "an image has `depth` or `layers`, not both");
+    return desc;
+  }
+  desc.kind = ResourceKind::Buffer;
+  if (!reader.has("element")) {
+    error(reader.value().where, reader.pathOf("format"),
+          "an input needs a `format` (image), an `element` (buffer) or a `bundle`");
+    reader.find("format");
+    reader.find("bundle");
+  }
+  const std::string element = reader.text("element");
+  desc.stride = static_cast<uint32_t>(readSize(scope, reader, "stride", 4));
+  desc.count = static_cast<uint64_t>(readSize(scope, reader, "count", 1));
+  desc.element = element;
+  return desc;
+}
+
+void Expander::readRootInputs(Scope& scope) {
+  const json::Value* inputs = scope.document.find("inputs");
+  if (!inputs || !inputs->isObject()) return;
+  for (const Member& member : inputs->members) {
+    const std::string path = json::joinPath("inputs", member.key);
+    if (!goodName(member.key))
+      error(member.keyWhere, path, fmt::format("`{}` is no name for an input", member.key),
+            "letters, digits, _ and -");
+    json::ObjectReader reader(member.value, path, diagnostics_);
+    if (!member.value.isObject()) continue;
+    reader.text("doc");
+    ExternalDescription external;
+    external.name = intern(member.key);
+    external.bundle = intern("");
+    external.place = place(member.keyWhere);
+    if (reader.has("bundle")) {
+      external.bundle = intern(reader.text("bundle"));
+      if (const json::Value* members = reader.object("members")) {
+        for (const Member& m : members->members) {
+          json::ObjectReader memberReader(m.value, json::joinPath(path, "members." + m.key), diagnostics_);
+          if (!m.value.isObject()) continue;
+          external.members.push_back(intern(m.key));
+          external.resources.push_back(readResource(scope, memberReader));
+          memberReader.finish();
+        }
+      } else {
+        reader.require("members");
+      }
+    } else {
+      external.members.push_back(intern(""));
+      external.resources.push_back(readResource(scope, reader));
+    }
+    reader.finish();
+    Scope::Input input;
+    input.name = member.key;
+    input.external = static_cast<uint32_t>(description_.externals.size());
+    input.place = external.place;
+    scope.inputs.push_back(std::move(input));
+    description_.externals.push_back(std::move(external));
+  }
+}
+
+void Expander::readInputs(size_t index, const json::Value* wires) {
+  Scope& scope = scopes_[index];
+  if (const json::Value* inputs = scope.document.find("inputs"); inputs && inputs->isObject()) {
+    for (const Member& member : inputs->members) {
+      json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), diagnostics_);
+      reader.text("doc");
+      Scope::Input input;
+      input.name = member.key;
+      input.optional = reader.boolean("optional", false);
+      input.place = place(member.keyWhere);
+      reader.finish();
+      scope.inputs.push_back(std::move(input));
+    }
+  }
+  if (wires && wires->isObject()) {
+    for (const Member& member : wires->members) {
+      const std::string path = json::joinPath(scope.path, "inputs." + member.key);
+      Scope::Input* input = scope.findInput(member.key);
+      if (!input) {
+        std::vector<std::string> names;
+        for (const Scope::Input& i : scope.inputs) names.push_back(i.name);
+        error(member.keyWhere, path, fmt::format("the sub-graph has no input `{}`", member.key),
+              nearestRemedy(member.key, names));
+      } else if (!member.value.isString()) {
+        error(member.value.where, path,
+              fmt::format("expected a wire such as \"pass.port\", found {}", member.value.describe()));
+        input->optional = true;  // said once is enough
+      } else {
+        input->wire = &member.value;
+      }
+    }
+  }
+}
+
+// ---- Passes
+// ----------------------------------------------------------------------------------------------------
+
+void Expander::expandPass(size_t scope, const Member& member) {
+  const std::string path = json::joinPath("passes", member.key);
+  if (full_) return;
+  if (description_.passes.size() + scopes_.size() > kMaxPasses) {
+    full_ = true;
+    return error(member.keyWhere, path, fmt::format("more than {} passes", kMaxPasses));
+  }
+  if (!goodName(member.key) || member.key == "inputs")
+    return error(member.keyWhere, path, fmt::format("`{}` is no name for a pass", member.key),
+                 "letters, digits, _ and -; `inputs` means the graph's own inputs");
+  json::ObjectReader reader(member.value, path, diagnostics_);
+  if (!member.value.isObject()) return;
+  if (reader.has("graph") && reader.has("type"))
+    error(member.value.find("graph")->where, json::joinPath(path, "graph"),
+          "a pass has a `type` or a `graph`, not both");
+  reader.text("comment");
+  if (reader.has("graph") && !reader.has("type"))
+    expandInstance(scope, member, reader);
+  else
+    addPass(scope, member, reader);
+  reader.finish();
+}
+
+void Expander::addPass(size_t index, const Member& member, json::ObjectReader& reader) {
+  Scope& scope = scopes_[index];
+  const std::string path = json::joinPath("passes", member.key);
+  PassDescription pass;
+  pass.name = intern(scope.prefix + member.key);
+  pass.path = intern(path);
+  pass.place = place(member.keyWhere);
+  pass.typePlace = pass.viewPlace = pass.place;
+  pass.view = scope.view;
+  reader.find("graph");  // so that it is offered as a name
+  if (const json::Value* type = reader.require("type")) {
+    pass.typePlace = place(type->where);
+    if (type->isString())
+      pass.type = intern(type->string);
+    else
+      error(type->where, json::joinPath(path, "type"),
+            fmt::format("expected the name of a pass type, found {}", type->describe()));
+  }
+  if (const json::Value* view = reader.find("view")) {
+    pass.view = readView(scope, *view, json::joinPath(path, "view"));
+    pass.viewPlace = place(view->where);
+    pass.ownView = true;
+  }
+  rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
+  if (const json::Value* inputs = reader.object("inputs")) {
+    for (const Member& input : inputs->members) {
+      const std::string inputPath = json::joinPath(path, "inputs." + input.key);
+      if (input.value.isString())
+        rawWires_.push_back({index, intern(input.key), &input.value, place(input.keyWhere), inputPath});
+      else
+        error(input.value.where, inputPath,
+              fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
+    }
+  }
+  addPassParameters(index, pass, reader.object("params"), json::joinPath(path, "params"));
+  scope.passes.emplace(member.key, static_cast<uint32_t>(description_.passes.size()));
+  description_.passes.push_back(pass);
+}
+
+void Expander::addPassParameters(size_t index, PassDescription& pass, const json::Value* params,
+                                 const std::string& path) {
+  pass.firstParameter = static_cast<uint32_t>(description_.parameters.size());
+  if (params) {
+    for (const Member& param : params->members) {
+      ParameterDescription value;
+      if (!readScalar(scopes_[index], param.value, json::joinPath(path, param.key), value)) continue;
+      value.name = intern(param.key);
+      value.keyPlace = place(param.keyWhere);
+      description_.parameters.push_back(value);
+    }
+  }
+  overridePass(pass);
+  pass.parameterCount = static_cast<uint32_t>(description_.parameters.size()) - pass.firstParameter;
+}
+
+void Expander::overridePass(PassDescription& pass) {
+  for (PendingOverride& o : overrides_) {
+    if (o.target.empty() || o.target != description_.symbols[pass.name]) continue;
+    o.used = true;
+    ParameterDescription as;
+    as.type = Type::String;
+    ParameterDescription value = overrideValue(as, *o.source);
+    value.name = intern(o.name);
+    auto& all = description_.parameters;
+    const auto at = std::find_if(all.begin() + pass.firstParameter, all.end(),
+                                 [&](const ParameterDescription& p) { return p.name == value.name; });
+    if (at != all.end())
+      *at = value;
+    else
+      all.push_back(value);
+  }
+}
+
+void Expander::expandInstance(size_t parent, const Member& member, json::ObjectReader& reader) {
+  const std::string path = json::joinPath("passes", member.key);
+  const json::Value& graph = *reader.find("graph");
+  const json::Value* parameters = reader.object("parameters");
+  const json::Value* inputs = reader.object("inputs");
+  const json::Value* view = reader.find("view");
+  if (!graph.isString())
+    return error(graph.where, json::joinPath(path, "graph"),
+                 fmt::format("expected a file name, found {}", graph.describe()));
+  const std::filesystem::path from =
+      graph.where.file ? std::filesystem::path(*graph.where.file) : scopes_[parent].file;
+  const std::filesystem::path file =
+      findGraphFile(graph.string, from, options_.searchPaths).lexically_normal();
+  if (file.empty())
+    return error(graph.where, json::joinPath(path, "graph"), fmt::format("no graph file `{}`", graph.string),
+                 fmt::format("it is looked up beside {} and in the search paths", from.string()));
+  if (std::find(fileStack_.begin(), fileStack_.end(), file) != fileStack_.end() ||
+      fileStack_.size() > static_cast<size_t>(kMaxInstanceDepth))
+    return error(graph.where, json::joinPath(path, "graph"),
+                 fmt::format("`{}` contains itself", graph.string));
+  Scope scope;
+  scope.file = file;
+  scope.parent = parent;
+  scope.path = path;
+  scope.prefix = scopes_[parent].prefix + member.key + "/";
+  scope.view = view ? readView(scopes_[parent], *view, json::joinPath(path, "view")) : scopes_[parent].view;
+  try {
+    scope.document = mergeExtends(json::parseFile(file), file, options_, diagnostics_);
+  } catch (const Error& e) {
+    for (const Diagnostic& d : e.diagnostics()) diagnostics_.add(d);
+    return;
+  }
+  const size_t child = scopes_.size();
+  scopes_.push_back(std::move(scope));
+  scopes_[parent].instances.emplace(member.key, child);
+  fileStack_.push_back(file);
+  readParameters(child, parameters, json::joinPath(path, "parameters"));
+  readInputs(child, inputs);
+  for (const Scope::Input& input : scopes_[child].inputs)
+    if (!input.wire && !input.optional)
+      error(member.keyWhere, path,
+            fmt::format("input `{}` of the sub-graph `{}` is not wired", input.name, member.key),
+            fmt::format("add \"inputs\": {{\"{}\": \"pass.port\"}}", input.name));
+  expandScope(child);
+  fileStack_.pop_back();
+}
+
+void Expander::reportUnused() {
+  std::vector<std::string> names;
+  for (Scope& scope : scopes_) {
+    for (const Scope::Parameter& p : scope.parameters) {
+      names.push_back(scope.prefix.empty() ? p.name
+                                           : scope.prefix.substr(0, scope.prefix.size() - 1) + "." + p.name);
+      if (!p.used)
+        diagnostics_.warning(description_.location(p.value.keyPlace), "parameters." + p.name,
+                             fmt::format("nothing uses the graph parameter `{}`", p.name));
+    }
+    for (const Scope::Input& input : scope.inputs)
+      if (!input.used)
+        diagnostics_.warning(description_.location(input.place), "inputs." + input.name,
+                             fmt::format("nothing uses the input `{}`", input.name));
+  }
+  std::vector<std::string> targets;
+  for (const PassDescription& pass : description_.passes) targets.push_back(description_.symbols[pass.name]);
+  for (const PendingOverride& o : overrides_) {
+    if (o.used) continue;
+    const SourceLocation where{fmt::format("--set {}={}", o.source->name, o.source->value), 0, 0};
+    const std::string nearest = nearestName(o.target, targets);
+    const bool pass = !o.target.empty() && !nearest.empty();
+    diagnostics_.error(
+        where, {},
+        o.target.empty() ? fmt::format("the graph has no parameter `{}`", o.name)
+                         : fmt::format("the graph has no pass `{}`", o.target),
+        pass ? fmt::format("did you mean `{}.{}`?", nearest, o.name) : nearestRemedy(o.source->name, names));
+  }
+}
+
+}  // namespace fovea::graph::detail

@@ -1,0 +1,120 @@
+// Inside resolve: scopes (the graph itself and each instance of a sub-graph) and what expanding them needs.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "framework/graph/resolve.h"
+
+namespace fovea::graph::detail {
+
+// One graph document in use: the whole graph, or a sub-graph under a prefix.
+struct Scope {
+  struct Parameter {
+    std::string name;
+    ParameterDescription value;
+    bool used = false;
+  };
+  struct Input {
+    std::string name;
+    bool optional = false;
+    bool used = false;
+    const json::Value* wire = nullptr;  // what the parent wired, in the parent's words
+    uint32_t external = kNone;          // of the whole graph
+    Place place;
+  };
+
+  std::string prefix;  // "" or "left/"
+  std::string path;    // in the parent's document: "passes.left"
+  size_t parent = 0;   // itself for the whole graph
+  std::filesystem::path file;
+  json::Value document;
+  Symbol view = kNone;
+  std::vector<Parameter> parameters;
+  std::vector<Input> inputs;
+  std::unordered_map<std::string, size_t> instances;  // name -> scope
+  std::unordered_map<std::string, uint32_t> passes;   // name -> Description::passes
+
+  Parameter* findParameter(std::string_view name);
+  Input* findInput(std::string_view name);
+};
+
+struct RawWire {
+  size_t scope;
+  Symbol target;
+  const json::Value* value;
+  Place keyPlace;
+  std::string path;
+};
+
+class Expander {
+ public:
+  Expander(Description& description, const LoadOptions& options, Diagnostics& diagnostics);
+
+  // expand.cpp: structure and parameters
+  void expandRoot(json::Value document, const std::filesystem::path& file);
+  void reportUnused();
+
+  // wiring.cpp
+  void resolveWires();
+
+ private:
+  struct PendingOverride {
+    std::string target, name;  // "left/deferred", "kernel"; target "" for a parameter of the graph
+    const Override* source = nullptr;
+    bool used = false;
+  };
+
+  void expandScope(size_t scope);
+  void readParameters(size_t scope, const json::Value* given, const std::string& givenPath);
+  void overrideParameters(Scope& scope);
+  void readRootInputs(Scope& scope);
+  void readInputs(size_t scope, const json::Value* wires);
+  void expandPass(size_t scope, const json::Member& member);
+  void addPass(size_t scope, const json::Member& member, json::ObjectReader& reader);
+  void addPassParameters(size_t scope, PassDescription& pass, const json::Value* params,
+                         const std::string& path);
+  void overridePass(PassDescription& pass);
+  void expandInstance(size_t scope, const json::Member& member, json::ObjectReader& reader);
+  ResourceDesc readResource(Scope& scope, json::ObjectReader& reader);
+  int64_t readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback);
+  Symbol readView(Scope& scope, const json::Value& value, const std::string& path);
+  // A literal or "$name".
+  bool readScalar(Scope& scope, const json::Value& value, const std::string& path, ParameterDescription& out);
+  ParameterDescription overrideValue(const ParameterDescription& current, const Override& source);
+
+  bool resolveWire(size_t scope, const json::Value& value, const std::string& path, WireDescription& wire,
+                   int depth);
+  bool resolveInput(size_t scope, const json::Value& value, const std::string& path,
+                    const std::vector<std::string_view>& parts, WireDescription& wire, int depth);
+  bool resolveInstance(size_t child, const json::Value& value, const std::string& path,
+                       const std::vector<std::string_view>& parts, WireDescription& wire, int depth);
+  bool combine(const json::Value& value, const std::string& path, std::string_view member, bool previous,
+               WireDescription& wire);
+  void resolveOutputs();
+
+  void error(const json::Position& where, const std::string& path, std::string message,
+             std::string remedy = {});
+  std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
+  Place place(const json::Position& position);
+  Symbol intern(std::string_view text) { return description_.symbols.intern(text); }
+
+  Description& description_;
+  const LoadOptions& options_;
+  Diagnostics& diagnostics_;
+  std::deque<Scope> scopes_;  // documents are pointed into
+  std::vector<RawWire> rawWires_;
+  std::vector<uint32_t> rawFirst_;  // per pass
+  std::vector<PendingOverride> overrides_;
+  std::vector<std::filesystem::path> fileStack_;
+  std::unordered_map<const std::string*, uint32_t> fileIndex_;
+  std::vector<std::shared_ptr<const std::string>> keepFiles_;
+  std::vector<bool> isPass_;  // by symbol
+  bool full_ = false;
+};
+
+}  // namespace fovea::graph::detail

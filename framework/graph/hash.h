@@ -1,0 +1,45 @@
+// A running 64-bit hash over small things: cheap enough to hash a whole graph when it is bound.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "framework/graph/declaration.h"
+
+namespace fovea::graph::detail {
+
+class Hasher {
+ public:
+  // Multiply, fold, rotate (as in wyhash): every input bit reaches every output bit within two rounds.
+  template <std::integral T>
+  void add(T number) {
+    const auto v = static_cast<uint64_t>(number);
+    const unsigned __int128 product = static_cast<unsigned __int128>(state_ ^ v) * 0x9E3779B97F4A7C15ull;
+    state_ = std::rotl(static_cast<uint64_t>(product) ^ static_cast<uint64_t>(product >> 64), 23) +
+             0xD6E8FEB86659FD93ull;
+  }
+  void add(std::string_view text) {
+    add(static_cast<uint64_t>(text.size()));
+    for (size_t i = 0; i < text.size(); i += 8) {
+      uint64_t word = 0;
+      std::memcpy(&word, text.data() + i, text.size() - i < 8 ? text.size() - i : 8);
+      add(word);
+    }
+  }
+  void addValue(const Value& value) {
+    add(static_cast<uint64_t>(value.index()));
+    if (const bool* b = std::get_if<bool>(&value)) add(static_cast<uint64_t>(*b));
+    if (const int64_t* i = std::get_if<int64_t>(&value)) add(static_cast<uint64_t>(*i));
+    if (const double* d = std::get_if<double>(&value)) add(std::bit_cast<uint64_t>(*d));
+    if (const std::string* s = std::get_if<std::string>(&value)) add(std::string_view(*s));
+  }
+  uint64_t value() const { return state_; }
+
+ private:
+  uint64_t state_ = 0x2545F4914F6CDD1Dull;
+};
+
+}  // namespace fovea::graph::detail

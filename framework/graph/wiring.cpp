@@ -1,0 +1,180 @@
+// Resolve, wires: "pass.port@previous" in the words of its own document becomes a wire between flat passes.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/graph/expand.h"
+
+namespace fovea::graph::detail {
+namespace {
+
+constexpr std::string_view kPrevious = "@previous";
+constexpr int kMaxHops = 64;  // through sub-graph inputs and outputs
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const size_t dot = text.find('.');
+    parts.push_back(text.substr(0, dot));
+    if (dot == std::string_view::npos) return parts;
+    text.remove_prefix(dot + 1);
+  }
+}
+
+}  // namespace
+
+void Expander::resolveWires() {
+  isPass_.assign(description_.symbols.size(), false);
+  for (const PassDescription& pass : description_.passes) isPass_[pass.name] = true;
+  rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
+  for (size_t p = 0; p < description_.passes.size(); ++p) {
+    PassDescription& pass = description_.passes[p];
+    pass.firstInput = static_cast<uint32_t>(description_.wires.size());
+    for (uint32_t i = rawFirst_[p]; i < rawFirst_[p + 1]; ++i) {
+      const RawWire& raw = rawWires_[i];
+      WireDescription wire;
+      if (!resolveWire(raw.scope, *raw.value, raw.path, wire, 0)) continue;
+      wire.target = raw.target;
+      wire.text = intern(raw.value->string);
+      wire.keyPlace = raw.keyPlace;
+      wire.place = place(raw.value->where);
+      description_.wires.push_back(wire);
+    }
+    pass.inputCount = static_cast<uint32_t>(description_.wires.size()) - pass.firstInput;
+  }
+  resolveOutputs();
+}
+
+void Expander::resolveOutputs() {
+  for (size_t s = 0; s < scopes_.size(); ++s) {
+    const json::Value* outputs = scopes_[s].document.find("outputs");
+    if (!outputs || !outputs->isObject()) continue;
+    for (const json::Member& member : outputs->members) {
+      const std::string path = json::joinPath("outputs", member.key);
+      if (!member.value.isString()) {
+        error(member.value.where, path,
+              fmt::format("expected a wire such as \"pass.port\", found {}", member.value.describe()));
+        continue;
+      }
+      WireDescription wire;
+      if (!resolveWire(s, member.value, path, wire, 0) || s != 0) continue;
+      if (wire.external != kNone || wire.previous) {
+        error(member.value.where, path, "an output of the graph is what a pass writes in this frame",
+              wire.previous ? "drop `@previous`" : "wire it to a pass");
+        continue;
+      }
+      wire.target = intern(member.key);
+      wire.text = intern(member.value.string);
+      wire.keyPlace = place(member.keyWhere);
+      wire.place = place(member.value.where);
+      description_.outputs.push_back(wire);
+    }
+  }
+}
+
+// False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
+bool Expander::resolveWire(size_t index, const json::Value& value, const std::string& path,
+                           WireDescription& wire, int depth) {
+  if (depth > kMaxHops)
+    return error(value.where, path, "this wire runs in a circle through sub-graphs"), false;
+  std::string_view text = value.string;
+  bool previous = false;
+  if (const size_t at = text.find('@'); at != std::string_view::npos) {
+    if (text.substr(at) != kPrevious)
+      return error(value.where, path, fmt::format("`{}`: only `@previous` may follow a port", text)), false;
+    previous = true;
+    text = text.substr(0, at);
+  }
+  const std::vector<std::string_view> parts = split(text);
+  if (parts.size() > 3 ||
+      std::any_of(parts.begin(), parts.end(), [](std::string_view p) { return p.empty(); }))
+    return error(value.where, path, fmt::format("`{}` is no wire", value.string),
+                 "write pass.port, pass, or pass.port.member; @previous after it means last frame's value"),
+           false;
+  Scope& scope = scopes_[index];
+  if (parts[0] == "inputs") {
+    if (!resolveInput(index, value, path, parts, wire, depth)) return false;
+    return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
+  }
+  const std::string name(parts[0]);
+  if (const auto child = scope.instances.find(name); child != scope.instances.end()) {
+    if (!resolveInstance(child->second, value, path, parts, wire, depth)) return false;
+    return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
+  }
+  wire.pass = description_.symbols.find(scope.prefix + name);
+  const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
+  const bool known = inner ? wire.pass < isPass_.size() && isPass_[wire.pass] : scope.passes.count(name) > 0;
+  if (!known) {
+    std::vector<std::string> names = {"inputs"};
+    for (const auto& [pass, position] : scope.passes) names.push_back(pass);
+    for (const auto& [instance, position] : scope.instances) names.push_back(instance);
+    std::sort(names.begin(), names.end());
+    return error(value.where, path, fmt::format("no pass `{}`", name), nearestRemedy(name, names)), false;
+  }
+  if (parts.size() > 1) wire.port = intern(parts[1]);
+  if (parts.size() > 2) wire.member = intern(parts[2]);
+  wire.previous = previous;
+  return true;
+}
+
+bool Expander::resolveInput(size_t index, const json::Value& value, const std::string& path,
+                            const std::vector<std::string_view>& parts, WireDescription& wire, int depth) {
+  Scope& scope = scopes_[index];
+  Scope::Input* input = parts.size() > 1 ? scope.findInput(parts[1]) : nullptr;
+  if (!input && parts.size() == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
+  if (!input) {
+    std::vector<std::string> names;
+    for (const Scope::Input& i : scope.inputs) names.push_back("inputs." + i.name);
+    return error(value.where, path, fmt::format("the graph has no input `{}`", value.string),
+                 nearestRemedy(value.string, names)),
+           false;
+  }
+  input->used = true;
+  if (index == 0) {
+    wire.external = input->external;
+    return true;
+  }
+  if (!input->wire) return false;
+  return resolveWire(scope.parent, *input->wire, json::joinPath(scope.path, "inputs." + input->name), wire,
+                     depth + 1);
+}
+
+bool Expander::resolveInstance(size_t child, const json::Value& value, const std::string& path,
+                               const std::vector<std::string_view>& parts, WireDescription& wire, int depth) {
+  const json::Value* outputs = scopes_[child].document.find("outputs");
+  const std::vector<json::Member> none;
+  const std::vector<json::Member>& members = outputs && outputs->isObject() ? outputs->members : none;
+  const json::Member* found = nullptr;
+  for (const json::Member& m : members)
+    if (parts.size() > 1 ? m.key == parts[1] : members.size() == 1) found = &m;
+  if (!found) {
+    std::vector<std::string> names;
+    for (const json::Member& m : members) names.push_back(fmt::format("{}.{}", parts[0], m.key));
+    return error(value.where, path,
+                 parts.size() > 1
+                     ? fmt::format("the sub-graph `{}` has no output `{}`", parts[0], parts[1])
+                     : fmt::format("the sub-graph `{}` has {} outputs: name one", parts[0], members.size()),
+                 nearestRemedy(value.string, names)),
+           false;
+  }
+  if (!found->value.isString()) return false;  // reported with the outputs
+  return resolveWire(child, found->value, json::joinPath("outputs", found->key), wire, depth + 1);
+}
+
+// What is written after a sub-graph's name applies to what that stands for.
+bool Expander::combine(const json::Value& value, const std::string& path, std::string_view member,
+                       bool previous, WireDescription& wire) {
+  if (!member.empty()) {
+    if (wire.member != kNone)
+      return error(value.where, path, fmt::format("`{}`: that is one member already", value.string)), false;
+    wire.member = intern(member);
+  }
+  if (previous && wire.previous)
+    return error(value.where, path, fmt::format("`{}`: that is last frame's value already", value.string),
+                 "only one frame back is kept"),
+           false;
+  wire.previous = wire.previous || previous;
+  return true;
+}
+
+}  // namespace fovea::graph::detail
