@@ -114,6 +114,7 @@ EmitResult traceLightPaths(const Frame& frame, const RayScene& rays, const EmitS
   if (lights.empty() || settings.count == 0) return result;
   EmitSettings fitting = settings;  // the longest path must fit into an empty list
   fitting.bounces = std::min(settings.bounces, settings.count - (lights.hasSurfaces() ? 1 : 0));
+  if (fitting.bounces == 0 && !lights.hasSurfaces()) return result;  // paths without VPLs
   PathTracer tracer(frame, rays, lights, fitting);
   const uint64_t maxPaths = std::min<uint64_t>(kPathsPerVpl * settings.count + 4096, 0xffffffffu);
   bool full = false;
