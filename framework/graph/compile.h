@@ -51,6 +51,7 @@ struct Environment {
   std::vector<std::pair<std::string, int64_t>> quantities;  // "scene.triangles", ...: at least 1 each
   uint32_t maxImageDimension2D = 0, maxImageDimension3D = 0, maxImageArrayLayers = 0;
   uint64_t maxStorageBufferRange = 0;
+  uint64_t maxUniformBufferRange = 0;  // for information: larger uniform buffers are bound page by page
 };
 
 // Types, ports, parameters and sizes. Throws Error(BadInput) with all errors in `diagnostics`, its own and
