@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "framework/base/diagnostic.h"
+#include "framework/gpu/descriptor_pools.h"
 #include "framework/gpu/disk_cache.h"
 #include "framework/gpu/physical_device.h"
 #include "framework/gpu/shader.h"
@@ -56,68 +57,6 @@ F load(VkInstance instance, const char* name) {
 
 }  // namespace
 
-const char* resultName(VkResult result) {
-  switch (result) {
-    case VK_SUCCESS:
-      return "VK_SUCCESS";
-    case VK_NOT_READY:
-      return "VK_NOT_READY";
-    case VK_TIMEOUT:
-      return "VK_TIMEOUT";
-    case VK_INCOMPLETE:
-      return "VK_INCOMPLETE";
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED:
-      return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST:
-      return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_MEMORY_MAP_FAILED:
-      return "VK_ERROR_MEMORY_MAP_FAILED";
-    case VK_ERROR_LAYER_NOT_PRESENT:
-      return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT:
-      return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-      return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-      return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-      return "VK_ERROR_TOO_MANY_OBJECTS";
-    case VK_ERROR_FORMAT_NOT_SUPPORTED:
-      return "VK_ERROR_FORMAT_NOT_SUPPORTED";
-    case VK_ERROR_FRAGMENTED_POOL:
-      return "VK_ERROR_FRAGMENTED_POOL";
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-      return "VK_ERROR_OUT_OF_POOL_MEMORY";
-    case VK_ERROR_INVALID_EXTERNAL_HANDLE:
-      return "VK_ERROR_INVALID_EXTERNAL_HANDLE";
-    case VK_ERROR_UNKNOWN:
-      return "VK_ERROR_UNKNOWN";
-    default:
-      return "an unnamed VkResult";
-  }
-}
-
-void check(VkResult result, const std::string& what) {
-  if (result == VK_SUCCESS) return;
-  const std::string text = what + " failed: " + resultName(result);
-  switch (result) {
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      throw Error(ExitCode::OutOfMemory, text, "use a smaller image, fewer VPLs or smaller shadow maps");
-    case VK_ERROR_DEVICE_LOST:
-      throw Error(ExitCode::DeviceLost, text,
-                  "the driver gave up, often because one dispatch took too long: use a smaller image or "
-                  "fewer VPLs, or "
-                  "run with validation to find an out-of-range access");
-    default:
-      throw Error(ExitCode::Internal, text);
-  }
-}
-
 std::vector<DeviceInfo> listDevices() {
   bool debugUtils = false;
   const VkInstance instance = createInstance(Validation::Off, nullptr, debugUtils);
@@ -156,6 +95,7 @@ struct Device::Impl {
   uint64_t pipelineCacheHash = 0;           // of what was loaded
   std::unique_ptr<ShaderCompiler> shaders;
   std::map<std::pair<VkFilter, VkSamplerAddressMode>, VkSampler> samplers;
+  std::unique_ptr<DescriptorPools> plainSets;  // GPU-assisted validation only
 
   std::mutex memoryMutex;
   uint64_t limit = 0;  // 0: each heap's size
@@ -173,6 +113,7 @@ Device::Impl::~Impl() {
   if (device) {
     vkDeviceWaitIdle(device);
     savePipelineCache();
+    plainSets.reset();
     for (const auto& [key, handle] : samplers) vkDestroySampler(device, handle, nullptr);
     vkDestroyPipelineCache(device, pipelineCache, nullptr);
     vkDestroyCommandPool(device, pool, nullptr);
@@ -324,6 +265,8 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->createDevice(choose(devices, options.device));
   impl_->limit = options.memoryLimit;
   impl_->createCaches(options);
+  if (options.validation == Validation::GpuAssisted)
+    impl_->plainSets = std::make_unique<DescriptorPools>(handle());
 }
 
 Device::~Device() = default;
@@ -471,8 +414,16 @@ void Device::endLabel(VkCommandBuffer cmd) const {
 
 void Device::pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
                                uint32_t set, std::span<const VkWriteDescriptorSet> writes) const {
-  if (!writes.empty())
-    impl_->pushDescriptorSet(cmd, point, layout, set, uint32_t(writes.size()), writes.data());
+  if (writes.empty()) return;
+  if (impl_->plainSets)
+    return impl_->plainSets->bind(cmd, point, layout, set, {writes.begin(), writes.end()});
+  impl_->pushDescriptorSet(cmd, point, layout, set, uint32_t(writes.size()), writes.data());
+}
+
+bool Device::pushesDescriptors() const { return !impl_->plainSets; }
+
+void Device::announceLayout(VkPipelineLayout layout, VkDescriptorSetLayout set0) const {
+  if (impl_->plainSets) impl_->plainSets->remember(layout, set0);
 }
 
 std::vector<std::string> Device::validationMessages() const {

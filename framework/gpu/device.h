@@ -98,6 +98,10 @@ class Device {
   void endLabel(VkCommandBuffer cmd) const;
   void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
                          uint32_t set, std::span<const VkWriteDescriptorSet> writes) const;
+  // False under GPU-assisted validation, where pushDescriptorSet binds plain sets instead: set layouts must
+  // then be made without the push flag and be announced.
+  bool pushesDescriptors() const;
+  void announceLayout(VkPipelineLayout layout, VkDescriptorSetLayout set0) const;
 
   // Validation messages (warnings and errors) so far; tests fail when there is one.
   std::vector<std::string> validationMessages() const;

@@ -216,7 +216,7 @@ void Pipeline::createLayout(VkDescriptorSetLayout sharedSet) {
   std::vector<VkDescriptorSetLayoutBinding> list;
   for (const auto& [number, entry] : bindings) list.push_back(entry);
   VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  setInfo.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  if (device_->pushesDescriptors()) setInfo.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   setInfo.bindingCount = uint32_t(list.size());
   setInfo.pBindings = list.data();
   check(vkCreateDescriptorSetLayout(device_->handle(), &setInfo, nullptr, &setLayout_),
@@ -232,6 +232,7 @@ void Pipeline::createLayout(VkDescriptorSetLayout sharedSet) {
   info.pPushConstantRanges = &range;
   check(vkCreatePipelineLayout(device_->handle(), &info, nullptr, &layout_),
         "creating the pipeline layout of `" + name_ + "`");
+  device_->announceLayout(layout_, setLayout_);
   device_->setName(VK_OBJECT_TYPE_PIPELINE_LAYOUT, reinterpret_cast<uint64_t>(layout_), name_);
 }
 

@@ -178,8 +178,10 @@ class Reflector {
 
   void addOpaque(const spirv_cross::Resource& r, BindingKind kind) {
     ReflectedBinding b = base(r, kind);
-    const spirv_cross::SPIRType& texel = compiler_.get_type(compiler_.get_type(r.type_id).image.type);
-    b.integerTexels = texel.basetype != spirv_cross::SPIRType::Float;
+    if (kind != BindingKind::Sampler) {
+      const spirv_cross::SPIRType& texel = compiler_.get_type(compiler_.get_type(r.type_id).image.type);
+      b.integerTexels = texel.basetype != spirv_cross::SPIRType::Float;
+    }
     if (kind == BindingKind::StorageImage || kind == BindingKind::StorageTexelBuffer) {
       b.readOnly = compiler_.has_decoration(r.id, spv::DecorationNonWritable);
       b.writeOnly = compiler_.has_decoration(r.id, spv::DecorationNonReadable);

@@ -186,7 +186,10 @@ std::vector<uint32_t> compileGlsl(const ShaderSource& source, EShLanguage stage,
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
   shader.setAutoMapBindings(true);
-  const auto messages = EShMessages(EShMsgDefault | EShMsgSpvRules | EShMsgVulkanRules);
+  // Cascading: all mistakes at once. Without it the compiler stops at the first and stumbles over its own
+  // stop.
+  const auto messages =
+      EShMessages(EShMsgDefault | EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
   Includer includer(source);
   if (!shader.parse(GetDefaultResources(), 460, ENoProfile, false, false, messages, includer))
     throwCompilerErrors(shader.getInfoLog(), source);

@@ -33,7 +33,7 @@ struct ReflectedBinding {
   bool readOnly = false, writeOnly = false;  // storage buffers and images
   uint64_t blockBytes = 0;                   // uniform and storage blocks: fixed part
   std::optional<VkFormat> imageFormat;       // storage images
-  bool integerTexels = false;                // texel buffers: isamplerBuffer and usamplerBuffer
+  bool integerTexels = false;                // images and texel buffers: isampler2D, usamplerBuffer
   bool automatic = false;                    // no layout(binding): the compiler chose the number
 };
 

@@ -1,0 +1,278 @@
+// Choosing a device, what is said when there is none, validation, caches.
+#include "framework/gpu/device.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/physical_device.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "tests/gpu/command_helpers.h"
+#include "tests/support/device.h"
+
+namespace fovea {
+namespace {
+
+using namespace test;  // NOLINT: helpers
+using testing::HasSubstr;
+
+template <class F>
+std::string noDevice(F f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    EXPECT_EQ(int(e.code()), int(ExitCode::NoDevice)) << e.what();
+    return e.what();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+TEST(DeviceChoice, ListingDescribesTheDevices) {
+  const std::vector<gpu::DeviceInfo> list = gpu::listDevices();
+  ASSERT_FALSE(list.empty());
+  for (size_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(list[i].index, i);
+    EXPECT_FALSE(list[i].name.empty());
+    EXPECT_FALSE(list[i].driver.empty());
+    EXPECT_GT(list[i].memoryBytes, 0u);
+    EXPECT_THAT(list[i].apiVersion, testing::MatchesRegex("1\\.[0-9]+\\.[0-9]+"));
+  }
+}
+
+TEST(DeviceChoice, ByIndexAndByPartOfTheName) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::Off;
+  const gpu::DeviceInfo first = gpu::listDevices().at(0);
+  if (!first.missing.empty()) GTEST_SKIP() << first.name << " is not usable";
+  options.device = "0";
+  EXPECT_THAT(gpu::Device(options).name(), HasSubstr(first.name));
+  options.device = first.name.substr(0, 4);
+  for (char& c : options.device) c = char(std::toupper(c));
+  EXPECT_THAT(gpu::Device(options).name(), HasSubstr(first.name));
+}
+
+TEST(DeviceChoice, WrongChoiceListsWhatThereIs) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  for (const char* wrong : {"nonexistent", "99", "0x", "-1"}) {
+    options.device = wrong;
+    const std::string text = noDevice([&] { gpu::Device device(options); });
+    EXPECT_THAT(text, HasSubstr(wrong));
+    EXPECT_THAT(text, HasSubstr("0: " + gpu::listDevices().at(0).name));
+  }
+}
+
+gpu::PhysicalDevice candidate(uint32_t index, VkPhysicalDeviceType type, const std::string& name,
+                              std::vector<std::string> missing = {}) {
+  gpu::PhysicalDevice d;
+  d.type = type;
+  d.info.index = index;
+  d.info.name = name;
+  d.info.missing = std::move(missing);
+  return d;
+}
+
+TEST(DeviceChoice, BestUsableOneIsTaken) {
+  const std::vector<gpu::PhysicalDevice> devices{
+      candidate(0, VK_PHYSICAL_DEVICE_TYPE_CPU, "llvmpipe"),
+      candidate(1, VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, "Old Card", {"dynamicRendering", "maintenance4"}),
+      candidate(2, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU, "Graphics 500"),
+      candidate(3, VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, "New Card"),
+      candidate(4, VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, "New Card")};
+  EXPECT_EQ(gpu::choose(devices, "").info.index, 3u);  // the first of equals
+  EXPECT_EQ(gpu::choose(devices, "card").info.index, 3u);
+  EXPECT_EQ(gpu::choose(devices, "4").info.index, 4u);
+  EXPECT_EQ(gpu::choose(devices, "LLVM").info.index, 0u);
+  const std::string text = noDevice([&] { gpu::choose(devices, "old"); });
+  EXPECT_THAT(text, HasSubstr("`Old Card` lacks dynamicRendering, maintenance4"));
+  const std::string none = noDevice([&] { gpu::choose({devices[1]}, ""); });
+  EXPECT_THAT(none, HasSubstr("no usable Vulkan device"));
+  EXPECT_THAT(none, HasSubstr("maintenance4"));
+  EXPECT_THAT(noDevice([&] { gpu::choose({}, ""); }), HasSubstr("mesa-vulkan-drivers"));
+}
+
+// In a process of its own, because the loader reads the variable once.
+TEST(NoDeviceDeathTest, NoDriver) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto child = [] {
+    setenv("VK_ICD_FILENAMES", "/nonexistent/icd.json", 1);
+    setenv("VK_DRIVER_FILES", "/nonexistent/icd.json", 1);
+    if (!gpu::listDevices().empty()) std::exit(99);
+    try {
+      gpu::DeviceOptions options;
+      options.useCache = false;
+      gpu::Device device(options);
+    } catch (const Error& e) {
+      std::fprintf(stderr, "%s\n", e.what());
+      std::exit(int(e.code()));
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(child(), testing::ExitedWithCode(int(ExitCode::NoDevice)), "no Vulkan device found");
+}
+
+TEST(NoDeviceDeathTest, MissingValidationLayer) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto child = [] {
+    setenv("VK_LAYER_PATH", "/nonexistent", 1);
+    try {
+      gpu::DeviceOptions options;
+      options.useCache = false;
+      options.validation = gpu::Validation::On;
+      gpu::Device device(options);
+    } catch (const Error& e) {
+      std::fprintf(stderr, "%s\n", e.what());
+      std::exit(int(e.code()));
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(child(), testing::ExitedWithCode(int(ExitCode::NoDevice)),
+              "VK_LAYER_KHRONOS_validation is not installed");
+}
+
+TEST(Check, ResultsMapToExitCodes) {
+  const auto code = [](VkResult result) {
+    try {
+      gpu::check(result, "doing a thing");
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), HasSubstr("doing a thing"));
+      EXPECT_THAT(e.what(), HasSubstr(gpu::resultName(result)));
+      return e.code();
+    }
+    return ExitCode::Ok;
+  };
+  EXPECT_EQ(code(VK_SUCCESS), ExitCode::Ok);
+  EXPECT_EQ(code(VK_ERROR_OUT_OF_DEVICE_MEMORY), ExitCode::OutOfMemory);
+  EXPECT_EQ(code(VK_ERROR_OUT_OF_HOST_MEMORY), ExitCode::OutOfMemory);
+  EXPECT_EQ(code(VK_ERROR_DEVICE_LOST), ExitCode::DeviceLost);
+  EXPECT_EQ(code(VK_ERROR_UNKNOWN), ExitCode::Internal);
+}
+
+// ---- Validation
+// ------------------------------------------------------------------------------------------------
+
+TEST(Validation, MistakesAreCaught) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::On;
+  gpu::Device device(options);
+  EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+  const gpu::Buffer buffer(device, {"victim of the test", 64, 0});
+  device.runOnce([&](VkCommandBuffer cmd) {  // without the usage that this needs
+    vkCmdBindIndexBuffer(cmd, buffer.handle(), 0, VK_INDEX_TYPE_UINT32);
+  });
+  const std::vector<std::string> messages = device.validationMessages();
+  ASSERT_FALSE(messages.empty());
+  EXPECT_THAT(messages[0], HasSubstr("vkCmdBindIndexBuffer"));
+  EXPECT_THAT(messages[0], HasSubstr("victim of the test"));  // objects carry their names
+  device.clearValidationMessages();
+  EXPECT_TRUE(device.validationMessages().empty());
+}
+
+void copyTwice(gpu::Device& device, bool withBarrier) {
+  const gpu::Buffer a(device, {"a", 64, 0}), b(device, {"b", 64, 0}), c(device, {"c", 64, 0});
+  device.runOnce([&](VkCommandBuffer cmd) {
+    const VkBufferCopy copy{0, 0, 64};
+    vkCmdCopyBuffer(cmd, a.handle(), b.handle(), 1, &copy);
+    if (withBarrier)
+      barrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+              VK_ACCESS_2_TRANSFER_READ_BIT);
+    vkCmdCopyBuffer(cmd, b.handle(), c.handle(), 1, &copy);
+  });
+}
+
+TEST(Validation, SynchronizationModeSeesAMissingBarrier) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::Synchronization;
+  gpu::Device device(options);
+  copyTwice(device, true);
+  EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+  copyTwice(device, false);
+  EXPECT_THAT(device.validationMessages(), testing::Contains(HasSubstr("READ_AFTER_WRITE")));
+}
+
+// An index past the end of a storage buffer, which only the instrumented shader can see.
+TEST(Validation, GpuAssistedModeSeesAnOverrun) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::GpuAssisted;
+  gpu::Device device(options);
+  const gpu::Buffer buffer(device, {"short", 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  const gpu::Pipeline pipeline(device,
+                               gpu::ComputePipelineDesc{device.shaders().compileSource("overrun.comp", R"(
+layout(local_size_x = 1) in;
+layout(std430) buffer Data { uint data[]; };
+layout(push_constant) uniform C { uint index; };
+void main() { data[index] = 1; }
+)")});
+  const auto run = [&](uint32_t index) {
+    device.runOnce([&](VkCommandBuffer cmd) {
+      vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+      const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
+      std::vector<VkWriteDescriptorSet> writes{write(pipeline, "Data")};
+      writes[0].pBufferInfo = &info;
+      device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+      vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, 4, &index);
+      vkCmdDispatch(cmd, 1, 1, 1);
+    });
+  };
+  run(15);
+  EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+  run(16);
+  EXPECT_THAT(device.validationMessages(), testing::Contains(HasSubstr("out of bounds")));
+}
+
+TEST(Validation, BestPracticesModeIsQuietForPlainWork) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::BestPractices;
+  gpu::Device device(options);
+  copyTwice(device, true);
+  for (const std::string& message : device.validationMessages())
+    EXPECT_THAT(message, testing::Not(HasSubstr("Error"))) << message;
+}
+
+// ---- Caches
+// ----------------------------------------------------------------------------------------------------
+
+TEST(PipelineCache, SavedOnDestructionAndDamageIsIgnored) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.cacheDirectory =
+      std::filesystem::path(testing::TempDir()) / ("fovea-pipelines-" + std::to_string(getpid()));
+  const auto make = [&] {
+    gpu::Device device(options);
+    const gpu::Pipeline pipeline(device,
+                                 gpu::ComputePipelineDesc{device.shaders().compileSource(
+                                     "trivial.comp", "layout(local_size_x = 1) in;\nvoid main() {}\n")});
+    EXPECT_TRUE(bool(pipeline));
+    EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+  };
+  const auto blob = [&]() -> std::filesystem::path {
+    for (const auto& entry : std::filesystem::directory_iterator(options.cacheDirectory)) {
+      if (entry.path().filename().string().starts_with("pipelines-")) return entry.path();
+    }
+    return {};
+  };
+  make();
+  ASSERT_FALSE(blob().empty());
+  const auto size = std::filesystem::file_size(blob());
+  make();  // with the blob
+  std::ofstream(blob(), std::ios::binary) << "damaged";
+  make();
+  EXPECT_EQ(std::filesystem::file_size(blob()), size);
+  std::filesystem::remove_all(options.cacheDirectory);
+}
+
+TEST(PipelineCache, OffMeansNoFiles) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.cacheDirectory =
+      std::filesystem::path(testing::TempDir()) / ("fovea-nocache-" + std::to_string(getpid()));
+  options.useCache = false;
+  { gpu::Device device(options); }
+  EXPECT_FALSE(std::filesystem::exists(options.cacheDirectory));
+}
+
+}  // namespace
+}  // namespace fovea

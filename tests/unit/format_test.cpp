@@ -1,0 +1,63 @@
+#include "framework/gpu/format.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+
+namespace fovea::gpu {
+namespace {
+
+TEST(Format, EveryNameRoundTrips) {
+  std::set<std::string_view> names;
+  std::set<VkFormat> seen;
+  for (const FormatInfo& info : formats()) {
+    EXPECT_EQ(formatFromName(info.name), info.format) << info.name;
+    EXPECT_EQ(&formatInfo(info.format), &info) << info.name;
+    EXPECT_TRUE(names.insert(info.name).second) << info.name << " twice";
+    EXPECT_TRUE(seen.insert(info.format).second) << info.name << " repeats a format";
+  }
+  EXPECT_GE(names.size(), 40u);
+}
+
+// The number in the name is the bits of one channel: a slip in the table shows here.
+TEST(Format, SizesFollowFromTheNames) {
+  for (const FormatInfo& info : formats()) {
+    const std::string name(info.name);
+    if (name.find("10") != name.npos || name.find("11") != name.npos || name.find("9_e5") != name.npos) {
+      EXPECT_EQ(info.bytesPerTexel, 4u) << name;
+      continue;
+    }
+    const size_t digits = name.find_first_of("0123456789");
+    const std::string channels = name.substr(0, digits);
+    EXPECT_EQ(info.channels, channels == "d" ? 1u : channels.size()) << name;
+    EXPECT_EQ(info.bytesPerTexel * 8, info.channels * std::stoul(name.substr(digits))) << name;
+  }
+}
+
+TEST(Format, TypesFollowFromTheNames) {
+  using Type = FormatInfo::Type;
+  for (const FormatInfo& info : formats()) {
+    const std::string_view name = info.name;
+    const Type expected = name.ends_with("_srgb")                    ? Type::Srgb
+                          : name.ends_with("_snorm")                 ? Type::Snorm
+                          : name.ends_with("ui")                     ? Type::Uint
+                          : name.ends_with("i")                      ? Type::Sint
+                          : name.ends_with("f") || name == "rgb9_e5" ? Type::Float
+                                                                     : Type::Unorm;
+    EXPECT_EQ(int(info.type), int(expected)) << name;
+    EXPECT_EQ(info.depth, name.starts_with("d")) << name;
+  }
+}
+
+TEST(Format, UnknownNamesAndFormats) {
+  EXPECT_EQ(formatFromName("rgba17f"), VK_FORMAT_UNDEFINED);
+  EXPECT_EQ(formatFromName(""), VK_FORMAT_UNDEFINED);
+  EXPECT_EQ(formatFromName("RGBA8"), VK_FORMAT_UNDEFINED);
+  EXPECT_THROW(formatInfo(VK_FORMAT_ASTC_4x4_UNORM_BLOCK), Error);
+}
+
+}  // namespace
+}  // namespace fovea::gpu
