@@ -14,7 +14,7 @@ struct Triangle {
   uint material;
 };
 
-Triangle sceneTriangle(uint index) {
+Triangle wholeTriangle(uint index) {
   uvec4 t = texelFetch(sceneTriangles, int(index));
   return Triangle(texelFetch(scenePositions, int(t.x)).xyz, texelFetch(scenePositions, int(t.y)).xyz,
                   texelFetch(scenePositions, int(t.z)).xyz, t.xyz, t.w & 0xffffu);
@@ -25,7 +25,7 @@ bool isMasked(uint index) { return texelFetch(simplified, 3 * int(index)).w > 0.
 
 Triangle loadTriangle(uint index) {
 #ifdef MASKED
-  return sceneTriangle(uint(texelFetch(simplified, 3 * int(index)).w) - 1u);
+  return wholeTriangle(uint(texelFetch(simplified, 3 * int(index)).w) - 1u);
 #else
   int i = 3 * int(index);
   return Triangle(texelFetch(simplified, i).xyz, texelFetch(simplified, i + 1).xyz, texelFetch(simplified, i + 2).xyz,
@@ -37,7 +37,7 @@ bool isMasked(uint index) {
   return loadMaterial(texelFetch(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff > 0.0;
 }
 
-Triangle loadTriangle(uint index) { return sceneTriangle(index); }
+Triangle loadTriangle(uint index) { return wholeTriangle(index); }
 #endif
 
 vec3 seenFrom(VplView v, vec3 p) {
