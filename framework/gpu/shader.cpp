@@ -160,7 +160,11 @@ Diagnostic parseMessage(std::string_view line, const ShaderSource& source) {
     if (line.empty() || line.find("compilation errors.  No code generated") != std::string_view::npos ||
         line.find("compilation terminated") != std::string_view::npos)
       continue;
-    list.push_back(parseMessage(line, source));
+    // "Possible extensions include:" and their names come on lines of their own.
+    if (!list.empty() && !line.starts_with("ERROR: ") && !line.starts_with("WARNING: "))
+      list.back().message += " " + std::string(line);
+    else
+      list.push_back(parseMessage(line, source));
   }
   if (list.empty())
     list.push_back({Severity::Error, {source.main().name, 0, 0}, {}, "the compiler gave up", {}});

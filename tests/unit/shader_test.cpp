@@ -82,6 +82,14 @@ TEST_F(ShaderTest, ErrorsCarryFileAndLine) {
   EXPECT_THAT(list[0].format(), HasSubstr("bad.comp:4: error: "));
 }
 
+TEST_F(ShaderTest, MessagesOfSeveralLinesStayTogether) {
+  file("a.vert", "#version 460\nvoid main() { gl_Layer = 1; gl_Position = vec4(0); }\n");
+  const std::vector<Diagnostic> list = errors("a.vert");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].where.line, 2);
+  EXPECT_THAT(list[0].message, HasSubstr("GL_ARB_shader_viewport_layer_array"));
+}
+
 TEST_F(ShaderTest, ErrorsInsideIncludesAreLocatedThere) {
   file("common/deep.glsl", "\n\nfloat deep() { return wrong; }\n");
   file("common/outer.glsl", "#include \"deep.glsl\"\n");  // beside the including file
