@@ -23,9 +23,9 @@ std::vector<Material> materials() {
     list[i].name = name;
     list[i].baseColor = glm::vec4(color, 1.0f);
   };
-  set(kWhite, "white", {0.74f, 0.73f, 0.71f});
-  set(kRed, "red", {0.60f, 0.06f, 0.05f});
-  set(kGreen, "green", {0.12f, 0.46f, 0.10f});
+  set(kWhite, "white", {0.78f, 0.77f, 0.75f});
+  set(kRed, "red", {0.63f, 0.08f, 0.06f});
+  set(kGreen, "green", {0.14f, 0.50f, 0.12f});
   set(kYellow, "yellow", {0.80f, 0.62f, 0.03f});
   set(kBlue, "blue", {0.16f, 0.28f, 0.62f});
   set(kGrey, "light grey", {0.60f, 0.60f, 0.60f});
@@ -198,11 +198,11 @@ Scene cornellBox() {
   spot.name = "ceiling spot";
   spot.type = LightType::Spot;
   spot.color = {1.0f, 0.95f, 0.86f};
-  spot.intensity = 110.0f;
-  spot.position = {-0.1f, 5.45f, 0.1f};
-  spot.direction = glm::normalize(glm::vec3(-0.25f, 0, -0.75f) - spot.position);
-  spot.innerConeAngle = glm::radians(20.0f);
-  spot.outerConeAngle = glm::radians(34.0f);
+  spot.intensity = 100.0f;
+  spot.position = {0.0f, 5.45f, 0.25f};
+  spot.direction = {0, -1, 0};
+  spot.innerConeAngle = glm::radians(32.0f);
+  spot.outerConeAngle = glm::radians(40.0f);
   s.lights.push_back(spot);
 
   // Far enough in front that the opening frames a square picture from edge to edge.
@@ -212,8 +212,8 @@ Scene cornellBox() {
   camera.verticalFov = 2.0f * std::atan(0.985f * kHalf / (camera.position.z - kHalf));
   camera.zNear = 0.1f;
   s.cameras.push_back(camera);
-  s.gaze.push_back({0.0f, {0.40f, 0.55f}, true});  // the cube and the wall it colours
-  s.exposure = 1.0f;
+  s.gaze.push_back({0.0f, {0.42f, 0.55f}, true});  // the cube and the wall it colours
+  s.exposure = 1.5f;
   s.hash = contentHash(s);
   return s;
 }
