@@ -241,9 +241,10 @@ void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& 
     if (record)
       batch.images.push_back({t.resource, t.previous, state.writeStage | state.readStage, group.stage,
                               state.writeAccess, group.access, state.layout, t.scope.layout});
-    // The change of layout is itself a write, which only this barrier's second scope has waited for.
-    state.writeStage = state.seenStage = group.stage;
-    state.writeAccess = 0;
+    // The change of layout is itself a write, which only this barrier's second scope has waited for; who comes later
+    // waits for that scope and for the write before it.
+    state.writeStage |= group.stage;
+    state.seenStage = group.stage;
     state.seenAccess = group.access;
     state.readStage = 0;
     state.layout = t.scope.layout;

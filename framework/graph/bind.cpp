@@ -263,7 +263,7 @@ void Binder::makeExternals() {
     externalFirst_.push_back(static_cast<uint32_t>(graph_.resources.size()));
     for (size_t m = 0; m < external.members.size(); ++m) {
       BoundResource& resource = graph_.resources.emplace_back();
-      resource.name = "inputs." + text(external.name);
+      resource.name = text(external.name);
       if (!text(external.members[m]).empty()) resource.name += "." + text(external.members[m]);
       resource.desc = external.resources[m];
       if (resource.desc.kind == ResourceKind::Image && resource.desc.width == 0)
