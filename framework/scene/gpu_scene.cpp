@@ -8,6 +8,7 @@
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
+#include "framework/image/image.h"
 #include "framework/scene/gpu_textures.h"
 #include "framework/scene/lights.h"
 
@@ -119,8 +120,8 @@ struct GpuScene::Impl {
   gpu::Device& device;
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
-  gpu::Buffer indices, triangles, positions, attributes, materials, uniforms;
-  GpuTextures srgb, linear;
+  gpu::Buffer indices, triangles, positions, attributes, materials, srgb, uniforms;
+  GpuTextures textures;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -128,8 +129,7 @@ struct GpuScene::Impl {
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
       : device(d), triangleCount(uint32_t(g.triangles.size())), staticTriangles(g.staticTriangles),
-        vertexCount(uint32_t(g.positions.size())), environment(scene.environment), srgb(d, scene, true),
-        linear(d, scene, false) {
+        vertexCount(uint32_t(g.positions.size())), environment(scene.environment), textures(d, scene) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
     indices = makeBuffer(device, "scene indices", indexList(g),
@@ -141,6 +141,9 @@ struct GpuScene::Impl {
     std::vector<MaterialTexels> list;
     for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
     materials = makeBuffer(device, "scene materials", list, kTexelUsage);
+    std::vector<float> table;
+    for (int code = 0; code < 256; ++code) table.push_back(image::srgbDecode(float(code) / 255));
+    srgb = makeBuffer(device, "sRGB table", table, kTexelUsage);
   }
   ~Impl() {
     vkDestroyDescriptorPool(device.handle(), pool, nullptr);
@@ -160,14 +163,10 @@ struct GpuScene::Impl {
 };
 
 TextureTexels GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse& use) const {
-  const TexturePages::Place* place = srgb.find(use.texture);
-  uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2;
-  if (!place) {
-    place = linear.find(use.texture);
-    flags |= kTextureLinear;
-  }
+  const TexturePages::Place* place = textures.find(use.texture);
   if (!place) return {};
   const Texture& t = scene.textures[use.texture];
+  const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear);
   const glm::mat3x2& m = use.transform;
   return {glm::vec4(place->page, place->x, place->y, flags), glm::vec4(t.width, t.height, m[2].x, m[2].y),
           glm::vec4(m[0].x, m[0].y, m[1].x, m[1].y)};
@@ -202,8 +201,8 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 4 positions
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 5 attributes
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 6 materials
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures, sRGB
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 8 textures, linear
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 sRGB table
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
@@ -219,8 +218,8 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 4 * slots},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 5 * slots},
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
   poolInfo.poolSizeCount = uint32_t(std::size(sizes));
@@ -241,14 +240,13 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  const VkBufferView texels[4] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
+  const VkBufferView texels[5] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
                                   positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
+                                  materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  srgb.texelView(VK_FORMAT_R32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
-  const VkDescriptorImageInfo images[2] = {
-      {nearest, srgb.image().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-      {nearest, linear.image().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+  const VkDescriptorImageInfo image{nearest, textures.image().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   VkWriteDescriptorSet writes[kBindingCount]{};
   for (uint32_t i = 0; i < kBindingCount; ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -257,8 +255,8 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     writes[i].descriptorCount = 1;
     writes[i].descriptorType = kBindings[i];
     if (i < 3) writes[i].pBufferInfo = &blocks[i];
-    else if (i < 7) writes[i].pTexelBufferView = &texels[i - 3];
-    else writes[i].pImageInfo = &images[i - 7];
+    else if (i == 7) writes[i].pImageInfo = &image;
+    else writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : 4];
   }
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }

@@ -27,7 +27,7 @@ void changeLayout(VkCommandBuffer cmd, VkImage image, VkImageLayout from, VkImag
   vkCmdPipelineBarrier2(cmd, &info);
 }
 
-std::vector<uint32_t> usedTextures(const Scene& scene, bool srgb) {
+std::vector<uint32_t> usedTextures(const Scene& scene) {
   std::vector<bool> used(scene.textures.size());
   for (const Material& m : scene.materials)
     for (const TextureUse* use : {&m.baseColorTexture, &m.emissionTexture})
@@ -35,15 +35,15 @@ std::vector<uint32_t> usedTextures(const Scene& scene, bool srgb) {
   std::vector<uint32_t> list;
   for (uint32_t i = 0; i < used.size(); ++i) {
     const Texture& t = scene.textures[i];
-    if (used[i] && t.srgb == srgb && t.width > 0 && t.height > 0) list.push_back(i);
+    if (used[i] && t.width > 0 && t.height > 0) list.push_back(i);
   }
   return list;
 }
 
 }  // namespace
 
-GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene, bool srgb) : index_(scene.textures.size(), -1) {
-  const std::vector<uint32_t> textures = usedTextures(scene, srgb);
+GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene) : index_(scene.textures.size(), -1) {
+  const std::vector<uint32_t> textures = usedTextures(scene);
   const uint32_t maxSide = device.limits().maxImageDimension2D;
   std::vector<glm::uvec2> sizes;
   for (uint32_t t : textures) {
@@ -59,8 +59,8 @@ GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene, bool srgb) : i
   }
   pages_ = packTextures(sizes, maxSide);
   gpu::ImageDesc desc;
-  desc.name = srgb ? "scene textures (sRGB)" : "scene textures (linear)";
-  desc.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  desc.name = "scene textures";
+  desc.format = VK_FORMAT_R8G8B8A8_UNORM;
   desc.width = desc.height = pages_.side;
   desc.layers = pages_.pages;
   desc.array = true;

@@ -9,11 +9,11 @@
 
 namespace fovea::scene {
 
-// Those textures that materials use and whose `srgb` is as asked; without any, one white texel.
+// Those textures that materials use, 8-bit RGBA as stored; without any, one white texel.
 class GpuTextures {
  public:
   // Throws Error(BadInput) naming a texture too large for the device, Error(OutOfMemory).
-  GpuTextures(gpu::Device& device, const Scene& scene, bool srgb);
+  GpuTextures(gpu::Device& device, const Scene& scene);
   // Null when the texture is not among them.
   const TexturePages::Place* find(uint32_t texture) const;
   gpu::Image& image() { return image_; }  // in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL

@@ -47,8 +47,8 @@ layout(set = 1, binding = 3) uniform usamplerBuffer sceneTriangles;     // xyz: 
 layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;      // xyz world
 layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;     // xy: octahedral normal, zw: uv
 layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // kMaterialTexels texels each
-layout(set = 1, binding = 7) uniform sampler2DArray sceneTexturesSrgb;    // pages; texelFetch gives linear light
-layout(set = 1, binding = 8) uniform sampler2DArray sceneTexturesLinear;  // pages of textures stored linearly
+layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
+layout(set = 1, binding = 8) uniform samplerBuffer sceneSrgb;           // linear light of the 256 sRGB codes
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
@@ -117,8 +117,12 @@ int wrapTexel(int i, int size, uint wrap) {
   return r < size ? r : period - 1 - r;
 }
 
+// sRGB is decoded by a table: the decoders of sRGB image formats may err (lavapipe's by 1% in the dark).
 vec4 sceneTexel(ivec3 p, bool linear) {
-  return linear ? texelFetch(sceneTexturesLinear, p, 0) : texelFetch(sceneTexturesSrgb, p, 0);
+  vec4 texel = texelFetch(sceneTextures, p, 0);
+  if (linear) return texel;
+  ivec3 code = ivec3(texel.rgb * 255.0 + 0.5);
+  return vec4(texelFetch(sceneSrgb, code.r).r, texelFetch(sceneSrgb, code.g).r, texelFetch(sceneSrgb, code.b).r, texel.a);
 }
 
 // Bilinear LOD 0, texels decoded before they are filtered; the same as scene::sampleTexture. `texel`: the first of the

@@ -1,0 +1,333 @@
+// shaders/common/scene.glsl against its twins on the CPU: textures, materials, lights, geometry.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "framework/base/diagnostic.h"
+#include "framework/base/random.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/gpu/shader.h"
+#include "framework/scene/gpu_scene.h"
+#include "framework/scene/lights.h"
+#include "tests/support/device.h"
+
+namespace fovea::scene {
+namespace {
+
+using test::testDevice;
+
+// Runs `body` once per query: it reads vec4 q and writes vec4 r[3].
+std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::vector<glm::vec4>& queries,
+                                const std::string& name, const std::string& body) {
+  gpu::Device& device = testDevice();
+  const std::string source = R"(#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "common/scene.glsl"
+layout(local_size_x = 64) in;
+layout(std430) readonly buffer Queries { vec4 queries[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
+layout(push_constant) uniform Constants { uint count; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  vec4 q = queries[i];
+  vec4 r[3] = vec4[3](vec4(0), vec4(0), vec4(0));
+)" + body + R"(
+  for (int k = 0; k < 3; ++k) results[3u * i + k] = r[k];
+}
+)";
+  gpu::Buffer in(device, {"queries", queries.size() * 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::Buffer out(device, {"results", queries.size() * 48, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::upload(device, in, std::as_bytes(std::span(queries)));
+  const gpu::Pipeline pipeline(
+      device,
+      gpu::ComputePipelineDesc{device.shaders().compileSource(name + ".comp", source), scene.setLayout()});
+  scene.update(frame, 1);
+  device.runOnce([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
+                                             {out.handle(), 0, VK_WHOLE_SIZE}};
+    std::vector<VkWriteDescriptorSet> writes;
+    for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
+      VkWriteDescriptorSet& w =
+          writes.emplace_back(VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
+      w.dstBinding = b.binding;
+      w.descriptorCount = 1;
+      w.descriptorType = gpu::descriptorType(b.kind);
+      w.pBufferInfo = &infos[b.name == "Results"];
+    }
+    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+    const VkDescriptorSet set = scene.set(1);
+    const uint32_t offset = scene.viewOffset(frame.views.empty() ? 0 : uint32_t(frame.views.size() - 1));
+    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
+    const uint32_t count = uint32_t(queries.size());
+    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
+    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
+  });
+  std::vector<glm::vec4> results(queries.size() * 3);
+  const std::vector<std::byte> bytes = gpu::download(device, out);
+  std::memcpy(results.data(), bytes.data(), bytes.size());
+  return results;
+}
+
+float random(uint32_t stream, uint32_t index) { return uniformFloat(hashCombine(stream, index)); }
+
+Texture noiseTexture(uint32_t width, uint32_t height, bool srgb, uint32_t seed) {
+  Texture t{"noise", width, height, srgb, std::vector<uint8_t>(size_t(width) * height * 4)};
+  for (uint32_t i = 0; i < t.rgba.size(); ++i) t.rgba[i] = uint8_t(hashCombine(seed, i));
+  return t;
+}
+
+// Textures of every kind of size, one material for every wrap mode of each.
+Scene texturedScene() {
+  Scene scene;
+  const glm::uvec2 sizes[] = {{1, 1}, {2, 1}, {3, 5}, {64, 64}, {200, 17}, {1, 300}, {256, 128}, {33, 255}};
+  for (uint32_t i = 0; i < 16; ++i)
+    scene.textures.push_back(noiseTexture(sizes[i % 8].x, sizes[i % 8].y, i % 3 != 0, i));
+  scene.textures.push_back(noiseTexture(8, 8, true, 99));  // used by nothing
+  for (uint32_t i = 0; i < 16 * 9; ++i) {
+    Material m;
+    const glm::mat3x2 transform(1 + random(1, i), random(2, i) - 0.5f, random(3, i) - 0.5f, -1 - random(4, i),
+                                4 * random(5, i), -3 * random(6, i));
+    m.baseColor = {random(7, i), random(8, i), random(9, i), random(10, i)};
+    m.metallic = i % 4 == 0 ? random(11, i) : 0;
+    m.baseColorTexture = {i / 9, Wrap(i % 3), Wrap(i / 3 % 3),
+                          i % 2 ? transform : glm::mat3x2(1, 0, 0, 1, 0, 0)};
+    if (i % 5 == 0) m.emission = {3 * random(12, i), 1, 0};
+    if (i % 10 == 0) m.emissionTexture = {(i / 9 + 5) % 16, Wrap(i / 3 % 3), Wrap(i % 3), transform};
+    m.masked = i % 3 == 0;
+    m.alphaCutoff = random(13, i);
+    m.doubleSided = i % 2 == 0;
+    scene.materials.push_back(m);
+  }
+  scene.materials.emplace_back();  // without any texture
+  return scene;
+}
+
+TEST(SceneGlsl, MaterialsAndTextures) {
+  const Scene scene = texturedScene();
+  const Geometry geometry;
+  GpuScene gpu(testDevice(), scene, geometry, 2);
+  Frame frame;
+  std::vector<glm::vec4> queries;
+  for (uint32_t m = 0; m < scene.materials.size(); ++m)
+    for (uint32_t i = 0; i < 64; ++i) {
+      const uint32_t k = m * 64 + i;
+      const float reach = i < 48 ? 3 : 300;
+      glm::vec2 uv(reach * (2 * random(20, k) - 1), reach * (2 * random(21, k) - 1));
+      if (i % 8 == 0) uv = glm::round(uv * 4.0f) / 4.0f;  // on texel edges and corners
+      queries.emplace_back(float(m), uv, 0);
+    }
+  queries.emplace_back(0, std::nanf(""), 1e30f, 0);
+  const auto results = evaluate(gpu, frame, queries, "materials", R"(
+    uint m = uint(q.x);
+    SurfacePoint s = surfaceAt(m, q.yz);
+    Material material = loadMaterial(m);
+    r[0] = vec4(s.reflectance, s.alpha);
+    r[1] = vec4(s.emission, alphaTest(m, q.yz) ? 1.0 : 0.0);
+    r[2] = vec4(material.doubleSided ? 1.0 : 0.0, material.alphaCutoff, material.alpha, material.baseColor.g);
+  )");
+  double worst = 0;
+  for (size_t i = 0; i + 1 < queries.size(); ++i) {
+    const Material& m = scene.materials[size_t(queries[i].x)];
+    const glm::vec2 uv(queries[i].y, queries[i].z);
+    // A float coordinate of n texels has steps of n 2^-23, which the slope between two texels turns into an
+    // error.
+    const double tolerance = std::abs(uv.x) < 4 && std::abs(uv.y) < 4 ? 1e-4 : 1e-2;
+    const glm::vec4 color = reflectance(scene, m, uv);
+    const glm::vec3 light = emission(scene, m, uv);
+    for (int c = 0; c < 4; ++c) {
+      ASSERT_NEAR(results[3 * i][c], color[c], tolerance)
+          << "material " << queries[i].x << " uv " << uv.x << " " << uv.y;
+      if (tolerance < 1e-3) worst = std::max(worst, double(std::abs(results[3 * i][c] - color[c])));
+    }
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(results[3 * i + 1][c], light[c], 3 * tolerance);
+    if (!m.masked || std::abs(color.a - m.alphaCutoff) > tolerance) {
+      EXPECT_EQ(results[3 * i + 1].w, !m.masked || color.a >= m.alphaCutoff ? 1 : 0);
+    }
+    EXPECT_EQ(results[3 * i + 2].x, m.doubleSided ? 1 : 0);
+    EXPECT_FLOAT_EQ(results[3 * i + 2].y, m.masked ? m.alphaCutoff : 0);
+    EXPECT_FLOAT_EQ(results[3 * i + 2].z, m.baseColor.a);
+    EXPECT_FLOAT_EQ(results[3 * i + 2].w, m.baseColor.g * (1 - m.metallic));
+  }
+  RecordProperty("worst", std::to_string(worst));
+  for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(results[results.size() - 3][c]));
+}
+
+TEST(SceneGlsl, Lights) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Frame frame;
+  for (uint32_t i = 0; i < kMaxLights; ++i) {
+    Light light;
+    light.type = LightType(i % 3);
+    light.color = {random(1, i), random(2, i), 1};
+    light.intensity = 10 * random(3, i);
+    light.range = i % 4 == 0 ? 8 : 0;
+    light.innerConeAngle = 0.5f * random(4, i);
+    light.outerConeAngle = light.innerConeAngle + (i % 7 == 0 ? 0 : random(5, i));
+    light.position = glm::vec3(random(6, i), random(7, i), random(8, i)) * 10.0f - 5.0f;
+    light.direction = glm::normalize(glm::vec3(random(9, i), random(10, i), random(11, i)) - 0.5f);
+    frame.lights.push_back(light);
+  }
+  GpuScene gpu(testDevice(), scene, {}, 2);
+  std::vector<glm::vec4> queries;
+  for (uint32_t k = 0; k < kMaxLights * 32; ++k)
+    queries.emplace_back(glm::vec3(random(20, k), random(21, k), random(22, k)) * 12.0f - 6.0f,
+                         float(k % kMaxLights));
+  const auto results = evaluate(gpu, frame, queries, "lights", R"(
+    Light light = lights[uint(q.w)];
+    LightSample s = sampleLight(light, q.xyz);
+    r[0] = vec4(s.irradiance, s.distance);
+    r[1] = vec4(s.direction, float(firstShadowLayer(light)));
+    r[2] = vec4(frame.lightCount);
+  )");
+  std::vector<uint32_t> firstLayer(kMaxLights);
+  for (uint32_t i = 1; i < kMaxLights; ++i)
+    firstLayer[i] = firstLayer[i - 1] + shadowLayers(frame.lights[i - 1]);
+  int lit = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Light& light = frame.lights[i % kMaxLights];
+    const LightSample s = sampleLight(light, glm::vec3(queries[i]));
+    lit += s.irradiance.z > 0;
+    // A hard-edged cone (equal angles) has a slope of 1e4 over its cosine.
+    const double slack = spotCone(light).scale() > 1000 && light.type == LightType::Spot ? 2e-2 : 1e-4;
+    for (int c = 0; c < 3; ++c) {
+      ASSERT_NEAR(results[3 * i][c], s.irradiance[c], slack * (1 + s.irradiance[c]))
+          << "light " << i % kMaxLights;
+      ASSERT_NEAR(results[3 * i + 1][c], s.direction[c], 1e-5);
+    }
+    ASSERT_NEAR(results[3 * i][3] / s.distance, 1, 1e-5);
+    ASSERT_EQ(results[3 * i + 1].w, float(firstLayer[i % kMaxLights]));
+    ASSERT_EQ(results[3 * i + 2].x, float(kMaxLights));
+  }
+  EXPECT_GT(lit, int(queries.size() / 2));  // the comparison is not one of zeros
+}
+
+// Two triangles of two objects.
+Geometry smallGeometry() {
+  Geometry g;
+  for (uint32_t i = 0; i < 6; ++i) {
+    g.positions.emplace_back(random(1, i), 10 * random(2, i), -random(3, i));
+    g.normals.push_back(glm::normalize(glm::vec3(random(4, i), random(5, i), random(6, i)) - 0.5f));
+    g.uvs.emplace_back(random(7, i), -7 * random(8, i));
+  }
+  g.normals[0] = {0, 0, -1};
+  g.normals[1] = {0, -1, 0};
+  g.triangles = {{{0, 1, 2}, 3u}, {{5, 4, 3}, 7u | 1u << 16}};
+  g.staticTriangles = 1;
+  g.boundsMin = {0, 0, -1};
+  g.boundsMax = {1, 10, 0};
+  return g;
+}
+
+TEST(SceneGlsl, GeometryFrameAndViews) {
+  Scene scene;
+  scene.materials.resize(8);
+  scene.environment = {0.5f, 0.25f, 2};
+  const Geometry geometry = smallGeometry();
+  GpuScene gpu(testDevice(), scene, geometry, 2);
+  EXPECT_EQ(gpu.triangleCount(), 2u);
+  EXPECT_EQ(gpu.vertexCount(), 6u);
+  Camera camera;
+  camera.position = {1, 2, 3};
+  Frame frame;
+  frame.index = 11;
+  frame.seed = 77;
+  frame.time = 0.25;
+  frame.exposure = 1.5f;
+  for (uint32_t i = 0; i < kMaxViews; ++i) {
+    frame.views.push_back(makeView(camera, {64 + i, 32}, geometry, {0.25f, 0.75f}));
+    camera.position.x += 1;
+  }
+  std::vector<glm::vec4> queries;
+  for (uint32_t i = 0; i < 6; ++i) queries.emplace_back(float(i));
+  const auto results = evaluate(gpu, frame, queries, "geometry", R"(
+    uint vertex = uint(q.x);
+    r[0] = vec4(scenePosition(vertex), sceneUv(vertex).x);
+    r[1] = vec4(sceneNormal(vertex), sceneUv(vertex).y);
+    r[2] = vec4(octDecode(octEncode(sceneNormal(vertex))), 0.0);
+  )");
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(results[3 * i], glm::vec4(geometry.positions[i], geometry.uvs[i].x));
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(results[3 * i + 1][c], geometry.normals[i][c], 1e-6) << "vertex " << i;
+      EXPECT_NEAR(results[3 * i + 2][c], geometry.normals[i][c], 1e-6) << "vertex " << i;
+    }
+    EXPECT_EQ(results[3 * i + 1].w, geometry.uvs[i].y);
+  }
+  const auto blocks =
+      evaluate(gpu, frame, {glm::vec4(0), glm::vec4(1), glm::vec4(2), glm::vec4(3)}, "blocks", R"(
+    if (i < 2u) {
+      uvec4 t = sceneTriangle(i);
+      r[0] = vec4(t.xyz, materialOf(t));
+      r[1] = vec4(objectOf(t), frame.triangleCount, frame.staticTriangleCount, frame.vertexCount);
+      r[2] = vec4(frame.index, frame.seed, frame.time, frame.exposure);
+    } else if (i == 2u) {
+      r[0] = frame.boundsMin;
+      r[1] = frame.boundsMax;
+      r[2] = frame.environment;
+    } else {
+      r[0] = view.clipToWorld * view.worldToClip * vec4(1.0, 2.0, 1.0, 1.0);
+      r[1] = vec4(view.eye.xyz, view.size.x);
+      r[2] = vec4(view.gaze.xy, view.size.y, view.size.z * view.size.x);
+    }
+  )");
+  EXPECT_EQ(blocks[0], glm::vec4(0, 1, 2, 3));
+  EXPECT_EQ(blocks[3], glm::vec4(5, 4, 3, 7));
+  EXPECT_EQ(blocks[1], glm::vec4(0, 2, 1, 6));
+  EXPECT_EQ(blocks[4], glm::vec4(1, 2, 1, 6));
+  EXPECT_EQ(blocks[2], glm::vec4(11, 77, 0.25f, 1.5f));
+  EXPECT_EQ(glm::vec3(blocks[6]), geometry.boundsMin);
+  EXPECT_EQ(glm::vec3(blocks[7]), geometry.boundsMax);
+  EXPECT_EQ(glm::vec3(blocks[8]), scene.environment);
+  for (int c = 0; c < 4; ++c) EXPECT_NEAR(blocks[9][c], glm::vec4(1, 2, 1, 1)[c], 1e-4);
+  EXPECT_EQ(blocks[10], glm::vec4(1 + kMaxViews - 1, 2, 3, 64 + kMaxViews - 1));  // the last view
+  EXPECT_EQ(glm::vec3(blocks[11]), glm::vec3(0.25f, 0.75f, 32));
+}
+
+TEST(SceneGlsl, AnEmptySceneWorks) {
+  GpuScene gpu(testDevice(), Scene{}, {}, 2);
+  EXPECT_EQ(gpu.triangleCount(), 0u);
+  const auto results = evaluate(gpu, Frame{}, {glm::vec4(0)}, "empty", R"(
+    r[0] = vec4(frame.triangleCount + frame.lightCount + frame.vertexCount, frame.boundsMin.xyz);
+    r[1] = frame.boundsMax;
+  )");
+  EXPECT_EQ(results[0], glm::vec4(0));
+  EXPECT_EQ(results[1], glm::vec4(0));
+}
+
+TEST(SceneGlsl, ManyLargeTexturesTakeSeveralPages) {
+  Scene scene;
+  for (uint32_t i = 0; i < 24; ++i) {
+    Texture t{"flat", 1024, 700, i % 2 == 0, std::vector<uint8_t>(1024 * 700 * 4, uint8_t(10 * i))};
+    scene.textures.push_back(std::move(t));
+    scene.materials.emplace_back().baseColorTexture.texture = i;
+  }
+  GpuScene gpu(testDevice(), scene, {}, 2);
+  std::vector<glm::vec4> queries;
+  for (uint32_t k = 0; k < 24 * 16; ++k) queries.emplace_back(float(k / 16), random(1, k), random(2, k), 0);
+  const auto results =
+      evaluate(gpu, Frame{}, queries, "pages", "r[0] = materialReflectance(uint(q.x), q.yz);");
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const glm::vec4 expected = reflectance(scene, scene.materials[i / 16], {queries[i].y, queries[i].z});
+    for (int c = 0; c < 4; ++c) ASSERT_NEAR(results[3 * i][c], expected[c], 1e-4) << "texture " << i / 16;
+  }
+}
+
+TEST(SceneGlsl, LimitsAreNamed) {
+  Scene scene;
+  scene.lights.resize(kMaxLights + 1);
+  try {
+    GpuScene gpu(testDevice(), scene, {}, 2);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("65 lights"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace fovea::scene
