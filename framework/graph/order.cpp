@@ -154,6 +154,12 @@ void Binder::checkInPlace() {
       if (r == kNone) continue;
       const uint32_t by = updater[firstVersion[r] + versionSeen(port, r) + 1];
       if (by == kNone || waits[by] == 0) continue;
+      if (by == port.pass)
+        return error(
+            description_.wires[port.wire].place, wirePath(port),
+            fmt::format("`{}` reads and updates `{}`: its input `{}` would be changed before it is read",
+                        graph_.passes[by].name, text(description_.wires[port.wire].text), spec.name),
+            "wire one of the two ports to another value");
       return error(
           description_.wires[port.wire].place, wirePath(port),
           fmt::format("`{}` must read `{}` before `{}` updates it in place, but it also waits for that pass",

@@ -137,7 +137,7 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
   for (uint32_t p = 0; p < count; ++p) {
     std::string inputs;
     std::vector<Offer> made;
-    std::set<std::string> used;  // a pass that reads a value cannot update it too
+    std::set<std::string> used, updating;  // a pass that reads a value cannot update it too
     uint32_t external = 0;
     for (const RandomPort& port : chosen[p]->ports) {
       if (port.direction == Direction::Output) {
@@ -148,6 +148,7 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
       std::vector<Offer*> fitting;
       for (Offer& offer : offers)
         if (offer.kind == port.kind &&
+            (port.direction == Direction::Input ? !updating.count(offer.wire) : !used.count(offer.wire)) &&
             (!offer.updated || (port.direction == Direction::Input && dice.chance(1))))
           fitting.push_back(&offer);
       std::string wire;
@@ -164,6 +165,7 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
         Offer& offer = *fitting[dice.chance(70) ? n - 1 - dice(std::min(n, 4u)) : dice(n)];
         wire = offer.wire;
         used.insert(wire);
+        if (port.direction == Direction::InOut) updating.insert(wire);
         if (port.direction == Direction::InOut) offer.updated = true;
       }
       if (port.direction == Direction::InOut)
