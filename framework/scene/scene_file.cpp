@@ -132,8 +132,8 @@ class Parser {
   void light(const Value& v, const std::string& path) {
     ObjectReader r(v, path, errors_);
     Light l;
-    const std::string type =
-        r.require("type") ? r.choice("type", "point", {"directional", "point", "spot"}) : "point";
+    const std::string type = r.require("type") ? r.choice("type", "", {"directional", "point", "spot"}) : "";
+    if (type.empty()) return;  // what else it needs depends on the type
     l.type = type == "directional" ? LightType::Directional
              : type == "spot"      ? LightType::Spot
                                    : LightType::Point;

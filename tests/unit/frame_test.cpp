@@ -1,0 +1,161 @@
+// Views and frames: Vulkan's clip space, rays that agree with it, gaze and camera over time.
+#include "framework/scene/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace fovea::scene {
+namespace {
+
+Geometry bounds(glm::vec3 low, glm::vec3 high) {
+  Geometry g;
+  g.triangles.emplace_back();
+  g.boundsMin = low;
+  g.boundsMax = high;
+  return g;
+}
+
+glm::vec3 project(const View& v, glm::vec3 p) {
+  const glm::vec4 c = v.worldToClip * glm::vec4(p, 1.0f);
+  return glm::vec3(c) / c.w;
+}
+
+TEST(View, ClipSpaceIsVulkans) {
+  Camera c;
+  c.verticalFov = 1.0f;
+  c.zNear = 0.5f;
+  c.zFar = 20.0f;
+  const View v = makeView(c, {200, 100}, bounds(glm::vec3(-1), glm::vec3(1)));
+  EXPECT_NEAR(project(v, {0, 0, -0.5f}).z, 0, 1e-5f);
+  EXPECT_NEAR(project(v, {0, 0, -20}).z, 1, 1e-5f);
+  EXPECT_GT(project(v, {1, 0, -5}).x, 0);
+  EXPECT_LT(project(v, {0, 1, -5}).y, 0);  // up in the world is up in the image, whose y points down
+  const float t = std::tan(0.5f);
+  EXPECT_NEAR(project(v, {0, 5 * t, -5}).y, -1, 1e-5f);
+  EXPECT_NEAR(project(v, {10 * t, 0, -5}).x, 1, 1e-5f);  // the image is twice as wide as high
+}
+
+TEST(View, RaysHitWhatIsProjectedThere) {
+  Camera c;
+  c.position = {1, 2, 3};
+  c.orientation = glm::normalize(glm::quat(0.8f, 0.1f, -0.5f, 0.2f));
+  c.verticalFov = 0.9f;
+  const View v = makeView(c, {320, 180}, bounds(glm::vec3(-50), glm::vec3(50)));
+  for (const glm::vec2 pixel : {glm::vec2(0.5f, 0.5f), glm::vec2(100.5f, 20.5f), glm::vec2(319.5f, 179.5f)}) {
+    const glm::vec3 p = v.eye + 7.0f * v.rayDirection(pixel);
+    const glm::vec3 ndc = project(v, p);
+    EXPECT_NEAR((ndc.x * 0.5f + 0.5f) * 320, pixel.x, 1e-3f);
+    EXPECT_NEAR((ndc.y * 0.5f + 0.5f) * 180, pixel.y, 1e-3f);
+    const glm::vec4 back = v.clipToWorld * glm::vec4(ndc, 1.0f);
+    EXPECT_LT(glm::distance(glm::vec3(back) / back.w, p), 2e-3f);
+  }
+}
+
+TEST(View, FarPlaneHoldsTheWholeScene) {
+  Camera c;
+  c.position = {100, 0, 0};
+  const Geometry g = bounds({-300, -10, -20}, {50, 10, 20});
+  const View v = makeView(c, {64, 64}, g);
+  // Look at the farthest corner from where the camera is.
+  c.orientation = glm::quat(glm::vec3(0, glm::radians(90.0f), 0));
+  const View w = makeView(c, {64, 64}, g);
+  EXPECT_LT(project(w, {-300, 10, 20}).z, 1.0f);
+  EXPECT_GT(project(w, {-300, 10, 20}).z, 0.9f);
+  EXPECT_EQ(v.size, glm::uvec2(64, 64));
+}
+
+Scene sceneWithPath() {
+  Scene s;
+  s.exposure = 3;
+  for (int i = 0; i < 4; ++i) {
+    CameraKey k;
+    k.time = float(i);
+    k.camera.position = {2.0f * float(i), 0, 0};
+    k.camera.orientation = glm::angleAxis(0.4f * float(i), glm::vec3(0, 1, 0));
+    k.camera.verticalFov = 0.5f + 0.1f * float(i);
+    s.cameraPath.push_back(k);
+  }
+  s.cameras.push_back(s.cameraPath.front().camera);
+  return s;
+}
+
+TEST(Frame, PathGoesThroughItsKeysAndHoldsAtItsEnds) {
+  const Scene s = sceneWithPath();
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  for (int i = 0; i < 4; ++i) {
+    const Frame f = makeFrame(s, g, {64, 64}, uint64_t(i) * 10, 0, 10.0);
+    EXPECT_LT(glm::distance(f.views[0].eye, s.cameraPath[size_t(i)].camera.position), 1e-4f);
+    EXPECT_NEAR(f.views[0].verticalFov, 0.5f + 0.1f * float(i), 1e-5f);
+  }
+  EXPECT_LT(glm::distance(makeFrame(s, g, {64, 64}, 99, 0, 10.0).views[0].eye, glm::vec3(6, 0, 0)), 1e-5f);
+  // Equal steps: the spline runs at constant speed, position and direction alike.
+  const Frame middle = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
+  EXPECT_LT(glm::distance(middle.views[0].eye, glm::vec3(3, 0, 0)), 1e-4f);
+  const glm::vec3 forward = middle.views[0].rayDirection({32, 32});
+  EXPECT_LT(glm::distance(glm::normalize(forward), glm::vec3(-std::sin(0.6f), 0, -std::cos(0.6f))), 1e-3f);
+}
+
+TEST(Frame, PathHasNoJumpsInSpeedAtItsKeys) {
+  Scene s = sceneWithPath();
+  s.cameraPath[2].camera.position = {1, 5, 2};  // a bend
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const auto eye = [&](uint64_t i) { return makeFrame(s, g, {8, 8}, i, 0, 1000.0).views[0].eye; };
+  for (const uint64_t key : {1000u, 2000u}) {
+    const glm::vec3 before = (eye(key) - eye(key - 1)) * 1000.0f, after = (eye(key + 1) - eye(key)) * 1000.0f;
+    EXPECT_LT(glm::distance(before, after), 0.1f) << key;
+  }
+}
+
+TEST(Frame, QuaternionSignsDoNotMatter) {
+  Scene s = sceneWithPath();
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const glm::mat4 expected = makeFrame(s, g, {8, 8}, 15, 0, 10.0).views[0].worldToView;
+  for (size_t flip = 0; flip < 4; ++flip) {
+    s.cameraPath[flip].camera.orientation = -s.cameraPath[flip].camera.orientation;
+    const glm::mat4 m = makeFrame(s, g, {8, 8}, 15, 0, 10.0).views[0].worldToView;
+    for (int i = 0; i < 4; ++i) EXPECT_LT(glm::distance(m[i], expected[i]), 1e-5f) << flip;
+  }
+}
+
+TEST(Frame, PreviousMatrixIsTheLastFrames) {
+  const Scene s = sceneWithPath();
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const Frame first = makeFrame(s, g, {64, 64}, 0, 0), second = makeFrame(s, g, {64, 64}, 1, 0);
+  EXPECT_TRUE(first.cameraCut);
+  EXPECT_FALSE(second.cameraCut);
+  EXPECT_EQ(first.views[0].previousWorldToClip, first.views[0].worldToClip);
+  EXPECT_EQ(second.views[0].previousWorldToClip, first.views[0].worldToClip);
+  EXPECT_DOUBLE_EQ(second.time, 1.0 / 42.0);
+  EXPECT_EQ(second.exposure, 3);
+}
+
+TEST(Frame, GazeHoldsThroughBlinks) {
+  Scene s;
+  s.cameras.emplace_back();
+  s.gaze = {{0.1f, {0.9f, 0.9f}, false},
+            {0.2f, {0.25f, 0.3f}, true},
+            {0.4f, {0, 0}, false},
+            {0.6f, {0.7f, 0.8f}, true}};
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const auto gaze = [&](uint64_t i) { return makeFrame(s, g, {8, 8}, i, 0, 10.0).views[0].gaze; };
+  EXPECT_EQ(gaze(0), glm::vec2(0.25f, 0.3f));  // before the first valid sample: that one
+  EXPECT_EQ(gaze(2), glm::vec2(0.25f, 0.3f));
+  EXPECT_EQ(gaze(5), glm::vec2(0.25f, 0.3f));  // blinking
+  EXPECT_EQ(gaze(7), glm::vec2(0.7f, 0.8f));
+  s.gaze.clear();
+  EXPECT_EQ(gaze(3), glm::vec2(0.5f));
+}
+
+TEST(Frame, FindsViewsByName) {
+  Scene s;
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const Frame f = makeFrame(s, g, {8, 8}, 0, 7);
+  ASSERT_NE(f.findView("main"), nullptr);
+  EXPECT_EQ(f.findView("left"), nullptr);
+  EXPECT_EQ(f.seed, 7u);
+  EXPECT_EQ(f.scene, &s);
+}
+
+}  // namespace
+}  // namespace fovea::scene
