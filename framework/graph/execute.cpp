@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "framework/base/diagnostic.h"
+#include "framework/base/paths.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/execute_state.h"
 #include "framework/graph/registry.h"
@@ -142,6 +143,7 @@ void Executor::Impl::build(const Registry& registry) {
 }
 
 void Executor::Impl::buildPasses(const Registry& registry) {
+  for (const auto& path : dataFolders("shaders")) device.shaders().addSearchPath(path);
   for (const auto& path : registry.pluginShaderPaths()) device.shaders().addSearchPath(path);
   passes.resize(plan->graph->passes.size());
   uint64_t counterBytes = 0;
