@@ -415,7 +415,7 @@ void Executor::setInput(const std::string& name, std::span<const std::byte> byte
   const BoundGraph& graph = *impl_->plan->graph;
   for (uint32_t i = 0; i < graph.resources.size(); ++i) {
     const BoundResource& resource = graph.resources[i];
-    if (!resource.external || resource.name != "inputs." + name) continue;
+    if (!resource.external || resource.name != name) continue;
     if (!impl_->plan->resourceLive[i]) return;
     if (bytes.size() != resourceBytes(resource.desc))
       throw Error(ExitCode::BadInput, "input `" + name + "` wants " + std::to_string(resourceBytes(resource.desc)) +
