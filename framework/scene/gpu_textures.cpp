@@ -10,14 +10,16 @@ namespace fovea::scene {
 
 namespace {
 
-// Of all layers of the array.
-void changeLayout(VkCommandBuffer cmd, VkImage image, VkImageLayout from, VkImageLayout to) {
+// Of all layers of the array, before (toCopy) or after the copies.
+void changeLayout(VkCommandBuffer cmd, VkImage image, bool toCopy) {
   VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.oldLayout = from;
-  barrier.newLayout = to;
+  const VkImageLayout copying = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  barrier.srcStageMask = toCopy ? VK_PIPELINE_STAGE_2_NONE : VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.srcAccessMask = toCopy ? VK_ACCESS_2_NONE : VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  barrier.dstStageMask = toCopy ? VK_PIPELINE_STAGE_2_COPY_BIT : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.dstAccessMask = toCopy ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_SHADER_READ_BIT;
+  barrier.oldLayout = toCopy ? VK_IMAGE_LAYOUT_UNDEFINED : copying;
+  barrier.newLayout = toCopy ? copying : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
   barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
@@ -73,9 +75,7 @@ GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene) : index_(scene
 void GpuTextures::upload(gpu::Device& device, const Scene& scene, const std::vector<uint32_t>& textures) {
   const size_t rowBytes = size_t(pages_.side) * 4;
   const gpu::Buffer staging(device, {"staging for " + image_.name(), rowBytes * pages_.side, 0, gpu::MemoryKind::Upload});
-  device.runOnce([&](VkCommandBuffer cmd) {
-    changeLayout(cmd, image_.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  });
+  device.runOnce([&](VkCommandBuffer cmd) { changeLayout(cmd, image_.handle(), true); });
   for (uint32_t page = 0; page < pages_.pages; ++page) {
     auto* to = static_cast<uint8_t*>(staging.mapped());
     std::memset(to, 255, rowBytes * pages_.side);
@@ -93,8 +93,7 @@ void GpuTextures::upload(gpu::Device& device, const Scene& scene, const std::vec
       copy.imageExtent = {pages_.side, pages_.side, 1};
       vkCmdCopyBufferToImage(cmd, staging.handle(), image_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
       if (page + 1 == pages_.pages)
-        changeLayout(cmd, image_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        changeLayout(cmd, image_.handle(), false);
     });
   }
 }
