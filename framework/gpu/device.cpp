@@ -32,12 +32,28 @@ struct MessageLog {
   std::vector<std::string> messages;
 };
 
-// Messages of the layers that say nothing about fovea.
+// Messages of the layers that say nothing about a mistake of fovea.
 bool ignored(Validation validation, const VkDebugUtilsMessengerCallbackDataEXT& data) {
   const std::string_view id = data.pMessageIdName ? data.pMessageIdName : "";
-  // GPU-assisted validation announces the features it switches on for itself.
-  if (validation == Validation::GpuAssisted && id == "UNASSIGNED-GPU-Assisted Validation Setup") return true;
-  return false;
+  // The mode announces the features that it switches on for itself.
+  if (validation == Validation::GpuAssisted) return id == "UNASSIGNED-GPU-Assisted Validation Setup";
+  if (validation != Validation::BestPractices) return false;
+  constexpr std::string_view kAdvice[] = {
+      // The extensions by which these very messages come.
+      "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
+      // One allocation a resource is meant: there are some hundred of them, and transient ones share a heap.
+      "UNASSIGNED-BestPractices-vkAllocateMemory-small-allocation",
+      "UNASSIGNED-BestPractices-vkBindMemory-small-dedicated-allocation",
+      // Set-up transfers fence off everything before and after them; the frame's own barriers are exact.
+      "UNASSIGNED-BestPractices-pipeline-stage-flags",
+      "UNASSIGNED-BestPractices-ImageBarrierAccessLayout",
+      // The layer knows only requirements of objects, not vkGetDevice{Buffer,Image}MemoryRequirements.
+      "UNASSIGNED-BestPractices-vkBindBufferMemory-requirements-not-retrieved",
+      "UNASSIGNED-BestPractices-vkBindImageMemory-requirements-not-retrieved",
+      // A query whether a format works may well answer no.
+      "UNASSIGNED-BestPractices-Error-Result",
+  };
+  return std::find(std::begin(kAdvice), std::end(kAdvice), id) != std::end(kAdvice);
 }
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,

@@ -230,8 +230,7 @@ TEST(Validation, BestPracticesModeIsQuietForPlainWork) {
   options.validation = gpu::Validation::BestPractices;
   gpu::Device device(options);
   copyTwice(device, true);
-  for (const std::string& message : device.validationMessages())
-    EXPECT_THAT(message, testing::Not(HasSubstr("Error"))) << message;
+  EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
 }
 
 // ---- Caches
