@@ -45,7 +45,7 @@ void main() {
   TexelBox cut = clippedBox(a, b, c, float(size));
   if (!tight) box = cut;
   if (isEmpty(box)) return;
-  RayTest test = rayTest(a, b, c, planeEpsilon);
+  RayTest test = rayTest(view, triangle, planeEpsilon);
   ivec3 origin = atlasTexel(uint(view.positionSlot.w), ivec2(0), atlasLayout(imageSize(atlas)));
 #ifdef MASKED
   vec2 uvA = texelFetch(sceneAttributes, int(triangle.vertices.x)).zw;

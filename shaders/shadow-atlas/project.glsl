@@ -81,18 +81,18 @@ struct RayTest {
   float farthest;
 };
 
-// A triangle whose plane passes the VPL closer than `epsilon` is the surface the VPL lies on, or is seen edge-on: it
-// blocks nothing.
-RayTest rayTest(vec3 a, vec3 b, vec3 c, float epsilon) {
+// a, b, c: in the VPL's frame. n, h: the triangle's plane n.x = h, n of any length, from world-space differences, which
+// rounding hurts least. A triangle whose plane passes the VPL closer than `epsilon` is the surface the VPL lies on, or is
+// seen edge-on: it blocks nothing.
+RayTest rayTest(vec3 a, vec3 b, vec3 c, vec3 n, float h, float epsilon) {
   RayTest r;
   // (b - a) x (b + a) = 2 a x b, without the cancellation; and exactly opposite for the neighbour across the edge, so
   // that no ray slips through between two triangles.
   r.e0 = cross(b - a, b + a);
   r.e1 = cross(c - b, c + b);
   r.e2 = cross(a - c, a + c);
-  r.n = cross(b - a, c - a);
-  r.h = dot(r.n, a);
-  if (!(abs(r.h) > epsilon * length(r.n))) r.h = 0.0;
+  r.n = n;
+  r.h = abs(h) > epsilon * length(n) ? h : 0.0;
   r.farthest = sqrt(max(max(dot(a, a), dot(b, b)), dot(c, c)));
   return r;
 }

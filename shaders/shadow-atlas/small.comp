@@ -31,7 +31,7 @@ void main() {
   vec3 a = seenFrom(view, triangle.a), b = seenFrom(view, triangle.b), c = seenFrom(view, triangle.c);
   bool tight;
   TexelBox box = projectedBox(a, b, c, float(size), tight);
-  RayTest test = rayTest(a, b, c, planeEpsilon);
+  RayTest test = rayTest(view, triangle, planeEpsilon);
   ivec3 origin = atlasTexel(uint(view.positionSlot.w), ivec2(0), atlasLayout(imageSize(atlas)));
 
   vec2 texel = box.lo;

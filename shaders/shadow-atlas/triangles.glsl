@@ -40,9 +40,13 @@ bool isMasked(uint index) {
 Triangle loadTriangle(uint index) { return wholeTriangle(index); }
 #endif
 
-vec3 seenFrom(VplView v, vec3 p) {
-  vec3 w = p - v.positionSlot.xyz;
-  return vec3(dot(v.tangent.xyz, w), dot(v.bitangent.xyz, w), dot(v.normal.xyz, w));
+vec3 inFrame(VplView v, vec3 w) { return vec3(dot(v.tangent.xyz, w), dot(v.bitangent.xyz, w), dot(v.normal.xyz, w)); }
+vec3 seenFrom(VplView v, vec3 p) { return inFrame(v, p - v.positionSlot.xyz); }
+
+RayTest rayTest(VplView v, Triangle t, float epsilon) {
+  vec3 n = cross(t.b - t.a, t.c - t.a);
+  return rayTest(seenFrom(v, t.a), seenFrom(v, t.b), seenFrom(v, t.c), inFrame(v, n), dot(n, t.a - v.positionSlot.xyz),
+                 epsilon);
 }
 
 #endif

@@ -340,7 +340,16 @@ TEST(ShadowAtlas, SimplifiedKeepingAllIsExactAndKeepingLessIsClose) {
   const glm::vec3 middle = 0.5f * (g.boundsMin + g.boundsMax);
   addQuad(s, uint32_t(s.materials.size() - 1), middle + glm::vec3(-1, 0, 1), middle + glm::vec3(1, 0, 1),
           middle + glm::vec3(1, 0, -1), middle + glm::vec3(-1, 0, -1));
-  const std::vector<Vpl> vpls = surfaceVpls(scene::flatten(s), 24, 11);
+  // On the walls, facing in: a light inside a curved object sees nothing but the simplified surface close by.
+  std::vector<Vpl> vpls;
+  for (int axis = 0; axis < 3; ++axis)
+    for (float side : {-1.0f, 1.0f})
+      for (float along : {0.3f, 0.6f, 0.8f}) {
+        glm::vec3 at = glm::mix(g.boundsMin, g.boundsMax, along), n(0);
+        n[axis] = -side;
+        at[axis] = middle[axis] + 0.499f * side * (g.boundsMax - g.boundsMin)[axis];
+        vpls.push_back(vpl(at, n));
+      }
   auto run = [&](PassTest& test) {
     test.scene(s).param("size", 64).buffer("vpls", vpls, "Vpl");
     test.run();
@@ -357,11 +366,11 @@ TEST(ShadowAtlas, SimplifiedKeepingAllIsExactAndKeepingLessIsClose) {
   size_t hits = 0, near = 0;
   for (size_t i = 0; i < want.size(); ++i) {
     hits += want[i] < kInfinity;
-    near += want[i] < kInfinity && std::abs(got[i] - want[i]) < 0.03f * want[i];
+    near += want[i] < kInfinity && std::abs(got[i] - want[i]) < 0.03f + 0.01f * want[i];
   }
   EXPECT_GT(double(near), 0.95 * double(hits));
   EXPECT_LT(some.counter("small_pairs") + some.counter("large_pairs"),
-            0.6 * (exact.counter("small_pairs") + exact.counter("large_pairs")));
+            0.7 * (exact.counter("small_pairs") + exact.counter("large_pairs")));
 }
 
 }  // namespace
