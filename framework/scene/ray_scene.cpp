@@ -1,38 +1,20 @@
 #include "framework/scene/ray_scene.h"
 
-#include <embree3/rtcore.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <mutex>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "framework/scene/ray_tracer.h"
 
 namespace fovea::scene {
 namespace {
 
-struct DeviceDeleter {
-  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-};
-struct SceneDeleter {
-  void operator()(RTCScene s) const { rtcReleaseScene(s); }
-};
-
-[[noreturn]] void fail(RTCDevice device, const std::string& what) {
-  const RTCError error = rtcGetDeviceError(device);
-  const bool memory = error == RTC_ERROR_OUT_OF_MEMORY;
-  throw Error(memory ? ExitCode::OutOfMemory : ExitCode::Internal,
-              "ray tracing (Embree): " + what + " failed with error " + std::to_string(int(error)),
-              memory ? "use a smaller scene or free memory" : "");
-}
-
-// What the filter function needs of one masked material: the alpha channel on its own, as the scene filters it.
+// What a look-up needs of one masked material: the alpha channel on its own, as the scene filters it.
 struct Mask {
   Scene scene;  // one material with one texture of which only alpha is kept
 };
@@ -80,8 +62,7 @@ XXH64_hash_t contentKey(const Scene& scene, const Geometry& geometry) {
 }  // namespace
 
 struct RayScene::Impl {
-  std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
-  std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+  std::unique_ptr<RayTracer> tracer;
   // Masked triangles only: three uvs each, found through the triangle's index.
   std::vector<uint32_t> maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing is masked
   std::vector<std::array<glm::vec2, 3>> uvs;
@@ -97,16 +78,6 @@ struct RayScene::Impl {
     const glm::vec2 uv = t[0] * (1.0f - u - v) + t[1] * u + t[2] * v;
     const Material& material = s.materials[0];
     return reflectance(s, material, uv).a >= material.alphaCutoff;
-  }
-
-  static void filter(const RTCFilterFunctionNArguments* args) {
-    const Impl& self = *static_cast<const Impl*>(args->geometryUserPtr);
-    for (unsigned i = 0; i < args->N; ++i) {
-      if (args->valid[i] != -1) continue;
-      const unsigned triangle = RTCHitN_primID(args->hit, args->N, i);
-      const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
-      if (!self.opaqueAt(triangle, u, v)) args->valid[i] = 0;
-    }
   }
 
   void addMasks(const Scene& from, const Geometry& geometry) {
@@ -127,90 +98,31 @@ struct RayScene::Impl {
         uvs[t][size_t(k)] = geometry.uvs.empty() ? glm::vec2(0) : geometry.uvs[triangle.v[k]];
     }
   }
-
-  void addTriangles(const Geometry& geometry) {
-    RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), geometry.positions.size()));
-    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), geometry.triangles.size()));
-    if (positions == nullptr || indices == nullptr) {
-      rtcReleaseGeometry(mesh);
-      fail(device.get(), "a buffer for " + std::to_string(geometry.triangles.size()) + " triangles");
-    }
-    std::memcpy(positions, geometry.positions.data(), geometry.positions.size() * sizeof(glm::vec3));
-    for (size_t t = 0; t < geometry.triangles.size(); ++t)
-      std::copy_n(geometry.triangles[t].v, 3, indices + 3 * t);
-    if (!masks.empty()) {
-      rtcSetGeometryUserData(mesh, this);
-      rtcSetGeometryIntersectFilterFunction(mesh, &filter);
-      rtcSetGeometryOccludedFilterFunction(mesh, &filter);
-    }
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(scene.get(), mesh);
-    rtcReleaseGeometry(mesh);
-  }
 };
 
 RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
   Impl& i = *impl_;
-  i.device.reset(rtcNewDevice(nullptr));
-  if (!i.device) fail(nullptr, "making a device");
-  i.scene.reset(rtcNewScene(i.device.get()));
-  // Robust: no light through the edge that two triangles share.
-  rtcSetSceneFlags(i.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  if (!geometry.empty()) {
-    i.addMasks(scene, geometry);
-    i.addTriangles(geometry);
-    i.epsilon = 1e-5f * std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
-    for (const Triangle& t : geometry.triangles) {
-      const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]], &c = geometry.positions[t.v[2]];
-      i.area += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
-    }
+  i.addMasks(scene, geometry);
+  RayTracer::Accepts accepts;
+  if (!i.masks.empty()) accepts = [&i](uint32_t t, float u, float v) { return i.opaqueAt(t, u, v); };
+#ifdef FOVEA_EMBREE
+  i.tracer = makeEmbreeTracer(geometry, std::move(accepts));
+#else
+  i.tracer = makeBvhTracer(geometry, std::move(accepts));
+#endif
+  if (geometry.empty()) return;
+  i.epsilon = 1e-5f * std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
+  for (const Triangle& t : geometry.triangles) {
+    const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]],
+                    &c = geometry.positions[t.v[2]];
+    i.area += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
   }
-  rtcCommitScene(i.scene.get());
-  if (const RTCError error = rtcGetDeviceError(i.device.get()); error != RTC_ERROR_NONE)
-    throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? ExitCode::OutOfMemory : ExitCode::Internal,
-                "ray tracing (Embree): building the acceleration structure of " +
-                    std::to_string(geometry.triangles.size()) + " triangles failed with error " +
-                    std::to_string(int(error)),
-                error == RTC_ERROR_OUT_OF_MEMORY ? "use a smaller scene or free memory" : "");
 }
 
 RayScene::~RayScene() = default;
 
-namespace {
-
-RTCRay embreeRay(const Ray& ray) {
-  RTCRay r{};
-  r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
-  r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
-  r.tnear = ray.near, r.tfar = ray.far;
-  r.mask = ~0u;
-  return r;
-}
-
-}  // namespace
-
-RayHit RayScene::intersect(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit query{};
-  query.ray = embreeRay(ray);
-  query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return {query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v};
-}
-
-bool RayScene::occluded(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay query = embreeRay(ray);
-  rtcOccluded1(impl_->scene.get(), &context, &query);
-  return query.tfar < 0;
-}
-
+RayHit RayScene::intersect(const Ray& ray) const { return impl_->tracer->intersect(ray); }
+bool RayScene::occluded(const Ray& ray) const { return impl_->tracer->occluded(ray); }
 float RayScene::epsilon() const { return impl_->epsilon; }
 double RayScene::surfaceArea() const { return impl_->area; }
 

@@ -1,4 +1,4 @@
-// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath).
+// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath, in portable bundles a small tracer of our own).
 #pragma once
 
 #include <cstdint>
