@@ -9,12 +9,12 @@ packages=(
   ccache cmake g++ ninja-build pkg-config python3
   # Vulkan: headers and loader, a driver that renders on the CPU, validation layers
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
-  # shaders: GLSL to SPIR-V, optimiser, reflection
-  glslang-dev glslang-tools spirv-tools libspirv-cross-c-shared-dev
+  # shaders: GLSL to SPIR-V, reflection
+  glslang-dev glslang-tools libspirv-cross-c-shared-dev
   # maths, JSON, command line, text, hashes
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   # models, images, rays, mesh simplification
-  libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libtbb-dev libmeshoptimizer-dev
+  libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks

@@ -91,12 +91,6 @@ void printWarnings(const Diagnostics& messages) {
   }
 }
 
-std::string formatBytes(uint64_t bytes) {
-  const double mib = double(bytes) / (1 << 20);
-  if (mib >= 10240) return fmt::format("{:.1f} GiB", mib / 1024);
-  return mib >= 10 || bytes == 0 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.2g} MiB", mib);
-}
-
 std::string formatHash(uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::string quoteList(const std::vector<std::string>& names) {

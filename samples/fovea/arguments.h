@@ -38,8 +38,7 @@ graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages)
 // Warnings and notes to stderr, each text once in the life of the process.
 void printWarnings(const Diagnostics& messages);
 
-std::string formatBytes(uint64_t bytes);  // "412 MiB"
-std::string formatHash(uint64_t hash);    // 16 hexadecimal digits
+std::string formatHash(uint64_t hash);  // 16 hexadecimal digits
 // Names as a list for messages: "`a`, `b`".
 std::string quoteList(const std::vector<std::string>& names);
 

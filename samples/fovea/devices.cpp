@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "framework/gpu/device.h"
+#include "framework/graph/report.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 
@@ -24,7 +25,7 @@ ExitCode listAll() {
              "driver");
   for (const gpu::DeviceInfo& d : devices) {
     fmt::print("{:>2}  {:<{}}  {:<{}}  {:<8}  {:>9}  {}\n", d.index, d.name, name, d.type, type, d.apiVersion,
-               formatBytes(d.memoryBytes), d.driver);
+               graph::printBytes(d.memoryBytes), d.driver);
     if (!d.missing.empty()) fmt::print("    unusable, it lacks {}\n", quoteList(d.missing));
   }
   return ExitCode::Ok;

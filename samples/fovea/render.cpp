@@ -11,6 +11,7 @@
 #include "framework/graph/compile.h"
 #include "framework/graph/execute.h"
 #include "framework/graph/registry.h"
+#include "framework/graph/report.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
 #include "framework/scene/load.h"
@@ -137,6 +138,7 @@ void Render::buildPlan() {
   deviceOptions.device = options_.device;
   if (options_.validation) deviceOptions.validation = gpu::Validation::On;
   device_ = std::make_unique<gpu::Device>(deviceOptions);
+  for (const auto& folder : dataFolders("shaders")) device_->shaders().addSearchPath(folder);
   const uint32_t limit = device_->limits().maxImageDimension2D;
   if (size_.x > limit || size_.y > limit)
     throw Error(ExitCode::Usage,
@@ -261,8 +263,9 @@ void Render::report() const {
   if (options_.quiet) return;
   std::printf("%s on %s, %ux%u, seed %u\n%s\n\n%s\n", info_.graph.c_str(), info_.scene.c_str(), size_.x,
               size_.y, info_.seed, info_.device.c_str(), timings_->table().c_str());
-  std::printf("peak memory: %s on the device, %s on the host%s\n", formatBytes(info_.peakDeviceBytes).c_str(),
-              formatBytes(info_.peakHostBytes).c_str(), device_->isCpu() ? " (device memory included)" : "");
+  std::printf(
+      "peak memory: %s on the device, %s on the host%s\n", graph::printBytes(info_.peakDeviceBytes).c_str(),
+      graph::printBytes(info_.peakHostBytes).c_str(), device_->isCpu() ? " (device memory included)" : "");
   std::vector<std::string> files = outputs_->written();
   files.insert(files.end(), files_.begin(), files_.end());
   for (const std::string& file : files) std::printf("wrote %s\n", file.c_str());

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "framework/graph/report.h"
 #include "framework/scene/load.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
@@ -46,7 +47,7 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
   line("vertices", fmt::format("{}", geometry.positions.size()));
   line("objects", fmt::format("{} ({} of them moving)", geometry.objects.size(), dynamic));
   line("materials", fmt::format("{} ({} masked, {} emissive)", s.materials.size(), masked, emissive));
-  line("textures", fmt::format("{} ({})", s.textures.size(), formatBytes(textureBytes)));
+  line("textures", fmt::format("{} ({})", s.textures.size(), graph::printBytes(textureBytes)));
   if (geometry.empty()) return line("bounds", "none: there is no geometry");
   line("bounds",
        fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));

@@ -16,7 +16,7 @@ void addSchema(CLI::App& program, Action& action) {
   command->callback([plugins, &action] {
     action = [plugins] {
       loadPlugins(*plugins);
-      std::fputs(graph::schemaJson(graph::Registry::global()).c_str(), stdout);
+      std::fputs(graph::generateSchema(graph::Registry::global()).c_str(), stdout);
       return ExitCode::Ok;
     };
   });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -24,10 +25,7 @@ Json toJson(const Spread& s) {
   return {{"median", rounded(s.median)}, {"min", rounded(s.min)}, {"p95", rounded(s.p95)}};
 }
 
-std::string formatMs(double ms) {
-  if (ms >= 1000) return fmt::format("{:.0f}", ms);
-  return ms >= 100 ? fmt::format("{:.1f}", ms) : fmt::format("{:.2f}", ms);
-}
+std::string formatMs(double ms) { return fmt::format("{:.2f}", ms); }
 
 std::string formatCount(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) {
@@ -113,33 +111,41 @@ std::string Timings::table() const {
     typeWidth = std::max(typeWidth, pass(row.pass).declaration->type.size());
     total += row.time();
   }
-  const auto line = [&](const std::string& name, const std::string& type, const Spread& gpu,
-                        const std::string& cpu, const std::string& share) {
-    return fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", name, nameWidth, type, typeWidth,
-                       formatMs(gpu.median), formatMs(gpu.min), formatMs(gpu.p95), cpu, share);
+  std::string text;
+  const auto add = [&](const std::string& name, const std::string& type,
+                       const std::array<std::string, 4>& times, const std::string& share) {
+    text += fmt::format("{:<{}}  {:<{}}  {:>10} {:>10} {:>10}  {:>10}{}\n", name, nameWidth, type, typeWidth,
+                        times[0], times[1], times[2], times[3], share);
   };
-  std::string text = fmt::format("{:<{}}  {:<{}}  {:>9} {:>9} {:>9}  {:>9}  {:>6}\n", "pass", nameWidth,
-                                 "type", typeWidth, "gpu ms", "min", "p95", "cpu ms", "share");
-  const std::string rule(text.size() - 1, '-');
-  text += rule + '\n';
-  for (const Row& row : all) {
-    const double share = total > 0 ? 100 * row.time() / total : 0;
-    text += line(pass(row.pass).name, pass(row.pass).declaration->type, row.gpu, formatMs(row.cpu.median),
-                 fmt::format("{:.1f}%", share));
-  }
-  const Spread gpu = frameSpread([](const auto& f) { return f.gpuMs; });
-  const Spread cpu = frameSpread([](const auto& f) { return f.cpuMs; });
+  const auto times = [](const Spread& gpu, const Spread& cpu) {
+    return std::array{formatMs(gpu.median), formatMs(gpu.min), formatMs(gpu.p95), formatMs(cpu.median)};
+  };
+  add("pass", "type", {"gpu ms", "min", "p95", "cpu ms"}, "   share");
+  const std::string rule = std::string(text.size() - 1, '-') + '\n';
+  text += rule;
+  for (const Row& row : all)
+    add(pass(row.pass).name, pass(row.pass).declaration->type, times(row.gpu, row.cpu),
+        fmt::format("{:>7.1f}%", total > 0 ? 100 * row.time() / total : 0));
+  text += rule;
+  add("frame", "", times(frameSpread([](const auto& f) { return f.gpuMs; }), frameSpread([](const auto& f) {
+                           return f.cpuMs;
+                         })),
+      "");
   const Spread wall = frameSpread([](const auto& f) { return f.wallMs; });
-  text += rule + '\n' + line("frame", "", gpu, formatMs(cpu.median), "");
-  text += fmt::format("wall time of a frame: median {} ms, min {} ms, p95 {} ms over {} frame{}\n",
-                      formatMs(wall.median), formatMs(wall.min), formatMs(wall.p95), frames_.size(),
-                      frames_.size() == 1 ? "" : "s");
+  text += frames_.size() == 1
+              ? fmt::format("wall time of the frame: {} ms\n", formatMs(wall.median))
+              : fmt::format("wall time of a frame: {} ms (min {}, p95 {}) over {} frames\n",
+                            formatMs(wall.median), formatMs(wall.min), formatMs(wall.p95), frames_.size());
+  return text + counterTable();
+}
+
+std::string Timings::counterTable() const {
   const auto counted = counters();
-  size_t counterWidth = 0;
-  for (const auto& [name, value] : counted) counterWidth = std::max(counterWidth, name.size());
-  if (!counted.empty()) text += "\ncounters, median of a frame\n";
+  size_t width = 0;
+  for (const auto& [name, value] : counted) width = std::max(width, name.size());
+  std::string text = counted.empty() ? "" : "\ncounters of a frame\n";
   for (const auto& [name, value] : counted)
-    text += fmt::format("  {:<{}}  {:>16}\n", name, counterWidth, formatCount(value));
+    text += fmt::format("  {:<{}}  {:>14}\n", name, width, formatCount(value));
   return text;
 }
 

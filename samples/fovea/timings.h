@@ -47,6 +47,7 @@ class Timings {
     Spread gpu, cpu;
     double time() const { return host ? cpu.median : gpu.median; }  // where the pass does its work
   };
+  std::string counterTable() const;
   std::vector<Row> rows() const;                                 // in order of execution
   std::vector<std::pair<std::string, double>> counters() const;  // medians, in order of first appearance
   template <class Get>
