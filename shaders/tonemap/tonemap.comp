@@ -20,8 +20,7 @@ void main() {
   bvec3 special = equal(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u));
   if (any(special)) {
     atomicAdd(counters.value[0], 1u);
-    bool nan = any(bvec3(uvec3(special) * (floatBitsToUint(x) & 0x007fffffu)));
-    x = nan ? vec3(0.0) : mix(x, vec3(1e30), special);
+    if (any(bvec3(uvec3(special) * (floatBitsToUint(x) & 0x007fffffu)))) x = vec3(0.0);
   }
   x = clamp(x * exposure, 0.0, 1e30);
 #if REINHARD
