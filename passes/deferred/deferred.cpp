@@ -72,12 +72,12 @@ class Deferred : public Pass {
         throw Error(ExitCode::BadInput, "pass `deferred`: the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) +
                                             " maps for " + std::to_string(count_) + " VPLs",
                     "wire the same VPLs to the atlas and to the shading");
-      defines["TILED"] = perLayer > 1 ? "1" : "0";
+      defines["TILED"] = std::to_string(int(perLayer > 1));
     }
     // Kernels by the number of VPLs in a page, a constant in the shader: a full first page, full further ones, the rest.
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
       defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
-      defines["ACCUMULATE"] = first > 0 ? "1" : "0";
+      defines["ACCUMULATE"] = std::to_string(int(first > 0));
       pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage ? pages_.back()
                                                                              : ctx.compute("deferred/shade.comp", defines));
     }
@@ -96,7 +96,7 @@ class Deferred : public Pass {
       if (page > 0) ctx.barrier();
       Commands commands = ctx.use(pages_[page]);
       commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
-      commands.constant("firstSlot", first);
+      if (ctx.has("atlas")) commands.constant("firstSlot", first);
       commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
     }
     ctx.barrier();

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "framework/base/low_discrepancy.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/paraboloid.h"
 
 namespace fovea::passes {
@@ -37,7 +38,8 @@ glm::dvec3 lightPower(const Light& light, double beamArea) {
     case LightType::Point: return intensity * 4.0 * glm::pi<double>();
     case LightType::Spot: break;
   }
-  const double ci = std::cos(double(light.innerConeAngle)), co = std::cos(double(light.outerConeAngle));
+  const SpotCone cone = spotCone(light);
+  const double ci = cone.cosInner, co = cone.cosOuter;
   return intensity * 2.0 * glm::pi<double>() * ((1.0 - ci) + (ci - co) / 3.0);
 }
 
@@ -103,7 +105,8 @@ void LightSampler::sampleLight(const Light& light, const float u[4], Emission& e
   if (light.type == LightType::Point) {
     e.ray.direction = sphereDirection(u[1], u[2]);
   } else if (light.type == LightType::Spot) {
-    const float cosine = spotCosine(std::cos(light.innerConeAngle), std::cos(light.outerConeAngle), u[1]);
+    const SpotCone cone = spotCone(light);
+    const float cosine = spotCosine(cone.cosInner, cone.cosOuter, u[1]);
     const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), phi = glm::two_pi<float>() * u[2];
     const glm::vec3 local(sine * std::cos(phi), sine * std::sin(phi), cosine);
     e.ray.direction = glm::normalize(toWorld(orthonormalFrame(light.direction), local));

@@ -21,9 +21,11 @@ layout(set = 0, binding = 5) uniform utexture2DArray atlas;
 #endif
 
 layout(push_constant) uniform Constants {
-  uint firstSlot;        // of this page
-  float clampDistance;   // m
+  float clampDistance;  // m
+#if SHADOWED
+  uint firstSlot;       // of this page
   float shadowBias;
+#endif
 };
 
 void main() {

@@ -1,0 +1,168 @@
+// The deferred pass written plainly for the CPU, and G-buffers to feed both.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "framework/scene/paraboloid.h"
+#include "framework/scene/vpl.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+
+inline glm::vec2 octEncode(glm::vec3 n) {
+  n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  if (n.z >= 0) return glm::vec2(n);
+  return {(1 - std::abs(n.y)) * (n.x >= 0 ? 1.0f : -1.0f), (1 - std::abs(n.x)) * (n.y >= 0 ? 1.0f : -1.0f)};
+}
+
+inline float halfRound(float x) { return glm::unpackHalf1x16(glm::packHalf1x16(x)); }
+inline glm::vec3 halfRound(glm::vec3 v) { return {halfRound(v.x), halfRound(v.y), halfRound(v.z)}; }
+
+struct SurfacePixel {
+  glm::vec3 position{0};
+  float distance = 0;  // to the eye; 0: background
+  glm::vec3 normal{0, 1, 0};
+  glm::vec3 albedo{0.5f};
+};
+
+struct GBuffer {
+  int width = 0, height = 0;
+  std::vector<SurfacePixel> pixels;
+  const SurfacePixel& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
+
+  GBuffer(int w, int h, const std::function<SurfacePixel(int, int)>& pixel) : width(w), height(h) {
+    for (int y = 0; y < h; ++y) {
+      for (int x = 0; x < w; ++x) {
+        SurfacePixel p = pixel(x, y);
+        p.normal = halfRound(p.normal);
+        p.albedo = halfRound(p.albedo);
+        pixels.push_back(p);
+      }
+    }
+  }
+
+  void wire(PassTest& test) const {
+    std::vector<float> position;
+    std::vector<uint16_t> normal, face, albedo;
+    const auto half = [](std::vector<uint16_t>& to, std::initializer_list<float> values) {
+      for (float v : values) to.push_back(glm::packHalf1x16(v));
+    };
+    for (const SurfacePixel& p : pixels) {
+      position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
+      half(normal, {p.normal.x, p.normal.y, p.normal.z, 0});
+      const glm::vec2 oct = octEncode(glm::normalize(p.normal));
+      half(face, {oct.x, oct.y});
+      half(albedo, {p.albedo.r, p.albedo.g, p.albedo.b, 0});
+    }
+    const auto w = uint32_t(width), h = uint32_t(height);
+    test.viewSize(w, h);
+    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
+    test.image("gbuffer.face", VK_FORMAT_R16G16_SFLOAT, w, h, 1, face);
+    test.image("gbuffer.albedo", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
+  }
+};
+
+struct DeferredReference {
+  bool disc = false;
+  double clampDistance = 1.5;
+  int interleave = 1;
+  double filterPlane = 0.004, filterAngle = 40;
+  const std::vector<uint32_t>* atlas = nullptr;  // `size` x `size` x VPLs, the bits of floats
+  int size = 0;
+  int nearTies = 0;  // shadow comparisons too close to call in single precision
+
+  // E / pi at a surface from the VPLs first, first + step, ...
+  glm::dvec3 shade(const SurfacePixel& p, const std::vector<scene::Vpl>& vpls, size_t first, size_t step) {
+    glm::dvec3 sum(0);
+    for (size_t i = first; i < vpls.size(); i += step) {
+      const scene::Vpl& v = vpls[i];
+      const glm::dvec3 to = glm::dvec3(p.position) - glm::dvec3(v.position);
+      const double d = glm::length(to);
+      const double cosines = std::max(-glm::dot(glm::dvec3(p.normal), to) / d, 0.0) *
+                             std::max(glm::dot(glm::dvec3(v.normal), to) / d, 0.0);
+      if (cosines == 0 || (atlas && !lit(p, v, i))) continue;
+      const double clamped = std::max(d, clampDistance);
+      const double kernel = disc ? 1 / (d * d + v.area / glm::pi<double>()) : 1 / (clamped * clamped);
+      sum += cosines * kernel * glm::dvec3(v.intensity) / glm::pi<double>();
+    }
+    return sum;
+  }
+
+  // The map's distance against that of the receiver's tangent plane along the texel's centre.
+  bool lit(const SurfacePixel& p, const scene::Vpl& v, size_t slot) {
+    const glm::mat3 frame = scene::orthonormalFrame(v.normal);
+    const glm::vec3 local = scene::toLocal(frame, p.position - v.position);
+    const float length = glm::length(local);
+    const glm::ivec2 texel = scene::paraboloidTexel(scene::paraboloidProject(local, length), size);
+    const uint32_t bits = (*atlas)[(slot * size_t(size) + size_t(texel.y)) * size_t(size) + size_t(texel.x)];
+    if (bits == scene::kParaboloidEmpty) return true;
+    float stored;
+    std::memcpy(&stored, &bits, sizeof stored);
+    const glm::vec3 centre = scene::paraboloidTexelDirection(texel, size);
+    const glm::vec3 face = scene::toLocal(frame, glm::normalize(p.normal));
+    const float facing = -glm::dot(face, centre);
+    const float plane = facing > 1e-3f ? -glm::dot(face, local) / facing : length;
+    const float footprint = length * 2.0f / float(size) * (1 + centre.z);
+    const float limit = std::min(plane, length) - (0.5f * footprint + 1e-3f);
+    if (std::abs(stored - limit) < 2e-3f * length) ++nearTies;
+    return stored >= limit;
+  }
+
+  // The filter: per subset, then over subsets.
+  std::vector<glm::dvec3> irradiance(const GBuffer& g, const std::vector<scene::Vpl>& vpls) {
+    const int n = interleave;
+    std::vector<glm::dvec3> partial(g.pixels.size()), result(g.pixels.size());
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x)
+        if (g.at(x, y).distance > 0)
+          partial[size_t(y * g.width + x)] =
+              double(n * n) * shade(g.at(x, y), vpls, size_t((y % n) * n + x % n), size_t(n * n));
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x)
+        if (g.at(x, y).distance > 0) result[size_t(y * g.width + x)] = n == 1 ? partial[size_t(y * g.width + x)] : filter(g, partial, x, y);
+    return result;
+  }
+
+ private:
+  glm::dvec4 tap(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y, int qx, int qy) const {
+    if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return glm::dvec4(0);
+    const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
+    const double plane = glm::dot(glm::dvec3(q.position) - glm::dvec3(p.position), glm::dvec3(p.normal)) / (filterPlane * p.distance);
+    const double least = std::cos(glm::radians(filterAngle));
+    const double facing = (glm::dot(glm::dvec3(q.normal), glm::dvec3(p.normal)) - least) / (1 - least);
+    const double w = std::exp(-plane * plane) * std::clamp(facing, 0.0, 1.0);
+    return glm::dvec4(partial[size_t(qy * g.width + qx)] * w, w);
+  }
+
+  glm::dvec3 filter(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y) const {
+    const int n = interleave;
+    glm::dvec3 sum(0);
+    double found = 0;
+    for (int ay = 0; ay < n; ++ay) {
+      for (int ax = 0; ax < n; ++ax) {
+        glm::dvec4 s(0);
+        for (int oy = -n / 2; oy <= n / 2; ++oy)
+          for (int ox = -n / 2; ox <= n / 2; ++ox)
+            if ((ox + n) % n == ax && (oy + n) % n == ay) s += tap(g, partial, x, y, x + ox, y + oy);
+        if (s.w < 0.2) {
+          s = glm::dvec4(0);
+          for (int j = -2; j < 2; ++j)
+            for (int i = -2; i < 2; ++i) s += tap(g, partial, x, y, x + ax + n * i, y + ay + n * j);
+        }
+        if (s.w < 0.02) continue;
+        sum += glm::dvec3(s) / s.w;
+        found += 1;
+      }
+    }
+    return sum / found;
+  }
+};
+
+}  // namespace fovea::test

@@ -1,0 +1,141 @@
+#include "framework/scene/ray_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "framework/base/random.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::scene {
+namespace {
+
+using test::addMaterial;
+using test::addQuad;
+
+// Moeller and Trumbore's test over all triangles, in double precision.
+RayHit bruteForce(const Geometry& g, const Ray& ray) {
+  RayHit best;
+  double nearest = ray.far;
+  for (uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const glm::dvec3 a(g.positions[g.triangles[t].v[0]]), b(g.positions[g.triangles[t].v[1]]),
+        c(g.positions[g.triangles[t].v[2]]), o(ray.origin), d(ray.direction);
+    const glm::dvec3 p = glm::cross(d, c - a);
+    const double det = glm::dot(b - a, p);
+    if (det == 0) continue;
+    const double u = glm::dot(o - a, p) / det;
+    const glm::dvec3 q = glm::cross(o - a, b - a);
+    const double v = glm::dot(d, q) / det, distance = glm::dot(c - a, q) / det;
+    if (u < 0 || v < 0 || u + v > 1 || distance <= ray.near || distance >= nearest) continue;
+    nearest = distance;
+    best = {t, float(distance), float(u), float(v)};
+  }
+  return best;
+}
+
+glm::vec3 randomVector(uint32_t i, uint32_t what) {
+  const auto u = [&](uint32_t k) { return 2 * uniformFloat(randomStream(1, what, k, i)) - 1; };
+  return {u(0), u(1), u(2)};
+}
+
+TEST(RayScene, NearestHitEqualsBruteForce) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  for (uint32_t i = 0; i < 60; ++i)
+    addQuad(s, 0, 3.0f * randomVector(i, 0), randomVector(i, 1), randomVector(i, 2));
+  const Geometry g = flatten(s);
+  const RayScene rays(s, g);
+  int hits = 0, disagreements = 0;
+  for (uint32_t i = 0; i < 5000; ++i) {
+    const Ray ray{4.0f * randomVector(i, 3), randomVector(i, 4), 0, i % 3 == 0 ? 2.0f : 1e30f};
+    const RayHit expected = bruteForce(g, ray), hit = rays.intersect(ray);
+    EXPECT_EQ(bool(hit), rays.occluded(ray));
+    if (hit.triangle != expected.triangle) {  // possible only at edges and where two triangles cross
+      ++disagreements;
+      continue;
+    }
+    if (!hit) continue;
+    ++hits;
+    EXPECT_NEAR(hit.distance, expected.distance, 1e-4f * expected.distance + 1e-5f);
+    const SurfaceHit surface = surfaceAt(g, hit);
+    EXPECT_LT(glm::length(surface.position - (ray.origin + hit.distance * ray.direction)), 1e-4f);
+  }
+  EXPECT_GT(hits, 500);
+  EXPECT_LE(disagreements, 3);
+}
+
+TEST(RayScene, SurfaceAttributes) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  addMaterial(s, glm::vec3(0.6f));
+  addQuad(s, 1, {0, 0, 0}, {2, 0, 0}, {0, 4, 0});  // front: +z
+  for (glm::vec3& n : s.meshes[0].primitives[0].normals) n = glm::normalize(glm::vec3(1, 0, 1));
+  const Geometry g = flatten(s);
+  const RayScene rays(s, g);
+  EXPECT_DOUBLE_EQ(rays.surfaceArea(), 8);
+  const RayHit hit = rays.intersect({{0.5f, 3, 10}, {0, 0, -2}});
+  ASSERT_TRUE(hit);
+  EXPECT_FLOAT_EQ(hit.distance, 5);
+  const SurfaceHit surface = surfaceAt(g, hit);
+  EXPECT_NEAR(surface.uv.x, 0.25f, 1e-6f);
+  EXPECT_NEAR(surface.uv.y, 0.75f, 1e-6f);
+  EXPECT_EQ(surface.geometricNormal, glm::vec3(0, 0, 1));
+  EXPECT_NEAR(surface.shadingNormal.x, std::sqrt(0.5f), 1e-6f);
+  EXPECT_EQ(surface.material, 1u);
+}
+
+// A checkerboard mask over a floor: rays pass where its alpha is 0, and only there.
+TEST(RayScene, MaskedHolesLetRaysThrough) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  Material masked;
+  masked.masked = true;
+  masked.baseColorTexture.texture = 0;
+  masked.baseColorTexture.wrapU = masked.baseColorTexture.wrapV = Wrap::Clamp;
+  s.materials.push_back(masked);
+  Texture t;
+  t.width = t.height = 2;
+  for (int i = 0; i < 4; ++i) t.rgba.insert(t.rgba.end(), {255, 255, 255, uint8_t(i == 0 || i == 3 ? 255 : 0)});
+  s.textures.push_back(t);
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+  addQuad(s, 1, {0, 1, 0}, {1, 0, 0}, {0, 0, -1});
+  const Geometry g = flatten(s);
+  const RayScene rays(s, g);
+  for (uint32_t i = 0; i < 1000; ++i) {
+    const glm::vec2 p = 0.5f + 0.49f * glm::vec2(randomVector(i, 0));
+    const float alpha = reflectance(s, s.materials[1], p).a;
+    const Ray down{{p.x, 2, -p.y}, {0, -1, 0}};
+    const RayHit hit = rays.intersect(down);
+    ASSERT_TRUE(hit);
+    if (std::abs(alpha - 0.5f) > 0.01f) {
+      EXPECT_NEAR(hit.distance, alpha > 0.5f ? 1.0f : 2.0f, 1e-5f);
+    }
+    EXPECT_EQ(rays.occluded({down.origin, down.direction, 0, 1.5f}), hit.distance < 1.5f);
+  }
+}
+
+TEST(RayScene, EmptySceneIsHitByNothing) {
+  const Scene s;
+  const Geometry g;
+  const RayScene rays(s, g);
+  EXPECT_FALSE(rays.intersect({{0, 0, 0}, {0, 0, 1}}));
+  EXPECT_FALSE(rays.occluded({{0, 0, 0}, {0, 0, 1}}));
+}
+
+TEST(RayScene, CacheFollowsTheContentNotTheAddress) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  Geometry g = flatten(s);
+  const auto first = RayScene::cached(s, g);
+  const Geometry copy = g;
+  EXPECT_EQ(first, RayScene::cached(s, copy));
+  for (glm::vec3& p : g.positions) p.z -= 1;  // in place: same address, other content
+  const auto moved = RayScene::cached(s, g);
+  EXPECT_NE(first, moved);
+  EXPECT_FLOAT_EQ(moved->intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}).distance, 2);
+  EXPECT_EQ(first, RayScene::cached(s, copy));  // the two most recent are kept
+}
+
+}  // namespace
+}  // namespace fovea::scene
