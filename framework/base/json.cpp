@@ -111,6 +111,31 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return at;
   }
 
+  // Past a number as RFC 8259 has it: "01" is two of them.
+  size_t skipNumber(size_t at) const {
+    auto digits = [&] {
+      while (at < text_.size() && text_[at] >= '0' && text_[at] <= '9') ++at;
+    };
+    auto is = [&](std::string_view any) {
+      return at < text_.size() && any.find(text_[at]) != std::string_view::npos;
+    };
+    if (is("-")) ++at;
+    if (is("0"))
+      ++at;
+    else
+      digits();
+    if (is(".")) {
+      ++at;
+      digits();
+    }
+    if (is("eE")) {
+      ++at;
+      if (is("+-")) ++at;
+      digits();
+    }
+    return at;
+  }
+
   // Start of the next token; moves end_ past it.
   Position nextToken() {
     const size_t start = skipSeparators(end_);
@@ -121,9 +146,12 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       ++at;
     } else if (at < text_.size() && std::string_view("{}[]").find(text_[at]) != std::string_view::npos) {
       ++at;
+    } else if (at < text_.size() && (text_[at] == 't' || text_[at] == 'n')) {
+      at += 4;
+    } else if (at < text_.size() && text_[at] == 'f') {
+      at += 5;
     } else {
-      while (at < text_.size() && std::string_view(" \t\r\n,:{}[]").find(text_[at]) == std::string_view::npos)
-        ++at;
+      at = skipNumber(at);
     }
     end_ = at;
     return lines_.at(start);
