@@ -1,0 +1,17 @@
+// Any text as a scene file: a scene or an Error, never anything else.
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "framework/scene/scene_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  fovea::Diagnostics warnings;
+  try {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    fovea::scene::parseSceneFile(fovea::json::parse(text, "fuzz.json"), "/nonexistent/fuzz.json", warnings);
+  } catch (const fovea::Error& e) {
+    if (e.code() == fovea::ExitCode::Internal) std::abort();
+  }
+  return 0;
+}
