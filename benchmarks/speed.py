@@ -36,7 +36,7 @@ def compiler_cost(program):
     if result.returncode != 0:
         return None
     unit = {"ns": 1e-3, "us": 1.0, "ms": 1e3}
-    rows = [(b["cpu_time"] * unit[b["time_unit"]] / int(b["name"].split("/")[-1]), b["name"])
+    rows = [(b["cpu_time"] * unit[b["time_unit"]] / int(b["name"].rsplit(":", 1)[-1]), b["name"])
             for b in json.loads(result.stdout)["benchmarks"]]
     return max(rows) if rows else None
 
