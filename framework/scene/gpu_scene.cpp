@@ -126,10 +126,12 @@ struct GpuScene::Impl {
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   VkDescriptorPool pool = VK_NULL_HANDLE;
   std::vector<VkDescriptorSet> sets;
+  std::vector<DrawRun> runs;
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
       : device(d), triangleCount(uint32_t(g.triangles.size())), staticTriangles(g.staticTriangles),
-        vertexCount(uint32_t(g.positions.size())), environment(scene.environment), textures(d, scene) {
+        vertexCount(uint32_t(g.positions.size())), environment(scene.environment), textures(d, scene),
+        runs(fovea::scene::drawRuns(scene, g)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
     indices = makeBuffer(device, "scene indices", indexList(g),
@@ -297,6 +299,7 @@ gpu::Buffer& GpuScene::triangles() const { return impl_->triangles; }
 gpu::Buffer& GpuScene::positions() const { return impl_->positions; }
 gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
 gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
+const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
 uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }
 uint32_t GpuScene::vertexCount() const { return impl_->vertexCount; }
 

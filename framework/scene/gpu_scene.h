@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "framework/scene/draw_runs.h"
 #include "framework/scene/frame.h"
 
 namespace fovea::gpu {
@@ -41,6 +42,7 @@ class GpuScene {
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
   gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
+  const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;
 

@@ -12,23 +12,26 @@ using namespace graph;
 class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("gbuffer", "surfaces seen through the pixel centres, LOD-0 bilinear textures", PassKind::Graphics);
+    PassDeclaration d("gbuffer", "surfaces seen through the pixel centres, LOD-0 bilinear textures",
+                      PassKind::ComputeAndGraphics);
     d.view();
     d.output("gbuffer", "gbuffer",
-             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
+             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageWrite,
                      "xyz: world space, m; w: distance to the eye, m, 0: background"),
-              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
                      "xyz: shading normal, unit, on the eye's side of the face"),
-              member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::ColorAttachment,
+              member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::StorageWrite,
                      "normal of the triangle itself on the eye's side, octahedral"),
-              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
                      "rgb: diffuse reflectance, base colour times (1 - metallic)"),
-              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
                      "rgb: emitted radiance, W/(sr m^2); background: the environment"),
-              member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
+              member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageWrite,
                      "material | object << 16; background 0xffffffff"),
               member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane")},
              "one surface a pixel");
+    d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
+              "triangle of each pixel, 0xffffffff: none");
     d.parameter("cull", choice("auto", {"auto", "none"}),
                 "back faces: `auto` hides those of single-sided materials, as glTF says, `none` shows all");
     return d;
@@ -36,27 +39,33 @@ class GBuffer : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     const bool cull = ctx.parameters().text("cull") == "auto";
-    draw_ = ctx.graphics({.vertex = "gbuffer/gbuffer.vert",
-                          .fragment = "gbuffer/gbuffer.frag",
-                          .defines = {{"CULL", cull ? "1" : "0"}},
-                          .colors = {"gbuffer.position", "gbuffer.normal", "gbuffer.face", "gbuffer.albedo",
-                                     "gbuffer.emission", "gbuffer.id"},
-                          .depth = "gbuffer.depth"});
+    for (const auto kind : {scene::DrawKind::DoubleSided, scene::DrawKind::SingleSided, scene::DrawKind::Tested})
+      draw_[size_t(kind)] = ctx.graphics(
+          {.vertex = "gbuffer/visibility.vert",
+           .fragment = "gbuffer/visibility.frag",
+           .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"}, {"CULL", cull ? "1" : "0"}},
+           .colors = {"seen"},
+           .depth = "gbuffer.depth",
+           .cull = cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
+    resolve_ = ctx.compute("gbuffer/resolve.comp");
   }
 
   void record(RecordContext& ctx) override {
     const scene::GpuScene& gpu = *ctx.frame().gpu;
-    const glm::vec3 sky = ctx.frame().scene->environment;
     const auto clear = Attachment::Load::Clear;
     const Attachment depth{"gbuffer.depth", clear, {.depthStencil = {1.0f, 0}}};
-    ctx.render({{"gbuffer.position"}, {"gbuffer.normal"}, {"gbuffer.face"}, {"gbuffer.albedo"},
-                {"gbuffer.emission", clear, {.color = {.float32 = {sky.r, sky.g, sky.b, 0}}}},
-                {"gbuffer.id", clear, {.color = {.uint32 = {~0u}}}}},
-               &depth, [&] { ctx.use(draw_).drawIndexed(gpu.indices().handle(), 3 * gpu.triangleCount()); });
+    ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, [&] {
+      for (const scene::DrawRun& run : gpu.drawRuns())
+        ctx.use(draw_[size_t(run.kind)])
+            .constant("firstTriangle", run.firstTriangle)
+            .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
+    });
+    ctx.barrier();
+    ctx.use(resolve_).dispatchOver("gbuffer.position");
   }
 
  private:
-  Kernel draw_;
+  Kernel draw_[3], resolve_;
 };
 
 FOVEA_PASS(GBuffer);

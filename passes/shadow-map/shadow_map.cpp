@@ -34,10 +34,12 @@ class ShadowMap : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     views_ = ctx.compute("shadow-map/views.comp");
-    draw_ = ctx.graphics({.vertex = "shadow-map/depth.vert",
-                          .fragment = "shadow-map/depth.frag",
-                          .depth = "maps.depth",
-                          .depthCompare = VK_COMPARE_OP_GREATER_OR_EQUAL});
+    for (const bool tested : {false, true})
+      draw_[tested] = ctx.graphics({.vertex = "shadow-map/depth.vert",
+                                    .fragment = tested ? "shadow-map/depth.frag" : "",
+                                    .defines = {{"TESTED", tested ? "1" : "0"}},
+                                    .depth = "maps.depth",
+                                    .depthCompare = VK_COMPARE_OP_GREATER_OR_EQUAL});
   }
 
   void record(RecordContext& ctx) override {
@@ -46,13 +48,19 @@ class ShadowMap : public Pass {
     const Attachment depth{"maps.depth", Attachment::Load::Clear, {.depthStencil = {0.0f, 0}}};
     const uint32_t layers = scene::shadowLayers(ctx.frame().lights);
     ctx.render({}, &depth, [&] {
-      const scene::GpuScene& gpu = *ctx.frame().gpu;
-      if (layers > 0) ctx.use(draw_).drawIndexed(gpu.indices().handle(), 3 * gpu.triangleCount(), 0, layers);
+      if (layers > 0)
+        for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers);
     }, ctx.image("maps.depth").desc().layers);
   }
 
  private:
-  Kernel views_, draw_;
+  void draw(RecordContext& ctx, const scene::DrawRun& run, uint32_t layers) const {
+    const bool tested = run.kind == scene::DrawKind::Tested;
+    Commands commands = ctx.use(draw_[tested]);
+    if (tested) commands.constant("firstTriangle", run.firstTriangle);
+    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle, layers);
+  }
+  Kernel views_, draw_[2];
 };
 
 FOVEA_PASS(ShadowMap);

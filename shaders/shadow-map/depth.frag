@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
-// Holes of alpha-masked materials let light through.
+// Holes of alpha-masked materials let light through. Both sides of all others stop it, as they do in every renderer here.
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;
 
+layout(push_constant) uniform Constants { uint firstTriangle; };
+
 void main() {
-  if (!alphaTest(materialOf(sceneTriangle(uint(gl_PrimitiveID))), uv)) discard;
+  if (!alphaTest(materialOf(sceneTriangle(firstTriangle + uint(gl_PrimitiveID))), uv)) discard;
 }

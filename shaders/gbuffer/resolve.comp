@@ -1,0 +1,76 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// The surface of each pixel from the triangle it shows: the ray through the pixel's centre meets the triangle's plane, so
+// that positions carry none of the rasteriser's snapping and interpolation (visibility buffer, Burns and Hunt, JCGT 2013).
+#include "common/scene.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform utexture2D seen;
+layout(set = 0, binding = 1, rgba32f) uniform writeonly image2D gbufferPosition;
+layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D gbufferNormal;
+layout(set = 0, binding = 3, rg16f) uniform writeonly image2D gbufferFace;
+layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D gbufferAlbedo;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D gbufferEmission;
+layout(set = 0, binding = 6, r32ui) uniform writeonly uimage2D gbufferId;
+
+const uint kNothing = 0xffffffffu;
+const float kMaxHalf = 65504.0;
+
+// Direction, not unit, of the ray through the centre of a pixel; also for off-axis projections.
+vec3 pixelRay(ivec2 p) {
+  vec2 ndc = (2.0 * vec2(p) + 1.0) * view.size.zw - 1.0;
+  vec2 d = (ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]);
+  return vec3(d, -1.0) * mat3(view.worldToView);
+}
+
+// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997). The rasteriser
+// lets pixels in whose centre misses the triangle by a hair: they get the nearest point inside.
+vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
+  vec3 p = cross(ray, edgeC);
+  float determinant = dot(edgeB, p);
+  if (determinant == 0.0) return vec2(1.0 / 3.0);
+  vec3 s = view.eye.xyz - a;
+  vec2 w = max(vec2(dot(s, p), dot(ray, cross(s, edgeB))) / determinant, 0.0);
+  return w / max(w.x + w.y, 1.0);
+}
+
+void storeBackground(ivec2 p) {
+  imageStore(gbufferPosition, p, vec4(0.0));
+  imageStore(gbufferNormal, p, vec4(0.0));
+  imageStore(gbufferFace, p, vec4(0.0));
+  imageStore(gbufferAlbedo, p, vec4(0.0));
+  imageStore(gbufferEmission, p, vec4(min(frame.environment.rgb, kMaxHalf), 0.0));
+  imageStore(gbufferId, p, uvec4(kNothing));
+}
+
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(p, imageSize(gbufferPosition)))) return;
+  uint index = texelFetch(seen, p, 0).r;
+  if (index == kNothing) {
+    storeBackground(p);
+    return;
+  }
+  uvec4 triangle = sceneTriangle(index);
+  vec3 a = scenePosition(triangle.x), edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
+  vec2 w = barycentrics(pixelRay(p), a, edgeB, edgeC);
+  vec3 weights = vec3(1.0 - w.x - w.y, w);
+  vec3 position = a + w.x * edgeB + w.y * edgeC;
+
+  vec3 face = normalize(cross(edgeB, edgeC));
+  if (dot(face, view.eye.xyz - a) < 0.0) face = -face;
+  vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
+  normal = dot(normal, normal) > 1e-12 ? normalize(normal) : face;
+  if (dot(normal, face) < 0.0) normal = -normal;
+  vec2 uv = mat3x2(sceneUv(triangle.x), sceneUv(triangle.y), sceneUv(triangle.z)) * weights;
+  SurfacePoint surface = surfaceAt(materialOf(triangle), uv);
+
+  imageStore(gbufferPosition, p, vec4(position, distance(position, view.eye.xyz)));
+  imageStore(gbufferNormal, p, vec4(normal, 0.0));
+  imageStore(gbufferFace, p, vec4(octEncode(face), 0.0, 0.0));
+  imageStore(gbufferAlbedo, p, vec4(surface.reflectance, 0.0));
+  imageStore(gbufferEmission, p, vec4(min(surface.emission, kMaxHalf), 0.0));
+  imageStore(gbufferId, p, uvec4(triangle.w));
+}

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Which triangle is seen; everything else about it is worked out once a pixel in resolve.comp.
+#include "common/scene.glsl"
+
+#if TESTED
+layout(location = 0) in vec2 uv;
+#endif
+
+layout(location = 0) out uint seen;
+
+layout(push_constant) uniform Constants { uint firstTriangle; };
+
+void main() {
+  uint triangle = firstTriangle + uint(gl_PrimitiveID);
+#if TESTED
+  uint material = materialOf(sceneTriangle(triangle));
+#if CULL
+  if (!gl_FrontFacing && !loadMaterial(material).doubleSided) discard;
+#endif
+  if (!alphaTest(material, uv)) discard;
+#endif
+  seen = triangle;
+}
