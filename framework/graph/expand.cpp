@@ -176,7 +176,7 @@ ParameterDescription Expander::overrideValue(const ParameterDescription& current
   value.fromCommandLine = true;
   value.type = Type::String;
   value.text = intern(source.value);
-  if (current.type == Type::String || current.fromCommandLine) return value;
+  if (current.type == Type::String) return value;
   const std::string& text = source.value;
   const char* end = text.data() + text.size();
   if (current.type == Type::Bool) {

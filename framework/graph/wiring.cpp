@@ -108,6 +108,8 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const std::st
     std::vector<std::string> names = {"inputs"};
     for (const auto& [pass, position] : scope.passes) names.push_back(pass);
     for (const auto& [instance, position] : scope.instances) names.push_back(instance);
+    if (inner)
+      for (const PassDescription& p : description_.passes) names.push_back(description_.symbols[p.name]);
     std::sort(names.begin(), names.end());
     return error(value.where, path, fmt::format("no pass `{}`", name), nearestRemedy(name, names)), false;
   }
