@@ -1,9 +1,11 @@
 // The command-line program: render graphs, check them, list what there is.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "framework/base/diagnostic.h"
 #include "framework/graph/registry.h"
@@ -39,6 +41,16 @@ std::string chosenCommand(const CLI::App& program) {
   return name;
 }
 
+// CLI11 would only say that a command is missing.
+void refuseUnknownCommand(const CLI::App& program, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands(nullptr)) names.push_back(command->get_name());
+  if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::string nearest = nearestName(word, names);
+  throw Error(ExitCode::Usage, "there is no command `" + word + "`",
+              nearest.empty() ? "see `fovea --help`" : "did you mean `" + nearest + "`?");
+}
+
 ExitCode parseAndRun(int argc, char** argv) {
   CLI::App program(
       "Renders a scene with a render graph, and shows what graphs, passes, scenes and devices there are.",
@@ -54,6 +66,7 @@ ExitCode parseAndRun(int argc, char** argv) {
   addSchema(program, action);
   addDevices(program, action);
   addScene(program, action);
+  if (argc > 1) refuseUnknownCommand(program, argv[1]);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
