@@ -28,6 +28,7 @@ std::string mebibytes(uint64_t bytes) {
 // What the validation layers said.
 struct MessageLog {
   Validation validation = Validation::Off;
+  std::function<void(const std::string&)> forward;
   std::mutex mutex;
   std::vector<std::string> messages;
 };
@@ -61,6 +62,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   auto& log = *static_cast<MessageLog*>(user);
   if (ignored(log.validation, *data)) return VK_FALSE;
+  if (log.forward) log.forward(data->pMessage);
   const std::lock_guard lock(log.mutex);
   if (log.messages.size() < kMaxMessages) log.messages.emplace_back(data->pMessage);
   return VK_FALSE;
@@ -143,6 +145,7 @@ Device::Impl::~Impl() {
 
 void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
   log.validation = options.validation;
+  log.forward = options.onValidationMessage;
   VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
   info.messageSeverity =
       VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;

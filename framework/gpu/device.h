@@ -23,6 +23,9 @@ struct DeviceOptions {
   uint64_t memoryLimit = 0;  // bytes of device memory fovea may take; 0 means what the device reports
   std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
   bool useCache = true;
+  // Gets each validation message as it comes, besides their being kept: also those of the device's own
+  // destruction (objects never destroyed). May be called from any thread.
+  std::function<void(const std::string&)> onValidationMessage;
 };
 
 // What `fovea devices` lists.

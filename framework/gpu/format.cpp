@@ -1,5 +1,8 @@
 #include "framework/gpu/format.h"
 
+#include <algorithm>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <string>
 
 #include "framework/base/diagnostic.h"
@@ -79,6 +82,49 @@ VkFormat formatFromName(std::string_view name) {
     if (info.name == name) return info.format;
   }
   return VK_FORMAT_UNDEFINED;
+}
+
+namespace {
+
+template <class T, class Convert>
+std::vector<float> convertAll(std::span<const std::byte> texels, Convert convert) {
+  std::vector<float> values(texels.size() / sizeof(T));
+  for (size_t i = 0; i < values.size(); ++i) {
+    T stored;
+    std::memcpy(&stored, texels.data() + i * sizeof(T), sizeof(T));
+    values[i] = convert(stored);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels) {
+  const FormatInfo& info = formatInfo(format);
+  const bool unorm = info.type == T::Unorm || info.type == T::Srgb;
+  // Packed formats have channels of unequal bits; bgra8 would need its channels swapped.
+  const bool plain = info.name.find('_') == std::string_view::npos || info.name.ends_with("_snorm") ||
+                     info.name.ends_with("_srgb");
+  if (plain && !info.name.starts_with("bgra")) {
+    switch (info.bytesPerTexel / info.channels) {
+      case 4:
+        if (info.type == T::Float) return convertAll<float>(texels, [](float v) { return v; });
+        break;
+      case 2:
+        if (info.type == T::Float)
+          return convertAll<uint16_t>(texels, [](uint16_t v) { return glm::unpackHalf1x16(v); });
+        if (unorm) return convertAll<uint16_t>(texels, [](uint16_t v) { return float(v) / 65535.0f; });
+        if (info.type == T::Snorm)
+          return convertAll<int16_t>(texels, [](int16_t v) { return std::max(float(v) / 32767.0f, -1.0f); });
+        break;
+      case 1:
+        if (unorm) return convertAll<uint8_t>(texels, [](uint8_t v) { return float(v) / 255.0f; });
+        if (info.type == T::Snorm)
+          return convertAll<int8_t>(texels, [](int8_t v) { return std::max(float(v) / 127.0f, -1.0f); });
+        break;
+    }
+  }
+  throw Error(ExitCode::Internal, "texels of format " + std::string(info.name) + " have no conversion to floats");
 }
 
 }  // namespace fovea::gpu

@@ -3,9 +3,11 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace fovea::gpu {
 
@@ -23,5 +25,9 @@ std::span<const FormatInfo> formats();  // all of them
 const FormatInfo& formatInfo(VkFormat format);
 // VK_FORMAT_UNDEFINED when there is no such name.
 VkFormat formatFromName(std::string_view name);
+
+// Tightly packed texels as floats, channels interleaved; unorm and sRGB to [0, 1] (no curve removed), snorm to [-1, 1].
+// Throws Error(Internal) for integer and packed formats.
+std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);
 
 }  // namespace fovea::gpu

@@ -173,6 +173,21 @@ TEST(Validation, MistakesAreCaught) {
   EXPECT_TRUE(device.validationMessages().empty());
 }
 
+TEST(Validation, LeakedObjectsAreReportedAtTheEnd) {
+  std::vector<std::string> messages;
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.validation = gpu::Validation::On;
+  options.onValidationMessage = [&](const std::string& message) { messages.push_back(message); };
+  {
+    gpu::Device device(options);
+    const VkFenceCreateInfo info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
+    VkFence fence = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateFence(device.handle(), &info, nullptr, &fence), VK_SUCCESS);
+    EXPECT_TRUE(messages.empty());
+  }
+  EXPECT_THAT(messages, testing::Contains(HasSubstr("VK_OBJECT_TYPE_FENCE")));
+}
+
 void copyTwice(gpu::Device& device, bool withBarrier) {
   const gpu::Buffer a(device, {"a", 64, 0}), b(device, {"b", 64, 0}), c(device, {"c", 64, 0});
   device.runOnce([&](VkCommandBuffer cmd) {
