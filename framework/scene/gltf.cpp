@@ -35,10 +35,11 @@ Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings) {
     gltf::checkDocument(root, source, warnings);
     tinygltf::Model model;
     gltf::parseModel(source, root, model);
-    gltf::Context c{source, root, model, scene, warnings, {}, kNoIndex, 0, 0, 0};
+    gltf::Context c{source, root, model, scene, warnings};
     gltf::buildMaterials(c);
     gltf::buildMeshes(c);
     gltf::buildNodes(c);
+    gltf::applySkins(c);
     if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
     if (scene.meshes.empty() || scene.nodes.empty())
       c.warn("", "the model shows nothing: no scene with a mesh in it");

@@ -1,6 +1,7 @@
 // Meshes: attributes to world-ready triangles. Skins and morph targets stay at rest here.
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
@@ -42,10 +43,13 @@ class MeshBuilder {
     const json::Value* written = c_.root.find("meshes")->items[index].find("primitives");
     if (written->items.size() != from.primitives.size())
       c_.fail(mesh_, "a primitive could not be understood", "check the types of its attributes");
+    c_.skins.emplace_back();
     for (size_t i = 0; i < from.primitives.size(); ++i) {
       Primitive p;
-      if (primitive(from.primitives[i], mesh_ + ".primitives[" + std::to_string(i) + "]", p))
-        mesh.primitives.push_back(std::move(p));
+      skin_.clear();
+      if (!primitive(from.primitives[i], mesh_ + ".primitives[" + std::to_string(i) + "]", p)) continue;
+      mesh.primitives.push_back(std::move(p));
+      c_.skins.back().push_back(skin_);
     }
     return mesh;
   }
@@ -80,6 +84,7 @@ class MeshBuilder {
     std::vector<uint32_t> indices = indicesOf(from, place, out.positions.size());
     out.indices = toTriangles(indices, from.mode);
     dropDegenerate(out);
+    readSkin(from, place, out.positions.size());
     readNormals(from, place, out);
     if (from.attributes.count("COLOR_0")) colorsIgnored_.insert(mesh_);
     c_.vertices += out.positions.size();
@@ -133,6 +138,26 @@ class MeshBuilder {
     for (size_t i = 0; i < out.uvs.size(); ++i) {
       const glm::vec2 uv = glm::make_vec2(&v[2 * i]);
       out.uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
+    }
+  }
+
+  // Four joints a vertex; further sets are rare and carry little weight.
+  void readSkin(const tinygltf::Primitive& from, const std::string& place, size_t count) {
+    const auto joints = from.attributes.find("JOINTS_0"), weights = from.attributes.find("WEIGHTS_0");
+    if (joints == from.attributes.end() || weights == from.attributes.end()) return;
+    const std::string path = accessorPath(place, "JOINTS_0", joints->second);
+    const std::string weightPath = accessorPath(place, "WEIGHTS_0", weights->second);
+    checkCount(joints->second, count, path);
+    checkCount(weights->second, count, weightPath);
+    const std::vector<float> j = readFloats(c_, joints->second, 4, path);
+    const std::vector<float> w = readFloats(c_, weights->second, 4, weightPath);
+    skin_.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      const glm::vec4 weight = glm::max(glm::make_vec4(&w[4 * i]), 0.0f);
+      const float sum = weight.x + weight.y + weight.z + weight.w;
+      if (sum > 0.0f && std::isfinite(sum)) skin_[i].weights = weight / sum;
+      for (int k = 0; k < 4; ++k)
+        skin_[i].joints[k] = uint32_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
     }
   }
 
@@ -203,6 +228,7 @@ class MeshBuilder {
     c_.vertices -= p.indices.size();
     Primitive flat;
     flat.material = p.material;
+    std::vector<VertexSkin> flatSkin;
     for (size_t i = 0; i + 2 < p.indices.size(); i += 3) {
       const uint32_t* t = &p.indices[i];
       const glm::vec3 n(glm::normalize(areaVector(p.positions[t[0]], p.positions[t[1]], p.positions[t[2]])));
@@ -211,9 +237,11 @@ class MeshBuilder {
         flat.positions.push_back(p.positions[t[k]]);
         flat.normals.push_back(n);
         flat.uvs.push_back(p.uvs[t[k]]);
+        if (!skin_.empty()) flatSkin.push_back(skin_[t[k]]);
       }
     }
     p = std::move(flat);
+    skin_ = std::move(flatSkin);
   }
 
  public:
@@ -222,6 +250,7 @@ class MeshBuilder {
  private:
   Context& c_;
   std::string mesh_;
+  std::vector<VertexSkin> skin_;  // of the primitive at hand
 };
 
 }  // namespace

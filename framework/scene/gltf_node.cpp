@@ -23,7 +23,9 @@ glm::quat orientationOf(const glm::mat4& m) {
 
 class NodeBuilder {
  public:
-  explicit NodeBuilder(Context& c) : c_(c), nodeOf_(c.model.nodes.size(), kNoIndex) {}
+  explicit NodeBuilder(Context& c) : c_(c), nodeOf_(c.sceneNode) {
+    nodeOf_.assign(c.model.nodes.size(), kNoIndex);
+  }
 
   void run() {
     // Parents before children: an explicit stack, since trees may be as deep as the file is long.
@@ -169,7 +171,7 @@ class NodeBuilder {
   }
 
   Context& c_;
-  std::vector<uint32_t> nodeOf_;  // glTF node -> scene node, kNoIndex when the scene does not show it
+  std::vector<uint32_t>& nodeOf_;
   std::vector<glm::mat4> world_;
 };
 

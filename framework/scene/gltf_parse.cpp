@@ -124,6 +124,7 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   same("nodes", model.nodes.size());
   same("scenes", model.scenes.size());
   same("cameras", model.cameras.size());
+  same("skins", model.skins.size());
 }
 
 }  // namespace fovea::scene::gltf

@@ -31,6 +31,7 @@ TEST(Gltf, LoadsATriangleAndGivesItItsFlatNormal) {
   for (const glm::vec3& n : p.normals) EXPECT_EQ(n, glm::vec3(0, 0, 1));
   ASSERT_EQ(s.materials.size(), 1u);
   EXPECT_EQ(s.materials[0].metallic, 0.0f);
+  EXPECT_EQ(s.materials[0].baseColor, glm::vec4(0.8f, 0.8f, 0.8f, 1.0f));
 }
 
 TEST(Gltf, GlbAndGltfOfTheSameContentHaveTheSameHash) {
@@ -192,6 +193,44 @@ TEST(Gltf, CamerasAndLightsTakeTheirNodesPlace) {
   EXPECT_FLOAT_EQ(l.range, 7);
   EXPECT_FLOAT_EQ(l.innerConeAngle, 0.1f);
   EXPECT_FLOAT_EQ(l.outerConeAngle, 0.6f);
+}
+
+// Two joints, one moved up by 3: a vertex between them moves up by its share, wherever the mesh's own node
+// stands.
+TEST(Gltf, SkinnedMeshesStandAsTheirJointsHoldThem) {
+  TriangleDocument d;
+  d.bytes.resize(44);
+  test::appendBytes<uint8_t>(d.bytes, {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});         // joints at 44
+  test::appendBytes<uint8_t>(d.bytes, {255, 0, 0, 0, 0, 255, 0, 0, 51, 204, 0, 0});  // weights at 56
+  std::vector<float> bind(32, 0.0f);
+  for (const size_t m : {0u, 16u})
+    for (const size_t i : {0u, 5u, 10u, 15u}) bind[m + i] = 1.0f;
+  bind[16 + 13] = -1.0f;             // the second joint was bound at y = 1
+  test::appendBytes(d.bytes, bind);  // at 68
+  d.primitive = R"({"attributes":{"POSITION":0,"JOINTS_0":2,"WEIGHTS_0":3},"indices":1})";
+  d.accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+      {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
+      {"bufferView":2,"componentType":5121,"count":3,"type":"VEC4"},
+      {"bufferView":3,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"},
+      {"bufferView":4,"componentType":5126,"count":2,"type":"MAT4"}])";
+  d.views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6},
+      {"buffer":0,"byteOffset":44,"byteLength":12},{"buffer":0,"byteOffset":56,"byteLength":12},
+      {"buffer":0,"byteOffset":68,"byteLength":128}])";
+  d.nodes = R"([{"mesh":0,"skin":0,"translation":[100,0,0]},{"children":[2]},{"translation":[0,4,0]}])";
+  d.scenes = R"([{"nodes":[0,1]}])";
+  d.extra = R"(,"skins":[{"joints":[1,2],"inverseBindMatrices":4}])";
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  const Geometry g = flatten(loadText(folder, d.json(), warnings));
+  ASSERT_EQ(g.positions.size(), 3u);
+  EXPECT_LT(glm::distance(g.positions[0], glm::vec3(0, 0, 0)), 1e-5f);
+  EXPECT_LT(glm::distance(g.positions[1], glm::vec3(1, 3, 0)), 1e-5f);
+  EXPECT_LT(glm::distance(g.positions[2], glm::vec3(0, 1 + 0.8f * 3, 0)), 1e-5f);
+  d.bytes[44] = 7;
+  EXPECT_THAT(errorOfText(d.json()), HasSubstr("joint 7 of a skin with 2 joints"));
+  d.bytes[44] = 0;
+  d.extra = R"(,"skins":[{"joints":[1,2],"inverseBindMatrices":0}])";
+  EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("skins[0]"), HasSubstr("MAT4")));
 }
 
 // ---- hostile files ----
