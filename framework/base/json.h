@@ -100,6 +100,7 @@ class ObjectReader {
   void finish();
 
   std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
+  const std::string& path() const { return path_; }
   const Value& value() const { return value_; }
   Diagnostics& diagnostics() { return diagnostics_; }
 

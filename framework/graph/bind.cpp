@@ -50,7 +50,8 @@ void Binder::error(const Place& place, std::string path, std::string message, st
 }
 
 std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
-  return json::joinPath(text(description_.passes[pass].path), rest);
+  const std::string& path = text(description_.passes[pass].path);
+  return rest.empty() ? path : json::joinPath(path, rest);
 }
 
 // ---- Passes and parameters

@@ -57,7 +57,7 @@ class Binder {
   void followValues();
   void followValue(uint32_t port);
   void checkTypes();
-  void checkPort(const PortState& port, const PortSpec& spec);
+  void checkPort(PortState& port, const PortSpec& spec);
   bool fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const;
   // The resource that member `m` of this port stands for; kNone when it has none.
   uint32_t resourceOf(const PortState& port, const PortSpec& spec, uint32_t m) const;

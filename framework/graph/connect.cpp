@@ -247,7 +247,7 @@ uint32_t Binder::resourceOf(const PortState& port, const PortSpec& spec, uint32_
 // -----------------------------------------------------------------------------------------------------
 
 void Binder::checkTypes() {
-  for (const PortState& port : ports_) {
+  for (PortState& port : ports_) {
     const PortSpec& spec = specOf(port);
     if (spec.direction == Direction::Output || spec.direction == Direction::Scratch) continue;
     inPlace_ = inPlace_ || spec.direction == Direction::InOut;
@@ -255,7 +255,7 @@ void Binder::checkTypes() {
   }
 }
 
-void Binder::checkPort(const PortState& port, const PortSpec& spec) {
+void Binder::checkPort(PortState& port, const PortSpec& spec) {
   if (port.wire == kNone) {
     // A wire that was given but could not be resolved has been reported already.
     if (spec.optional || diagnostics_.hasErrors()) {
@@ -273,10 +273,13 @@ void Binder::checkPort(const PortState& port, const PortSpec& spec) {
   }
   if (port.value.first == kNone) return;
   const WireDescription& wire = description_.wires[port.wire];
-  if (port.previous && spec.direction == Direction::InOut)
+  if (port.previous && spec.direction == Direction::InOut) {
     error(wire.place, wirePath(port),
           fmt::format("`{}` is updated in place, last frame's value cannot be", spec.name),
           "wire it without `@previous`");
+    port.value = {};
+    return;
+  }
   const bool single = port.value.member != kNone;
   std::string bundle;
   if (!single && port.value.origin) bundle = port.value.origin->bundle;

@@ -296,10 +296,11 @@ ResourceDesc Expander::readResource(Scope& scope, json::ObjectReader& reader) {
   }
   desc.kind = ResourceKind::Buffer;
   if (!reader.has("element")) {
-    error(reader.value().where, reader.pathOf("format"),
+    error(reader.value().where, reader.path(),
           "an input needs a `format` (image), an `element` (buffer) or a `bundle`");
-    reader.find("format");
-    reader.find("bundle");
+    // One message is enough: what else is there may well belong to it.
+    for (const char* key : {"format", "bundle", "members", "width", "height", "depth", "layers", "mips"})
+      reader.find(key);
   }
   const std::string element = reader.text("element");
   desc.stride = static_cast<uint32_t>(readSize(scope, reader, "stride", 4));

@@ -123,7 +123,10 @@ std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    if (c == '\n')
+      out += "\\n";
+    else
+      out += c;
   }
   return out + "\"";
 }
@@ -175,7 +178,8 @@ std::string planText(const Plan& plan) {
   const std::vector<Interval> life = lives(plan);
   const std::vector<uint32_t> place = placements(plan);
   size_t width = 8;
-  for (const BoundResource& r : graph.resources) width = std::max(width, r.name.size());
+  for (uint32_t r = 0; r < graph.resources.size(); ++r)
+    if (plan.resourceLive[r]) width = std::max(width, graph.resources[r].name.size());
   for (uint32_t r = 0; r < graph.resources.size(); ++r) {
     const BoundResource& resource = graph.resources[r];
     if (!plan.resourceLive[r]) continue;

@@ -135,7 +135,7 @@ Json passSchema(const Registry& registry, const std::vector<std::string>& types,
       {"params", orNull("object")},
       {"parameters", orNull("object")},
       {"comment", orNull("string")}};
-  pass["not"] = {{"required", Json::array({"type", "graph"})}};
+  pass["not"] = {{"type", "object"}, {"required", Json::array({"type", "graph"})}};
   if (!types.empty()) pass["allOf"] = std::move(rules);
   return pass;
 }
