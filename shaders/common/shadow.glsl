@@ -22,7 +22,7 @@ uint shadowFace(vec3 fromLight) {
   return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
-// Shaders that look up shadows define SHADOW_BINDING, the first of two free bindings of set 0, and have an input port `maps`
+// Shaders that look up shadows define SHADOW_BINDING, the first of three free bindings of set 0, and have an input port `maps`
 // of bundle `shadow-maps`.
 #ifdef SHADOW_BINDING
 #ifndef SHADOW_PCF
@@ -31,6 +31,7 @@ uint shadowFace(vec3 fromLight) {
 
 layout(set = 0, binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
 layout(set = 0, binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+layout(set = 0, binding = SHADOW_BINDING + 2) uniform sampler nearestClamp;
 
 // Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
 // the side that is looked at. firstLayer: firstShadowLayer(light).
@@ -56,20 +57,18 @@ float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
   ivec2 size = textureSize(mapsDepth, 0).xy;
   vec2 p = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
 #if SHADOW_PCF
-  // 3x3 box over bilinear comparisons: 4x4 texels, the outer ones weighted by the fraction.
+  // 3x3 box over bilinear comparisons: 4x4 texels, the outer ones weighted by the fraction, gathered in four quads.
   vec2 base = floor(p - 0.5);
   vec2 f = p - 0.5 - base;
-  ivec2 corner = ivec2(base) - 1;
+  vec2 texelSize = 1.0 / vec2(size);
   float lit = 0.0;
-  for (int y = 0; y < 4; ++y) {
-    float row = 0.0;
-    for (int x = 0; x < 4; ++x) {
-      ivec2 texel = clamp(corner + ivec2(x, y), ivec2(0), size - 1);
-      float open = depth >= texelFetch(mapsDepth, ivec3(texel, layer), 0).r ? 1.0 : 0.0;
-      row += open * (x == 0 ? 1.0 - f.x : x == 3 ? f.x : 1.0);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 2; ++x) {
+      vec2 corner = (base + 2.0 * vec2(x, y)) * texelSize;  // between the four texels
+      vec4 nearest = textureGather(sampler2DArray(mapsDepth, nearestClamp), vec3(corner, layer));
+      vec2 u = x == 0 ? vec2(1.0 - f.x, 1.0) : vec2(1.0, f.x), v = y == 0 ? vec2(1.0 - f.y, 1.0) : vec2(1.0, f.y);
+      lit += dot(vec4(lessThanEqual(nearest, vec4(depth))), vec4(u.x * v.y, u.y * v.y, u.y * v.x, u.x * v.x));
     }
-    lit += row * (y == 0 ? 1.0 - f.y : y == 3 ? f.y : 1.0);
-  }
   return lit * (1.0 / 9.0);
 #else
   ivec2 texel = clamp(ivec2(floor(p)), ivec2(0), size - 1);
