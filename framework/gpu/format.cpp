@@ -124,7 +124,8 @@ std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> te
         break;
     }
   }
-  throw Error(ExitCode::Internal, "texels of format " + std::string(info.name) + " have no conversion to floats");
+  throw Error(ExitCode::Internal,
+              "texels of format " + std::string(info.name) + " have no conversion to floats");
 }
 
 }  // namespace fovea::gpu

@@ -26,8 +26,8 @@ const FormatInfo& formatInfo(VkFormat format);
 // VK_FORMAT_UNDEFINED when there is no such name.
 VkFormat formatFromName(std::string_view name);
 
-// Tightly packed texels as floats, channels interleaved; unorm and sRGB to [0, 1] (no curve removed), snorm to [-1, 1].
-// Throws Error(Internal) for integer and packed formats.
+// Tightly packed texels as floats, channels interleaved; unorm and sRGB to [0, 1] (no curve removed), snorm
+// to [-1, 1]. Throws Error(Internal) for integer and packed formats.
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);
 
 }  // namespace fovea::gpu

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <glm/gtc/packing.hpp>
 
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/format.h"
@@ -42,20 +40,6 @@ std::vector<std::string> pictureNames(const graph::BoundGraph& graph, Accept acc
   return names;
 }
 
-template <class T>
-T load(const std::byte* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
-float channelAt(const std::byte* texel, uint32_t channel, uint32_t bytesPerChannel, Type type) {
-  const std::byte* at = texel + size_t(channel) * bytesPerChannel;
-  if (type == Type::Float)
-    return bytesPerChannel == 2 ? glm::unpackHalf1x16(load<uint16_t>(at)) : load<float>(at);
-  return bytesPerChannel == 1 ? float(load<uint8_t>(at)) / 255.0f : float(load<uint16_t>(at)) / 65535.0f;
-}
-
 // Alpha of a graph's images means nothing to a viewer of the file.
 image::Image withoutAlpha(const image::Image& image) {
   if (image.channels != 4) return image;
@@ -69,23 +53,8 @@ image::Image withoutAlpha(const image::Image& image) {
 }  // namespace
 
 image::Image toImage(const graph::OutputData& output) {
-  const gpu::FormatInfo& format = gpu::formatInfo(output.desc.format);
-  const uint32_t bytesPerChannel = format.bytesPerTexel / format.channels;
-  const bool known = (format.type == Type::Float && (bytesPerChannel == 2 || bytesPerChannel == 4)) ||
-                     ((format.type == Type::Unorm || format.type == Type::Srgb) && bytesPerChannel <= 2);
-  if (!known)
-    throw Error(ExitCode::Internal,
-                fmt::format("images of format {} cannot be written to files yet", format.name));
-  image::Image image{output.desc.width, output.desc.height, format.channels, {}};
-  const size_t texels = size_t(image.width) * image.height;
-  if (output.bytes.size() < texels * format.bytesPerTexel)
-    throw Error(ExitCode::Internal, "an output that was read back is shorter than its image");
-  image.data.resize(texels * format.channels);
-  for (size_t i = 0; i < texels; ++i)
-    for (uint32_t c = 0; c < format.channels; ++c)
-      image.data[i * format.channels + c] =
-          channelAt(output.bytes.data() + i * format.bytesPerTexel, c, bytesPerChannel, format.type);
-  return image;
+  return {output.desc.width, output.desc.height, gpu::formatInfo(output.desc.format).channels,
+          gpu::texelsToFloats(output.desc.format, output.bytes)};
 }
 
 std::string OutputFiles::File::extension() const {

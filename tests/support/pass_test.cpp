@@ -1,6 +1,5 @@
 #include "tests/support/pass_test.h"
 
-#include <glm/gtc/packing.hpp>
 #include <stdexcept>
 
 #include "framework/base/diagnostic.h"
@@ -261,25 +260,7 @@ const scene::Frame& PassTest::lastFrame() const { return impl_->lastFrame; }
 const scene::Geometry& PassTest::geometry() const { return impl_->setup.geometry; }
 
 std::vector<float> toFloats(const graph::OutputData& data) {
-  const gpu::FormatInfo& info = gpu::formatInfo(data.desc.format);
-  const uint32_t channelBytes = info.bytesPerTexel / info.channels;
-  const size_t count = data.bytes.size() / channelBytes;
-  std::vector<float> result(count);
-  for (size_t i = 0; i < count; ++i) {
-    const std::byte* p = data.bytes.data() + i * channelBytes;
-    if (info.type == gpu::FormatInfo::Type::Float && channelBytes == 4) {
-      std::memcpy(&result[i], p, 4);
-    } else if (info.type == gpu::FormatInfo::Type::Float && channelBytes == 2) {
-      uint16_t half;
-      std::memcpy(&half, p, 2);
-      result[i] = glm::unpackHalf1x16(half);
-    } else if (info.type == gpu::FormatInfo::Type::Unorm && channelBytes == 1) {
-      result[i] = static_cast<float>(*p) / 255.0f;
-    } else {
-      throw std::invalid_argument("format " + std::string(info.name) + " has no conversion to float; use values<T>()");
-    }
-  }
-  return result;
+  return gpu::texelsToFloats(data.desc.format, data.bytes);
 }
 
 GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, const GraphRunOptions& options) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "framework/base/diagnostic.h"
 
@@ -57,6 +59,26 @@ TEST(Format, UnknownNamesAndFormats) {
   EXPECT_EQ(formatFromName(""), VK_FORMAT_UNDEFINED);
   EXPECT_EQ(formatFromName("RGBA8"), VK_FORMAT_UNDEFINED);
   EXPECT_THROW(formatInfo(VK_FORMAT_ASTC_4x4_UNORM_BLOCK), Error);
+}
+
+template <class Stored>
+std::vector<float> decode(VkFormat format, const std::vector<Stored>& texels) {
+  return texelsToFloats(format, std::as_bytes(std::span(texels)));
+}
+
+TEST(Format, TexelsToFloats) {
+  using Floats = std::vector<float>;
+  EXPECT_EQ(decode<float>(VK_FORMAT_R32G32_SFLOAT, {1.5f, -2e30f}), (Floats{1.5f, -2e30f}));
+  EXPECT_EQ(decode<float>(VK_FORMAT_D32_SFLOAT, {0.25f}), (Floats{0.25f}));
+  EXPECT_EQ(decode<uint16_t>(VK_FORMAT_R16G16_SFLOAT, {0x3c00, 0xc100}), (Floats{1, -2.5f}));
+  EXPECT_EQ(decode<uint8_t>(VK_FORMAT_R8G8B8A8_UNORM, {0, 51, 102, 255}), (Floats{0, 0.2f, 0.4f, 1}));
+  EXPECT_EQ(decode<uint8_t>(VK_FORMAT_R8G8B8A8_SRGB, {0, 51, 102, 255}), (Floats{0, 0.2f, 0.4f, 1}));
+  EXPECT_EQ(decode<uint16_t>(VK_FORMAT_R16_UNORM, {65535}), (Floats{1}));
+  EXPECT_EQ(decode<int8_t>(VK_FORMAT_R8G8_SNORM, {127, -128}), (Floats{1, -1}));
+  EXPECT_EQ(decode<int16_t>(VK_FORMAT_R16_SNORM, {-32767}), (Floats{-1}));
+  for (VkFormat format : {VK_FORMAT_R32_UINT, VK_FORMAT_R8_SINT, VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+                          VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_B8G8R8A8_UNORM})
+    EXPECT_THROW(decode<uint32_t>(format, {1}), Error) << formatInfo(format).name;
 }
 
 }  // namespace
