@@ -184,8 +184,8 @@ Scene cornellBox() {
   Scene s;
   s.name = s.source = "cornellbox";
   s.materials = materials();
-  s.meshes = {shell(), cube(kYellow), sphere(40, 20, kWhite), torus(0.62f, 0.24f, 44, 25, kBlue),
-              vase(40, 11, kWhite)};
+  s.meshes = {shell(), cube(kYellow), sphere(56, 28, kWhite), torus(0.62f, 0.24f, 40, 17, kBlue),
+              vase(36, 8, kWhite)};
   const glm::quat upright(1, 0, 0, 0);
   const glm::vec3 up(0, 1, 0), one(1);
   place(s, "room", 0, glm::vec3(0), upright, one);
@@ -213,7 +213,7 @@ Scene cornellBox() {
   camera.zNear = 0.1f;
   s.cameras.push_back(camera);
   s.gaze.push_back({0.0f, {0.42f, 0.55f}, true});  // the cube and the wall it colours
-  s.exposure = 1.5f;
+  s.exposure = 1.25f;
   s.hash = contentHash(s);
   return s;
 }
