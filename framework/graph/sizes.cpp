@@ -9,7 +9,15 @@ namespace fovea::graph::detail {
 
 namespace {
 
+constexpr double kMaxBytes =
+    1099511627776.0;             // 1 TiB: no device has it, and byte counts below never overflow
 constexpr int kMaxDepth = 2000;  // passes whose sizes hang on each other through history edges
+
+// At most: every texel as large as the largest, and all mips as large as the first two.
+double bytesOf(const ResourceDesc& d) {
+  if (d.kind == ResourceKind::Buffer) return static_cast<double>(d.count) * d.stride;
+  return 32.0 * d.width * d.height * d.depth * d.layers;
+}
 
 struct Stack {
   int64_t values[64];
@@ -53,7 +61,10 @@ void Binder::evaluateSizes() {
     for (uint32_t m = 0; m < description_.externals[e].members.size(); ++m) {
       const ResourceDesc& d = graph_.resources[externalFirst_[e] + m].desc;
       const uint32_t limit = d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D;
-      if (d.kind == ResourceKind::Image && limit && std::max({d.width, d.height, d.depth}) > limit)
+      if (bytesOf(d) > kMaxBytes)
+        error(description_.externals[e].place, "inputs." + text(description_.externals[e].name),
+              "this is more than any device holds", "lower its size");
+      else if (d.kind == ResourceKind::Image && limit && std::max({d.width, d.height, d.depth}) > limit)
         error(description_.externals[e].place, "inputs." + text(description_.externals[e].name),
               fmt::format("{}x{}x{} exceeds this device's maximum image size {}", d.width, d.height, d.depth,
                           limit));
@@ -236,12 +247,18 @@ void Binder::checkLimits(uint32_t p, const PortSpec& spec, const MemberSpec& mem
                          const BoundResource& resource) {
   const ResourceDesc& d = resource.desc;
   std::string what;
-  if (d.kind == ResourceKind::Buffer) {
+  if (bytesOf(d) > kMaxBytes) {
+    what = d.kind == ResourceKind::Buffer
+               ? fmt::format("{} elements of {} bytes are more than any device holds", d.count, d.stride)
+               : fmt::format("{}x{}x{} with {} layers is more than any device holds", d.width, d.height,
+                             d.depth, d.layers);
+  } else if (d.kind == ResourceKind::Buffer) {
     const uint64_t bytes = d.count * d.stride;
     const uint64_t limit = environment_.maxStorageBufferRange;
     // Uniform buffers may be larger than the device's range: passes bind them page by page.
     if (limit == 0 || bytes <= limit || !any(member.usage, Usage::StorageRead | Usage::StorageWrite)) return;
-    what = fmt::format("{} elements of {} bytes exceed this device's maxStorageBufferRange {}", d.count, d.stride, limit);
+    what = fmt::format("{} elements of {} bytes exceed this device's maxStorageBufferRange {}", d.count,
+                       d.stride, limit);
   } else {
     const uint32_t limit = d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D;
     if (d.array && environment_.maxImageArrayLayers && d.layers > environment_.maxImageArrayLayers)
@@ -264,21 +281,24 @@ void Binder::checkLimits(uint32_t p, const PortSpec& spec, const MemberSpec& mem
                          : fmt::format("lower what it follows from: {}", names));
 }
 
-// "set shadow-atlas.layout to `tiled`": where a size hangs on a choice, another choice is the way out of a limit.
+// "set shadow-atlas.layout to `tiled`": where a size hangs on a choice, another choice is the way out of a
+// limit.
 std::string Binder::otherChoices(uint32_t p, const ResourceSpec& spec) const {
   const BoundPass& pass = graph_.passes[p];
   std::string remedy;
   for (const ParameterSpec& parameter : pass.declaration->parameters) {
     if (parameter.type != ParameterSpec::Type::Choice) continue;
-    const bool counts = std::any_of(spec.layers.terms().begin(), spec.layers.terms().end(), [&](const auto& term) {
-      return term.op == SizeExpr::Op::Parameter && term.name == parameter.name;
-    });
+    const bool counts = std::any_of(
+        spec.layers.terms().begin(), spec.layers.terms().end(),
+        [&](const auto& term) { return term.op == SizeExpr::Op::Parameter && term.name == parameter.name; });
     const Value* value = pass.parameters.find(parameter.name);
     std::string others;
     for (const std::string& choice : parameter.choices)
-      if (counts && value && *value != Value(choice)) others += (others.empty() ? "`" : " or `") + choice + "`";
+      if (counts && value && *value != Value(choice))
+        others += (others.empty() ? "`" : " or `") + choice + "`";
     if (!others.empty())
-      remedy += fmt::format("{}set {}.{} to {}", remedy.empty() ? "" : ", or ", pass.name, parameter.name, others);
+      remedy +=
+          fmt::format("{}set {}.{} to {}", remedy.empty() ? "" : ", or ", pass.name, parameter.name, others);
   }
   return remedy;
 }

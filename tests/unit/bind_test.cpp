@@ -205,6 +205,20 @@ TEST(Bind, DeviceLimitsNameThePassTheLimitAndWhatToChange) {
               HasSubstr("pass `a`: `image`: 5000x64 exceeds this device's maxImageDimension2D 4096"));
 }
 
+TEST(Bind, AbsurdSizesAreRefusedWithoutKnowingTheDevice) {
+  EXPECT_THAT(
+      errorOf(R"({"inputs": {"v": {"element": "Vpl", "stride": 64, "count": 2147483648}}, "passes": {
+    "m": {"type": "atlas", "inputs": {"vpls": "inputs.v"}}}, "outputs": {"o": "m"}})"),
+      HasSubstr("the number of layers of `maps`, vpls.count, is 2147483648, it must be from 1 to 16777216"));
+  EXPECT_THAT(errorOf(R"({"inputs": {"v": {"element": "Vpl", "stride": 64, "count": 16000000}}, "passes": {
+    "m": {"type": "atlas", "inputs": {"vpls": "inputs.v"}}}, "outputs": {"o": "m"}})"),
+              HasSubstr("128x128x1 with 16000000 layers is more than any device holds"));
+  EXPECT_THAT(
+      errorOf(R"({"inputs": {"v": {"element": "Vpl", "stride": 2147483647, "count": 2147483648}}, "passes": {
+    "s": {"type": "source"}}, "outputs": {"o": "s"}})"),
+      HasSubstr("this is more than any device holds (at inputs.v)"));
+}
+
 TEST(Bind, HashesTellGraphsApart) {
   const char* base =
       R"({"parameters": {"n": 3}, "passes": {"a": {"type": "source", "params": {"count": "$n"}}, "b": {"type": "filter", "inputs": {"image": "a"}}}, "outputs": {"o": "b"}})";
