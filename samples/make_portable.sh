@@ -12,6 +12,8 @@ fail() {
   exit 1
 }
 
+trap 'echo "make_portable: stopped at line $LINENO" >&2' ERR
+
 [ $# -le 1 ] || fail "usage: samples/make_portable.sh [FOLDER]"
 if [ -e "$out" ] && [ ! -f "$out/BUNDLE" ] && [ -n "$(ls -A "$out" 2>/dev/null || echo file)" ]; then
   fail "$out exists and is no earlier bundle; name another folder"
@@ -35,6 +37,11 @@ rm -rf "$stage/include" "$stage"/lib/cmake "$stage"/lib/*/cmake
 # Every library that is neither glibc's nor the Vulkan loader comes along, with its licence. The C++ runtime stays apart:
 # a driver may need a newer one than ours, so ours is used only where the system's does not do.
 mkdir -p "$stage/lib/fallback" "$stage/licenses"
+addLicence() {
+  if [ -f "/usr/share/doc/$1/copyright" ]; then cp -L "/usr/share/doc/$1/copyright" "$stage/licenses/$1"; fi
+}
+# Linked statically, or all header.
+for package in glslang-dev libspirv-cross-c-shared-dev libglm-dev nlohmann-json3-dev libcli11-dev; do addLicence "$package"; done
 while read -r name file; do
   case "$name" in
     libc.so.*|libm.so.*|libdl.so.*|libpthread.so.*|librt.so.*|libresolv.so.*|libvulkan.so.*|ld-linux*|linux-vdso*) continue ;;
@@ -42,8 +49,9 @@ while read -r name file; do
     libstdc++.so.*|libgcc_s.so.*) cp -L "$file" "$stage/lib/fallback/$name" ;;
     *) cp -L "$file" "$stage/lib/$name" ;;
   esac
-  package=$(dpkg-query -S "$(realpath "$file")" 2>/dev/null | head -n1 | cut -d: -f1)
-  if [ -f "/usr/share/doc/$package/copyright" ]; then cp -L "/usr/share/doc/$package/copyright" "$stage/licenses/$package"; fi
+  # dpkg may know the file below /lib or below /usr/lib, which are the same folder.
+  package=$(dpkg-query -S "*-linux-gnu/$(basename "$(realpath "$file")")" 2>/dev/null | head -n1 | cut -d: -f1 || true)
+  addLicence "${package:-none}"
 done < <(ldd "$top/build/portable/bin/fovea" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}')
 cp LICENSE "$stage/licenses/fovea"
 
