@@ -48,7 +48,8 @@ std::string checkExtension(const fs::path& file) {
 }
 
 [[noreturn]] void cannotWrite(const fs::path& file, const std::string& reason) {
-  throw Error(ExitCode::CannotWrite, "cannot write `" + file.string() + "`: " + reason,
+  const std::string first = reason.substr(0, reason.find('\n'));  // libraries repeat themselves
+  throw Error(ExitCode::CannotWrite, "cannot write `" + file.string() + "`: " + first,
               "choose a folder that exists, is writable and has room");
 }
 
