@@ -65,7 +65,8 @@ class Comparison {
         const glm::vec2 centre(x + 0.5f, y + 0.5f);
         if (explain(pixel, centre, kSnap).empty()) continue;
         bool near = false;
-        for (const glm::vec2 d : {glm::vec2(1, 1), {-1, 1}, {1, -1}, {-1, -1}})
+        for (const glm::vec2 d :
+             {glm::vec2(1, 1), {-1, 1}, {1, -1}, {-1, -1}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
           near |= explain(pixel, centre + d * kHair, 1.5 * kHair + kSnap).empty();
         excused += near;
         if (near) continue;
