@@ -288,11 +288,10 @@ ExitCode Render::run() {
 }
 
 void addOutputOptions(CLI::App& command, RenderOptions& options) {
-  addList(
-      command, "-o,--output", options.outputs,
-      "Picture: .png shows the graph's output `image`, .exr holds every floating-point output as a layer; "
-      "out_%04d.exr writes every frame; may be repeated. Default: GRAPH-SCENE.png, none with --timings or "
-      "--trace")
+  addList(command, "-o,--output", options.outputs,
+          "Picture, may be repeated: .png shows the graph's output `image`,\n"
+          ".exr holds every floating-point output as a layer; a name like out_%04d.exr\n"
+          "writes every frame. Default: GRAPH-SCENE.png, none with --timings or --trace")
       ->type_name("FILE");
   command
       .add_option("--timings", options.timings,
@@ -319,12 +318,12 @@ void addRender(CLI::App& program, Action& action) {
       ->type_name("WxH");
   command->add_option("--frames", options->frames, "Frames to render and measure; default 1")
       ->type_name("N")
-      ->check(CLI::Range(1u, 10'000'000u));
+      ->check(CLI::Range(1u, 10'000'000u).description(""));
   command
       ->add_option("--warmup", options->warmup,
                    "Frames before those, neither measured nor written; default 0")
       ->type_name("N")
-      ->check(CLI::Range(0u, 10'000'000u));
+      ->check(CLI::Range(0u, 10'000'000u).description(""));
   command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")->type_name("S");
   command
       ->add_option("--gaze", options->gaze,

@@ -68,7 +68,9 @@ ExitCode info(const std::string& name) {
                      formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
-  if (!s.gaze.empty())
+  if (s.gaze.size() == 1)
+    line("gaze", fmt::format("at {:.3g}, {:.3g}", s.gaze[0].position.x, s.gaze[0].position.y));
+  if (s.gaze.size() > 1)
     line("gaze", fmt::format("{} samples over {:.3g} s", s.gaze.size(), s.gaze.back().time));
   line("exposure", fmt::format("{:.4g}", s.exposure));
   line("sky", formatVector(s.environment) + " W/(sr m^2)");
