@@ -203,15 +203,18 @@ void Planner::leave(uint32_t resource) {
 void Planner::frame(bool record) {
   if (record) plan_.levels.resize(levels_);
   for (ReadGroup& group : groups_) group.served = false;
-  BarrierBatch scrap;
+  BarrierBatch batch;
   for (uint32_t l = 0; l < levels_; ++l) {
-    BarrierBatch& batch = record ? plan_.levels[l].before : scrap;
+    batch.srcStage = batch.srcAccess = batch.dstStage = batch.dstAccess = 0;
+    batch.images.clear();
     for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], batch, record);
     for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
-    if (record)
-      plan_.levels[l].passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
-                                    schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+    if (!record) continue;
+    plan_.levels[l].before = batch;
+    plan_.levels[l].passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
+                                  schedule_.order.begin() + schedule_.levelFirst[l + 1]);
   }
+  batch = {};
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};
   std::vector<uint8_t> done(graph_.resources.size(), 0);
   for (const BoundOutput& output : graph_.outputs) {
@@ -220,8 +223,9 @@ void Planner::frame(bool record) {
     t.scope.layout = graph_.resources[output.resource].desc.kind == ResourceKind::Image
                          ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
                          : VK_IMAGE_LAYOUT_UNDEFINED;
-    read(t, current_[output.resource], transfer, record ? plan_.end : scrap, record);
+    read(t, current_[output.resource], transfer, batch, record);
   }
+  if (record) plan_.end = batch;
   for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i) leave(leaving_[i]);
   for (size_t r = 0; r < previous_.size(); ++r)
     if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
@@ -241,8 +245,8 @@ void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& 
     if (record)
       batch.images.push_back({t.resource, t.previous, state.writeStage | state.readStage, group.stage,
                               state.writeAccess, group.access, state.layout, t.scope.layout});
-    // The change of layout is itself a write, which only this barrier's second scope has waited for; who comes later
-    // waits for that scope and for the write before it.
+    // The change of layout is itself a write, which only this barrier's second scope has waited for; who
+    // comes later waits for that scope and for the write before it.
     state.writeStage |= group.stage;
     state.seenStage = group.stage;
     state.seenAccess = group.access;

@@ -110,6 +110,7 @@ class Binder {
   std::vector<uint32_t> externalFirst_;  // first resource of each external
   std::vector<VkExtent2D> viewExtents_;  // per BoundGraph::views
   std::vector<uint32_t> resourcePass_;   // producing pass, kNone for externals
+  std::vector<uint32_t> chain_;          // followValue's
   std::vector<uint8_t> sized_;           // per pass: 0 not yet, 1 being done, 2 done, 3 failed
   bool inPlace_ = false, history_ = false;
 };
