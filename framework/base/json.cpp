@@ -281,8 +281,7 @@ std::string joinPath(std::string_view path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-// ---- ObjectReader
-// ----------------------------------------------------------------------------------------------
+// ---- ObjectReader ------------------------------------------------------------------------------------
 
 ObjectReader::ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics)
     : value_(value), path_(std::move(path)), diagnostics_(diagnostics) {

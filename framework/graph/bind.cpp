@@ -54,8 +54,7 @@ std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
   return rest.empty() ? path : json::joinPath(path, rest);
 }
 
-// ---- Passes and parameters
-// -------------------------------------------------------------------------------------
+// ---- Passes and parameters ---------------------------------------------------------------------------
 
 void Binder::declare() {
   const size_t count = description_.passes.size();
@@ -256,8 +255,7 @@ bool Binder::readParameter(const ParameterSpec& spec, const ParameterDescription
   return false;
 }
 
-// ---- Resources
-// -------------------------------------------------------------------------------------------------
+// ---- Resources ---------------------------------------------------------------------------------------
 
 void Binder::makeExternals() {
   for (const ExternalDescription& external : description_.externals) {
@@ -305,8 +303,7 @@ void Binder::makeResources() {
   lastVersion_.assign(graph_.resources.size(), 0);
 }
 
-// ---- Accesses
-// --------------------------------------------------------------------------------------------------
+// ---- Accesses ----------------------------------------------------------------------------------------
 
 void Binder::makeAccesses() {
   for (uint32_t p = 0; p < graph_.passes.size(); ++p) {

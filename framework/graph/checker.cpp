@@ -12,8 +12,7 @@ namespace {
 
 using namespace checker;
 
-// ---- The checker's own idea of what a usage means
-// ---------------------------------------------------------------
+// ---- The checker's own idea of what a usage means ----------------------------------------------------
 
 struct UsageRule {
   Usage usage;
@@ -93,8 +92,7 @@ std::vector<Need> needsOf(PassKind kind, const Access& access) {
   return needs;
 }
 
-// ---- Memory
-// ----------------------------------------------------------------------------------------------------
+// ---- Memory ------------------------------------------------------------------------------------------
 
 // What a piece of memory holds.
 struct Contents {

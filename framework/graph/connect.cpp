@@ -57,8 +57,7 @@ std::string Binder::wirePath(const PortState& port) const {
   return passPath(port.pass, "inputs." + text(wire.target));
 }
 
-// ---- From names to ports
-// ---------------------------------------------------------------------------------------
+// ---- From names to ports -----------------------------------------------------------------------------
 
 void Binder::assignWires() {
   for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
@@ -182,8 +181,7 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
     port.value = {port.value.first + member, 1, port.value.origin, member, port.value.external};
 }
 
-// ---- Values
-// ----------------------------------------------------------------------------------------------------
+// ---- Values ------------------------------------------------------------------------------------------
 
 void Binder::followValues() {
   for (PortState& port : ports_)
@@ -244,8 +242,7 @@ uint32_t Binder::resourceOf(const PortState& port, const PortSpec& spec, uint32_
   return kNone;
 }
 
-// ---- Types
-// -----------------------------------------------------------------------------------------------------
+// ---- Types -------------------------------------------------------------------------------------------
 
 void Binder::checkTypes() {
   for (PortState& port : ports_) {

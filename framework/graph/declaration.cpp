@@ -8,8 +8,7 @@
 
 namespace fovea::graph {
 
-// ---- Parameters
-// ------------------------------------------------------------------------------------------------
+// ---- Parameters --------------------------------------------------------------------------------------
 
 ParameterSpec integer(int64_t defaultValue, int64_t min, int64_t max) {
   ParameterSpec spec;
@@ -93,8 +92,7 @@ const std::string& Parameters::text(std::string_view name) const {
   return std::get<std::string>(*value);
 }
 
-// ---- Sizes
-// -----------------------------------------------------------------------------------------------------
+// ---- Sizes -------------------------------------------------------------------------------------------
 
 SizeExpr::SizeExpr(const SizeExpr& a, const SizeExpr& b, Op op) : terms_(a.terms_) {
   terms_.insert(terms_.end(), b.terms_.begin(), b.terms_.end());
@@ -180,8 +178,7 @@ SizeExpr layersOf(std::string port) { return {SizeExpr::Op::PortLayers, std::mov
 SizeExpr countOf(std::string port) { return {SizeExpr::Op::PortCount, std::move(port)}; }
 SizeExpr environment(std::string name) { return {SizeExpr::Op::Environment, std::move(name)}; }
 
-// ---- Resources
-// -------------------------------------------------------------------------------------------------
+// ---- Resources ---------------------------------------------------------------------------------------
 
 ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr mips) {
   ResourceSpec spec;
@@ -217,8 +214,7 @@ ResourceSpec buffer(std::string element, uint32_t stride, SizeExpr count) {
   return spec;
 }
 
-// ---- Passes
-// ----------------------------------------------------------------------------------------------------
+// ---- Passes ------------------------------------------------------------------------------------------
 
 namespace {
 

@@ -12,6 +12,9 @@
 
 namespace fovea::graph::detail {
 
+// Letters, digits, _ and -: what passes, parameters and inputs may be called.
+bool isName(std::string_view name);
+
 // One graph document in use: the whole graph, or a sub-graph under a prefix.
 struct Scope {
   struct Parameter {

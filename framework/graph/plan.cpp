@@ -78,8 +78,7 @@ AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, boo
   return scope;
 }
 
-// ---- Memory
-// ----------------------------------------------------------------------------------------------------
+// ---- Memory ------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -138,8 +137,7 @@ MemoryNeed estimateMemory(const ResourceDesc& desc) {
   return {(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, ~0u};
 }
 
-// ---- Compile
-// ---------------------------------------------------------------------------------------------------
+// ---- Compile -----------------------------------------------------------------------------------------
 
 Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& options) {
   Plan plan;

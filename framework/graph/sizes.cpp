@@ -228,8 +228,7 @@ bool Binder::sizeOfPort(uint32_t p, const SizeExpr::Term& term, int64_t& out, in
   return false;
 }
 
-// ---- Limits
-// ----------------------------------------------------------------------------------------------------
+// ---- Limits ------------------------------------------------------------------------------------------
 
 std::string Binder::parametersOf(const ResourceSpec& spec) const {
   std::vector<std::string> names;

@@ -276,8 +276,7 @@ TEST(Bind, WarnsAboutPassesThatDoNotRun) {
             "  -> wire one of its outputs, or remove it");
 }
 
-// ---- Declarations
-// ------------------------------------------------------------------------------------------------
+// ---- Declarations ------------------------------------------------------------------------------------
 
 TEST(SizeExpression, Prints) {
   EXPECT_EQ(ceilDiv(viewWidth(), 4).print(), "view.width / 4");

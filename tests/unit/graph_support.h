@@ -190,8 +190,7 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-// ---- Barriers in words
-// -----------------------------------------------------------------------------------------
+// ---- Barriers in words -------------------------------------------------------------------------------
 
 inline std::string stageText(VkPipelineStageFlags2 stages) {
   std::string text;

@@ -99,8 +99,7 @@ TEST(Merge, PlacesPointIntoTheFileTheValueCameFrom) {
   EXPECT_EQ(v.findMember("b")->keyWhere.line, 2);
 }
 
-// ---- Whole graphs
-// ------------------------------------------------------------------------------------------------
+// ---- Whole graphs ------------------------------------------------------------------------------------
 
 struct Loaded {
   Description description;
