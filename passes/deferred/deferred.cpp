@@ -13,7 +13,7 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTileWidth = 16, kTileHeight = 8;  // work groups of shade.comp
+constexpr uint32_t kTileWidth = 16, kTileHeight = 16;  // pixels that a work group works on (in shade.comp: of one subset)
 
 // A subset with fewer VPLs than this is no estimate of anything; fewer subsets cost little then.
 constexpr uint64_t kSmallestSubset = 4;
@@ -32,11 +32,11 @@ class Deferred : public Pass {
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-             member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::Sampled),
+             member("face", image2D(), Usage::Sampled),
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
             "surfaces seen by the eye");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform, "light sources; empty slots have no intensity");
-    d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled,
+    d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
             "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
         .makeOptional();
     d.input("direct", image2D(), Usage::Sampled, "rgb: radiance to add the indirect light to").makeOptional();
@@ -48,7 +48,7 @@ class Deferred : public Pass {
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite, "every pixel's estimate from its own subset");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
-    d.counter("incomplete", "pixels for which most subsets had to be guessed from the others");
+    d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
     d.counter("vpls_per_pixel", "VPLs that shade one pixel, on average: times `pixels` the number of pixel-VPL pairs");
     return d;
   }
@@ -102,7 +102,7 @@ class Deferred : public Pass {
     ctx.barrier();
     ctx.use(resolve_)
         .constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f))
-        .dispatchOver("irradiance");
+        .dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
@@ -116,9 +116,9 @@ class Deferred : public Pass {
                 "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset would have under 4");
     d.parameter("shadow_bias", real(1, 0, 100),
                 "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
-    d.parameter("filter_angle", real(40, 1, 90, "degrees"), "normals that differ by more do not mix");
-    d.parameter("filter_plane", real(0.004, 1e-6, 1),
-                "distance from the tangent plane, in parts of the distance to the eye, at which a weight falls to 1 / e");
+    d.parameter("filter_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
+    d.parameter("filter_plane", real(0.005, 1e-6, 1),
+                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that belongs to its surface");
   }
 
   uint32_t count_ = 0, side_ = 1;

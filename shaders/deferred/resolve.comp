@@ -5,12 +5,16 @@
 // From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only, and the composition
 // with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT.
 //
-// A window of (INTERLEAVE + 1)^2 pixels, the outermost with half weight, holds every subset with the total weight 1. The
-// filter averages per subset first, then over subsets: each subset counts the same however many of its pixels lie on the
-// surface, so nothing darkens and no pattern shows at edges. A subset that the surface has no pixel of is looked for in a
-// window three times as wide; what is still missing there is replaced by the mean of the others.
+// Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once; where all of it lies on the surface of the pixel, the
+// mean over it is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
+// subset without a sample. Samples of that subset are then looked for on the surface in a window four times as wide; what
+// is still missing there is replaced by the mean of the subsets that were found, so that edges neither darken nor show a
+// pattern. Where less than half was found (leaves, chains) other surfaces nearby that face the same way are taken as well.
 
-layout(local_size_x = 16, local_size_y = 8) in;
+const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
+const uint kSubsets = INTERLEAVE * INTERLEAVE;
+
+layout(local_size_x = 16, local_size_y = 4) in;
 
 layout(set = 0, binding = 0) uniform texture2D gbufferPosition;
 layout(set = 0, binding = 1) uniform texture2D gbufferNormal;
@@ -25,102 +29,136 @@ layout(set = 0, binding = 8) uniform texture2D direct;
 #endif
 
 layout(push_constant) uniform Constants {
-  float filterPlane;  // distance from the tangent plane, in parts of the distance to the eye, at which a weight is 1 / e
-  float filterCos;    // cosine of the angle between normals at which a weight is 0
+  float filterPlane;  // distance from the tangent plane that still counts as the surface, in parts of the distance to the eye
+  float filterCos;    // least cosine between normals
 };
 
-const float kEnough = 0.2;      // weight below which a subset counts as missing in the small window
-const float kAnything = 0.02;   // and in the large one
+struct Centre {
+  vec3 position, normal, sum;
+  float plane;    // m; below 0: background
+  uint found;     // subsets in the sum
+  uvec2 missing;  // bit per subset, numbered from the pixel: (dy mod INTERLEAVE) * INTERLEAVE + (dx mod INTERLEAVE)
+};
 
-ivec2 size;
-vec3 centre, centreNormal;
-float invPlane2;
-
-// rgb: weighted value, a: weight, of one pixel.
-vec4 tap(ivec2 q) {
-  if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return vec4(0.0);
-  vec4 position = texelFetch(gbufferPosition, q, 0);
-  float plane = dot(position.xyz - centre, centreNormal);
-  float facing = dot(texelFetch(gbufferNormal, q, 0).xyz, centreNormal);
-  float w = exp(-plane * plane * invPlane2) * clamp((facing - filterCos) / (1.0 - filterCos), 0.0, 1.0);
-  w = position.w > 0.0 ? w : 0.0;
-  return w > 0.0 ? vec4(imageLoad(partial, q).rgb * w, w) : vec4(0.0);
+bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least) {
+  return position.w > 0.0 && abs(dot(position.xyz - c.position, c.normal)) <= plane && dot(normal, c.normal) >= least;
 }
 
-// Offset of the pixel of a subset nearest to the centre, along one axis; at INTERLEAVE / 2 there are two.
-int nearOffset(int a) { return a < INTERLEAVE / 2 ? a : a - INTERLEAVE; }
-
-vec4 smallWindow(ivec2 p, int ax, int ay) {
-  int x = nearOffset(ax), y = nearOffset(ay);
-  vec4 sum = tap(p + ivec2(x, y));
-  bool twoX = 2 * ax == INTERLEAVE, twoY = 2 * ay == INTERLEAVE;
-  if (twoX) sum += tap(p + ivec2(-x, y));
-  if (twoY) sum += tap(p + ivec2(x, -y));
-  if (twoX && twoY) sum += tap(p + ivec2(-x, -y));
-  return sum;
+void setMissing(inout Centre c, int subset) {
+  if (subset < 32) c.missing.x |= 1u << subset;
+  else c.missing.y |= 1u << (subset - 32);
 }
 
-vec4 largeWindow(ivec2 p, int ax, int ay) {
+// Adds a sample, nearer pixels with more weight; a: weight.
+void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
+  ivec2 q = p + d;
+  if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
+  if (!sameSurface(c, texelFetch(gbufferPosition, q, 0), texelFetch(gbufferNormal, q, 0).xyz, plane, least)) return;
+  float w = 1.0 / float(d.x * d.x + d.y * d.y);
+  sum += vec4(imageLoad(partial, q).rgb * w, w);
+}
+
+// A sample of one subset outside the window: on the other side of the pixel, where an edge has left the surface, or else
+// from anywhere in the wide window. a: whether there is one.
+vec4 wideSample(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
+  ivec2 inside = offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2)));
+  ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
   vec4 sum = vec4(0.0);
-  for (int j = -2; j < 2; ++j)
-    for (int i = -2; i < 2; ++i) sum += tap(p + ivec2(ax, ay) + INTERLEAVE * ivec2(i, j));
-  return sum;
+  addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
+  addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
+  addSample(sum, c, p, across, size, plane, least);
+  if (sum.a == 0.0)
+    for (int j = -2; j < 2; ++j)
+      for (int i = -2; i < 2; ++i) addSample(sum, c, p, offset + INTERLEAVE * ivec2(i, j), size, plane, least);
+  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
 }
 
-vec3 gather(ivec2 p, out bool incomplete) {
-  vec3 sum = vec3(0.0);
-  int missing = 0;
-  for (int ay = 0; ay < INTERLEAVE; ++ay) {
-    for (int ax = 0; ax < INTERLEAVE; ++ax) {
-      vec4 v = smallWindow(p, ax, ay);
-      if (v.a < kEnough) ++missing;
-      sum += v.rgb / max(v.a, 1e-6);
-    }
+// Looks for the missing subsets; those found leave the mask.
+void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) {
+  uvec2 left = c.missing;
+  while ((left.x | left.y) != 0u) {
+    int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
+    uvec2 bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
+    left &= ~bit;
+    vec4 v = wideSample(c, p, ivec2(subset % INTERLEAVE, subset / INTERLEAVE), size, plane, least);
+    if (v.a == 0.0) continue;
+    c.sum += v.rgb;
+    ++c.found;
+    c.missing &= ~bit;
   }
-  incomplete = false;
-  if (missing == 0) return sum / float(INTERLEAVE * INTERLEAVE);
-  vec4 all = vec4(0.0);
-  for (int ay = 0; ay < INTERLEAVE; ++ay) {
-    for (int ax = 0; ax < INTERLEAVE; ++ax) {
-      vec4 v = smallWindow(p, ax, ay);
-      if (v.a < kEnough) v = largeWindow(p, ax, ay);
-      if (v.a >= kAnything) all += vec4(v.rgb / v.a, 1.0);
-    }
-  }
-  incomplete = 2.0 * all.a < float(INTERLEAVE * INTERLEAVE);
-  return all.rgb / all.a;  // the centre itself is always there
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  size = textureSize(gbufferPosition, 0);
-  bool inside = all(lessThan(p, size));
-  vec4 position = inside ? texelFetch(gbufferPosition, p, 0) : vec4(0.0);
-  bool surface = position.w > 0.0, incomplete = false;
-  vec3 e = vec3(0.0);
-  if (surface) {
-    centre = position.xyz;
-    centreNormal = texelFetch(gbufferNormal, p, 0).xyz;
-    float scale = filterPlane * position.w;
-    invPlane2 = 1.0 / max(scale * scale, 1e-20);
-#if INTERLEAVE > 1
-    e = gather(p, incomplete);
-#else
-    e = imageLoad(partial, p).rgb;
-#endif
+  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 first = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
+                ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels);
+  Centre centres[kPixels];
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 p = first + ivec2(0, k), inside = min(p, size - 1);
+    vec4 position = texelFetch(gbufferPosition, inside, 0);
+    bool surface = p == inside && position.w > 0.0;
+    centres[k] = Centre(position.xyz, texelFetch(gbufferNormal, inside, 0).xyz, vec3(0.0),
+                        surface ? filterPlane * position.w : -1.0, 0u, uvec2(0u));
   }
-  uvec4 surfaces = subgroupBallot(surface), incompletes = subgroupBallot(incomplete);
-  if (subgroupElect()) {
-    atomicAdd(counters[0], subgroupBallotBitCount(surfaces));
-    if (subgroupBallotBitCount(incompletes) > 0u) atomicAdd(counters[1], subgroupBallotBitCount(incompletes));
+
+  // Every pixel of the windows is loaded once and offered to all centres whose window holds it.
+  const int kBefore = INTERLEAVE / 2;
+  for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
+    for (int row = -kBefore; row < INTERLEAVE - kBefore + kPixels - 1; ++row) {
+      ivec2 q = first + ivec2(dx, row), inside = clamp(q, ivec2(0), size - 1);
+      vec4 position = texelFetch(gbufferPosition, inside, 0);
+      if (q != inside) position.w = 0.0;
+      vec3 normal = texelFetch(gbufferNormal, inside, 0).xyz;
+      vec3 value = imageLoad(partial, inside).rgb;
+      for (int k = 0; k < kPixels; ++k) {
+        int dy = row - k;
+        if (dy < -kBefore || dy >= INTERLEAVE - kBefore) continue;
+        if (sameSurface(centres[k], position, normal, centres[k].plane, filterCos)) {
+          centres[k].sum += value;
+          ++centres[k].found;
+        } else {
+          setMissing(centres[k], (dy + INTERLEAVE) % INTERLEAVE * INTERLEAVE + (dx + INTERLEAVE) % INTERLEAVE);
+        }
+      }
+    }
   }
-  if (!inside) return;
-  vec3 reflected = surface ? texelFetch(gbufferAlbedo, p, 0).rgb * e : vec3(0.0);
-  vec3 total = reflected;
+
+  uint surfaces = 0u, incompletes = 0u;
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 p = first + ivec2(0, k);
+    bool surface = centres[k].plane >= 0.0;
+    vec3 e = vec3(0.0);
+    bool incomplete = false;
+    if (surface) {
+      if (centres[k].found < kSubsets) {
+        Centre c = centres[k];
+        if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
+          c.sum = imageLoad(partial, p).rgb;
+          c.found = 1u;
+          c.missing = uvec2(0u);
+        }
+        searchWider(c, p, size, c.plane, filterCos);
+        incomplete = 2u * c.found < kSubsets;
+        if (incomplete) searchWider(c, p, size, 8.0 * c.plane, 0.5);
+        centres[k].sum = c.sum;
+        centres[k].found = c.found;
+      }
+      e = centres[k].sum / float(centres[k].found);
+    }
+    surfaces += subgroupBallotBitCount(subgroupBallot(surface));
+    incompletes += subgroupBallotBitCount(subgroupBallot(incomplete));
+    if (any(greaterThanEqual(p, size))) continue;
+    vec3 reflected = surface ? texelFetch(gbufferAlbedo, p, 0).rgb * e : vec3(0.0);
+    vec3 total = reflected;
 #if HAS_DIRECT
-  total += texelFetch(direct, p, 0).rgb;
+    total += texelFetch(direct, p, 0).rgb;
 #endif
-  imageStore(irradiance, p, vec4(e, 1.0));
-  imageStore(indirect, p, vec4(reflected, 1.0));
-  imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
+    imageStore(irradiance, p, vec4(e, 1.0));
+    imageStore(indirect, p, vec4(reflected, 1.0));
+    imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
+  }
+  if (subgroupElect()) {
+    atomicAdd(counters[0], surfaces);
+    if (incompletes > 0u) atomicAdd(counters[1], incompletes);
+  }
 }

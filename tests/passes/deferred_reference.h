@@ -73,7 +73,7 @@ struct DeferredReference {
   bool disc = false;
   double clampDistance = 1.5;
   int interleave = 1;
-  double filterPlane = 0.004, filterAngle = 40;
+  double filterPlane = 0.005, filterAngle = 25;
   const std::vector<uint32_t>* atlas = nullptr;  // `size` x `size` x VPLs, the bits of floats
   int size = 0;
   int nearTies = 0;  // shadow comparisons too close to call in single precision
@@ -131,37 +131,63 @@ struct DeferredReference {
   }
 
  private:
-  glm::dvec4 tap(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y, int qx, int qy) const {
-    if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return glm::dvec4(0);
-    const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
-    const double plane = glm::dot(glm::dvec3(q.position) - glm::dvec3(p.position), glm::dvec3(p.normal)) / (filterPlane * p.distance);
-    const double least = std::cos(glm::radians(filterAngle));
-    const double facing = (glm::dot(glm::dvec3(q.normal), glm::dvec3(p.normal)) - least) / (1 - least);
-    const double w = std::exp(-plane * plane) * std::clamp(facing, 0.0, 1.0);
-    return glm::dvec4(partial[size_t(qy * g.width + qx)] * w, w);
-  }
+  struct Search {
+    const GBuffer& g;
+    const std::vector<glm::dvec3>& partial;
+    int x, y;
+    double plane, least;
+
+    bool sameSurface(int qx, int qy) const {
+      if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return false;
+      const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
+      return std::abs(glm::dot(q.position - p.position, p.normal)) <= plane && glm::dot(q.normal, p.normal) >= least;
+    }
+    glm::dvec3 value(int qx, int qy) const { return partial[size_t(qy * g.width + qx)]; }
+
+    // A subset's sample from the other side of the pixel or else from the wide window, nearer ones weighing more; a: whether
+    // there is one.
+    glm::dvec4 wide(int ax, int ay, int n) const {
+      glm::dvec4 s(0);
+      const auto add = [&](int dx, int dy) {
+        if (sameSurface(x + dx, y + dy)) s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
+      };
+      const int inX = ax < n - n / 2 ? ax : ax - n, inY = ay < n - n / 2 ? ay : ay - n;
+      const int acrossX = inX < 0 ? inX + n : inX - n, acrossY = inY < 0 ? inY + n : inY - n;
+      add(acrossX, inY);
+      add(inX, acrossY);
+      add(acrossX, acrossY);
+      if (s.w == 0)
+        for (int j = -2; j < 2; ++j)
+          for (int i = -2; i < 2; ++i) add(ax + n * i, ay + n * j);
+      return s.w > 0 ? s / s.w : s;
+    }
+  };
 
   glm::dvec3 filter(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y) const {
     const int n = interleave;
-    glm::dvec3 sum(0);
-    double found = 0;
-    for (int ay = 0; ay < n; ++ay) {
-      for (int ax = 0; ax < n; ++ax) {
-        glm::dvec4 s(0);
-        for (int oy = -n / 2; oy <= n / 2; ++oy)
-          for (int ox = -n / 2; ox <= n / 2; ++ox)
-            if ((ox + n) % n == ax && (oy + n) % n == ay) s += tap(g, partial, x, y, x + ox, y + oy);
-        if (s.w < 0.2) {
-          s = glm::dvec4(0);
-          for (int j = -2; j < 2; ++j)
-            for (int i = -2; i < 2; ++i) s += tap(g, partial, x, y, x + ax + n * i, y + ay + n * j);
-        }
-        if (s.w < 0.02) continue;
-        sum += glm::dvec3(s) / s.w;
-        found += 1;
+    const Search strict{g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle))};
+    glm::dvec4 sum(0);
+    std::vector<glm::ivec2> missing;
+    for (int dy = -n / 2; dy < n / 2; ++dy)
+      for (int dx = -n / 2; dx < n / 2; ++dx) {
+        if (strict.sameSurface(x + dx, y + dy)) sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
+        else missing.push_back({(dx + n) % n, (dy + n) % n});
       }
-    }
-    return sum / found;
+    const auto search = [&](const Search& how) {
+      std::vector<glm::ivec2> still;
+      for (const glm::ivec2& m : missing) {
+        const glm::dvec4 v = how.wide(m.x, m.y, n);
+        if (v.w > 0) sum += v;
+        else still.push_back(m);
+      }
+      missing = still;
+    };
+    search(strict);
+    Search relaxed = strict;
+    relaxed.plane *= 8;
+    relaxed.least = 0.5;
+    if (2 * sum.w < n * n) search(relaxed);
+    return glm::dvec3(sum) / sum.w;
   }
 };
 
