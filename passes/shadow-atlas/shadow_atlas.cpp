@@ -26,10 +26,11 @@ using namespace graph;
 
 constexpr uint32_t kBatch = 16;               // VPLs that share one reading of the triangles
 constexpr uint32_t kViewBytes = 64;           // VplView in shaders/shadow-atlas/step.glsl
-constexpr uint32_t kStepBytes = 64;           // Step, likewise
+constexpr uint32_t kListBytes = 16;           // WorkList, likewise
+constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
 constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists of pairs to 64 MiB
 constexpr uint32_t kCullGroup = 128;          // triangles a work group of cull.comp
-constexpr uint32_t kSliceTexels = 1 << 18;    // 8 invocations * 32,768 turns: below the 65,535 turns of a loop
+constexpr uint32_t kSliceTexels = 1 << 18;    // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
 
 class ShadowAtlas : public Pass {
  public:
@@ -39,7 +40,7 @@ class ShadowAtlas : public Pass {
 
  private:
   struct Kernels {
-    Kernel cull, small, large, masked;
+    Kernel cull, small, large, maskedSmall, maskedLarge;  // the masked ones only with the parameter `alpha_mask`
   };
   struct Range {  // triangles of one step
     const Kernels* kernels;
@@ -94,8 +95,8 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
               "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and blocks nothing");
   d.counter("maps", "maps drawn");
-  d.counter("small_pairs", "pairs of a VPL and a triangle that covers at most 16 texels' box");
-  d.counter("large_pairs", "pairs of a VPL and a larger triangle");
+  d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
+  d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
   d.counter("masked_pairs", "pairs of a VPL and a triangle with an alpha mask");
   return d;
 }
@@ -109,7 +110,8 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
   k.large = ctx.compute("shadow-atlas/large.comp", defines);
   if (!ctx.parameters().flag("alpha_mask")) return k;
   defines["MASKED"] = "1";
-  k.masked = ctx.compute("shadow-atlas/large.comp", defines);
+  k.maskedSmall = ctx.compute("shadow-atlas/small.comp", defines);
+  k.maskedLarge = ctx.compute("shadow-atlas/large.comp", defines);
   return k;
 }
 
@@ -153,33 +155,32 @@ std::vector<ShadowAtlas::Range> ShadowAtlas::ranges(RecordContext& ctx) {
 }
 
 void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
-  const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes, stepOffset = uint64_t(step) * kStepBytes;
+  const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes;
   const uint32_t capacity = uint32_t(ctx.count("pairs") / 2), size = uint32_t(ctx.parameters().integer("size"));
-  ctx.use(range.kernels->cull)
-      .range("batch", viewOffset, kBatch * kViewBytes)
-      .constant("step_", step)
-      .constant("firstTriangle", range.first)
-      .constant("triangleCount", range.count)
-      .constant("capacity", capacity)
-      .dispatchIndirect("steps", stepOffset);
+  auto use = [&](Kernel kernel) {
+    Commands commands = ctx.use(kernel);
+    commands.range("batch", viewOffset, kBatch * kViewBytes).constant("step_", step).constant("capacity", capacity);
+    return commands;
+  };
+  auto dispatch = [&](Commands& commands, uint32_t list) {
+    commands.dispatchIndirect("steps", uint64_t(step) * kStepBytes + list * kListBytes);
+  };
+  Commands cull = use(range.kernels->cull);
+  cull.constant("firstTriangle", range.first).constant("triangleCount", range.count);
+  dispatch(cull, 0);
   ctx.barrier();
-  ctx.use(range.kernels->small)
-      .range("batch", viewOffset, kBatch * kViewBytes)
-      .constant("step_", step)
-      .constant("planeEpsilon", range.planeEpsilon)
-      .dispatchIndirect("steps", stepOffset + 16);
-  const uint32_t slices = (size * size + kSliceTexels - 1) / kSliceTexels;
-  for (uint32_t list = 0; list < 2; ++list) {
-    const Kernel& kernel = list == 0 ? range.kernels->large : range.kernels->masked;
-    for (uint32_t slice = 0; kernel && slice < slices; ++slice)
-      ctx.use(kernel)
-          .range("batch", viewOffset, kBatch * kViewBytes)
-          .constant("step_", step)
-          .constant("capacity", capacity)
-          .constant("slice", slice)
-          .constant("slices", slices)
-          .constant("planeEpsilon", range.planeEpsilon)
-          .dispatchIndirect("steps", stepOffset + 32 + 16 * list);
+
+  const Kernel lists[] = {range.kernels->small, range.kernels->large, range.kernels->maskedSmall,
+                          range.kernels->maskedLarge};
+  for (uint32_t list = 0; list < 4 && lists[list]; ++list) {
+    const bool large = list % 2 == 1;
+    const uint32_t slices = large ? (size * size + kSliceTexels - 1) / kSliceTexels : 1;
+    for (uint32_t slice = 0; slice < slices; ++slice) {
+      Commands raster = use(lists[list]);
+      raster.constant("planeEpsilon", range.planeEpsilon);
+      if (large) raster.constant("slice", slice).constant("slices", slices);
+      dispatch(raster, 1 + list);
+    }
   }
   ctx.barrier();
 }

@@ -12,47 +12,35 @@
 layout(local_size_x = 128) in;
 
 layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
-layout(set = 0, std430) buffer StepsBlock { Step list[]; } steps;
+layout(set = 0, std430) buffer StepsBlock { uint words[]; } steps;  // Step
 layout(set = 0, std430) writeonly buffer PairsBlock { uint list[]; } pairs;
 
 layout(push_constant) uniform Constants {
   uint step_;
   uint firstTriangle;
   uint triangleCount;
-  uint capacity;  // pairs of one list; small ones stand at its front, large ones at its back, masked ones in a second list
+  uint capacity;  // all pairs of a step
   uint size;
   uint alphaMask;
 };
 
-// Group g of an indirect dispatch comes into being with its first entry.
-#define COUNT_GROUP(kind, entry, perGroup)                                                              \
-  if ((entry) % (perGroup) == 0u) {                                                                      \
-    uint group = (entry) / (perGroup);                                                                   \
-    if (group < kGroupsPerRow) atomicAdd(steps.list[step_].kind##X, 1u);                                 \
-    else if (group % kGroupsPerRow == 0u) atomicAdd(steps.list[step_].kind##Y, 1u);                      \
-  }
-
-void append(uint pair, bool large, bool masked) {
-  if (masked) {
-    uint entry = atomicAdd(steps.list[step_].maskedCount, 1u);
-    pairs.list[capacity + entry] = pair;
-    COUNT_GROUP(masked, entry, kLargePerGroup)
-  } else if (large) {
-    uint entry = atomicAdd(steps.list[step_].largeCount, 1u);
-    pairs.list[capacity - 1u - entry] = pair;
-    COUNT_GROUP(large, entry, kLargePerGroup)
-  } else {
-    uint entry = atomicAdd(steps.list[step_].smallCount, 1u);
-    pairs.list[entry] = pair;
-    COUNT_GROUP(small, entry, kSmallPerGroup)
-  }
+// Adds a pair to one of the four lists. One atomic whatever the list, since a CPU device runs every branch.
+void append(uint pair, uint large, uint masked) {
+  uint list = kStepWords * step_ + kListWords * (1u + large + 2u * masked);  // step_'s WorkList
+  uint entry = atomicAdd(steps.words[list + 3u], 1u);
+  pairs.list[large != 0u ? largePlace(entry, capacity, masked != 0u) : smallPlace(entry, capacity, masked != 0u)] = pair;
+  // The indirect dispatch gets another group with a group's first entry.
+  uint perGroup = large != 0u ? kLargePerGroup : kSmallPerGroup, group = entry / perGroup;
+  bool inFirstRow = group < kGroupsPerRow;
+  if (entry % perGroup == 0u && (inFirstRow || group % kGroupsPerRow == 0u))
+    atomicAdd(steps.words[list + (inFirstRow ? 0u : 1u)], 1u);
 }
 
 void main() {
   if (gl_GlobalInvocationID.x >= triangleCount) return;
   uint index = firstTriangle + gl_GlobalInvocationID.x;
   Triangle triangle = loadTriangle(index);
-  bool masked = alphaMask != 0u && isMasked(index);
+  uint masked = alphaMask != 0u && isMasked(index) ? 1u : 0u;
 
   // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant places of
   // a uniform buffer are read once for all lanes.
@@ -71,7 +59,7 @@ void main() {
   do {
     if (covered != 0u) {
       uint v = uint(findLSB(covered));
-      append(v << kTriangleBits | index, (large >> v & 1u) != 0u, masked);
+      append(v << kTriangleBits | index, large >> v & 1u, masked);
       covered &= covered - 1u;
     }
   } while (covered != 0u);

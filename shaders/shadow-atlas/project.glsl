@@ -109,4 +109,20 @@ float hitDistance(RayTest r, vec2 p, out vec3 weights) {
   return hit ? min(t, r.farthest) : 0.0;
 }
 
+// False when no texel within `reach` of point p of the map, in x and in y, can see the triangle: over the square an edge
+// plane's value v + g.d - e.z |d|^2 keeps its sign.
+bool mayHit(RayTest r, vec2 p, float reach) {
+  float q = dot(p, p);
+  vec3 d = vec3(2.0 * p, 1.0 - q), value, bound;
+  vec3 e[3] = vec3[3](r.e0, r.e1, r.e2);
+  for (int i = 0; i < 3; ++i) {
+    vec3 size = abs(e[i]);
+    vec2 g = 2.0 * abs(e[i].xy - e[i].z * p);
+    value[i] = dot(e[i], d);
+    bound[i] = reach * (g.x + g.y) + 2.0 * reach * reach * size.z + 1e-6 * (size.x + size.y + size.z);
+  }
+  bool inside = all(greaterThanEqual(value + bound, vec3(0.0))) || all(lessThanEqual(value - bound, vec3(0.0)));
+  return inside && sqrt(q) <= 1.0 + 1.5 * reach;
+}
+
 #endif

@@ -57,10 +57,11 @@ void main() {
   uint padded = (slots + kBatch - 1u) / kBatch * kBatch;
   for (uint place = count + i; place < padded; place += 256u)
     batch.views[place] = VplView(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  WorkList none = WorkList(0u, 1u, 1u, 0u);
   uint batches = padded / kBatch;
   for (uint s = i; s < batches * ranges; s += 256u) {
     uint groups = (s / ranges) * kBatch < count ? cullGroups : 0u;
-    steps.list[s] = Step(groups, 1u, 1u, 0u, 0u, 1u, 1u, 0u, 0u, 1u, 1u, 0u, 0u, 1u, 1u, 0u);
+    steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none);
   }
   if (i == 0u) counters.maps = count;
 }

@@ -2,8 +2,9 @@
 #ifndef FOVEA_SHADOW_ATLAS_STEP_GLSL
 #define FOVEA_SHADOW_ATLAS_STEP_GLSL
 
-const uint kBatch = BATCH;      // VPLs that share one reading of a triangle: their records are read from a uniform buffer
+const uint kBatch = BATCH;        // VPLs that share one reading of a triangle: their records are read from a uniform buffer
 const uint kTriangleBits = 27u;  // a pair is one word: VPL of the batch << kTriangleBits | triangle
+const uint kTriangleMask = (1u << kTriangleBits) - 1u;
 
 struct VplView {
   vec4 positionSlot;  // xyz: world space, m; w: slot of the atlas
@@ -12,21 +13,29 @@ struct VplView {
   vec4 normal;
 };
 
-// Work of one step (a batch over a range of triangles): arguments of indirect dispatches, and the lists' lengths.
-struct Step {
-  uint cullX, cullY, cullZ, unused;
-  uint smallX, smallY, smallZ, smallCount;
-  uint largeX, largeY, largeZ, largeCount;
-  uint maskedX, maskedY, maskedZ, maskedCount;
+// Arguments of an indirect dispatch, and how many pairs it works on. Dispatches are folded into rows, since a dimension ends
+// at 65,535 groups.
+struct WorkList {
+  uint x, y, z;
+  uint count;
 };
+const uint kGroupsPerRow = 4096u;
 
-const uint kTriangleMask = (1u << kTriangleBits) - 1u;
-#ifndef SMALL_TEXELS
-#define SMALL_TEXELS 16u
-#endif
-const uint kSmallTexels = SMALL_TEXELS;  // the largest box of a small pair; larger ones get eight invocations
+// Work on one batch over a range of triangles. A pair is in one of the four lists.
+struct Step {
+  WorkList cull;
+  WorkList small;  // boxes of up to kSmallTexels: an invocation a pair
+  WorkList large;  // eight invocations a pair
+  WorkList maskedSmall, maskedLarge;  // likewise, where the material has holes
+};
+const uint kListWords = 4u, kStepWords = 20u;  // sizes of WorkList and Step
+const uint kSmallTexels = 64u;
 const uint kSmallPerGroup = 64u;
 const uint kLargePerGroup = 8u;
-const uint kGroupsPerRow = 4096u;  // indirect dispatches are folded into rows: a dimension ends at 65,535 groups
+
+// Where entry i of a list stands in the buffer of pairs: two arrays, each as long as all pairs of a step, opaque and masked;
+// small ones from the front, large ones from the back.
+uint smallPlace(uint i, uint capacity, bool masked) { return masked ? capacity + i : i; }
+uint largePlace(uint i, uint capacity, bool masked) { return (masked ? 2u * capacity : capacity) - 1u - i; }
 
 #endif

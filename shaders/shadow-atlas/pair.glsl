@@ -1,0 +1,64 @@
+// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it.
+#ifndef FOVEA_SHADOW_ATLAS_PAIR_GLSL
+#define FOVEA_SHADOW_ATLAS_PAIR_GLSL
+
+#include "common/paraboloid.glsl"
+#include "shadow-atlas/project.glsl"
+#include "shadow-atlas/step.glsl"
+#include "shadow-atlas/triangles.glsl"
+
+#ifdef MASKED
+const bool kMasked = true;
+#else
+const bool kMasked = false;
+#endif
+
+layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
+layout(set = 0, std430) readonly buffer StepsBlock { Step list[]; } steps;
+layout(set = 0, std430) readonly buffer PairsBlock { uint list[]; } pairs;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
+layout(set = 0, r32ui) uniform uimage2DArray atlas;
+
+struct Pair {
+  TexelBox box;
+  RayTest test;
+  ivec3 origin;  // of the VPL's map in the atlas
+  uint material;
+  vec2 uvA, uvB, uvC;
+};
+
+// clipped: the triangle may be of any size.
+Pair loadPair(uint word, int size, float planeEpsilon, bool clipped) {
+  Pair pair;
+  VplView view = batch.views[word >> kTriangleBits];
+  Triangle triangle = loadTriangle(word & kTriangleMask);
+  vec3 a = seenFrom(view, triangle.a), b = seenFrom(view, triangle.b), c = seenFrom(view, triangle.c);
+  bool tight;
+  pair.box = projectedBox(a, b, c, float(size), tight);
+  if (clipped) {
+    TexelBox cut = clippedBox(a, b, c, float(size));
+    if (!tight) pair.box = cut;
+  }
+  pair.test = rayTest(view, triangle, planeEpsilon);
+  pair.origin = atlasTexel(uint(view.positionSlot.w), ivec2(0), atlasLayout(imageSize(atlas)));
+  pair.material = triangle.material;
+#ifdef MASKED
+  pair.uvA = texelFetch(sceneAttributes, int(triangle.vertices.x)).zw;
+  pair.uvB = texelFetch(sceneAttributes, int(triangle.vertices.y)).zw;
+  pair.uvC = texelFetch(sceneAttributes, int(triangle.vertices.z)).zw;
+#endif
+  return pair;
+}
+
+void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
+  vec3 weights;
+  float distance_ = hitDistance(pair.test, (texel + 0.5) * toMap - 1.0, weights);
+  bool hit = inside && distance_ > 0.0;
+#ifdef MASKED
+  weights /= weights.x + weights.y + weights.z;
+  hit = hit && alphaTest(pair.material, weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB);
+#endif
+  if (hit) imageAtomicMin(atlas, pair.origin + ivec3(texel, 0), floatBitsToUint(distance_));
+}
+
+#endif
