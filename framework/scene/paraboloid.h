@@ -1,4 +1,5 @@
-// Paraboloid maps on the CPU: the same functions as shaders/common/paraboloid.glsl, where the mapping is explained.
+// Paraboloid maps on the CPU: the same functions as shaders/common/paraboloid.glsl, where the mapping is
+// explained.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,8 @@ inline glm::vec2 paraboloidTexelCentre(glm::ivec2 texel, int size) {
   return (2.0f * glm::vec2(texel) + 1.0f) / float(size) - 1.0f;
 }
 inline glm::ivec2 paraboloidTexel(glm::vec2 p, int size) {
-  return glm::clamp(glm::ivec2(glm::floor(paraboloidUv(p) * float(size))), glm::ivec2(0), glm::ivec2(size - 1));
+  return glm::clamp(glm::ivec2(glm::floor(paraboloidUv(p) * float(size))), glm::ivec2(0),
+                    glm::ivec2(size - 1));
 }
 // Local unit direction through a texel's centre; z <= 0: the texel is unused.
 inline glm::vec3 paraboloidTexelDirection(glm::ivec2 texel, int size) {

@@ -1,14 +1,14 @@
-// Paraboloid shadow maps of all VPLs: an r32ui image array, one map a slot, every texel the distance from the VPL to the
-// nearest surface along the texel's direction. A compute rasteriser in two passes over batches of VPLs: cull.comp lists
-// the (VPL, triangle) pairs that may cover a texel's centre, small.comp and large.comp test the texels against the planes
-// through the VPL and the triangle's edges, which is exact where rasterising straight edges between projected vertices is
-// not (edges are arcs), and keep the smallest distance with an integer atomic, whose result no order can change.
+// Paraboloid shadow maps of all VPLs: an r32ui image array, one map a slot, every texel the distance from the
+// VPL to the nearest surface along the texel's direction. A compute rasteriser in two passes over batches of
+// VPLs: cull.comp lists the (VPL, triangle) pairs that may cover a texel's centre, small.comp and large.comp
+// test the texels against the planes through the VPL and the triangle's edges, which is exact where
+// rasterising straight edges between projected vertices is not (edges are arcs), and keep the smallest
+// distance with an integer atomic, whose result no order can change.
 //
-// The technique `simplified` runs the same rasteriser over a coarser mesh: the hardware rasteriser would be bound by its
-// front end (one layer of the image a VPL, the whole mesh each) and would bend the edges of just the triangles that
-// simplification makes large.
+// The technique `simplified` runs the same rasteriser over a coarser mesh: the hardware rasteriser would be
+// bound by its front end (one layer of the image a VPL, the whole mesh each) and would bend the edges of just
+// the triangles that simplification makes large.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -24,13 +24,14 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kBatch = 16;               // VPLs that share one reading of the triangles
-constexpr uint32_t kViewBytes = 64;           // VplView in shaders/shadow-atlas/step.glsl
-constexpr uint32_t kListBytes = 16;           // WorkList, likewise
+constexpr uint32_t kBatch = 16;                  // VPLs that share one reading of the triangles
+constexpr uint32_t kViewBytes = 64;              // VplView in shaders/shadow-atlas/step.glsl
+constexpr uint32_t kListBytes = 16;              // WorkList, likewise
 constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
-constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists of pairs to 64 MiB
-constexpr uint32_t kCullGroup = 128;          // triangles a work group of cull.comp
-constexpr uint32_t kSliceTexels = 1 << 18;    // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
+constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
+constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
+constexpr uint32_t kSliceTexels =
+    1 << 18;  // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
 
 class ShadowAtlas : public Pass {
  public:
@@ -40,7 +41,8 @@ class ShadowAtlas : public Pass {
 
  private:
   struct Kernels {
-    Kernel cull, small, large, maskedSmall, maskedLarge;  // the masked ones only with the parameter `alpha_mask`
+    Kernel cull, small, large, maskedSmall,
+        maskedLarge;  // the masked ones only with the parameter `alpha_mask`
   };
   struct Range {  // triangles of one step
     const Kernels* kernels;
@@ -62,14 +64,16 @@ class ShadowAtlas : public Pass {
 
 PassDeclaration ShadowAtlas::declaration() {
   PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
-  d.input("vpls", buffer("Vpl", 48), Usage::StorageRead, "lights; a slot whose intensity is 0 keeps an empty map");
+  d.input("vpls", buffer("Vpl", 48), Usage::StorageRead,
+          "lights; a slot whose intensity is 0 keeps an empty map");
   // `layout` counts as its index: 0 layers, 1 tiled.
   const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
   d.output("atlas",
            image2DArray(VK_FORMAT_R32_UINT, parameter("size") * tiles, parameter("size"),
                         ceilDiv(countOf("vpls"), tiles)),
            Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-           "bits of the distance in m, as float, to the nearest surface in the direction of the texel's centre; inf: none "
+           "bits of the distance in m, as float, to the nearest surface in the direction of the texel's "
+           "centre; inf: none "
            "(shaders/common/paraboloid.glsl)")
       .keep(Lifetime::View);
   const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
@@ -88,12 +92,15 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("size", size, "width and height of a map");
   d.parameter("technique", choice("exact", {"exact", "simplified"}),
               "exact: every triangle; simplified: a coarser mesh, several times faster");
-  d.parameter("simplify_ratio", real(0.1, 0, 1), "share of the opaque static triangles that `simplified` keeps");
+  d.parameter("simplify_ratio", real(0.1, 0, 1),
+              "share of the opaque static triangles that `simplified` keeps");
   d.parameter("layout", choice("layers", {"layers", "tiled"}),
-              "layers: a layer of the image for each map; tiled: 16 maps a layer, for more VPLs than the device has layers");
+              "layers: a layer of the image for each map; tiled: 16 maps a layer, for more VPLs than the "
+              "device has layers");
   d.parameter("alpha_mask", flag(true), "holes of alpha-masked materials let light through");
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
-              "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and blocks nothing");
+              "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and "
+              "blocks nothing");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
@@ -131,8 +138,8 @@ void ShadowAtlas::simplifyScene(RecordContext& ctx) {
   uploaded_ = true;
   if (mesh.corners.empty()) return;
   const uint64_t bytes = mesh.corners.size() * sizeof(glm::vec4);
-  staging_ = gpu::Buffer(ctx.device(), {"simplified mesh", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                        gpu::MemoryKind::Upload});
+  staging_ = gpu::Buffer(
+      ctx.device(), {"simplified mesh", bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
   std::memcpy(staging_.mapped(), mesh.corners.data(), bytes);
   const VkBufferCopy copy{0, 0, bytes};
   vkCmdCopyBuffer(ctx.cmd(), staging_.handle(), ctx.buffer("simplified").handle(), 1, &copy);
@@ -156,10 +163,13 @@ std::vector<ShadowAtlas::Range> ShadowAtlas::ranges(RecordContext& ctx) {
 
 void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
   const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes;
-  const uint32_t capacity = uint32_t(ctx.count("pairs") / 2), size = uint32_t(ctx.parameters().integer("size"));
+  const uint32_t capacity = uint32_t(ctx.count("pairs") / 2),
+                 size = uint32_t(ctx.parameters().integer("size"));
   auto use = [&](Kernel kernel) {
     Commands commands = ctx.use(kernel);
-    commands.range("batch", viewOffset, kBatch * kViewBytes).constant("step_", step).constant("capacity", capacity);
+    commands.range("batch", viewOffset, kBatch * kViewBytes)
+        .constant("step_", step)
+        .constant("capacity", capacity);
     return commands;
   };
   auto dispatch = [&](Commands& commands, uint32_t list) {

@@ -9,8 +9,8 @@
 
 const uint kParaboloidEmpty = 0x7f800000u;  // floatBitsToUint(+inf): nothing is hit
 
-// Columns: tangent, bitangent, normal (unit, right-handed). Branchless, no singularity: Duff et al., "Building an
-// Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+// Columns: tangent, bitangent, normal (unit, right-handed). Branchless, no singularity: Duff et al.,
+// "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 mat3 orthonormalFrame(vec3 n) {
   float s = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (s + n.z);
@@ -22,7 +22,8 @@ mat3 orthonormalFrame(vec3 n) {
 vec3 toLocal(mat3 frame, vec3 v) { return v * frame; }
 vec3 toWorld(mat3 frame, vec3 v) { return frame * v; }
 
-// Local vector (any length > 0, given as `len`; z > -len) to the plane of the map: |p| <= 1 for the hemisphere.
+// Local vector (any length > 0, given as `len`; z > -len) to the plane of the map: |p| <= 1 for the
+// hemisphere.
 vec2 paraboloidProject(vec3 local, float len) { return local.xy / (len + local.z); }
 
 // Point of the map's plane to the local unit direction.
@@ -42,8 +43,8 @@ vec3 paraboloidTexelDirection(ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
-// The atlas describes itself: `height` texels a map, width / height maps side by side in a layer (a power of two; 1 in
-// layout `layers`). Slot s is map s % perLayer of layer s / perLayer.
+// The atlas describes itself: `height` texels a map, width / height maps side by side in a layer (a power of
+// two; 1 in layout `layers`). Slot s is map s % perLayer of layer s / perLayer.
 struct AtlasLayout {
   int size;   // texels a map, per side
   int shift;  // log2 of the maps in a layer

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
-// First of two: finds the texels each triangle may cover in the maps of a batch of VPLs and lists the pairs worth
-// rasterising. One triangle an invocation, read once for the whole batch.
+// First of two: finds the texels each triangle may cover in the maps of a batch of VPLs and lists the pairs
+// worth rasterising. One triangle an invocation, read once for the whole batch.
 #include "common/paraboloid.glsl"
 #include "shadow-atlas/project.glsl"
 #include "shadow-atlas/step.glsl"
@@ -42,8 +42,8 @@ void main() {
   Triangle triangle = loadTriangle(index);
   uint masked = alphaMask != 0u && isMasked(index) ? 1u : 0u;
 
-  // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant places of
-  // a uniform buffer are read once for all lanes.
+  // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant
+  // places of a uniform buffer are read once for all lanes.
   uint covered = 0u, large = 0u;
   [[unroll]] for (uint v = 0u; v < kBatch; ++v) {
     vec3 a = seenFrom(batch.views[v], triangle.a);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Second of two: pairs of a VPL and a triangle that covers many texels, or is cut by the horizon. Eight invocations a pair
-// go through its box in blocks of 8x8 texels, a row at a time.
+// Second of two: pairs of a VPL and a triangle that covers many texels, or is cut by the horizon. Eight
+// invocations a pair go through its box in blocks of 8x8 texels, a row at a time.
 #include "shadow-atlas/pair.glsl"
 
 layout(local_size_x = 64) in;  // 8 * kLargePerGroup
@@ -35,8 +35,8 @@ void main() {
   float perRow = 1.0 / float(width), toMap = 2.0 / float(size);
   int block = int(slice);
   do {
-    // The search for the next block in reach is a loop of its own: every device leaves out turns of a loop, not every one
-    // the sides of a branch.
+    // The search for the next block in reach is a loop of its own: every device leaves out turns of a loop,
+    // not every one the sides of a branch.
     vec2 corner;
     bool reached;
     do {

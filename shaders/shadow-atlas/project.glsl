@@ -1,4 +1,5 @@
-// Where a triangle may lie in a paraboloid map, and what a texel sees of it. All points are in the VPL's frame.
+// Where a triangle may lie in a paraboloid map, and what a texel sees of it. All points are in the VPL's
+// frame.
 #ifndef FOVEA_SHADOW_ATLAS_PROJECT_GLSL
 #define FOVEA_SHADOW_ATLAS_PROJECT_GLSL
 
@@ -17,9 +18,10 @@ TexelBox texelBox(vec2 lo, vec2 hi, float size) {
                   min(floor(half_ * (hi + kRounding) + (half_ - 0.5)), size - 1.0));
 }
 
-// An edge is seen as an arc of a circle of radius >= 1 (the image of a great circle). Over a chord of length L <= 1 the
-// shorter arc rises by at most 1 - sqrt(1 - L^2 / 4) <= 0.134 L^2. `tight` is false when a vertex lies far below the
-// horizon, at the VPL, or the triangle is so large that the shorter arc need not be the edge: then use clippedBox().
+// An edge is seen as an arc of a circle of radius >= 1 (the image of a great circle). Over a chord of length
+// L <= 1 the shorter arc rises by at most 1 - sqrt(1 - L^2 / 4) <= 0.134 L^2. `tight` is false when a vertex
+// lies far below the horizon, at the VPL, or the triangle is so large that the shorter arc need not be the
+// edge: then use clippedBox().
 TexelBox projectedBox(vec3 a, vec3 b, vec3 c, float size, out bool tight) {
   float la = length(a), lb = length(b), lc = length(c);
   vec2 pa = paraboloidProject(a, la), pb = paraboloidProject(b, lb), pc = paraboloidProject(c, lc);
@@ -30,8 +32,8 @@ TexelBox projectedBox(vec3 a, vec3 b, vec3 c, float size, out bool tight) {
   return texelBox(min(min(pa, pb), pc) - rise, max(max(pa, pb), pc) + rise, size);
 }
 
-// The arc between two points of the map, on the image of the great circle whose plane has normal e. It lies in the
-// rectangle over its chord as high as its rise, on the side away from the circle's centre e.xy / e.z.
+// The arc between two points of the map, on the image of the great circle whose plane has normal e. It lies
+// in the rectangle over its chord as high as its rise, on the side away from the circle's centre e.xy / e.z.
 void includeArc(inout vec2 lo, inout vec2 hi, vec2 p, vec2 q, vec3 e) {
   vec2 chord = q - p;
   float quarter = 0.25 * dot(chord, chord);
@@ -81,13 +83,13 @@ struct RayTest {
   float farthest;
 };
 
-// a, b, c: in the VPL's frame. n, h: the triangle's plane n.x = h, n of any length, from world-space differences, which
-// rounding hurts least. A triangle whose plane passes the VPL closer than `epsilon` is the surface the VPL lies on, or is
-// seen edge-on: it blocks nothing.
+// a, b, c: in the VPL's frame. n, h: the triangle's plane n.x = h, n of any length, from world-space
+// differences, which rounding hurts least. A triangle whose plane passes the VPL closer than `epsilon` is the
+// surface the VPL lies on, or is seen edge-on: it blocks nothing.
 RayTest rayTest(vec3 a, vec3 b, vec3 c, vec3 n, float h, float epsilon) {
   RayTest r;
-  // (b - a) x (b + a) = 2 a x b, without the cancellation; and exactly opposite for the neighbour across the edge, so
-  // that no ray slips through between two triangles.
+  // (b - a) x (b + a) = 2 a x b, without the cancellation; and exactly opposite for the neighbour across the
+  // edge, so that no ray slips through between two triangles.
   r.e0 = cross(b - a, b + a);
   r.e1 = cross(c - b, c + b);
   r.e2 = cross(a - c, a + c);
@@ -97,8 +99,8 @@ RayTest rayTest(vec3 a, vec3 b, vec3 c, vec3 n, float h, float epsilon) {
   return r;
 }
 
-// Distance to the triangle along the direction through a point of the map, or 0 where there is none. `weights` are the
-// barycentric weights of c, a and b, times a common factor.
+// Distance to the triangle along the direction through a point of the map, or 0 where there is none.
+// `weights` are the barycentric weights of c, a and b, times a common factor.
 float hitDistance(RayTest r, vec2 p, out vec3 weights) {
   float q = dot(p, p);
   vec3 d = vec3(2.0 * p, 1.0 - q);  // length 1 + q
@@ -109,8 +111,8 @@ float hitDistance(RayTest r, vec2 p, out vec3 weights) {
   return hit ? min(t, r.farthest) : 0.0;
 }
 
-// False when no texel within `reach` of point p of the map, in x and in y, can see the triangle: over the square an edge
-// plane's value v + g.d - e.z |d|^2 keeps its sign.
+// False when no texel within `reach` of point p of the map, in x and in y, can see the triangle: over the
+// square an edge plane's value v + g.d - e.z |d|^2 keeps its sign.
 bool mayHit(RayTest r, vec2 p, float reach) {
   float q = dot(p, p);
   vec3 d = vec3(2.0 * p, 1.0 - q), value, bound;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and prepares the
-// steps' indirect dispatches.
+// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and
+// prepares the steps' indirect dispatches.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"

@@ -13,8 +13,8 @@ struct VplView {
   vec4 normal;
 };
 
-// Arguments of an indirect dispatch, and how many pairs it works on. Dispatches are folded into rows, since a dimension ends
-// at 65,535 groups.
+// Arguments of an indirect dispatch, and how many pairs it works on. Dispatches are folded into rows, since a
+// dimension ends at 65,535 groups.
 struct WorkList {
   uint x, y, z;
   uint count;
@@ -33,8 +33,8 @@ const uint kSmallTexels = 64u;
 const uint kSmallPerGroup = 64u;
 const uint kLargePerGroup = 8u;
 
-// Where entry i of a list stands in the buffer of pairs: two arrays, each as long as all pairs of a step, opaque and masked;
-// small ones from the front, large ones from the back.
+// Where entry i of a list stands in the buffer of pairs: two arrays, each as long as all pairs of a step,
+// opaque and masked; small ones from the front, large ones from the back.
 uint smallPlace(uint i, uint capacity, bool masked) { return masked ? capacity + i : i; }
 uint largePlace(uint i, uint capacity, bool masked) { return (masked ? 2u * capacity : capacity) - 1u - i; }
 

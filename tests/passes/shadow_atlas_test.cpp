@@ -73,8 +73,8 @@ std::vector<Vpl> surfaceVpls(const Geometry& g, uint32_t count, uint32_t seed) {
   return list;
 }
 
-// Distance along the direction through point p of the map. The rule for the VPL's own surface is the pass's: triangles whose
-// plane is closer than epsilon block nothing.
+// Distance along the direction through point p of the map. The rule for the VPL's own surface is the pass's:
+// triangles whose plane is closer than epsilon block nothing.
 double castTexel(const Scene& s, const Geometry& g, const Vpl& v, const glm::dmat3& frame, glm::dvec2 p,
                  double epsilon, bool alphaMask) {
   const double q = glm::dot(p, p);
@@ -83,7 +83,7 @@ double castTexel(const Scene& s, const Geometry& g, const Vpl& v, const glm::dma
   double best = std::numeric_limits<double>::infinity();
   for (const scene::Triangle& t : g.triangles) {
     const glm::dvec3 a(g.positions[t.v[0]]), e1 = glm::dvec3(g.positions[t.v[1]]) - a,
-        e2 = glm::dvec3(g.positions[t.v[2]]) - a;
+                                             e2 = glm::dvec3(g.positions[t.v[2]]) - a;
     const glm::dvec3 n = glm::cross(e1, e2), h = glm::cross(direction, e2), w = origin - a;
     const double det = glm::dot(e1, h);
     if (det == 0 || !(std::abs(glm::dot(n, w)) > epsilon * glm::length(n))) continue;
@@ -93,7 +93,8 @@ double castTexel(const Scene& s, const Geometry& g, const Vpl& v, const glm::dma
     if (u < 0 || x < 0 || u + x > 1 || distance <= 0 || distance >= best) continue;
     const scene::Material& m = s.materials[t.material()];
     if (alphaMask && m.masked) {
-      const glm::vec2 uv = g.uvs[t.v[0]] * float(1 - u - x) + g.uvs[t.v[1]] * float(u) + g.uvs[t.v[2]] * float(x);
+      const glm::vec2 uv =
+          g.uvs[t.v[0]] * float(1 - u - x) + g.uvs[t.v[1]] * float(u) + g.uvs[t.v[2]] * float(x);
       if (scene::reflectance(s, m, uv).a < m.alphaCutoff) continue;
     }
     best = distance;
@@ -104,11 +105,12 @@ double castTexel(const Scene& s, const Geometry& g, const Vpl& v, const glm::dma
 struct Check {
   int size = 64;
   bool alphaMask = true;
-  int stride = 1;             // every stride-th texel in x and y
-  double allowed = 1e-3;      // share of texels that may lie on the other side of a silhouette
+  int stride = 1;         // every stride-th texel in x and y
+  double allowed = 1e-3;  // share of texels that may lie on the other side of a silhouette
 };
 
-// A texel that differs must be next to a discontinuity: rays that pass by at a thousandth of a texel bracket its value.
+// A texel that differs must be next to a discontinuity: rays that pass by at a thousandth of a texel bracket
+// its value.
 void expectExact(const Scene& s, const std::vector<Vpl>& vpls, const std::vector<float>& atlas,
                  scene::AtlasLayout layout, const Check& check) {
   const Geometry g = scene::flatten(s);
@@ -136,17 +138,19 @@ void expectExact(const Scene& s, const std::vector<Vpl>& vpls, const std::vector
         double least = want, most = want;
         for (int i = 0; i < 16; ++i) {
           const double angle = i * 0.3927, reach = 2e-3 / check.size;
-          const double t = castTexel(s, g, vpls[slot], frame, p + reach * glm::dvec2(std::cos(angle), std::sin(angle)),
-                                     epsilon, check.alphaMask);
+          const double t =
+              castTexel(s, g, vpls[slot], frame, p + reach * glm::dvec2(std::cos(angle), std::sin(angle)),
+                        epsilon, check.alphaMask);
           least = std::min(least, t);
           most = std::max(most, t);
         }
         EXPECT_TRUE((got >= least * (1 - 1e-4) && got <= most * (1 + 1e-4)))
-            << "slot " << slot << " texel " << x << " " << y << ": " << got << ", rays say " << want << " (" << least
-            << " to " << most << ")";
+            << "slot " << slot << " texel " << x << " " << y << ": " << got << ", rays say " << want << " ("
+            << least << " to " << most << ")";
       }
   }
-  EXPECT_LE(double(different), check.allowed * double(texels)) << different << " of " << texels << " texels differ";
+  EXPECT_LE(double(different), check.allowed * double(texels))
+      << different << " of " << texels << " texels differ";
   ::testing::Test::RecordProperty("texels", int(texels));
   ::testing::Test::RecordProperty("hits", int(hits));
 }
@@ -185,23 +189,23 @@ TEST(ShadowAtlas, EqualsRaysAmongLargeRandomTriangles) {
 // Everything as seen from the origin in direction n.
 TEST(ShadowAtlas, EqualsRaysOnAdversarialTriangles) {
   const std::vector<std::vector<glm::vec3>> cases = {
-      {{-900, -700, 1}, {900, -700, 1}, {0, 1000, 1}},            // covers almost the whole hemisphere
-      {{-1000, 0, -800}, {1000, 0.1f, -800}, {0, 3, 900}},        // huge, upright, most of it below the horizon
-      {{-1000, 2, -1e-3f}, {1000, 2, -1e-3f}, {0, 2, 1e-3f}},     // barely above the horizon
-      {{-1, -1, -1}, {1, -1, -1}, {0, 1, 2}},                     // crosses the horizon plane beside the VPL
-      {{-5, -5, -2}, {5, -5, -2}, {0, 8, 0.5f}},                  // around the direction straight down
+      {{-900, -700, 1}, {900, -700, 1}, {0, 1000, 1}},         // covers almost the whole hemisphere
+      {{-1000, 0, -800}, {1000, 0.1f, -800}, {0, 3, 900}},     // huge, upright, most of it below the horizon
+      {{-1000, 2, -1e-3f}, {1000, 2, -1e-3f}, {0, 2, 1e-3f}},  // barely above the horizon
+      {{-1, -1, -1}, {1, -1, -1}, {0, 1, 2}},                  // crosses the horizon plane beside the VPL
+      {{-5, -5, -2}, {5, -5, -2}, {0, 8, 0.5f}},               // around the direction straight down
       {{0.5f, -2, 0.3f}, {0.5f, 2, 0.3f}, {0.5f, 2.001f, 0.301f}},  // sliver
-      {{-4, -4, 2}, {4, 4.002f, 2}, {4, 4, 2}},                   // sliver over the axis
-      {{0, 0, 1}, {1, 0, 1.5f}, {0, 1, 1.5f}},                    // vertex on the axis
-      {{-1, 0, 1}, {1, 0, 1}, {0, 2, 1}},                         // edge through the axis
-      {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}},                          // vertex at the VPL
-      {{-1, 0, 0}, {1, 0, 0}, {0, 1, 1}},                         // edge through the VPL
-      {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},                       // VPL inside: its own surface
-      {{-1, -1, 1e-3f}, {1, -1, 1e-3f}, {0, 2, 1e-3f}},           // just above the VPL: no longer its own
+      {{-4, -4, 2}, {4, 4.002f, 2}, {4, 4, 2}},                     // sliver over the axis
+      {{0, 0, 1}, {1, 0, 1.5f}, {0, 1, 1.5f}},                      // vertex on the axis
+      {{-1, 0, 1}, {1, 0, 1}, {0, 2, 1}},                           // edge through the axis
+      {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}},                            // vertex at the VPL
+      {{-1, 0, 0}, {1, 0, 0}, {0, 1, 1}},                           // edge through the VPL
+      {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},                         // VPL inside: its own surface
+      {{-1, -1, 1e-3f}, {1, -1, 1e-3f}, {0, 2, 1e-3f}},             // just above the VPL: no longer its own
       {{0.001f, 0, 0.002f}, {0.002f, 0, 0.002f}, {0.001f, 0.001f, 0.003f}},  // tiny and near
-      {{3, 3, 3}, {3, 3, 3}, {4, 3, 3}},                          // no area
-      {{-2, 1, 0}, {2, 1, 0}, {0, 1, -3}},                        // touches the horizon from below
-      {{-1, -2, -1}, {-1, 2, -1}, {-1, 0, -3}},                   // wholly behind
+      {{3, 3, 3}, {3, 3, 3}, {4, 3, 3}},                                     // no area
+      {{-2, 1, 0}, {2, 1, 0}, {0, 1, -3}},                                   // touches the horizon from below
+      {{-1, -2, -1}, {-1, 2, -1}, {-1, 0, -3}},                              // wholly behind
   };
   const std::vector<glm::vec3> normals = {{0, 0, 1}, {0, 0, -1}, {0.3f, -0.2f, 0.9f}, {1, 0, 0}, {-1, 2, -3}};
   for (size_t i = 0; i < cases.size(); ++i) {
@@ -291,11 +295,13 @@ TEST(ShadowAtlas, MoreMapsThanLayersAreTiled) {
   Scene s = emptyScene();
   addBox(s, 0, {-1, -1, -1}, {1, 1, 1});
   const uint32_t slots = testDevice().limits().maxImageArrayLayers + 52;
-  if (slots > 5000) GTEST_SKIP() << "this device has " << slots - 52 << " layers: the maps would take long to check";
+  if (slots > 5000)
+    GTEST_SKIP() << "this device has " << slots - 52 << " layers: the maps would take long to check";
   std::vector<Vpl> vpls;
   for (uint32_t i = 0; i < slots; ++i) {
     const float t = 6.0f * float(i) / float(slots);
-    vpls.push_back(vpl({0.9f * std::sin(7 * t), 0.5f, 0.9f * std::cos(11 * t)}, {std::sin(t), std::cos(t), 0.3f}));
+    vpls.push_back(
+        vpl({0.9f * std::sin(7 * t), 0.5f, 0.9f * std::cos(11 * t)}, {std::sin(t), std::cos(t), 0.3f}));
   }
   PassTest tiled("shadow-atlas");
   tiled.scene(s).param("size", 8).param("layout", "tiled").buffer("vpls", vpls, "Vpl");
@@ -313,7 +319,8 @@ TEST(ShadowAtlas, MoreMapsThanLayersAreTiled) {
     EXPECT_EQ(e.code(), ExitCode::BadInput);
     const std::string text = e.what();
     EXPECT_NE(text.find(std::to_string(slots) + " layers of 8x8 exceed this device's maxImageArrayLayers"),
-              std::string::npos) << text;
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find("layout to `tiled`"), std::string::npos) << text;
   }
 }

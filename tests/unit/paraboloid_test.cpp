@@ -10,8 +10,9 @@ namespace fovea::scene {
 namespace {
 
 std::vector<glm::vec3> testDirections() {
-  std::vector<glm::vec3> list = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},          {0, -1, 0},          {0, 0, 1},
-                                 {0, 0, -1}, {0, 0, 1},  {1e-4f, 0, -1.0f}, {0, -1e-4f, -1.0f}, {1, 0, -1e-8f}};
+  std::vector<glm::vec3> list = {{1, 0, 0},          {-1, 0, 0},    {0, 1, 0}, {0, -1, 0},
+                                 {0, 0, 1},          {0, 0, -1},    {0, 0, 1}, {1e-4f, 0, -1.0f},
+                                 {0, -1e-4f, -1.0f}, {1, 0, -1e-8f}};
   std::mt19937 random(7);
   std::normal_distribution<float> normal;
   for (int i = 0; i < 500; ++i) list.push_back({normal(random), normal(random), normal(random)});
@@ -56,7 +57,8 @@ TEST(Paraboloid, TexelCentresComeBackToTheirTexel) {
   EXPECT_EQ(paraboloidTexel({9, -9}, 128), glm::ivec2(127, 0));
 }
 
-// Texels of equal size cover solid angles dw = 4 / (1 + |p|^2)^2 dp; over the disc they add up to the hemisphere.
+// Texels of equal size cover solid angles dw = 4 / (1 + |p|^2)^2 dp; over the disc they add up to the
+// hemisphere.
 TEST(Paraboloid, TexelsOfTheDiscCoverTheHemisphere) {
   const int size = 256;
   double solidAngle = 0;
