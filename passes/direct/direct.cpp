@@ -14,7 +14,7 @@ class Direct : public Pass {
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-             member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::Sampled),
+             member("face", image2D(), Usage::Sampled),
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
             "surfaces seen by the eye");
@@ -24,14 +24,15 @@ class Direct : public Pass {
             "what each light sees");
     d.output("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
              Usage::StorageWrite, "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
-    d.parameter("filter", choice("pcf", {"none", "pcf"}),
-                "shadow edges: `none` is one comparison (jagged), `pcf` the average over 3x3 texels, bilinear between them");
+    d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
+                "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 such (softer)");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
-    const bool pcf = ctx.parameters().text("filter") == "pcf";
-    kernel_ = ctx.compute("direct/direct.comp", {{"SHADOW_PCF", pcf ? "1" : "0"}});
+    const std::string& filter = ctx.parameters().text("filter");
+    const char* taps = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
+    kernel_ = ctx.compute("direct/direct.comp", {{"SHADOW_FILTER", taps}});
   }
   void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("direct"); }
 

@@ -20,7 +20,7 @@ class GBuffer : public Pass {
                      "xyz: world space, m; w: distance to the eye, m, 0: background"),
               member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
                      "xyz: shading normal, unit, on the eye's side of the face"),
-              member("face", image2D(VK_FORMAT_R16G16_SFLOAT), Usage::StorageWrite,
+              member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageWrite,
                      "normal of the triangle itself on the eye's side, octahedral"),
               member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
                      "rgb: diffuse reflectance, base colour times (1 - metallic)"),

@@ -11,7 +11,7 @@ struct ShadowView {
   mat4 worldToClip;
   vec4 right;  // xyz: unit, image x axis in the world; w: width of a texel where clip.w = 1, m
   vec4 up;     // xyz: unit, image y axis; w: height of a texel where clip.w = 1, m
-  vec4 bias;   // x: absolute, y: relative, in units of depth: rounding only, slopes are dealt with in lightVisibility
+  vec4 bias;   // tolerance of depth for rounding; x: absolute, y: relative; z: 1 / depth range or near distance, 1/m or m
 };
 
 // Face of the cube around a point light: +X -X +Y -Y +Z -Z.
@@ -23,56 +23,80 @@ uint shadowFace(vec3 fromLight) {
 }
 
 // Shaders that look up shadows define SHADOW_BINDING, the first of three free bindings of set 0, and have an input port `maps`
-// of bundle `shadow-maps`.
+// of bundle `shadow-maps`. SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3 bilinear ones.
 #ifdef SHADOW_BINDING
-#ifndef SHADOW_PCF
-#define SHADOW_PCF 1
+#ifndef SHADOW_FILTER
+#define SHADOW_FILTER 1
 #endif
 
 layout(set = 0, binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
 layout(set = 0, binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
 layout(set = 0, binding = SHADOW_BINDING + 2) uniform sampler nearestClamp;
 
-// Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
-// the side that is looked at. firstLayer: firstShadowLayer(light).
-//
-// A texel stores the depth at its centre; on a slope that differs from the depth at the receiver, at most by the slope times
-// the distance r to the farthest centre looked at. Raised along its normal by
-//   h = r (|n.x| texel.x + |n.y| texel.y),   n in the axes of the map,
-// the receiver lies in front of its own plane at each of these centres: no acne, however steep, and h never exceeds
-// r sqrt(2) texels, so that shadows stay attached to what throws them.
-float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
-  uint layer = firstLayer;
-  if (uint(light.position.w) == kLightPoint) layer += shadowFace(position - light.position.xyz);
-  mat4 worldToClip = mapsViews.view[layer].worldToClip;
-  vec4 right = mapsViews.view[layer].right, up = mapsViews.view[layer].up, bias = mapsViews.view[layer].bias;
+const float kSteepest = 32.0;  // slope against the map up to which planes are followed: 88 degrees
 
-  const float reach = SHADOW_PCF != 0 ? 2.0 : 0.5;  // texels, along each axis
-  float w = (worldToClip * vec4(position, 1.0)).w;
-  float raise = reach * w * (abs(dot(face, right.xyz)) * right.w + abs(dot(face, up.xyz)) * up.w);
-  vec4 clip = worldToClip * vec4(position + raise * face, 1.0);
+struct ShadowReceiver {
+  uint layer;
+  vec2 size;    // of the map, texels
+  vec2 texel;   // where the receiver is
+  float depth;  // of its plane there,
+  vec2 slope;   // and how much more a texel further
+};
+
+// Which of the four texels around `corner` (a whole number of texels) see the receiver's plane at their centres; in the
+// order of textureGather: (-, +) (+, +) (+, -) (-, -).
+vec4 litTexels(ShadowReceiver r, vec2 corner) {
+  vec4 nearest = textureGather(sampler2DArray(mapsDepth, nearestClamp), vec3(corner / r.size, r.layer));
+  vec2 o = corner - r.texel;
+  vec4 plane = r.depth + r.slope.x * (o.x + vec4(-0.5, 0.5, 0.5, -0.5)) + r.slope.y * (o.y + vec4(0.5, 0.5, -0.5, -0.5));
+  return vec4(lessThanEqual(nearest, plane));
+}
+
+// Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
+// the side that is looked at. firstLayer: firstShadowLayer(light). A face turned away from the light gets nothing.
+//
+// A texel holds the depth at its centre, so it is compared with the depth of the receiver's plane at that centre, not at
+// the receiver: no acne however steep the light, and no offset that would take shadows off what throws them. Depth is
+// linear over a plane in both projections: with n = face in the axes of the map and t the texel's size, a texel more along
+// x changes it by   n.x t.x / (n.z range)   or   n.x t.x near / (n . (position - eye)).
+float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
+  bool directional = uint(light.position.w) == kLightDirectional;
+  vec3 fromLight = directional ? light.direction.xyz : position - light.position.xyz;
+  float facing = dot(face, fromLight);
+  if (facing >= 0.0) return 0.0;
+  ShadowReceiver r;
+  r.layer = firstLayer + (uint(light.position.w) == kLightPoint ? shadowFace(fromLight) : 0u);
+  vec4 right = mapsViews.view[r.layer].right, up = mapsViews.view[r.layer].up, bias = mapsViews.view[r.layer].bias;
+  vec4 clip = mapsViews.view[r.layer].worldToClip * vec4(position, 1.0);
   if (clip.w <= 0.0) return 1.0;  // behind a spot light
-  float depth = clip.z / clip.w;
-  depth += bias.x + bias.y * depth;
-  ivec2 size = textureSize(mapsDepth, 0).xy;
-  vec2 p = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
-#if SHADOW_PCF
-  // 3x3 box over bilinear comparisons: 4x4 texels, the outer ones weighted by the fraction, gathered in four quads.
-  vec2 base = floor(p - 0.5);
-  vec2 f = p - 0.5 - base;
-  vec2 texelSize = 1.0 / vec2(size);
-  float lit = 0.0;
+  r.size = vec2(textureSize(mapsDepth, 0).xy);
+  r.texel = (0.5 * clip.xy / clip.w + 0.5) * r.size;
+  r.slope = bias.z * vec2(dot(face, right.xyz) * right.w, dot(face, up.xyz) * up.w) / facing;
+  // A plane seen from its edge would reach past whatever is in front of it within one texel.
+  float steepest = kSteepest * bias.z * max(right.w, up.w) / clip.w;
+  r.slope *= min(1.0, steepest / max(length(r.slope), 1e-30));
+  // A third of a texel's slope is for neighbours of the receiver's face that are tilted against it.
+  r.depth = clip.z / clip.w;
+  r.depth += bias.x + bias.y * r.depth + 0.35 * (abs(r.slope.x) + abs(r.slope.y));
+#if SHADOW_FILTER == 0
+  vec2 centre = floor(r.texel) + 0.5;
+  float nearest = texelFetch(mapsDepth, ivec3(clamp(ivec2(centre), ivec2(0), ivec2(r.size) - 1), r.layer), 0).r;
+  return nearest <= r.depth + dot(r.slope, centre - r.texel) ? 1.0 : 0.0;
+#else
+  vec2 corner = floor(r.texel + 0.5);
+  vec2 f = r.texel + 0.5 - corner;
+#if SHADOW_FILTER == 1
+  vec2 u = vec2(1.0 - f.x, f.x), v = vec2(1.0 - f.y, f.y);
+  return dot(litTexels(r, corner), vec4(u.x * v.y, u.y * v.y, u.y * v.x, u.x * v.x));
+#else
+  float lit = 0.0;  // over 4x4 texels, the outer ones weighted by the fraction
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 2; ++x) {
-      vec2 corner = (base + 2.0 * vec2(x, y)) * texelSize;  // between the four texels
-      vec4 nearest = textureGather(sampler2DArray(mapsDepth, nearestClamp), vec3(corner, layer));
       vec2 u = x == 0 ? vec2(1.0 - f.x, 1.0) : vec2(1.0, f.x), v = y == 0 ? vec2(1.0 - f.y, 1.0) : vec2(1.0, f.y);
-      lit += dot(vec4(lessThanEqual(nearest, vec4(depth))), vec4(u.x * v.y, u.y * v.y, u.y * v.x, u.x * v.x));
+      lit += dot(litTexels(r, corner + 2.0 * vec2(x, y) - 1.0), vec4(u.x * v.y, u.y * v.y, u.y * v.x, u.x * v.x));
     }
   return lit * (1.0 / 9.0);
-#else
-  ivec2 texel = clamp(ivec2(floor(p)), ivec2(0), size - 1);
-  return depth >= texelFetch(mapsDepth, ivec3(texel, layer), 0).r ? 1.0 : 0.0;
+#endif
 #endif
 }
 #endif  // SHADOW_BINDING

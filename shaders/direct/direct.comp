@@ -26,8 +26,7 @@ void main() {
   for (uint i = 0u; i < lightCount; ++i) {
     LightSample light = sampleLight(lights[i], position.xyz);
     float cosine = dot(normal, light.direction);
-    // A face turned away is dark, whatever its interpolated normal says.
-    if (cosine <= 0.0 || dot(face, light.direction) <= 0.0 || light.irradiance == vec3(0.0)) continue;
+    if (cosine <= 0.0 || light.irradiance == vec3(0.0)) continue;
     irradiance += light.irradiance * (cosine * lightVisibility(lights[i], firstShadowLayer(lights[i]), position.xyz, face));
   }
   vec3 radiance = texelFetch(gbufferEmission, p, 0).rgb + texelFetch(gbufferAlbedo, p, 0).rgb * irradiance * (1.0 / kPi);

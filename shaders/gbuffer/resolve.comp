@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform utexture2D seen;
 layout(set = 0, binding = 1, rgba32f) uniform writeonly image2D gbufferPosition;
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D gbufferNormal;
-layout(set = 0, binding = 3, rg16f) uniform writeonly image2D gbufferFace;
+layout(set = 0, binding = 3, rg16_snorm) uniform writeonly image2D gbufferFace;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D gbufferAlbedo;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D gbufferEmission;
 layout(set = 0, binding = 6, r32ui) uniform writeonly uimage2D gbufferId;

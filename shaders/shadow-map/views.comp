@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, std430) writeonly buffer MapsViews { ShadowView vie
 
 layout(push_constant) uniform Constants { int size; };
 
-const float kGuard = 5.0;           // texels outside of what is asked for: a filter's reach plus the receiver's raise
+const float kGuard = 3.0;           // texels outside of what is asked for: a filter's reach
 const float kMaxSpotAngle = 1.483;  // 85 degrees: no plane sees a half space. What lies outside is not shadowed.
 
 float guarded() { return float(size) / max(float(size) - 2.0 * kGuard, 1.0); }
@@ -27,7 +27,7 @@ ShadowView perspective(vec3 eye, mat3 axes, float tanHalf, float near) {
   v.worldToClip = fromRows(vec4(axes[0], at.x) / t, vec4(axes[1], at.y) / t, vec4(0, 0, 0, near), vec4(axes[2], at.z));
   v.right = vec4(axes[0], 2.0 * t / float(size));
   v.up = vec4(axes[1], 2.0 * t / float(size));
-  v.bias = vec4(0.0, 1e-4, 0.0, 0.0);
+  v.bias = vec4(0.0, 1e-4, near, 0.0);
   return v;
 }
 
@@ -48,7 +48,7 @@ ShadowView orthographic(mat3 axes) {
                            vec4(-0.5 * axes[2], 0.5 * (centre.z + half_.z)) / half_.z, vec4(0, 0, 0, 1));
   v.right = vec4(axes[0], 2.0 * half_.x / float(size));
   v.up = vec4(axes[1], 2.0 * half_.y / float(size));
-  v.bias = vec4(1e-5, 0.0, 0.0, 0.0);
+  v.bias = vec4(1e-5, 0.0, 0.5 / half_.z, 0.0);
   return v;
 }
 

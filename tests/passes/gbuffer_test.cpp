@@ -118,7 +118,7 @@ class Comparison {
     const glm::vec2 uv = interpolate(geometry_, geometry_.uvs, hit);
     const glm::vec3 albedo(scene::reflectance(scene_, material, uv));
     const glm::vec3 emission = scene::emission(scene_, material, uv);
-    if (glm::length(glm::dvec3(pixel.face) - face) > 3e-3) return "wrong face ";
+    if (glm::length(glm::dvec3(pixel.face) - face) > 1e-4) return "wrong face ";
     if (glm::length(glm::dvec3(pixel.normal) - normal) > 6e-3) return "wrong normal ";
     if (glm::length(pixel.albedo - albedo) > 4e-3f) return "wrong albedo ";
     if (glm::length(pixel.emission - emission) > 1e-3f * (1 + glm::length(emission))) return "wrong emission ";

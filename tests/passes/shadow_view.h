@@ -24,7 +24,7 @@ inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHal
   }
   v.right = {right, 2 * tanHalf / size};
   v.up = {up, 2 * tanHalf / size};
-  v.bias = {0, 1e-4f, 0, 0};
+  v.bias = {0, 1e-4f, near, 0};
   return v;
 }
 
@@ -36,7 +36,7 @@ inline ShadowView orthographicView(glm::vec3 centre, glm::vec3 forward, float ha
     v.worldToClip[c].z = -0.5f * along / half + (c < 3 ? 0 : 0.5f);
     v.worldToClip[c].w = c < 3 ? 0 : 1;
   }
-  v.bias = {1e-5f, 0, 0, 0};
+  v.bias = {1e-5f, 0, 0.5f / half, 0};
   return v;
 }
 

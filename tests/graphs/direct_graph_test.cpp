@@ -1,0 +1,100 @@
+// The whole of graphs/direct.json against rays: every pixel's surface, lights and shadows by Embree.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <glm/gtc/constants.hpp>
+
+#include "framework/base/diagnostic.h"
+#include "framework/scene/lights.h"
+#include "framework/scene/load.h"
+#include "framework/scene/ray_scene.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr glm::uvec2 kSize(96, 96);
+
+// Radiance towards the eye along a ray: emission plus one reflection.
+glm::vec3 directRadiance(const scene::Scene& scene, const scene::Geometry& geometry, const scene::RayScene& rays,
+                         const scene::View& view, glm::vec2 pixel) {
+  const glm::vec3 direction = glm::normalize(view.rayDirection(pixel));
+  const scene::RayHit hit = rays.intersect({.origin = view.eye, .direction = direction});
+  if (!hit) return scene.environment;
+  scene::SurfaceHit surface = scene::surfaceAt(geometry, hit);
+  const scene::Material& material = scene.materials[surface.material];
+  const float side = glm::dot(surface.geometricNormal, direction) < 0 ? 1.0f : -1.0f;
+  const glm::vec3 face = side * surface.geometricNormal, normal = side * surface.shadingNormal;
+  glm::vec3 irradiance(0);
+  for (const scene::Light& light : scene.lights) {
+    const scene::LightSample sample = scene::sampleLight(light, surface.position);
+    const float cosine = glm::dot(normal, sample.direction);
+    if (cosine <= 0 || glm::dot(face, sample.direction) <= 0) continue;
+    const scene::Ray shadow{surface.position + rays.epsilon() * face, sample.direction, 0, sample.distance};
+    if (!rays.occluded(shadow)) irradiance += cosine * sample.irradiance;
+  }
+  return scene::emission(scene, material, surface.uv) +
+         glm::vec3(scene::reflectance(scene, material, surface.uv)) * irradiance * glm::one_over_pi<float>();
+}
+
+struct Agreement {
+  double wrong = 0;   // share of pixels off by more than 5%
+  double error = 0;   // mean absolute error, relative to the rays' mean
+  double energy = 0;  // sum over the picture, relative to the rays'
+  void record() const {
+    testing::Test::RecordProperty("wrong", std::to_string(wrong));
+    testing::Test::RecordProperty("error", std::to_string(error));
+    testing::Test::RecordProperty("energy", std::to_string(energy));
+  }
+};
+
+Agreement compare(const scene::Scene& scene) {
+  const GraphRun run = runGraph("direct", scene, {.size = kSize, .outputs = {"direct"}});
+  const std::vector<float> got = toFloats(run.outputs.at("direct"));
+  const scene::Geometry geometry = scene::flatten(scene);
+  const scene::RayScene rays(scene, geometry);
+  const scene::View view = scene::makeFrame(scene, geometry, kSize, 0, 1).views[0];
+  Agreement result;
+  double sum = 0, want = 0;
+  for (uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
+    const glm::vec3 expected =
+        directRadiance(scene, geometry, rays, view, glm::vec2(i % kSize.x, i / kSize.x) + 0.5f);
+    const glm::vec3 value(got[4 * i], got[4 * i + 1], got[4 * i + 2]);
+    result.wrong += glm::length(value - expected) > 0.05f * glm::length(expected) + 1e-4f;
+    const glm::vec3 difference = glm::abs(value - expected);
+    result.error += difference.x + difference.y + difference.z;
+    sum += value.x + value.y + value.z;
+    want += expected.x + expected.y + expected.z;
+  }
+  result.wrong /= kSize.x * kSize.y;
+  result.error /= want;
+  result.energy = sum / want;
+  result.record();
+  return result;
+}
+
+TEST(DirectGraph, CornellBoxEqualsRays) {
+  const Agreement agreement = compare(scene::builtin("cornellbox"));
+  EXPECT_LT(agreement.wrong, 0.01);  // rims of shadows, which the filter softens
+  EXPECT_LT(agreement.error, 0.02);
+  EXPECT_NEAR(agreement.energy, 1, 0.01);
+}
+
+TEST(DirectGraph, SponzaEqualsRays) {
+  Diagnostics warnings;
+  scene::Scene scene;
+  try {
+    scene = scene::load("sponza", warnings);
+  } catch (const Error& error) {
+    GTEST_SKIP() << "no Sponza here: " << error.what();
+  }
+  const Agreement agreement = compare(scene);
+  EXPECT_LT(agreement.wrong, 0.05);  // foliage and the rims of shadows, texels of 2 cm
+  EXPECT_LT(agreement.error, 0.08);
+  EXPECT_NEAR(agreement.energy, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace fovea::test
