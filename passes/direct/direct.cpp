@@ -10,7 +10,6 @@ class Direct : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("direct", "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
-    d.view();
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
