@@ -22,7 +22,8 @@ struct DrawRun {
 // Geometry where materials change all the time would take more draws than it saves tests.
 inline constexpr size_t kMaxDrawRuns = 256;
 
-// In the order of the triangles, covering all of them; one `Tested` run when there would be more than kMaxDrawRuns.
+// In the order of the triangles, covering all of them; one `Tested` run when there would be more than
+// kMaxDrawRuns.
 std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry);
 
 }  // namespace fovea::scene

@@ -9,7 +9,9 @@ using namespace graph;
 class Direct : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("direct", "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
+    PassDeclaration d(
+        "direct",
+        "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
@@ -21,10 +23,13 @@ class Direct : public Pass {
             {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
              member("views", buffer("ShadowView", 112), Usage::Uniform)},
             "what each light sees");
-    d.output("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
-             Usage::StorageWrite, "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
+    d.output(
+        "direct",
+        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
+        Usage::StorageWrite, "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
-                "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 such (softer)");
+                "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 "
+                "such (softer)");
     return d;
   }
 

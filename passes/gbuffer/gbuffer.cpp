@@ -28,7 +28,8 @@ class GBuffer : public Pass {
                      "rgb: emitted radiance, W/(sr m^2); background: the environment"),
               member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageWrite,
                      "material | object << 16; background 0xffffffff"),
-              member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane")},
+              member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment,
+                     "0: near plane, 1: far plane")},
              "one surface a pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
               "triangle of each pixel, 0xffffffff: none");
@@ -39,14 +40,16 @@ class GBuffer : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     const bool cull = ctx.parameters().text("cull") == "auto";
-    for (const auto kind : {scene::DrawKind::DoubleSided, scene::DrawKind::SingleSided, scene::DrawKind::Tested})
+    for (const auto kind :
+         {scene::DrawKind::DoubleSided, scene::DrawKind::SingleSided, scene::DrawKind::Tested})
       draw_[size_t(kind)] = ctx.graphics(
           {.vertex = "gbuffer/visibility.vert",
            .fragment = "gbuffer/visibility.frag",
            .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"}, {"CULL", cull ? "1" : "0"}},
            .colors = {"seen"},
            .depth = "gbuffer.depth",
-           .cull = cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
+           .cull =
+               cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
     resolve_ = ctx.compute("gbuffer/resolve.comp");
   }
 

@@ -16,16 +16,19 @@ constexpr uint32_t kViewBytes = 112;                    // struct ShadowView in 
 class ShadowMap : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("shadow-map", "depth maps of all lights: directional and spot one layer each, point six",
+    PassDeclaration d("shadow-map",
+                      "depth maps of all lights: directional and spot one layer each, point six",
                       PassKind::ComputeAndGraphics);
-    d.output("maps", "shadow-maps",
-             {member("depth",
-                     image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
-                                  environment("scene.shadow_layers")),
-                     Usage::DepthAttachment, "1: nearest to the light, 0: nothing hit; layers in the order of the lights"),
-              member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
-                     "projection of each layer, shaders/common/shadow.glsl; those past the layers hold nothing")},
-             "what each light sees");
+    d.output(
+        "maps", "shadow-maps",
+        {member("depth",
+                image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
+                             environment("scene.shadow_layers")),
+                Usage::DepthAttachment,
+                "1: nearest to the light, 0: nothing hit; layers in the order of the lights"),
+         member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
+                "projection of each layer, shaders/common/shadow.glsl; those past the layers hold nothing")},
+        "what each light sees");
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
     d.parameter("size", size, "width and height of a map");
@@ -47,10 +50,13 @@ class ShadowMap : public Pass {
     ctx.barrier();
     const Attachment depth{"maps.depth", Attachment::Load::Clear, {.depthStencil = {0.0f, 0}}};
     const uint32_t layers = scene::shadowLayers(ctx.frame().lights);
-    ctx.render({}, &depth, [&] {
-      if (layers > 0)
-        for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers);
-    }, ctx.image("maps.depth").desc().layers);
+    ctx.render(
+        {}, &depth,
+        [&] {
+          if (layers > 0)
+            for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers);
+        },
+        ctx.image("maps.depth").desc().layers);
   }
 
  private:
@@ -58,7 +64,8 @@ class ShadowMap : public Pass {
     const bool tested = run.kind == scene::DrawKind::Tested;
     Commands commands = ctx.use(draw_[tested]);
     if (tested) commands.constant("firstTriangle", run.firstTriangle);
-    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle, layers);
+    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle,
+                         layers);
   }
   Kernel views_, draw_[2];
 };

@@ -10,13 +10,16 @@ using namespace graph;
 class Tonemap : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("tonemap", "linear radiance to a display-referred picture with the exact sRGB transfer function");
+    PassDeclaration d("tonemap",
+                      "linear radiance to a display-referred picture with the exact sRGB transfer function");
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
-    d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")), Usage::StorageWrite,
-             "rgb: sRGB-encoded, a: 1");
-    d.parameter("exposure", real(0, 0, 1e9), "factor from radiance to display intensity; 0: the scene's own exposure");
+    d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")),
+             Usage::StorageWrite, "rgb: sRGB-encoded, a: 1");
+    d.parameter("exposure", real(0, 0, 1e9),
+                "factor from radiance to display intensity; 0: the scene's own exposure");
     d.parameter("operator", choice("clamp", {"clamp", "reinhard"}),
-                "curve before encoding: `clamp` cuts at 1 (what every measure uses), `reinhard` is x / (1 + luminance)");
+                "curve before encoding: `clamp` cuts at 1 (what every measure uses), `reinhard` is x / (1 + "
+                "luminance)");
     d.counter("non_finite", "pixels with a NaN (shown black) or an infinity in the radiance");
     return d;
   }
@@ -28,7 +31,9 @@ class Tonemap : public Pass {
 
   void record(RecordContext& ctx) override {
     const float exposure = float(ctx.parameters().real("exposure"));
-    ctx.use(kernel_).constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure).dispatchOver("image");
+    ctx.use(kernel_)
+        .constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure)
+        .dispatchOver("image");
   }
 
  private:

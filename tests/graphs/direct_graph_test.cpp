@@ -18,8 +18,8 @@ namespace {
 constexpr glm::uvec2 kSize(96, 96);
 
 // Radiance towards the eye along a ray: emission plus one reflection.
-glm::vec3 directRadiance(const scene::Scene& scene, const scene::Geometry& geometry, const scene::RayScene& rays,
-                         const scene::View& view, glm::vec2 pixel) {
+glm::vec3 directRadiance(const scene::Scene& scene, const scene::Geometry& geometry,
+                         const scene::RayScene& rays, const scene::View& view, glm::vec2 pixel) {
   const glm::vec3 direction = glm::normalize(view.rayDirection(pixel));
   const scene::RayHit hit = rays.intersect({.origin = view.eye, .direction = direction});
   if (!hit) return scene.environment;

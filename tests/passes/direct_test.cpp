@@ -79,7 +79,8 @@ glm::dvec3 irradiance(const scene::Light& light, glm::dvec3 p) {
   if (light.range > 0) factor *= std::clamp(1 - std::pow(d / light.range, 4), 0.0, 1.0);
   if (light.type == scene::LightType::Spot) {
     const double cosine = -glm::dot(to, glm::dvec3(light.direction)) / d;
-    const double inner = std::cos(double(light.innerConeAngle)), outer = std::cos(double(light.outerConeAngle));
+    const double inner = std::cos(double(light.innerConeAngle)),
+                 outer = std::cos(double(light.outerConeAngle));
     const double f = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
     factor *= f * f;
   }
@@ -92,7 +93,8 @@ std::vector<ShadowView> shadowViews(const std::vector<scene::Light>& lights) {
     if (light.type == scene::LightType::Directional) {
       views.push_back(orthographicView({0, 0, 0}, light.direction, 3, kSize));
     } else if (light.type == scene::LightType::Spot) {
-      views.push_back(perspectiveView(light.position, light.direction, std::tan(light.outerConeAngle) * 1.05f, 0.01f, kSize));
+      views.push_back(perspectiveView(light.position, light.direction, std::tan(light.outerConeAngle) * 1.05f,
+                                      0.01f, kSize));
     } else {
       for (int face = 0; face < 6; ++face) {
         glm::vec3 axis(0);
@@ -183,8 +185,8 @@ std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vec
 }
 
 std::vector<float> shadeUnshadowed(const std::vector<scene::Light>& lights, const Surface& surface = {}) {
-  return shade(lights, shadowViews(lights), std::vector<float>(size_t(kSize) * kSize * layerCount(lights), 0.0f), "pcf",
-               surface);
+  return shade(lights, shadowViews(lights),
+               std::vector<float>(size_t(kSize) * kSize * layerCount(lights), 0.0f), "pcf", surface);
 }
 
 // visibility(light, x, y) in [0, 1], or < 0: leave this pixel out. Returns how many pixels were compared.
@@ -208,7 +210,8 @@ int expectRadiance(const std::vector<float>& got, const std::vector<scene::Light
         const double value = got[4 * (size_t(y) * kWidth + x) + c];
         // Half floats resolve 1/2048.
         if (std::abs(value - want[c]) <= 1e-3 * want[c] + 1e-5) continue;
-        ADD_FAILURE() << "pixel " << x << ", " << y << ", channel " << c << ": " << value << ", not " << want[c];
+        ADD_FAILURE() << "pixel " << x << ", " << y << ", channel " << c << ": " << value << ", not "
+                      << want[c];
         return 0;
       }
     }
@@ -220,17 +223,16 @@ double always(const scene::Light&, glm::dvec3) { return 1; }
 TEST(Direct, EachLightTypeEqualsTheClosedForm) {
   scene::Light ranged = point({0.2f, 0.7f, 0.1f});
   ranged.range = 1.5f;
-  for (const scene::Light& light :
-       {sun({0.3f, -1, 0.6f}), sun({0, 1, 0}), point({0.4f, 1.5f, -0.3f}), ranged,
-        spot({-0.5f, 2, 0.5f}, {0.4f, -1, 0}), spot({0, 1, 0}, {0, -1, 0})}) {
+  for (const scene::Light& light : {sun({0.3f, -1, 0.6f}), sun({0, 1, 0}), point({0.4f, 1.5f, -0.3f}), ranged,
+                                    spot({-0.5f, 2, 0.5f}, {0.4f, -1, 0}), spot({0, 1, 0}, {0, -1, 0})}) {
     SCOPED_TRACE(int(light.type));
     EXPECT_EQ(expectRadiance(shadeUnshadowed({light}), {light}, always), kWidth * kHeight);
   }
 }
 
 TEST(Direct, LightsAddUp) {
-  const std::vector<scene::Light> lights = {point({1, 1, 1}), sun({0.3f, -1, 0}), spot({-1, 2, 0}, {0, -1, 0}),
-                                            point({-1, 0.5f, -1})};
+  const std::vector<scene::Light> lights = {point({1, 1, 1}), sun({0.3f, -1, 0}),
+                                            spot({-1, 2, 0}, {0, -1, 0}), point({-1, 0.5f, -1})};
   EXPECT_EQ(expectRadiance(shadeUnshadowed(lights), lights, always), kWidth * kHeight);
 }
 
@@ -251,7 +253,8 @@ TEST(Direct, FaceTurnedAwayIsDark) {
   EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({-1, 0.1f, 0})}, terminator), {}, always), kWidth * kHeight);
 }
 
-// Does the sphere stand between p and the light? -1: too close to the rim of its shadow for a map of this resolution.
+// Does the sphere stand between p and the light? -1: too close to the rim of its shadow for a map of this
+// resolution.
 double sphereVisibility(const scene::Light& light, glm::dvec3 p) {
   const bool directional = light.type == scene::LightType::Directional;
   const glm::dvec3 to = directional ? -glm::dvec3(light.direction) : glm::dvec3(light.position) - p;
@@ -283,8 +286,9 @@ TEST(Direct, ShadowOfASphereEqualsRays) {
   expectShadows({light}, kWidth * kHeight / 2);
   expectShadows({point({0.3f, 2.5f, 0.2f})}, kWidth * kHeight / 2);
   expectShadows({spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})}, kWidth * kHeight / 2);
-  expectShadows({point({0.3f, 2.5f, 0.2f}), sun({0.5f, -1, 0.2f}), spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})},
-                kWidth * kHeight / 4);
+  expectShadows(
+      {point({0.3f, 2.5f, 0.2f}), sun({0.5f, -1, 0.2f}), spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})},
+      kWidth * kHeight / 4);
 }
 
 // Light that just grazes the plane: its slope in the map is 1 to 11, any fixed bias would fail.

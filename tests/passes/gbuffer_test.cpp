@@ -12,7 +12,7 @@ namespace fovea::test {
 namespace {
 
 constexpr uint32_t kBackground = ~0u;
-constexpr double kSnap = 0.01;       // rasterisers snap vertices to 1/256 of a pixel
+constexpr double kSnap = 0.01;      // rasterisers snap vertices to 1/256 of a pixel
 constexpr float kHair = 1.0f / 64;  // a hair off an edge, pixels
 
 glm::vec3 octDecode(glm::vec2 e) {
@@ -32,13 +32,18 @@ struct Pixel {
 class Output {
  public:
   explicit Output(const PassTest& test)
-      : position_(test.floats("gbuffer.position")), normal_(test.floats("gbuffer.normal")),
-        face_(test.floats("gbuffer.face")), albedo_(test.floats("gbuffer.albedo")),
-        emission_(test.floats("gbuffer.emission")), id_(test.values<uint32_t>("gbuffer.id")) {}
+      : position_(test.floats("gbuffer.position")),
+        normal_(test.floats("gbuffer.normal")),
+        face_(test.floats("gbuffer.face")),
+        albedo_(test.floats("gbuffer.albedo")),
+        emission_(test.floats("gbuffer.emission")),
+        id_(test.values<uint32_t>("gbuffer.id")) {}
   Pixel at(size_t i) const {
-    auto vec = [i](const std::vector<float>& v) { return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]); };
-    return {vec(position_), glm::vec3(vec(normal_)), octDecode({face_[2 * i], face_[2 * i + 1]}), glm::vec3(vec(albedo_)),
-            glm::vec3(vec(emission_)), id_[i]};
+    auto vec = [i](const std::vector<float>& v) {
+      return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
+    };
+    return {vec(position_),          glm::vec3(vec(normal_)),   octDecode({face_[2 * i], face_[2 * i + 1]}),
+            glm::vec3(vec(albedo_)), glm::vec3(vec(emission_)), id_[i]};
   }
 
  private:
@@ -46,8 +51,8 @@ class Output {
   std::vector<uint32_t> id_;
 };
 
-// Compares every pixel with the ray through its centre. A pixel may see something else only if a ray within 1/64 of a pixel
-// sees it too. Returns the share of such pixels.
+// Compares every pixel with the ray through its centre. A pixel may see something else only if a ray within
+// 1/64 of a pixel sees it too. Returns the share of such pixels.
 class Comparison {
  public:
   Comparison(const PassTest& test, const scene::Scene& scene, bool cull)
@@ -84,7 +89,8 @@ class Comparison {
     const glm::dvec3 eye(view_.eye), ray(view_.rayDirection(p));
     const RayHit hit = castRay(scene_, geometry_, eye, ray, options_);
     if (!hit) {
-      if (pixel.id != kBackground) return "id " + std::to_string(pixel.id) + " where there is only background";
+      if (pixel.id != kBackground)
+        return "id " + std::to_string(pixel.id) + " where there is only background";
       if (pixel.position.w != 0) return "background with a distance";
       return glm::length(pixel.emission - scene_.environment) < 1e-3f ? "" : "wrong environment";
     }
@@ -121,7 +127,8 @@ class Comparison {
     if (glm::length(glm::dvec3(pixel.face) - face) > 1e-4) return "wrong face ";
     if (glm::length(glm::dvec3(pixel.normal) - normal) > 6e-3) return "wrong normal ";
     if (glm::length(pixel.albedo - albedo) > 4e-3f) return "wrong albedo ";
-    if (glm::length(pixel.emission - emission) > 1e-3f * (1 + glm::length(emission))) return "wrong emission ";
+    if (glm::length(pixel.emission - emission) > 1e-3f * (1 + glm::length(emission)))
+      return "wrong emission ";
     return "";
   }
 
@@ -144,7 +151,8 @@ TEST(GBuffer, EqualsRaysThroughPixelCentres) {
   EXPECT_GT(comparison.hits(), 48u * 48u / 2);
 }
 
-// A masked quad in front of a wall, one quad seen from behind per kind of material, a glowing one, a tilted one far away.
+// A masked quad in front of a wall, one quad seen from behind per kind of material, a glowing one, a tilted
+// one far away.
 scene::Scene materials() {
   scene::Scene s;
   s.name = "materials";
@@ -166,7 +174,7 @@ scene::Scene materials() {
   s.materials = {masked, single, both, glowing, tiled};
   addQuad(s, 0, {-2, -1, 1}, {-0.1f, -1, 1}, {-0.1f, 1, 1}, {-2, 1, 1});
   addQuad(s, 4, {-2.5f, -1.5f, 0}, {2.5f, -1.5f, -1}, {2.5f, 1.5f, -1}, {-2.5f, 1.5f, 0});
-  addQuad(s, 1, {0.2f, 0, 1}, {0.2f, 1, 1}, {1, 1, 1}, {1, 0, 1});          // its back: not there
+  addQuad(s, 1, {0.2f, 0, 1}, {0.2f, 1, 1}, {1, 1, 1}, {1, 0, 1});            // its back: not there
   addQuad(s, 2, {0.2f, -1, 1}, {0.2f, -0.2f, 1}, {1, -0.2f, 1}, {1, -1, 1});  // its back: there
   addQuad(s, 3, {1.2f, -1, 1}, {2, -1, 1.2f}, {2, 1, 1}, {1.2f, 1, 0.9f});
   scene::Camera camera;
@@ -187,7 +195,8 @@ TEST(GBuffer, MaterialsAsGltfSays) {
   }
 }
 
-// A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle to the horizon.
+// A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle to
+// the horizon.
 TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {
   scene::Scene s;
   s.materials.emplace_back();

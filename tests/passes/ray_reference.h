@@ -46,8 +46,8 @@ inline RayHit castRay(const scene::Scene& scene, const scene::Geometry& geometry
     const double t = glm::dot(e2, q) / det;
     if (t <= options.tMin || t >= best.t) continue;
     if (material.masked) {
-      const glm::vec2 uv = geometry.uvs[triangle.v[0]] * float(1 - u - v) + geometry.uvs[triangle.v[1]] * float(u) +
-                           geometry.uvs[triangle.v[2]] * float(v);
+      const glm::vec2 uv = geometry.uvs[triangle.v[0]] * float(1 - u - v) +
+                           geometry.uvs[triangle.v[1]] * float(u) + geometry.uvs[triangle.v[2]] * float(v);
       if (scene::reflectance(scene, material, uv).a < material.alphaCutoff) continue;
     }
     best = {t, i, u, v};
@@ -59,17 +59,20 @@ inline RayHit castRay(const scene::Scene& scene, const scene::Geometry& geometry
 template <class V>
 V interpolate(const scene::Geometry& geometry, const std::vector<V>& values, const RayHit& hit) {
   const scene::Triangle& t = geometry.triangles[hit.triangle];
-  return values[t.v[0]] * float(1 - hit.u - hit.v) + values[t.v[1]] * float(hit.u) + values[t.v[2]] * float(hit.v);
+  return values[t.v[0]] * float(1 - hit.u - hit.v) + values[t.v[1]] * float(hit.u) +
+         values[t.v[2]] * float(hit.v);
 }
 
 inline glm::dvec3 faceNormal(const scene::Geometry& geometry, uint32_t triangle) {
   const scene::Triangle& t = geometry.triangles[triangle];
-  const glm::dvec3 a(geometry.positions[t.v[0]]), b(geometry.positions[t.v[1]]), c(geometry.positions[t.v[2]]);
+  const glm::dvec3 a(geometry.positions[t.v[0]]), b(geometry.positions[t.v[1]]),
+      c(geometry.positions[t.v[2]]);
   return glm::normalize(glm::cross(b - a, c - a));
 }
 
 // Adds a mesh of one quad a, b, c, d (counter-clockwise from the front, uv 0,0 1,0 1,1 0,1) as a static node.
-inline void addQuad(scene::Scene& scene, uint32_t material, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
+inline void addQuad(scene::Scene& scene, uint32_t material, glm::vec3 a, glm::vec3 b, glm::vec3 c,
+                    glm::vec3 d) {
   const glm::vec3 n = glm::normalize(glm::cross(b - a, c - a));
   scene::Primitive primitive;
   primitive.positions = {a, b, c, d};

@@ -90,7 +90,8 @@ TEST_F(ShadowMapTest, DepthEqualsRays) {
         // Vertices are snapped to 1/256 of a texel: the truth lies between what rays around the centre see.
         double lo = 2, hi = -1;
         for (const glm::dvec2 d : {glm::dvec2(0), {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
-          const double z = castDepth(scene_, test_.geometry(), worldToClip, clipToWorld, x + 0.5 + d.x / 128, y + 0.5 + d.y / 128);
+          const double z = castDepth(scene_, test_.geometry(), worldToClip, clipToWorld, x + 0.5 + d.x / 128,
+                                     y + 0.5 + d.y / 128);
           lo = std::min(lo, z);
           hi = std::max(hi, z);
         }

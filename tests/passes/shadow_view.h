@@ -15,7 +15,8 @@ static_assert(sizeof(ShadowView) == 112);
 
 // Looks from `eye` along `forward`; depth is near / distance along it.
 inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHalf, float near, int size) {
-  const glm::vec3 up = glm::normalize(glm::cross(forward, std::abs(forward.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1)));
+  const glm::vec3 up = glm::normalize(
+      glm::cross(forward, std::abs(forward.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1)));
   const glm::vec3 right = glm::cross(up, forward);
   ShadowView v;
   for (int c = 0; c < 4; ++c) {

@@ -36,7 +36,8 @@ void expectImage(const PassTest& test, const std::vector<float>& radiance, doubl
     EXPECT_NEAR(image[i], want, 1) << "channel " << i;
     offByOne += image[i] != want;
   }
-  // Only a value within the rounding error of pow() of the middle between two bytes may fall to the other side.
+  // Only a value within the rounding error of pow() of the middle between two bytes may fall to the other
+  // side.
   EXPECT_LE(offByOne, int(image.size() / 500));
 }
 
@@ -66,7 +67,8 @@ TEST(Tonemap, TakesTheScenesExposure) {
 
 TEST(Tonemap, NotANumberIsBlackAndCounted) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  const std::vector<float> radiance = {nan, 0.5f, 0.5f, 1, inf, 0.5f, -inf, 1, 0.5f, 0.5f, 0.5f, nan, -1, 0.5f, 0, 1};
+  const std::vector<float> radiance = {nan,  0.5f, 0.5f, 1,   inf, 0.5f, -inf, 1,
+                                       0.5f, 0.5f, 0.5f, nan, -1,  0.5f, 0,    1};
   PassTest test("tonemap");
   test.param("exposure", 1.0).viewSize(4, 1);
   test.image("radiance", VK_FORMAT_R32G32B32A32_SFLOAT, 4, 1, 1, radiance);
