@@ -32,4 +32,22 @@ inline uint32_t voxelSideOf(glm::vec3 normal) {
   return dominant < 0.0f ? 1u : 0u;
 }
 
+// Records of the bundle "voxels", see shaders/common/voxel.glsl.
+struct VoxelSide {
+  glm::vec3 position{0};  // average over the side's surface, world space
+  float area = 0;         // m^2, 0: an empty side
+  glm::vec3 normal{0};    // average, unit
+  float object = 0;
+  glm::vec3 reflectance{0};
+  float unused0 = 0;
+  glm::vec3 emission{0};  // W/(sr m^2)
+  float unused1 = 0;
+};
+static_assert(sizeof(VoxelSide) == 64);
+
+struct VoxelInfo {
+  uint32_t voxels = 0, staticVoxels = 0, overflow = 0, resolution = 0;
+};
+static_assert(sizeof(VoxelInfo) == 16);
+
 }  // namespace fovea::scene

@@ -16,36 +16,35 @@ struct Vpl {
 };
 static_assert(sizeof(Vpl) == 48);
 
-// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life.
+// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. All zeros: an empty slot.
 struct VplState {
   glm::vec3 position{0};  // world space, this frame
-  float importance = 0;   // I of this frame
+  float importance = 0;   // I of this frame, in [0, 1]
   glm::vec3 normal{0};    // unit, world space
-  float age = -1;         // frames since creation, -1: an empty slot
+  float life = 0;         // frames it has been shown in, this one included: 0 an empty slot, 1 a new VPL
   glm::vec3 reflectance{0};
-  uint32_t side = ~0u;         // voxel side, ~0: none
+  uint32_t side = 0;           // voxel side of this frame
   glm::vec3 localPosition{0};  // in the space of its object, so that it follows
   float object = 0;
-  glm::vec3 localNormal{0};
+  glm::vec3 localNormal{0};      // unit, in the space of its object, as found: turns are measured against it
   float previousImportance = 0;  // of the frame before (Eq. 1)
-  float density = 0;             // p_A of its generator, 1/m^2, 0: unknown
-  float refreshedFrame = 0;      // of its shadow map
-  float spare[2] = {0, 0};
 };
-static_assert(sizeof(VplState) == 96);
+static_assert(sizeof(VplState) == 80);
 
 // A VPL that could be.
 struct Candidate {
-  glm::vec3 position{0};
-  uint32_t side = ~0u;  // voxel side, ~0: an attempt that escaped
-  glm::vec3 normal{0};
+  glm::vec3 position{0};  // world space
+  uint32_t side = ~0u;    // voxel side, ~0: an attempt that hit nothing
+  glm::vec3 normal{0};    // unit, world space
   float object = 0;
   glm::vec3 reflectance{0};
-  float density = 0;  // p_A of the generator, 1/m^2, 0: unknown
-  glm::vec3 localPosition{0};
-  float luminance = 0;  // of the side's radiance, if known
+  float luminance = 0;  // of the side's radiance, W/(sr m^2)
+  glm::vec3 localPosition{0};  // in the space of its object
+  float unused = 0;
 };
 static_assert(sizeof(Candidate) == 64);
+
+inline constexpr uint32_t kNoSide = ~0u;
 
 inline constexpr uint32_t kVplPage = 1024;  // VPLs in one uniform-buffer page (48 KiB)
 

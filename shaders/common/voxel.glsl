@@ -30,14 +30,27 @@ uint voxelSideOf(vec3 normal) {
   return dominant < 0.0 ? 1u : 0u;
 }
 
-// voxels.surface, 3 texels a side; side = 2 * voxel + voxelSideOf(normal).
-const int kVoxelSideTexels = 3;
+// The bundle "voxels" (pass voxelize): an index volume and a compact list of the voxels that hold surface.
+//   index    r32ui, R^3: 0 empty, else 1 + number of the voxel
+//   surface  kVoxelSideTexels vec4 a side; side = 2 * voxel + voxelSideOf(geometric normal)
+//   info     VoxelInfo
+// Voxels of static surfaces come first, ordered by linear cell index x + R (y + R z); those of dynamic objects follow in the
+// same order and hide the static voxel of their cell: the volume refers to the dynamic one.
+const int kVoxelSideTexels = 4;
 struct VoxelSide {
   vec3 position;     // average over the side's surface, world space
   float area;        // m^2 of surface, 0: an empty side
   vec3 normal;       // average, unit
   float object;
   vec3 reflectance;  // average
+  vec3 emission;     // average, W/(sr m^2)
+};
+
+struct VoxelInfo {
+  uint voxels;        // in the list
+  uint staticVoxels;  // the first of them
+  uint overflow;      // voxels that found no room
+  uint resolution;    // R
 };
 
 #endif

@@ -13,24 +13,24 @@ struct Vpl {
 
 const uint kVplPage = 1024u;
 
-// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. 96 bytes.
+// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. 80 bytes; all zeros: an empty
+// slot.
 struct VplState {
-  vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame
-  vec4 normalAge;           // xyz: unit, world space; w: frames since creation, -1: an empty slot
-  vec4 reflectanceSide;     // rgb: reflectance; w: voxel side (bits of a uint), kNoSide: none
+  vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame, in [0, 1]
+  vec4 normalLife;          // xyz: unit, world space; w: frames it has been shown in, this one included: 0 empty, 1 new
+  vec4 reflectanceSide;     // rgb: reflectance; w: voxel side of this frame (bits of a uint)
   vec4 localPosition;       // xyz: in the space of its object, so that it follows; w: object
-  vec4 localNormal;         // xyz: unit, in the space of its object; w: importance of the frame before (Eq. 1)
-  vec4 extra;               // x: density p_A of its generator, 1/m^2, 0: unknown; y: frame of the last map refresh
+  vec4 localNormal;         // xyz: unit, in the space of its object, as found; w: importance of the frame before (Eq. 1)
 };
 
 const uint kNoSide = 0xffffffffu;
 
 // A VPL that could be. 64 bytes.
 struct Candidate {
-  vec4 positionSide;        // xyz: world space; w: voxel side (bits of a uint), kNoSide: an attempt that escaped
-  vec4 normalObject;        // xyz: unit, world space; w: object
-  vec4 reflectanceDensity;  // rgb: reflectance; w: density p_A of the generator, 1/m^2, 0: unknown
-  vec4 localLuminance;      // xyz: position in the space of its object; w: luminance of the side's radiance, if known
+  vec4 positionSide;          // xyz: world space; w: voxel side (bits of a uint), kNoSide: an attempt that hit nothing
+  vec4 normalObject;          // xyz: unit, world space; w: object
+  vec4 reflectanceLuminance;  // rgb: reflectance; w: luminance of the side's radiance, W/(sr m^2)
+  vec4 localPosition;         // xyz: in the space of its object; w: unused
 };
 
 #endif
