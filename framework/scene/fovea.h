@@ -1,0 +1,56 @@
+// The fovea on the image plane, on the CPU: the same formulas as shaders/common/fovea.glsl, where they are explained.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "framework/base/random.h"
+
+namespace fovea::scene {
+
+// Image positions are in pixels from the top left corner; pixel centres are at +0.5.
+struct Fovea {
+  glm::vec2 centre{0};  // may lie outside the image
+  float radius = 0;     // r_f, pixels
+};
+
+// gaze: normalised; foveaRadius: in image widths.
+inline Fovea makeFovea(glm::vec2 gaze, glm::vec2 imageSize, float foveaRadius) {
+  return {gaze * imageSize, foveaRadius * imageSize.x};
+}
+
+// 1 inside r_f, r_f / r outside.
+inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
+  const float r = glm::distance(position, fovea.centre);
+  return r <= fovea.radius ? 1.0f : fovea.radius / r;
+}
+
+// Parameter `region`.
+inline constexpr uint32_t kRegionFovea = 0u, kRegionImage = 1u;
+
+// Numbers [0, kRegionDraws) of a random stream belong to regionSample.
+inline constexpr uint32_t kRegionTries = 32u, kRegionDraws = 2u * kRegionTries + 2u;
+
+inline glm::vec2 streamPoint(uint32_t stream, uint32_t draw) {
+  return {uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u))};
+}
+
+// A pixel: uniform over the disc's part inside the image, or over the whole image (also when the disc lies outside).
+inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 imageSize, uint32_t stream) {
+  const glm::vec2 low(0.0f), high(imageSize);
+  const glm::vec2 off = glm::max(glm::max(-fovea.centre, fovea.centre - high), glm::vec2(0.0f));
+  const float radius2 = fovea.radius * fovea.radius;
+  const glm::vec2 across(off.y, off.x);
+  const glm::vec2 reach = glm::sqrt(glm::max(radius2 - across * across, glm::vec2(0.0f)));
+  if (region == kRegionFovea && glm::dot(off, off) < radius2) {
+    const glm::vec2 boxLow = glm::max(low, fovea.centre - reach), boxHigh = glm::min(high, fovea.centre + reach);
+    for (uint32_t i = 0; i < kRegionTries; ++i) {
+      const glm::vec2 position = glm::mix(boxLow, boxHigh, streamPoint(stream, 2u * i)), d = position - fovea.centre;
+      if (glm::dot(d, d) <= radius2) return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
+    }
+  }
+  const glm::vec2 position = high * streamPoint(stream, 2u * kRegionTries);
+  return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,60 @@
+// The fovea on the image plane: its disc, the weight of a pixel, and pixels at random from it. The same formulas as
+// framework/scene/fovea.h.
+//
+// Image positions are in pixels from the top left corner; the centre of pixel (x, y) is at (x + 0.5, y + 0.5).
+#ifndef FOVEA_FOVEA_GLSL
+#define FOVEA_FOVEA_GLSL
+
+#include "common/random.glsl"
+
+struct Fovea {
+  vec2 centre;   // may lie outside the image
+  float radius;  // r_f, pixels
+};
+
+// gaze: view.gaze.xy; imageSize: pixels; foveaRadius: parameter `fovea_radius`, in image widths.
+Fovea makeFovea(vec2 gaze, vec2 imageSize, float foveaRadius) {
+  return Fovea(gaze * imageSize, foveaRadius * imageSize.x);
+}
+
+// Weight of what an image position shows: 1 inside r_f, r_f / r outside (METHOD: importance, step 1). Continuous, and
+// never 0.
+float foveaWeight(Fovea fovea, vec2 position) {
+  float r = distance(position, fovea.centre);
+  return r <= fovea.radius ? 1.0 : fovea.radius / r;
+}
+
+// Parameter `region`.
+const uint kRegionFovea = 0u;
+const uint kRegionImage = 1u;
+
+// Numbers [0, kRegionDraws) of a random stream belong to regionSample: at most two a try.
+const uint kRegionTries = 32u;
+const uint kRegionDraws = 2u * kRegionTries + 2u;
+
+vec2 streamPoint(uint stream, uint draw) {
+  return vec2(uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u)));
+}
+
+// A pixel: uniform over the part of the disc that lies in the image (a pixel on its edge in proportion to the part of it
+// inside), or over the whole image. By rejection from the bounding box of that part, at least half of which is inside as it
+// is convex and touches the box's sides; when all tries fail (one in 2^32 at worst) or the fovea lies outside the image,
+// uniform over the image.
+ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
+  vec2 low = vec2(0.0), high = vec2(imageSize);
+  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));  // from the centre to the image
+  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));  // of the disc where the image begins
+  bool disc = region == kRegionFovea && dot(off, off) < fovea.radius * fovea.radius;
+  if (disc) {
+    vec2 boxLow = max(low, fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);
+    for (uint i = 0u; i < kRegionTries; ++i) {
+      vec2 position = mix(boxLow, boxHigh, streamPoint(stream, 2u * i));
+      vec2 d = position - fovea.centre;
+      if (dot(d, d) <= fovea.radius * fovea.radius) return clamp(ivec2(position), ivec2(0), imageSize - 1);
+    }
+  }
+  vec2 position = high * streamPoint(stream, 2u * kRegionTries);
+  return clamp(ivec2(position), ivec2(0), imageSize - 1);
+}
+
+#endif
