@@ -10,6 +10,7 @@
 // the triangles that simplification makes large.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "framework/gpu/device.h"
@@ -18,6 +19,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/paraboloid.h"
 #include "framework/scene/simplify.h"
+#include "framework/scene/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -30,6 +32,7 @@ constexpr uint32_t kListBytes = 16;              // WorkList, likewise
 constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
 constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
 constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
+constexpr uint32_t kGroupsPerRow = 4096;         // likewise
 constexpr uint32_t kSliceTexels =
     1 << 18;  // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
 
@@ -52,9 +55,11 @@ class ShadowAtlas : public Pass {
   static Kernels makeKernels(PrepareContext& ctx, bool simplified);
   std::vector<Range> ranges(RecordContext& ctx);
   void simplifyScene(RecordContext& ctx);
+  void chooseSlots(RecordContext& ctx);
   void recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range);
 
-  Kernel setup_;
+  Kernel choose_, clear_, setup_;
+  bool hasState_ = false;
   Kernels exact_, simplified_;
   bool simplify_ = false, uploaded_ = false;
   uint32_t simplifiedTriangles_ = 0;
@@ -64,8 +69,11 @@ class ShadowAtlas : public Pass {
 
 PassDeclaration ShadowAtlas::declaration() {
   PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
-  d.input("vpls", buffer("Vpl", 48), Usage::StorageRead,
+  d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::StorageRead,
           "lights; a slot whose intensity is 0 keeps an empty map");
+  d.input("state", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
+          "which of them are new and how important each is; without it every map is drawn every frame")
+      .makeOptional();
   // `layout` counts as its index: 0 layers, 1 tiled.
   const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
   d.output("atlas",
@@ -77,6 +85,11 @@ PassDeclaration ShadowAtlas::declaration() {
            "(shaders/common/paraboloid.glsl)")
       .keep(Lifetime::View);
   const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
+  d.scratch("refreshed", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
+            "frame in which each map was drawn")
+      .keep(Lifetime::View);
+  d.scratch("chosen", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
+            "what happens to each slot in this frame");
   d.scratch("batch", buffer("VplView", kViewBytes, batches * kBatch), Usage::StorageWrite | Usage::Uniform,
             "VPLs whose maps are drawn, packed");
   d.scratch("steps", buffer("AtlasStep", kStepBytes, batches * (ceilDiv(triangles, kRangeTriangles) + 2)),
@@ -101,10 +114,17 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
               "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and "
               "blocks nothing");
+  d.parameter("refresh", choice("top", {"all", "top", "split"}),
+              "maps of kept VPLs that are drawn again (needs `state`): all; the most important ones; or half of "
+              "the same number for those and half for the longest unchanged, first where something moves");
+  d.parameter("refresh_share", real(0.05, 0, 1), "how many of the kept VPLs' maps `top` and `split` draw again");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
   d.counter("masked_pairs", "pairs of a VPL and a triangle with an alpha mask");
+  d.counter("new_maps", "maps drawn because there was none of that VPL");
+  d.counter("refreshed_maps", "maps drawn again");
+  d.counter("texels", "texels of the maps drawn");
   return d;
 }
 
@@ -124,7 +144,15 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
 
 void ShadowAtlas::prepare(PrepareContext& ctx) {
   simplify_ = ctx.parameters().text("technique") == "simplified";
-  setup_ = ctx.compute("shadow-atlas/setup.comp", {{"BATCH", std::to_string(kBatch) + "u"}});
+  const gpu::Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
+  const std::string& refresh = ctx.parameters().text("refresh");
+  hasState_ = ctx.has("state") && refresh != "all";
+  gpu::Defines choose = batch;
+  choose["HAS_STATE"] = hasState_ ? "1" : "0";
+  choose["REFRESH_SPLIT"] = refresh == "split" ? "1" : "0";
+  choose_ = ctx.compute("shadow-atlas/choose.comp", choose);
+  clear_ = ctx.compute("shadow-atlas/clear.comp", batch);
+  setup_ = ctx.compute("shadow-atlas/setup.comp", batch);
   exact_ = makeKernels(ctx, false);
   if (simplify_) simplified_ = makeKernels(ctx, true);
 }
@@ -195,11 +223,37 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
   ctx.barrier();
 }
 
+// A sphere around everything that moves; radius below 0: nothing does.
+glm::vec4 moversOf(const scene::Geometry& geometry) {
+  glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+  for (const scene::Object& object : geometry.objects)
+    for (uint32_t v = 0; object.dynamic && v < object.vertexCount; ++v) {
+      low = glm::min(low, geometry.positions[object.firstVertex + v]);
+      high = glm::max(high, geometry.positions[object.firstVertex + v]);
+    }
+  return low.x > high.x ? glm::vec4(0, 0, 0, -1) : glm::vec4(0.5f * (low + high), 0.5f * glm::length(high - low));
+}
+
+void ShadowAtlas::chooseSlots(RecordContext& ctx) {
+  const uint32_t slots = uint32_t(ctx.count("vpls"));
+  Commands choose = ctx.use(choose_);
+  choose.constant("slots", slots).constant("frameNumber", uint32_t(ctx.frameNumber()));
+  if (hasState_) choose.constant("movers", moversOf(*ctx.frame().geometry));
+  choose.dispatch(1);
+  ctx.barrier();
+  ctx.use(clear_).constant("slots", slots).dispatch(std::min(slots, kGroupsPerRow),
+                                                    (slots + kGroupsPerRow - 1) / kGroupsPerRow);
+}
+
 void ShadowAtlas::record(RecordContext& ctx) {
   if (simplify_ && !uploaded_) simplifyScene(ctx);
-  VkClearColorValue nothing{};
-  nothing.uint32[0] = scene::kParaboloidEmpty;
-  ctx.clear("atlas", nothing);
+  if (ctx.firstFrame()) {
+    VkClearColorValue nothing{};
+    nothing.uint32[0] = scene::kParaboloidEmpty;
+    ctx.clear("atlas", nothing);
+    ctx.barrier();
+  }
+  chooseSlots(ctx);
 
   const std::vector<Range> steps = ranges(ctx);
   uint32_t largest = 0;

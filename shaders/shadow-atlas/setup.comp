@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(set = 0, std430) writeonly buffer BatchBlock { VplView views[]; } batch;
 layout(set = 0, std430) writeonly buffer StepsBlock { Step list[]; } steps;
-layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
+layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
 
 layout(push_constant) uniform Constants {
   uint slots;
@@ -19,31 +19,15 @@ layout(push_constant) uniform Constants {
   uint cullGroups;  // of the largest range
 };
 
-shared uint sums[256];
-
-// Number of set flags before this invocation's, and in all.
-uint compact(bool flag, out uint total) {
-  uint i = gl_LocalInvocationIndex;
-  sums[i] = flag ? 1u : 0u;
-  barrier();
-  for (uint step_ = 1u; step_ < 256u; step_ *= 2u) {
-    uint left = i >= step_ ? sums[i - step_] : 0u;
-    barrier();
-    sums[i] += left;
-    barrier();
-  }
-  total = sums[255];
-  uint before = sums[i] - (flag ? 1u : 0u);
-  barrier();
-  return before;
-}
+#include "shadow-atlas/compact.glsl"
 
 void main() {
   uint i = gl_LocalInvocationIndex;
   uint count = 0u;
   for (uint base = 0u; base < slots; base += 256u) {
     uint slot = base + i;
-    bool draw = slot < slots && any(notEqual(vpls.list[min(slot, slots - 1u)].intensity.rgb, vec3(0.0)));
+    uint choice = slot < slots ? chosen.list[slot] : kSlotIdle;
+    bool draw = choice == kSlotNew || choice == kSlotRefreshed;
     uint total;
     uint place = count + compact(draw, total);
     if (draw) {
@@ -63,5 +47,4 @@ void main() {
     uint groups = (s / ranges) * kBatch < count ? cullGroups : 0u;
     steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none);
   }
-  if (i == 0u) counters.maps = count;
 }

@@ -6,6 +6,13 @@ const uint kBatch = BATCH;        // VPLs that share one reading of a triangle: 
 const uint kTriangleBits = 27u;  // a pair is one word: VPL of the batch << kTriangleBits | triangle
 const uint kTriangleMask = (1u << kTriangleBits) - 1u;
 
+// What happens to a slot in this frame.
+const uint kSlotIdle = 0u;       // it is empty and has been
+const uint kSlotKept = 1u;       // its map stays as it is
+const uint kSlotNew = 2u;        // drawn: there is no map of this VPL
+const uint kSlotRefreshed = 3u;  // drawn again
+const uint kSlotEmptied = 4u;    // its VPL has gone
+
 struct VplView {
   vec4 positionSlot;  // xyz: world space, m; w: slot of the atlas
   vec4 tangent;       // the VPL's frame; all 0 in an unused record, which then sees nothing

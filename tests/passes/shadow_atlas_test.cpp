@@ -1,6 +1,7 @@
 // The atlas against the plainest ray caster there is: every texel, every triangle, in double precision.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -378,6 +379,124 @@ TEST(ShadowAtlas, SimplifiedKeepingAllIsExactAndKeepingLessIsClose) {
   EXPECT_GT(double(near), 0.95 * double(hits));
   EXPECT_LT(some.counter("small_pairs") + some.counter("large_pairs"),
             0.7 * (exact.counter("small_pairs") + exact.counter("large_pairs")));
+}
+
+// ---- Which maps are drawn again ----
+
+scene::VplState stateOf(const Vpl& v, float life, float importance) {
+  scene::VplState state;
+  state.position = v.position;
+  state.normal = v.normal;
+  state.life = life;
+  state.importance = importance;
+  return state;
+}
+
+// The rule in plain words, over slots in order.
+struct RefreshReference {
+  std::vector<uint32_t> drawnIn;  // frame + 1, 0: no map
+
+  std::vector<bool> frame(const std::vector<Vpl>& vpls, const std::vector<scene::VplState>& state, uint32_t frame,
+                          double share, bool split) {
+    drawnIn.resize(vpls.size());
+    std::vector<bool> draw(vpls.size());
+    std::vector<uint32_t> kept;
+    for (uint32_t i = 0; i < vpls.size(); ++i) {
+      if (vpls[i].intensity == glm::vec3(0)) drawnIn[i] = 0;
+      else if (state[i].life <= 1 || drawnIn[i] == 0) draw[i] = true;
+      else kept.push_back(i);
+    }
+    const size_t budget = std::min(kept.size(), size_t(std::ceil(float(share) * float(kept.size()))));
+    const size_t first = split ? (budget + 1) / 2 : budget;
+    auto choose = [&](size_t count, auto higher) {
+      std::stable_sort(kept.begin(), kept.end(), higher);
+      for (size_t k = 0; k < count; ++k) draw[kept[k]] = true;
+      kept.erase(kept.begin(), kept.begin() + long(count));
+      std::sort(kept.begin(), kept.end());
+    };
+    choose(first, [&](uint32_t a, uint32_t b) { return state[a].importance > state[b].importance; });
+    choose(budget - first, [&](uint32_t a, uint32_t b) { return drawnIn[a] < drawnIn[b]; });
+    for (uint32_t i = 0; i < vpls.size(); ++i)
+      if (draw[i]) drawnIn[i] = frame + 1;
+    return draw;
+  }
+};
+
+// Every frame moves every VPL, so that a map tells when it was drawn.
+void checkRefresh(const char* policy, double share) {
+  SCOPED_TRACE(policy);
+  Scene s = emptyScene();
+  addBox(s, 0, {-1, -1, -1}, {1, 1, 1});
+  const Geometry g = scene::flatten(s);
+  constexpr uint32_t kSlots = 300;
+  std::mt19937 random(17);
+  std::vector<Vpl> vpls(kSlots);
+  std::vector<scene::VplState> state(kSlots);
+  std::vector<float> expected;
+  RefreshReference reference;
+  PassTest test("shadow-atlas");
+  test.scene(s).param("size", 8).param("refresh", policy).param("refresh_share", share);
+  for (uint32_t frame = 0; frame < 6; ++frame) {
+    uint32_t fresh = 0;
+    for (uint32_t i = 0; i < kSlots; ++i) {
+      const uint32_t what = random() % 10;
+      const bool empty = what == 0, isNew = what == 1 || frame == 0 || state[i].life == 0;
+      vpls[i] = vpl({0.01f * float(i % 17) + 0.1f * float(frame), 0.2f, 0.002f * float(i)}, {0.3f, 1, float(i % 5)});
+      if (empty || what == 2) vpls[i].intensity = glm::vec3(0);  // gone, or alive in the dark
+      state[i] = empty ? scene::VplState{} : stateOf(vpls[i], isNew ? 1 : state[i].life + 1, float(random() % 12) / 11);
+    }
+    const std::vector<uint32_t> before = [&] {
+      auto copy = reference.drawnIn;
+      copy.resize(kSlots);
+      return copy;
+    }();
+    const std::vector<bool> draw = reference.frame(vpls, state, frame, share, std::string(policy) == "split");
+    for (uint32_t i = 0; i < kSlots; ++i) fresh += draw[i] && (state[i].life <= 1 || before[i] == 0);
+    if (frame == 0) test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+    else {
+      test.set("vpls", vpls);
+      test.set("state", state);
+    }
+    test.run();
+    // What an atlas of this frame alone holds, for the slots that were drawn; the rest as they were.
+    PassTest whole("shadow-atlas");
+    whole.scene(s).param("size", 8).buffer("vpls", vpls, "Vpl");
+    whole.run();
+    const std::vector<float> all = whole.values<float>("atlas"), got = test.values<float>("atlas");
+    expected.resize(all.size(), kInfinity);
+    uint32_t drawn = 0;
+    for (uint32_t i = 0; i < kSlots; ++i) {
+      drawn += draw[i];
+      for (uint32_t t = 64 * i; t < 64 * (i + 1); ++t)
+        if (draw[i]) expected[t] = all[t];
+        else if (vpls[i].intensity == glm::vec3(0)) expected[t] = kInfinity;
+    }
+    ASSERT_EQ(got, expected) << "frame " << frame;
+    EXPECT_EQ(test.counter("maps"), drawn);
+    EXPECT_EQ(test.counter("new_maps"), fresh);
+    EXPECT_EQ(test.counter("refreshed_maps"), drawn - fresh);
+    EXPECT_EQ(test.counter("texels"), drawn * 64);
+    if (frame > 0) {
+      EXPECT_LT(drawn, kSlots / 2);
+    }
+  }
+}
+
+TEST(ShadowAtlas, NewAndMostImportantMapsAreDrawn) { checkRefresh("top", 0.05); }
+TEST(ShadowAtlas, HalfOfTheBudgetGoesToStaleMaps) { checkRefresh("split", 0.1); }
+TEST(ShadowAtlas, NoBudgetDrawsNewMapsOnly) { checkRefresh("top", 0.0); }
+TEST(ShadowAtlas, WholeBudgetDrawsAllMaps) {
+  Scene s = emptyScene();
+  addBox(s, 0, {-1, -1, -1}, {1, 1, 1});
+  const std::vector<Vpl> vpls(40, vpl({0, 0, 0}, {0, 1, 0}));
+  std::vector<scene::VplState> state(40, stateOf(vpls[0], 5, 0.5f));
+  for (const char* policy : {"top", "split", "all"}) {
+    PassTest test("shadow-atlas");
+    test.scene(s).param("size", 8).param("refresh", policy).param("refresh_share", 1.0);
+    test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+    test.run(3);
+    EXPECT_EQ(test.counter("maps"), 40) << policy;
+  }
 }
 
 }  // namespace

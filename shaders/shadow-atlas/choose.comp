@@ -1,0 +1,135 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One work group: which slots get a new map this frame. New VPLs always do; of those kept from the frame before a budget
+// (METHOD section 2, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the VPLs every lit slot is drawn;
+// REFRESH_SPLIT 0/1.
+#include "common/vpl.glsl"
+#include "shadow-atlas/step.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(set = 0, std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0: no map
+layout(set = 0, std430) buffer ChosenBlock { uint list[]; } chosen;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked, fresh, refreshes, texels; } counters;
+#if HAS_STATE
+layout(set = 0, std430) readonly buffer StateBlock { VplState list[]; } state;
+#endif
+
+layout(push_constant) uniform Constants {
+  uint slots;
+  uint frameNumber;
+  uint size;
+#if HAS_STATE
+  float refreshShare;
+  vec4 movers;  // xyz: centre, w: radius of a sphere around all moving objects; below 0: none
+#endif
+};
+
+#include "shadow-atlas/compact.glsl"
+
+bool isLit(uint slot) { return any(notEqual(vpls.list[slot].intensity.rgb, vec3(0.0))); }
+
+#if HAS_STATE
+shared uint histogram[256];
+shared uint threshold, takenAbove;
+
+const uint kByImportance = 0u, kByStaleness = 1u;
+
+// Order among the maps that may be drawn again; 0: not one of them.
+uint priority(uint slot, uint order) {
+  if (chosen.list[slot] != kSlotKept) return 0u;
+  if (order == kByImportance) return floatBitsToUint(max(state.list[slot].positionImportance.w, 0.0)) + 1u;
+  // Frames since it was drawn; four times as pressing where something moves in front of the VPL.
+  uint age = min(frameNumber + 1u - refreshed.frames[slot], 0x3fffffffu);
+  Vpl v = vpls.list[slot];
+  bool sees = movers.w >= 0.0 && dot(v.normal.xyz, movers.xyz - v.positionArea.xyz) > -movers.w;
+  return (sees ? 4u : 1u) * age;
+}
+
+// Marks the `budget` slots of the highest priority, ties by slot: a radix search for the least priority that is taken.
+void take(uint budget, uint order) {
+  uint i = gl_LocalInvocationIndex;
+  if (i == 0u) {
+    threshold = 0u;
+    takenAbove = 0u;
+  }
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    histogram[i] = 0u;
+    barrier();
+    for (uint slot = i; slot < slots; slot += 256u) {
+      uint key = priority(slot, order);
+      // All higher digits as in the threshold; the shift of 32 is undefined.
+      bool inPrefix = shift == 24 || key >> (shift + 8) == threshold >> (shift + 8);
+      if (key != 0u && inPrefix) atomicAdd(histogram[key >> shift & 255u], 1u);
+    }
+    barrier();
+    if (i == 0u) {
+      uint digit = 255u, above = takenAbove;
+      while (digit > 0u && above + histogram[digit] < budget) above += histogram[digit--];
+      threshold |= digit << shift;
+      takenAbove = above;
+    }
+    barrier();
+  }
+  uint ties = budget - min(takenAbove, budget), seen = 0u;
+  for (uint base = 0u; base < slots; base += 256u) {
+    uint slot = base + i, key = slot < slots ? priority(slot, order) : 0u, total;
+    bool tie = key != 0u && key == threshold;
+    uint place = seen + compact(tie, total);
+    if (key != 0u && (key > threshold || tie && place < ties)) chosen.list[slot] = kSlotRefreshed;
+    seen += total;
+  }
+  memoryBarrierBuffer();
+  barrier();
+}
+#endif
+
+void main() {
+  uint i = gl_LocalInvocationIndex, kept = 0u, drawn = 0u, fresh = 0u;
+  for (uint base = 0u; base < slots; base += 256u) {
+    uint slot = base + i, total;
+    uint choice = kSlotIdle;
+    if (slot < slots) {
+      bool lit = isLit(slot);
+#if HAS_STATE
+      bool isNew = state.list[slot].normalLife.w <= 1.0 || refreshed.frames[slot] == 0u;
+#else
+      const bool isNew = true;
+#endif
+      if (lit) choice = isNew ? kSlotNew : kSlotKept;
+      else if (refreshed.frames[slot] != 0u) choice = kSlotEmptied;
+      chosen.list[slot] = choice;
+    }
+    compact(choice == kSlotKept, total);
+    kept += total;
+  }
+  memoryBarrierBuffer();
+  barrier();
+#if HAS_STATE
+  uint budget = min(uint(ceil(refreshShare * float(kept))), kept);
+#if REFRESH_SPLIT
+  uint first = (budget + 1u) / 2u;
+  take(first, kByImportance);
+  if (budget > first) take(budget - first, kByStaleness);
+#else
+  if (budget > 0u) take(budget, kByImportance);
+#endif
+#endif
+  for (uint base = 0u; base < slots; base += 256u) {
+    uint slot = base + i, total, choice = slot < slots ? chosen.list[slot] : kSlotIdle;
+    bool draw = choice == kSlotNew || choice == kSlotRefreshed;
+    if (draw) refreshed.frames[slot] = frameNumber + 1u;
+    else if (choice == kSlotEmptied) refreshed.frames[slot] = 0u;
+    compact(draw, total);
+    drawn += total;
+    compact(choice == kSlotNew, total);
+    fresh += total;
+  }
+  if (i == 0u) {
+    counters.maps = drawn;
+    counters.fresh = fresh;
+    counters.refreshes = drawn - fresh;
+    counters.texels = drawn * size * size;
+  }
+}

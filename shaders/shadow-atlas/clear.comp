@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Empties the maps that are about to be drawn or whose VPL has gone: one work group a slot.
+#include "common/paraboloid.glsl"
+#include "shadow-atlas/step.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
+layout(set = 0, r32ui) uniform writeonly uimage2DArray atlas;
+
+layout(push_constant) uniform Constants { uint slots; };
+
+void main() {
+  uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * kGroupsPerRow;
+  if (slot >= slots) return;
+  uint choice = chosen.list[slot];
+  if (choice == kSlotIdle || choice == kSlotKept) return;
+  AtlasLayout layout_ = atlasLayout(imageSize(atlas));
+  ivec3 corner = atlasTexel(slot, ivec2(0), layout_);
+  for (int y = int(gl_LocalInvocationIndex) / 16; y < layout_.size; y += 4)
+    for (int x = int(gl_LocalInvocationIndex) % 16; x < layout_.size; x += 16)
+      imageStore(atlas, corner + ivec3(x, y, 0), uvec4(kParaboloidEmpty));
+}
