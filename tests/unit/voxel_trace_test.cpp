@@ -1,0 +1,264 @@
+#include "framework/scene/voxel_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "framework/base/random.h"
+
+namespace fovea::scene {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+struct Stream {  // numbers in [0, 1)
+  uint32_t key, draw = 0;
+  float next() { return uniformFloat(hashCombine(key, draw++)); }
+  glm::vec3 point() {
+    const float x = next(), y = next();
+    return {x, y, next()};
+  }
+  glm::vec3 direction() {
+    for (;;) {
+      const glm::vec3 v = 2.0f * point() - 1.0f;
+      if (glm::length(v) > 0.1f && glm::length(v) < 1) return glm::normalize(v);
+    }
+  }
+};
+
+struct Volume {
+  VoxelGrid grid;
+  std::vector<uint32_t> index;
+  std::vector<VoxelSide> surface;
+  Voxels voxels() const { return {grid, index, surface}; }
+
+  explicit Volume(int resolution, VoxelGrid g = {{-1.3f, 0.4f, 2.1f}, 0.35f, 1}) : grid(g) {
+    grid.resolution = resolution;
+    index.resize(size_t(resolution) * size_t(resolution) * size_t(resolution));
+  }
+  void add(glm::ivec3 cell, const VoxelSide& side0, const VoxelSide& side1) {
+    surface.push_back(side0);
+    surface.push_back(side1);
+    const size_t r = size_t(grid.resolution);
+    index[size_t(cell.x) + r * (size_t(cell.y) + r * size_t(cell.z))] = uint32_t(surface.size() / 2);
+  }
+};
+
+VoxelSide makeSide(glm::vec3 position, glm::vec3 normal) {
+  VoxelSide s;
+  s.position = position;
+  s.normal = normal;
+  s.area = 1;
+  return s;
+}
+
+// Cells filled at random, positions anywhere in their cell, some sides empty.
+Volume randomVolume(int resolution, float filled, Stream& random) {
+  Volume v(resolution);
+  for (int i = 0; i < resolution * resolution * resolution; ++i) {
+    if (random.next() >= filled) continue;
+    const glm::ivec3 cell(i % resolution, i / resolution % resolution, i / resolution / resolution);
+    VoxelSide sides[2];
+    for (uint32_t k = 0; k < 2; ++k) {
+      glm::vec3 n = random.direction();
+      if (voxelSideOf(n) != k) n = -n;
+      sides[k] = makeSide(v.grid.voxelToWorld(glm::vec3(cell) + random.point()), n);
+      if (random.next() < 0.3f) sides[k].area = 0;
+    }
+    v.add(cell, sides[0], sides[1]);
+  }
+  return v;
+}
+
+// Every cell against the ray, in double precision.
+struct BruteForce {
+  uint32_t side = kNoSide;
+  double cellIn = 0, cellOut = 0;        // where the ray is in its cell, m
+  std::vector<uint32_t> alsoPossible;    // in cells before that one that the ray only just touches
+  bool unclear = false;                  // a side that is seen from its edge or lies right at the start's plane
+};
+
+BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal) {
+  BruteForce best;
+  best.cellIn = 1e30;
+  std::vector<std::pair<double, uint32_t>> touched;
+  const int r = v.grid.resolution;
+  for (int i = 0; i < r * r * r; ++i) {
+    const uint32_t voxel = v.index[size_t(i)];
+    if (voxel == 0) continue;
+    const glm::dvec3 low = glm::dvec3(v.grid.origin) + double(v.grid.cell) * glm::dvec3(i % r, i / r % r, i / r / r);
+    double in = 0, out = 1e30;
+    for (int k = 0; k < 3; ++k) {
+      double a = (low[k] - origin[k]) / direction[k], b = (low[k] + double(v.grid.cell) - origin[k]) / direction[k];
+      if (direction[k] == 0) {
+        const bool inside = origin[k] >= low[k] && origin[k] < low[k] + double(v.grid.cell);
+        a = inside ? -1e30 : 1e30;
+        b = 1e30;
+      }
+      in = std::max(in, std::min(a, b));
+      out = std::min(out, std::max(a, b));
+    }
+    if (out < in - 1e-4) continue;
+    uint32_t side = kNoSide;
+    double facing = 0;
+    for (uint32_t s = 2 * voxel - 2; s < 2 * voxel; ++s) {
+      const VoxelSide& candidate = v.surface[s];
+      if (candidate.area == 0) continue;
+      const double cosine = glm::dot(glm::dvec3(candidate.normal), direction);
+      const double front = glm::dot(glm::dvec3(candidate.position) - origin, normal) - 0.25 * double(v.grid.cell);
+      best.unclear |= std::abs(cosine) < 1e-5 || std::abs(front) < 1e-5;
+      if (cosine >= facing || front <= 0) continue;
+      facing = cosine;
+      side = s;
+    }
+    if (side == kNoSide) continue;
+    if (out - in < 1e-4) {
+      touched.emplace_back(in, side);
+    } else if (in < best.cellIn) {
+      best.side = side;
+      best.cellIn = in;
+      best.cellOut = out;
+    }
+  }
+  for (const auto& [in, side] : touched)
+    if (in <= best.cellIn + 1e-4) best.alsoPossible.push_back(side);
+  return best;
+}
+
+struct Counts {
+  int hits = 0, misses = 0, touched = 0, unclear = 0;
+};
+
+void expectRay(const Volume& v, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal, Counts& counts) {
+  const VoxelHit hit = traceVoxels(v.voxels(), origin, direction, normal);
+  const BruteForce want = bruteForce(v, origin, direction, normal);
+  if (want.unclear) {
+    ++counts.unclear;
+    return;
+  }
+  if (hit.side != want.side) {
+    ++counts.touched;
+    EXPECT_NE(std::find(want.alsoPossible.begin(), want.alsoPossible.end(), hit.side), want.alsoPossible.end())
+        << "side " << hit.side << " instead of " << want.side;
+    return;
+  }
+  ++(hit.side == kNoSide ? counts.misses : counts.hits);
+  if (hit.side == kNoSide) return;
+  const VoxelSide& side = v.surface[hit.side];
+  const double plane = glm::dot(glm::dvec3(side.position) - glm::dvec3(origin), glm::dvec3(side.normal)) /
+                       glm::dot(glm::dvec3(side.normal), glm::dvec3(direction));
+  EXPECT_NEAR(hit.distance, std::clamp(plane, want.cellIn, want.cellOut), 2e-4 + 1e-4 * std::abs(plane));
+}
+
+TEST(VoxelTrace, EqualsTheSearchThroughAllCells) {
+  Counts counts;
+  for (uint32_t volume = 0; volume < 12; ++volume) {
+    Stream random{randomStream(3, 0, 0, volume)};
+    const Volume v = randomVolume(1 + int(volume), volume % 3 == 0 ? 0.5f : 0.04f, random);
+    const float edge = v.grid.cell * float(v.grid.resolution);
+    for (int ray = 0; ray < 2000; ++ray) {
+      // Half of them start inside, the others around the grid.
+      const glm::vec3 origin = v.grid.origin + edge * (ray % 2 ? random.point() : 3.0f * random.point() - 1.0f);
+      const glm::vec3 direction = ray % 4 < 2 ? random.direction()
+                                              : glm::normalize(v.grid.origin + edge * random.point() - origin);
+      expectRay(v, origin, direction, ray % 3 ? direction : random.direction(), counts);
+    }
+  }
+  EXPECT_GT(counts.hits, 4000);
+  EXPECT_GT(counts.misses, 4000);
+  EXPECT_LT(counts.touched, 5);
+  EXPECT_LT(counts.unclear, 20);
+}
+
+TEST(VoxelTrace, DirectionsWithZeroComponents) {
+  Counts counts;
+  Stream random{5};
+  const Volume v = randomVolume(9, 0.06f, random);
+  const float edge = v.grid.cell * 9;
+  for (int ray = 0; ray < 12000; ++ray) {
+    glm::vec3 direction = random.direction();
+    direction[ray % 3] = ray % 5 == 0 ? -0.0f : 0.0f;
+    if (ray % 2) direction[(ray + 1) % 3] = 0;
+    if (glm::length(direction) < 0.05f) continue;
+    direction = glm::normalize(direction);
+    expectRay(v, v.grid.origin + edge * (2.0f * random.point() - 0.5f), direction, direction, counts);
+  }
+  EXPECT_GT(counts.hits, 300);
+  EXPECT_LT(counts.touched, 10);
+}
+
+// Origins on the walls between cells, on the edges, in the corners: the walk ends, and hits what lies straight ahead.
+TEST(VoxelTrace, OriginsOnWalls) {
+  Volume v(8, {glm::vec3(-4), 1, 8});
+  for (int y = 0; y < 8; ++y)
+    for (int z = 0; z < 8; ++z) v.add({6, y, z}, {}, makeSide({2.5f, y - 3.5f, z - 3.5f}, {-1, 0, 0}));
+  for (int x = -4; x < 2; ++x)
+    for (int y = -3; y < 4; ++y)
+      for (int z = -3; z < 4; ++z) {
+        const VoxelHit hit = traceVoxels(v.voxels(), glm::vec3(x, y, z), {1, 0, 0}, {1, 0, 0});
+        ASSERT_NE(hit.side, kNoSide);
+        EXPECT_EQ(v.surface[hit.side].position, glm::vec3(2.5f, y + 0.5f, z + 0.5f));
+        EXPECT_FLOAT_EQ(hit.distance, 2.5f - float(x));
+        EXPECT_EQ(traceVoxels(v.voxels(), glm::vec3(x, y, z), {-1, 0, 0}, {-1, 0, 0}).side, kNoSide);
+        const glm::vec3 diagonal = glm::normalize(glm::vec3(1, y > 0 ? -0.5f : 0.5f, z > 0 ? -0.5f : 0.5f));
+        EXPECT_NE(traceVoxels(v.voxels(), glm::vec3(x, y, z), diagonal, diagonal).side, kNoSide);
+      }
+}
+
+TEST(VoxelTrace, SkipsTheOwnSurfaceAndBacks) {
+  Volume v(8, {glm::vec3(0), 1, 8});
+  const glm::vec3 up(0, 1, 0), down(0, -1, 0);
+  for (int x = 0; x < 8; ++x)
+    for (int z = 0; z < 8; ++z) {
+      v.add({x, 2, z}, makeSide({x + 0.5f, 2.5f, z + 0.5f}, up), makeSide({x + 0.5f, 2.3f, z + 0.5f}, down));  // thin
+      v.add({x, 6, z}, makeSide({x + 0.5f, 6.5f, z + 0.5f}, up), {});
+    }
+  const glm::vec3 origin(1.2f, 2.5f, 3.3f), flat = glm::normalize(glm::vec3(1, 0.02f, 0.3f));
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, flat, up).side, kNoSide) << "along the floor it starts on";
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, up, up).side, kNoSide) << "the ceiling shows its back";
+  const VoxelHit hit = traceVoxels(v.voxels(), {1.2f, 5, 3.3f}, down, down);
+  ASSERT_NE(hit.side, kNoSide);
+  EXPECT_EQ(v.surface[hit.side].normal, up);
+  EXPECT_FLOAT_EQ(hit.distance, 2.5f);
+  const VoxelHit below = traceVoxels(v.voxels(), {1.2f, 0.5f, 3.3f}, up, up);
+  ASSERT_NE(below.side, kNoSide);
+  EXPECT_EQ(v.surface[below.side].normal, down);
+  EXPECT_FLOAT_EQ(below.distance, 1.8f);
+}
+
+// A voxel with both sides towards the ray (a sharp edge): the one that faces it more; of equals, side 0.
+TEST(VoxelTrace, TheSideThatFacesMoreIsHit) {
+  Volume v(4, {glm::vec3(0), 1, 4});
+  const glm::vec3 n0 = glm::normalize(glm::vec3(-1, 2, 0)), n1 = glm::normalize(glm::vec3(-2, 1, 0));
+  v.add({2, 2, 2}, makeSide({2.5f, 2.5f, 2.5f}, n0), makeSide({2.5f, 2.5f, 2.5f}, n1));
+  const glm::vec3 along(1, 0, 0), down(0, -1, 0), both = glm::normalize(glm::vec3(1, -1, 0));
+  EXPECT_EQ(traceVoxels(v.voxels(), {0.5f, 2.5f, 2.5f}, along, along).side, 1u);
+  EXPECT_EQ(traceVoxels(v.voxels(), {2.5f, 3.5f, 2.5f}, down, down).side, 0u);
+  v.surface[1].normal = n0;
+  EXPECT_EQ(traceVoxels(v.voxels(), {1.5f, 3.5f, 2.5f}, both, both).side, 0u);
+}
+
+TEST(VoxelTrace, NothingForWhatIsNoNumber) {
+  Stream random{6};
+  const Volume v = randomVolume(6, 0.9f, random);
+  const glm::vec3 inside = v.grid.voxelToWorld(glm::vec3(3.3f)), x(1, 0, 0);
+  for (int k = 0; k < 3; ++k)
+    for (const float bad : {kNan, kInf, -kInf, 1e30f}) {
+      glm::vec3 origin = inside, direction = x;
+      origin[k] = bad;
+      direction[k] = bad;
+      EXPECT_EQ(traceVoxels(v.voxels(), origin, x, x).side, kNoSide);
+      EXPECT_EQ(traceVoxels(v.voxels(), inside, direction, x).side, kNoSide);
+    }
+  EXPECT_EQ(traceVoxels(v.voxels(), inside, x, glm::vec3(kNan)).side, kNoSide);
+  EXPECT_EQ(traceVoxels(v.voxels(), inside, glm::vec3(0), x).side, kNoSide);
+}
+
+TEST(VoxelTrace, EmptyGrid) {
+  const Volume v(5);
+  EXPECT_EQ(traceVoxels(v.voxels(), v.grid.voxelToWorld(glm::vec3(2.5f)), {0, 0, 1}, {0, 0, 1}).side, kNoSide);
+}
+
+}  // namespace
+}  // namespace fovea::scene
