@@ -70,6 +70,24 @@ VkBufferImageCopy firstMip(const Image& image) {
   return copy;
 }
 
+// As many mips, one after the other, as make up `bytes`; none when no number of them does.
+std::vector<VkBufferImageCopy> packedMips(const Image& image, uint64_t bytes) {
+  const ImageDesc& d = image.desc();
+  std::vector<VkBufferImageCopy> copies;
+  uint64_t offset = 0;
+  for (uint32_t mip = 0; mip < d.mips && offset < bytes; ++mip) {
+    VkBufferImageCopy copy = firstMip(image);
+    copy.bufferOffset = offset;
+    copy.imageSubresource.mipLevel = mip;
+    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip), std::max(1u, d.depth >> mip)};
+    offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
+              formatInfo(d.format).bytesPerTexel;
+    copies.push_back(copy);
+  }
+  if (offset != bytes) copies.clear();
+  return copies;
+}
+
 }  // namespace
 
 void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {
@@ -98,7 +116,8 @@ void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uin
 }
 
 void upload(Device& device, Image& image, std::span<const std::byte> texels, VkImageLayout layout) {
-  if (texels.size() != firstMipBytes(image)) {
+  const std::vector<VkBufferImageCopy> copies = packedMips(image, texels.size());
+  if (copies.empty()) {
     throw Error(ExitCode::Internal, "upload of " + std::to_string(texels.size()) + " bytes to image `" +
                                         image.name() + "`, whose first mip level has " +
                                         std::to_string(firstMipBytes(image)));
@@ -106,12 +125,11 @@ void upload(Device& device, Image& image, std::span<const std::byte> texels, VkI
   const Buffer staging(device, {"staging for " + image.name(), texels.size(), 0, MemoryKind::Upload});
   std::memcpy(staging.mapped(), texels.data(), texels.size());
   device.runOnce([&](VkCommandBuffer cmd) {
-    const VkBufferImageCopy copy = firstMip(image);
     beforeCopy(cmd);
     changeLayout(cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT);
-    vkCmdCopyBufferToImage(cmd, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                           &copy);
+    vkCmdCopyBufferToImage(cmd, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           uint32_t(copies.size()), copies.data());
     changeLayout(cmd, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout, VK_PIPELINE_STAGE_2_COPY_BIT,
                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   });

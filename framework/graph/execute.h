@@ -40,7 +40,7 @@ struct PassTiming {
 
 struct OutputData {
   ResourceDesc desc;
-  std::vector<std::byte> bytes;  // tightly packed, layer after layer, mip 0
+  std::vector<std::byte> bytes;  // tightly packed, layer after layer, then further mips
 };
 
 struct FrameResult {

@@ -118,12 +118,12 @@ gpu::BufferDesc bufferDesc(const BoundResource& resource);
 gpu::ImageDesc imageDesc(const BoundResource& resource);
 void allocateResources(ExecutorState& state);
 void freeResources(ExecutorState& state);
-uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed, mip 0, all layers
+uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, all layers
 // Zeroes kept and history resources whose lifetime is at least `view` (all of them when `scene`), leaving images in the
 // layout the plan expects at the start of a frame.
 void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene);
 VkImageSubresourceRange wholeImage(const gpu::Image& image);
-// Copies between an image (all layers, mip 0) and a tightly packed buffer.
+// Copies between an image (all mips, all layers) and a tightly packed buffer.
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image);
 
 }  // namespace fovea::graph

@@ -85,15 +85,26 @@ VkImageSubresourceRange wholeImage(const gpu::Image& image) {
 
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image) {
   const gpu::ImageDesc& d = image.desc();
-  VkBufferImageCopy copy{};
-  copy.imageSubresource = {image.aspect(), 0, 0, d.layers};
-  copy.imageExtent = {d.width, d.height, d.depth};
-  return {copy};
+  std::vector<VkBufferImageCopy> copies;
+  uint64_t offset = 0;
+  for (uint32_t mip = 0; mip < d.mips; ++mip) {
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = offset;
+    copy.imageSubresource = {image.aspect(), mip, 0, d.layers};
+    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip), std::max(1u, d.depth >> mip)};
+    offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
+              gpu::formatInfo(d.format).bytesPerTexel;
+    copies.push_back(copy);
+  }
+  return copies;
 }
 
 uint64_t resourceBytes(const ResourceDesc& d) {
   if (d.kind == ResourceKind::Buffer) return uint64_t(d.stride) * d.count;
-  return uint64_t(d.width) * d.height * d.depth * d.layers * gpu::formatInfo(d.format).bytesPerTexel;
+  uint64_t texels = 0;
+  for (uint32_t mip = 0; mip < d.mips; ++mip)
+    texels += uint64_t(std::max(1u, d.width >> mip)) * std::max(1u, d.height >> mip) * std::max(1u, d.depth >> mip);
+  return texels * d.layers * gpu::formatInfo(d.format).bytesPerTexel;
 }
 
 gpu::BufferDesc bufferDesc(const BoundResource& resource) {

@@ -174,8 +174,9 @@ bool Binder::evaluateTerm(uint32_t p, const SizeExpr::Term& term, int64_t& out, 
       const Value* value = pass.parameters.find(term.name);
       const int64_t* number = value ? std::get_if<int64_t>(value) : nullptr;
       const std::string* chosen = value ? std::get_if<std::string>(value) : nullptr;
-      out = number ? *number : 0;
-      if (!chosen) return number != nullptr;
+      const bool* flag = value ? std::get_if<bool>(value) : nullptr;
+      out = number ? *number : flag && *flag ? 1 : 0;
+      if (!chosen) return number || flag;
       for (const ParameterSpec& spec : pass.declaration->parameters) {  // a choice counts as its index
         const auto found = std::find(spec.choices.begin(), spec.choices.end(), *chosen);
         if (spec.name == term.name) out = found - spec.choices.begin();

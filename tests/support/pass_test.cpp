@@ -1,5 +1,6 @@
 #include "tests/support/pass_test.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "framework/base/diagnostic.h"
@@ -34,6 +35,7 @@ std::string describe(const InputData& input) {
                      ", \"width\": " + std::to_string(d.width) + ", \"height\": " + std::to_string(d.height);
   if (d.volume) text += ", \"depth\": " + std::to_string(d.depth);
   if (d.array) text += ", \"layers\": " + std::to_string(d.layers);
+  if (d.mips > 1) text += ", \"mips\": " + std::to_string(d.mips);
   return text + "}";
 }
 
@@ -179,7 +181,7 @@ PassTest& PassTest::beforeFrame(std::function<void(PassTest&, scene::Frame&)> ho
 }
 
 PassTest& PassTest::imageBytes(const std::string& port, VkFormat format, uint32_t width, uint32_t height,
-                               uint32_t layers, bool volume, std::vector<std::byte> raw) {
+                               uint32_t layers, bool volume, std::vector<std::byte> raw, uint32_t mips) {
   InputData input;
   input.desc.kind = graph::ResourceKind::Image;
   input.desc.format = format;
@@ -192,7 +194,11 @@ PassTest& PassTest::imageBytes(const std::string& port, VkFormat format, uint32_
   for (const auto& p : impl_->declaration->ports)
     for (const auto& m : p.members)
       if ((m.name.empty() ? p.name : p.name + "." + m.name) == port) input.desc.array |= m.resource.array;
-  const uint64_t expected = uint64_t(width) * height * layers * gpu::formatInfo(format).bytesPerTexel;
+  input.desc.mips = mips;
+  uint64_t expected = 0;
+  for (uint32_t mip = 0; mip < mips; ++mip)
+    expected += uint64_t(std::max(1u, width >> mip)) * std::max(1u, height >> mip) *
+                (volume ? std::max(1u, layers >> mip) : layers) * gpu::formatInfo(format).bytesPerTexel;
   if (raw.size() != expected)
     throw std::invalid_argument("input " + port + ": " + std::to_string(raw.size()) + " bytes given, " +
                                 std::to_string(expected) + " expected");
@@ -255,6 +261,7 @@ double PassTest::counter(const std::string& name) const {
     if (n == "test." + name) return value;
   throw std::invalid_argument("no counter " + name);
 }
+const graph::PassDeclaration& PassTest::declaration() const { return *impl_->declaration; }
 double PassTest::gpuMs() const { return impl_->result.passes.at(0).gpuMs; }
 const scene::Frame& PassTest::lastFrame() const { return impl_->lastFrame; }
 const scene::Geometry& PassTest::geometry() const { return impl_->setup.geometry; }

@@ -40,8 +40,8 @@ class PassTest {
   }
   template <class T>
   PassTest& volume(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
-                   const std::vector<T>& texels) {
-    return imageBytes(port, format, width, height, depth, true, toBytes(texels));
+                   const std::vector<T>& texels, uint32_t mips = 1) {  // mip after mip
+    return imageBytes(port, format, width, height, depth, true, toBytes(texels), mips);
   }
   template <class T>
   PassTest& buffer(const std::string& port, const std::vector<T>& values, const std::string& element) {
@@ -66,6 +66,7 @@ class PassTest {
   // Image texels as floats, channels interleaved (half, unorm, snorm and float formats; unorm to [0, 1]).
   std::vector<float> floats(const std::string& port) const;
   double counter(const std::string& name) const;
+  const graph::PassDeclaration& declaration() const;
   double gpuMs() const;  // of the pass, last frame
   const scene::Frame& lastFrame() const;
   const scene::Geometry& geometry() const;
@@ -78,7 +79,7 @@ class PassTest {
     return raw;
   }
   PassTest& imageBytes(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t layers,
-                       bool volume, std::vector<std::byte> raw);
+                       bool volume, std::vector<std::byte> raw, uint32_t mips = 1);
   PassTest& bufferBytes(const std::string& port, const std::string& element, uint32_t stride, uint64_t count,
                         std::vector<std::byte> raw);
   void setBytes(const std::string& port, std::vector<std::byte> raw);
