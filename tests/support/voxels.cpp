@@ -1,0 +1,230 @@
+#include "tests/support/voxels.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "framework/graph/declaration.h"
+
+namespace fovea::test {
+namespace {
+
+using glm::ivec3;
+using glm::vec2;
+using glm::vec3;
+
+// Sums are whole numbers of 2^-32.
+uint64_t fixedPoint(float x) { return uint64_t(std::floor(x * 4294967296.0f + 0.5f)); }
+
+struct Sums {
+  uint64_t area = 0;
+  std::array<uint64_t, 3> position{}, normal{}, reflectance{}, emission{};
+  uint32_t object = 0;  // key: area of the largest piece and 0xffff - its object
+};
+using Cells = std::map<uint32_t, std::array<Sums, 2>>;  // by linear cell index
+
+// A triangle in units of cells.
+struct Triangle {
+  vec3 a{0}, b{0}, c{0}, n{0};
+  float inverseLength = 0;  // 1 / |n|
+  float areaScale = 0;      // area per doubled area seen along the dominant axis
+  int axis = 0;             // of the largest component of n
+  ivec3 lo{0}, hi{-1};      // cells of its box
+};
+
+Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
+  Triangle t;
+  const float inverse = 1.0f / grid.cell;
+  // Edges from the positions as given: differences of coordinates that were rounded to the grid's would ruin the areas of
+  // small triangles.
+  const vec3 e1 = (b - a) * inverse, e2 = (c - a) * inverse;
+  t.a = (a - grid.origin) * inverse;
+  t.b = t.a + e1;
+  t.c = t.a + e2;
+  t.n = {e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x};
+  const vec3 m = glm::abs(t.n);
+  t.axis = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
+  if (!(m[t.axis] > 1e-12f)) return t;
+  const float length = std::sqrt((t.n.x * t.n.x + t.n.y * t.n.y) + t.n.z * t.n.z);
+  t.inverseLength = 1.0f / length;
+  t.areaScale = 0.5f * length * (1.0f / m[t.axis]);
+  const vec3 least = glm::floor(glm::min(glm::min(t.a, t.b), t.c)), most = glm::max(glm::max(t.a, t.b), t.c);
+  const vec3 last = glm::max(least, glm::ceil(most) - 1.0f);  // half-open: what lies on a border belongs to the upper cell
+  const float r = float(grid.resolution);
+  t.lo = ivec3(glm::min(glm::max(least, vec3(0.0f)), vec3(r)));
+  t.hi = ivec3(glm::max(glm::min(last, vec3(r - 1.0f)), vec3(-1.0f)));
+  return t;
+}
+
+constexpr float kSlack = 1e-3f;  // cells
+
+// Whether a corner of the cell lies on the inner side of the edge p -> q, in the projection along w.
+bool edgeMeetsCell(vec3 p, vec3 q, int u, int v, float sign) {
+  const float nu = -(q[v] - p[v]) * sign, nv = (q[u] - p[u]) * sign;
+  const float reach = std::max(nu, 0.0f) + std::max(nv, 0.0f);
+  return reach + kSlack * (std::abs(nu) + std::abs(nv)) >= nu * p[u] + nv * p[v];
+}
+
+// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001, as 2D edge tests
+// as in Schwarz and Seidel 2010); the box's own axes are the loop's. With slack: what it lets through is clipped.
+bool overlapsCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
+  const vec3 n = t.n;
+  const float d = (n.x * a.x + n.y * a.y) + n.z * a.z;
+  const float least = (std::min(n.x, 0.0f) + std::min(n.y, 0.0f)) + std::min(n.z, 0.0f);
+  const float most = (std::max(n.x, 0.0f) + std::max(n.y, 0.0f)) + std::max(n.z, 0.0f);
+  const float slack = kSlack * (most - least);
+  if (d < least - slack || d > most + slack) return false;
+  for (int w = 0; w < 3; ++w) {
+    const int u = (w + 1) % 3, v = (w + 2) % 3;
+    const float sign = n[w] < 0.0f ? -1.0f : 1.0f;
+    if (!edgeMeetsCell(a, b, u, v, sign) || !edgeMeetsCell(b, c, u, v, sign) || !edgeMeetsCell(c, a, u, v, sign)) return false;
+  }
+  return true;
+}
+
+using Polygon = std::vector<vec3>;
+
+// Sutherland-Hodgman: what lies at or above 0 (upper: at or below 1) along an axis.
+Polygon clip(const Polygon& in, int axis, bool upper) {
+  Polygon out;
+  for (size_t i = 0; i < in.size(); ++i) {
+    const vec3 p = in[i], q = in[(i + 1) % in.size()];
+    const float dp = upper ? 1.0f - p[axis] : p[axis], dq = upper ? 1.0f - q[axis] : q[axis];
+    if (dp >= 0.0f) out.push_back(p);
+    if ((dp >= 0.0f) != (dq >= 0.0f)) {
+      const float s = dp * (1.0f / (dp - dq));
+      vec3 x = p + (q - p) * s;
+      x[axis] = upper ? 1.0f : 0.0f;
+      out.push_back(x);
+    }
+  }
+  return out;
+}
+
+struct Piece {
+  float area = 0;  // in cell faces
+  vec3 centroid{0};
+};
+
+Piece clipToCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
+  Polygon polygon{a, b, c};
+  for (int axis = 0; axis < 3; ++axis) polygon = clip(clip(polygon, axis, false), axis, true);
+  if (polygon.size() < 3) return {};
+  // Weights of the fan's triangles are seen along the dominant axis; none is negative, so the centroid stays inside.
+  const int u = (t.axis + 1) % 3, v = (t.axis + 2) % 3;
+  const vec3 first = polygon[0];
+  float sum = 0;
+  vec3 moment{0};
+  for (size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const vec3 p = polygon[i] - first, q = polygon[i + 1] - first;
+    const float w = std::abs(p[u] * q[v] - p[v] * q[u]);
+    sum += w;
+    moment += w * (p + q);
+  }
+  if (!(sum > 0.0f)) return {};
+  return {sum * t.areaScale, first + moment * (1.0f / (3.0f * sum))};
+}
+
+vec2 uvAt(const scene::Geometry& g, const scene::Triangle& indices, const Triangle& t, vec3 a, vec3 p) {
+  const int u = (t.axis + 1) % 3, v = (t.axis + 2) % 3;
+  const vec3 e1 = t.b - t.a, e2 = t.c - t.a, d = p - a;
+  const float inverse = 1.0f / t.n[t.axis];
+  const float s = (d[u] * e2[v] - d[v] * e2[u]) * inverse, r = (e1[u] * d[v] - e1[v] * d[u]) * inverse;
+  return g.uvs[indices.v[0]] * (1.0f - s - r) + g.uvs[indices.v[1]] * s + g.uvs[indices.v[2]] * r;
+}
+
+void add(Sums& sums, const Piece& piece, vec3 normal, vec3 reflectance, vec3 emission, uint32_t object) {
+  sums.area += fixedPoint(piece.area);
+  for (int k = 0; k < 3; ++k) {
+    sums.position[size_t(k)] += fixedPoint(piece.area * piece.centroid[k]);
+    sums.normal[size_t(k)] += fixedPoint(piece.area * (normal[k] + 1.0f));
+    sums.reflectance[size_t(k)] += fixedPoint(piece.area * reflectance[k]);
+    sums.emission[size_t(k)] += fixedPoint(piece.area * std::min(emission[k], 65504.0f));
+  }
+  const uint32_t size = uint32_t(std::min(piece.area * 32768.0f, 65535.0f));
+  sums.object = std::max(sums.object, size << 16 | (0xffffu - object));
+}
+
+void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scene::VoxelGrid& grid,
+                 const scene::Triangle& indices, Cells& cells) {
+  const Triangle t = makeTriangle(grid, g.positions[indices.v[0]], g.positions[indices.v[1]], g.positions[indices.v[2]]);
+  const scene::Material& material = scene.materials[indices.material()];
+  const uint32_t side = scene::voxelSideOf(t.n);
+  const vec3 normal = t.n * t.inverseLength;
+  for (int z = t.lo.z; z <= t.hi.z; ++z)
+    for (int y = t.lo.y; y <= t.hi.y; ++y)
+      for (int x = t.lo.x; x <= t.hi.x; ++x) {
+        const vec3 cell(x, y, z), a = t.a - cell, b = t.b - cell, c = t.c - cell;
+        if (!overlapsCell(t, a, b, c)) continue;
+        const Piece piece = clipToCell(t, a, b, c);
+        if (fixedPoint(piece.area) == 0) continue;
+        const vec2 uv = uvAt(g, indices, t, a, piece.centroid);
+        const glm::vec4 color = scene::reflectance(scene, material, uv);
+        if (material.masked && color.a < material.alphaCutoff) continue;
+        const vec3 emission = scene::emission(scene, material, uv);
+        auto& sides = cells[uint32_t(x) + uint32_t(grid.resolution) * (uint32_t(y) + uint32_t(grid.resolution) * uint32_t(z))];
+        add(sides[side], piece, normal, vec3(color), emission, indices.object());
+        if (material.doubleSided) add(sides[1 - side], piece, -normal, vec3(color), emission, indices.object());
+      }
+}
+
+vec3 average(const std::array<uint64_t, 3>& sum, uint64_t area) {
+  return vec3(glm::dvec3(double(sum[0]), double(sum[1]), double(sum[2])) / double(area));
+}
+
+scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint32_t side, const Sums& sums) {
+  scene::VoxelSide result;
+  if (sums.area == 0) return result;
+  const uint32_t r = uint32_t(grid.resolution);
+  const vec3 cell(float(linear % r), float(linear / r % r), float(linear / (r * r)));
+  result.position = grid.voxelToWorld(cell + average(sums.position, sums.area));
+  result.area = float(double(sums.area) / 4294967296.0) * grid.cell * grid.cell;
+  const vec3 normal = average(sums.normal, sums.area) - 1.0f;
+  // Normals of one side can cancel, if three or more meet: any direction to that side will do.
+  const float length = glm::length(normal);
+  result.normal = length > 1e-3f ? normal / length : vec3(side == 0 ? 0.57735027f : -0.57735027f);
+  result.object = float(0xffffu - (sums.object & 0xffffu));
+  result.reflectance = average(sums.reflectance, sums.area);
+  result.emission = average(sums.emission, sums.area);
+  return result;
+}
+
+void append(const Cells& cells, VoxelArrays& out) {
+  for (const auto& [linear, sides] : cells) {
+    for (uint32_t side = 0; side < 2; ++side) out.surface.push_back(resolveSide(out.grid, linear, side, sides[side]));
+    out.index[linear] = ++out.info.voxels;
+  }
+}
+
+}  // namespace
+
+VoxelArrays voxelizeReference(const scene::Scene& scene, const scene::Geometry& geometry, int resolution) {
+  VoxelArrays out;
+  const bool empty = geometry.empty();
+  out.grid = scene::voxelGrid(empty ? vec3(0.0f) : geometry.boundsMin, empty ? vec3(0.0f) : geometry.boundsMax, resolution);
+  out.resolution = resolution;
+  out.info.resolution = uint32_t(resolution);
+  out.index.resize(size_t(resolution) * size_t(resolution) * size_t(resolution));
+  Cells fixed, moving;
+  for (uint32_t i = 0; i < geometry.triangles.size(); ++i)
+    addTriangle(scene, geometry, out.grid, geometry.triangles[i], i < geometry.staticTriangles ? fixed : moving);
+  append(fixed, out);
+  out.info.staticVoxels = out.info.voxels;
+  append(moving, out);
+  return out;
+}
+
+void setVoxels(PassTest& test, const VoxelArrays& voxels) {
+  const graph::PortSpec* port = test.declaration().findPort("voxels");
+  if (!port) return;
+  const uint32_t r = uint32_t(voxels.resolution);
+  std::vector<scene::VoxelSide> surface = voxels.surface;
+  if (surface.empty()) surface.resize(2);  // an empty buffer does not exist
+  for (const graph::MemberSpec& m : port->members) {
+    if (m.name == "index") test.volume("voxels.index", VK_FORMAT_R32_UINT, r, r, r, voxels.index);
+    if (m.name == "surface") test.buffer("voxels.surface", surface, "VoxelSide");
+    if (m.name == "info") test.buffer("voxels.info", std::vector<scene::VoxelInfo>{voxels.info}, "VoxelInfo");
+  }
+}
+
+}  // namespace fovea::test
