@@ -279,12 +279,19 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
   setup.scene = scene;
   setup.build(graph::load(nameOrPath, load, messages), messages, options.size, options.outputs);
   GraphRun run;
-  for (uint32_t i = 0; i < options.frames; ++i)
-    setup.executor->submit(setup.frame(options.size, i, options.seed), i + 1 == options.frames);
-  while (auto result = setup.executor->next()) {
-    run.outputs = result->outputs;
-    run.frames.push_back(std::move(*result));
+  const auto collect = [&] {
+    while (auto result = setup.executor->next()) {
+      if (!result->outputs.empty()) run.outputs = result->outputs;
+      run.frames.push_back(std::move(*result));
+    }
+  };
+  for (uint32_t i = 0; i < options.frames; ++i) {
+    scene::Frame frame = setup.frame(options.size, i, options.seed);
+    if (options.beforeFrame) options.beforeFrame(frame);
+    setup.executor->submit(frame, options.everyFrame || i + 1 == options.frames);
+    if (options.everyFrame) collect();
   }
+  collect();
   return run;
 }
 

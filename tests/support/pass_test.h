@@ -97,6 +97,8 @@ struct GraphRunOptions {
   uint32_t frames = 1, seed = 1;
   std::vector<std::string> set;  // "vpl_count=100"
   std::vector<std::string> outputs;  // names to read back; empty: all images
+  bool everyFrame = false;           // read back after every frame: GraphRun::frames[i].outputs
+  std::function<void(scene::Frame&)> beforeFrame;
 };
 GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, const GraphRunOptions& options = {});
 
