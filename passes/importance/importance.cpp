@@ -1,0 +1,86 @@
+// How much of what the eye cares about a VPL can light (METHOD importance, step 2).
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/resources.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/hemisphere_rays.h"
+#include "framework/scene/voxel_grid.h"
+#include "framework/scene/vpl.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kGroupVpls = 16;  // VPLs a work group (estimate.comp)
+
+class Importance : public Pass {
+ public:
+  static PassDeclaration declaration();
+  void prepare(PrepareContext& ctx) override;
+  void record(RecordContext& ctx) override;
+
+ private:
+  Kernel candidates_, vpls_;
+};
+
+PassDeclaration Importance::declaration() {
+  PassDeclaration d("importance", "foveated importance of VPLs: mean weight of what six directions over each see");
+  d.input("voxels", "voxels",
+          {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+           member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+          "grid that the VPLs look at");
+  d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "foveated weight of each side, in [0, 1]");
+  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead, "VPLs that could be");
+  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+          "VPLs of the frame before, at their places of this frame");
+  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; w: luminance; for `luminance`")
+      .makeOptional();
+  d.input("mips", "voxel-mips",
+          {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled),
+           member("weight", image3D(VK_FORMAT_R16_SFLOAT, 1, 1, 1), Usage::Sampled)},
+          "opacity and weight, averaged; for method `cones`")
+      .makeOptional();
+  d.output("candidate_importance", buffer("float", 4, countOf("candidates")), Usage::StorageWrite,
+           "I of each candidate, in [0, 1]; 0: an attempt that hit nothing");
+  d.output("vpl_importance", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
+           "I of each VPL, in [0, 1]; 0: an empty slot");
+  d.parameter("method", choice("rays", {"rays", "cones"}),
+              "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the weights in a "
+              "cone of 60 degrees");
+  d.parameter("luminance", flag(false),
+              "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
+  d.counter("rays", "rays or cones traced");
+  return d;
+}
+
+void Importance::prepare(PrepareContext& ctx) {
+  const Parameters& p = ctx.parameters();
+  const bool cones = p.text("method") == "cones", luminance = p.flag("luminance");
+  if (luminance && !ctx.has("radiance"))
+    throw Error(ExitCode::BadInput, "pass `importance`: parameter `luminance` needs the input `radiance`",
+                "wire `radiance` to light-inject, or set luminance to false");
+  if (cones && !ctx.has("mips"))
+    throw Error(ExitCode::BadInput, "pass `importance`: method `cones` needs the input `mips`",
+                "wire `mips` to mipmap, or set method to `rays`");
+  gpu::Defines defines{{"CONES", cones ? "1" : "0"}, {"LUMINANCE", luminance ? "1" : "0"}};
+  defines["CANDIDATES"] = "1";
+  candidates_ = ctx.compute("importance/estimate.comp", defines);
+  defines["CANDIDATES"] = "0";
+  vpls_ = ctx.compute("importance/estimate.comp", defines);
+}
+
+void Importance::record(RecordContext& ctx) {
+  const auto estimate = [&](Kernel kernel, const char* port) {
+    const uint32_t count = uint32_t(ctx.count(port));
+    ctx.use(kernel).constant("count", count).dispatch((count + kGroupVpls - 1) / kGroupVpls);
+  };
+  estimate(candidates_, "candidates");
+  estimate(vpls_, "vpls");
+}
+
+FOVEA_PASS(Importance);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,58 @@
+// How much the eye cares about each voxel side it sees (METHOD importance, step 1).
+#include "framework/gpu/resources.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/voxel_grid.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kBlock = 4, kGroup = 8;  // pixels a thread and threads a work group, per side (scatter.comp)
+
+class WeightMap : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("weight-map", "foveated weight of every voxel side that the eye sees");
+    d.view();
+    d.input("gbuffer", "gbuffer",
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+             member("face", image2D(), Usage::Sampled)},
+            "surfaces seen by the eye");
+    d.input("voxels", "voxels",
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+            "grid whose sides are weighted");
+    d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),
+             Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
+             "float a side: the largest foveated weight among the pixels that show it, 0: unseen");
+    d.parameter("region", choice("fovea", {"fovea", "image"}),
+                "what counts fully: the disc around the gaze, with weights that fall outside it, or the whole image");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
+                "radius r_f of the fovea: weight 1 inside, r_f / r at the distance r from the gaze");
+    d.counter("visible", "sides with a weight above 0");
+    d.counter("unassigned", "pixels that show a surface of which the grid has no side that faces the eye there");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const bool image = ctx.parameters().text("region") == "image";
+    scatter_ = ctx.compute("weight-map/scatter.comp", {{"WHOLE_IMAGE", image ? "1" : "0"}});
+  }
+
+  void record(RecordContext& ctx) override {
+    const VkExtent3D size = ctx.extent("gbuffer.position");
+    ctx.fill("weights", 0);
+    ctx.barrier();
+    const uint32_t tile = kBlock * kGroup;
+    ctx.use(scatter_).dispatch((size.width + tile - 1) / tile, (size.height + tile - 1) / tile);
+  }
+
+ private:
+  Kernel scatter_;
+};
+
+FOVEA_PASS(WeightMap);
+
+}  // namespace
+}  // namespace fovea::passes

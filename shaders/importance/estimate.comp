@@ -1,0 +1,77 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Importance of VPLs (METHOD importance step 2): with w_i the foveated weight of the first voxel side that direction i sees,
+//   I = sum(w_i cos_i) / sum(cos_i).
+// The directions hang on the VPL's normal alone, so that I is steady from frame to frame: Eq. 1 compares it with the I of
+// the frame before, and noise would delete VPLs in a still picture.
+// Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1.
+#include "common/scene.glsl"
+#include "common/paraboloid.glsl"
+#include "common/hemisphere_rays.glsl"
+#include "common/voxel_trace.glsl"
+
+// One invocation a direction. Neighbours trace the same direction from different VPLs: these often lie near each other.
+const int kVpls = 16;
+layout(local_size_x = kVpls, local_size_y = kHemisphereRays) in;
+
+#if CANDIDATES
+layout(set = 0) uniform usamplerBuffer candidates;
+layout(set = 0, std430) writeonly buffer CandidateImportance { float importance[]; };
+#else
+layout(set = 0) uniform usamplerBuffer vpls;
+layout(set = 0, std430) writeonly buffer VplImportance { float importance[]; };
+#endif
+layout(set = 0) uniform samplerBuffer weights;
+#if LUMINANCE
+layout(set = 0) uniform samplerBuffer radiance;
+#endif
+layout(set = 0, std430) buffer Counters { uint counters[]; };  // rays
+
+layout(push_constant) uniform Constants { uint count; };
+
+shared float seen[kHemisphereRays][kVpls];  // w_i cos_i
+
+struct Source {
+  vec3 position, normal;
+  uint side;
+  bool live;
+};
+
+Source loadSource(uint i) {
+#if CANDIDATES
+  uvec4 positionSide = texelFetch(candidates, int(i) * 4), normal = texelFetch(candidates, int(i) * 4 + 1);
+  return Source(uintBitsToFloat(positionSide.xyz), uintBitsToFloat(normal.xyz), positionSide.w, positionSide.w != kNoSide);
+#else
+  uvec4 position = texelFetch(vpls, int(i) * 5), normalLife = texelFetch(vpls, int(i) * 5 + 1);
+  return Source(uintBitsToFloat(position.xyz), uintBitsToFloat(normalLife.xyz), texelFetch(vpls, int(i) * 5 + 2).w,
+                uintBitsToFloat(normalLife.w) > 0.0);
+#endif
+}
+
+float weightSeen(Source source, vec3 direction) {
+  uint side = traceVoxels(voxelsGrid(), source.position, direction, source.normal).side;
+  return side == kNoSide ? 0.0 : texelFetch(weights, int(side)).r;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x, ray = gl_LocalInvocationID.y;
+  bool live = false;
+  Source source;
+  if (i < count) {
+    source = loadSource(i);
+    live = source.live;
+  }
+  vec3 local = kHemisphereRay[ray];
+  seen[ray][lane] = live ? weightSeen(source, toWorld(orthonormalFrame(source.normal), local)) * local.z : 0.0;
+  barrier();
+  if (ray != 0u || i >= count) return;
+  float sum = 0.0;
+  for (int k = 0; k < kHemisphereRays; ++k) sum += seen[k][lane];
+  float result = clamp(sum / kHemisphereCosines, 0.0, 1.0);
+#if LUMINANCE
+  if (live) result *= clamp(frame.exposure * texelFetch(radiance, int(source.side)).w, 0.0, 1.0);
+#endif
+  importance[i] = result;
+  if (live) atomicAdd(counters[0], uint(kHemisphereRays));
+}

@@ -1,0 +1,89 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+// Every pixel gives its foveated weight to the voxel side that its surface point lies in; a side keeps the largest
+// (METHOD importance step 1). The largest does not depend on the order. Define: WHOLE_IMAGE 0/1.
+#include "common/scene.glsl"
+#include "common/fovea.glsl"
+#include "common/voxel_trace.glsl"
+
+// An invocation looks at a block of pixels, row by row and back: neighbours mostly show the same side, so a run of them
+// costs one look-up of the side and one atomic.
+const int kBlock = 4;
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0) uniform texture2D gbufferPosition;
+layout(set = 0) uniform texture2D gbufferFace;
+layout(set = 0, std430) buffer Weights { uint weights[]; };    // bits of floats, none negative: they order alike
+layout(set = 0, std430) buffer Counters { uint counters[]; };  // visible, unassigned
+
+#if !WHOLE_IMAGE
+layout(push_constant) uniform Constants {
+  float foveaRadius;  // image widths
+};
+#endif
+
+// The side that a surface point lies in; where that is empty (on the border of a cell the rounding decides) the voxel's other
+// side if it faces the eye.
+uint seenSide(VoxelGrid grid, ivec3 cell, uint exact) {
+  uint voxel = voxelAt(grid, cell);
+  if (voxel == 0u) return kNoSide;
+  uint side = 2u * (voxel - 1u) + exact;
+  if (texelFetch(voxelsSurface, int(side) * kVoxelSideTexels).w > 0.0) return side;
+  side ^= 1u;
+  vec4 positionArea = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels);
+  vec3 normal = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 1).xyz;
+  return positionArea.w > 0.0 && dot(normal, view.eye.xyz - positionArea.xyz) > 0.0 ? side : kNoSide;
+}
+
+// Returns 1 for the first weight that a side gets.
+uint give(uint side, float weight) {
+  if (side == kNoSide) return 0u;
+  return atomicMax(weights[side], floatBitsToUint(weight)) == 0u ? 1u : 0u;
+}
+
+void main() {
+  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 first = ivec2(gl_GlobalInvocationID.xy) * kBlock;
+  VoxelGrid grid = voxelsGrid();
+#if !WHOLE_IMAGE
+  Fovea fovea = makeFovea(view.gaze.xy, vec2(size), foveaRadius);
+#endif
+  ivec3 cell = ivec3(-1);
+  uint exact = 0u, side = kNoSide, visible = 0u, unassigned = 0u;
+  float weight = 0.0;
+  for (int i = 0; i < kBlock * kBlock; ++i) {
+    int row = i / kBlock, column = i % kBlock;
+    ivec2 p = first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row);
+    if (any(greaterThanEqual(p, size))) continue;
+    vec4 position = texelFetch(gbufferPosition, p, 0);
+    if (position.w <= 0.0) continue;  // background
+    uint facing = voxelSideOf(octDecode(texelFetch(gbufferFace, p, 0).xy));
+    ivec3 at = ivec3(floor(worldToVoxel(grid, position.xyz)));
+    if (at != cell || facing != exact || side == kNoSide) {
+      uint next = seenSide(grid, at, facing);
+      if (next != side) {
+        visible += give(side, weight);
+        side = next;
+        weight = 0.0;
+      }
+      cell = at;
+      exact = facing;
+    }
+    if (side == kNoSide) ++unassigned;
+#if WHOLE_IMAGE
+    weight = 1.0;
+#else
+    weight = max(weight, foveaWeight(fovea, vec2(p) + 0.5));
+#endif
+  }
+  visible += give(side, weight);
+  visible = subgroupAdd(visible);
+  unassigned = subgroupAdd(unassigned);
+  if (subgroupElect()) {
+    if (visible > 0u) atomicAdd(counters[0], visible);
+    if (unassigned > 0u) atomicAdd(counters[1], unassigned);
+  }
+}

@@ -1,0 +1,261 @@
+// Weights of what the eye sees: closed forms on a wall, and random G-buffers against a plain loop over the pixels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "framework/base/random.h"
+#include "framework/scene/fovea.h"
+#include "tests/support/pass_test.h"
+#include "tests/support/shapes.h"
+#include "tests/support/voxels.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kResolution = 16;
+
+float random(uint32_t what, uint32_t i) { return uniformFloat(randomStream(23, 0, what, i)); }
+
+// A room of 2 m with a panel in it that is seen from both sides.
+scene::Scene room() {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f));
+  const uint32_t materials[6] = {grey, grey, grey, grey, grey, grey};
+  addRoom(s, materials, 1);
+  addQuad(s, grey, {-0.4f, -0.9f, -0.31f}, {0.7f, 0, 0.1f}, {0, 1.1f, 0});
+  addQuad(s, grey, {-0.4f, -0.9f, -0.32f}, {0, 1.1f, 0}, {0.7f, 0, 0.1f});
+  scene::Camera camera;
+  camera.position = {0.3f, 0.2f, 0.9f};
+  s.cameras.push_back(camera);
+  return s;
+}
+
+struct Pixel {
+  glm::vec3 position{0};
+  float distance = 0;  // 0: background
+  glm::vec3 face{0, 0, 1};
+};
+
+struct Picture {
+  int width, height;
+  std::vector<Pixel> pixels;
+  Picture(int w, int h) : width(w), height(h), pixels(size_t(w * h)) {}
+  Pixel& at(int x, int y) { return pixels[size_t(y * width + x)]; }
+  const Pixel& at(int x, int y) const { return pixels[size_t(y * width + x)]; }
+
+  std::vector<float> positions() const {
+    std::vector<float> list;
+    for (const Pixel& p : pixels) list.insert(list.end(), {p.position.x, p.position.y, p.position.z, p.distance});
+    return list;
+  }
+  void wire(PassTest& test) const {
+    std::vector<float> face;
+    for (const Pixel& p : pixels) {
+      const glm::vec3 n = p.face / (std::abs(p.face.x) + std::abs(p.face.y) + std::abs(p.face.z));
+      const glm::vec2 folded = (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
+      const glm::vec2 oct = n.z >= 0 ? glm::vec2(n) : folded;
+      face.insert(face.end(), {oct.x, oct.y});
+    }
+    test.viewSize(uint32_t(width), uint32_t(height));
+    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, uint32_t(width), uint32_t(height), 1, positions());
+    test.image("gbuffer.face", VK_FORMAT_R32G32_SFLOAT, uint32_t(width), uint32_t(height), 1, face);
+  }
+};
+
+struct Expected {
+  std::vector<float> weights;
+  double visible = 0, unassigned = 0;
+};
+
+// METHOD importance step 1, one pixel after the other.
+Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze, float radius) {
+  Expected e;
+  e.weights.resize(voxels.surface.size());
+  const scene::Fovea fovea = scene::makeFovea(gaze, {picture.width, picture.height}, radius);
+  const int r = voxels.resolution;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const Pixel& p = picture.at(x, y);
+      if (p.distance <= 0) continue;
+      const glm::ivec3 cell(glm::floor(voxels.grid.worldToVoxel(p.position)));
+      uint32_t voxel = 0;
+      if (cell == glm::clamp(cell, glm::ivec3(0), glm::ivec3(r - 1)))
+        voxel = voxels.index[size_t(cell.x + r * (cell.y + r * cell.z))];
+      uint32_t side = 2 * (voxel - 1) + scene::voxelSideOf(p.face);
+      bool seen = voxel != 0;
+      if (seen && voxels.surface[side].area <= 0) {
+        side ^= 1u;
+        const scene::VoxelSide& s = voxels.surface[side];
+        seen = s.area > 0 && glm::dot(s.normal, eye - s.position) > 0;
+      }
+      if (!seen) {
+        ++e.unassigned;
+        continue;
+      }
+      e.weights[side] = std::max(e.weights[side], scene::foveaWeight(fovea, {x + 0.5f, y + 0.5f}));
+    }
+  for (const float w : e.weights) e.visible += w > 0;
+  return e;
+}
+
+void expectEqual(const PassTest& test, const Expected& expected) {
+  const std::vector<float> weights = test.values<float>("weights");
+  ASSERT_EQ(weights.size(), expected.weights.size());
+  for (size_t i = 0; i < weights.size(); ++i) ASSERT_NEAR(weights[i], expected.weights[i], 2e-7f) << "side " << i;
+  EXPECT_EQ(test.counter("visible"), expected.visible);
+  EXPECT_EQ(test.counter("unassigned"), expected.unassigned);
+}
+
+// Non-empty cells of the grid.
+std::vector<glm::ivec3> surfaceCells(const VoxelArrays& voxels) {
+  std::vector<glm::ivec3> cells;
+  const int r = voxels.resolution;
+  for (int z = 0; z < r; ++z)
+    for (int y = 0; y < r; ++y)
+      for (int x = 0; x < r; ++x)
+        if (voxels.index[size_t(x + r * (y + r * z))] != 0) cells.push_back({x, y, z});
+  return cells;
+}
+
+// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a face that
+// the cell has no side for.
+Picture randomPicture(int width, int height, const VoxelArrays& voxels) {
+  const std::vector<glm::ivec3> cells = surfaceCells(voxels);
+  Picture picture(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const uint32_t patch = uint32_t((x + y % 3) / 5 + 100 * (y / 3)), pixel = uint32_t(x + 1000 * y);
+      Pixel& p = picture.at(x, y);
+      p.distance = random(0, patch) < 0.1f ? 0.0f : 1.0f;
+      const glm::ivec3 cell = cells[size_t(random(1, patch) * float(cells.size()))];
+      const uint32_t voxel = voxels.index[size_t(cell.x + kResolution * (cell.y + kResolution * cell.z))] - 1;
+      const glm::vec3 inCell(random(2, pixel), random(3, pixel), random(4, pixel));
+      p.position = voxels.grid.voxelToWorld(glm::vec3(cell) + 0.02f + 0.96f * inCell);
+      if (random(5, patch) < 0.05f) p.position += glm::vec3(5);
+      if (random(5, patch) > 0.95f) p.position *= 0.3f;  // mostly an empty cell
+      const uint32_t wanted = random(6, patch) < 0.5f ? 0u : 1u;
+      const bool other = voxels.surface[2 * voxel + wanted].area <= 0;
+      p.face = voxels.surface[2 * voxel + (other ? 1 - wanted : wanted)].normal;
+      if (random(7, pixel) < 0.1f) p.face = -p.face;
+    }
+  return picture;
+}
+
+TEST(WeightMap, EqualsTheReference) {
+  const scene::Scene s = room();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
+  for (const glm::ivec2 size : {glm::ivec2(101, 77), glm::ivec2(64, 64), glm::ivec2(3, 2)}) {
+    PassTest test("weight-map");
+    test.scene(s).param("fovea_radius", 0.2);
+    setVoxels(test, voxels);
+    const Picture picture = randomPicture(size.x, size.y, voxels);
+    picture.wire(test);
+    test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.views[0].gaze = {0.3f, 0.6f}; });
+    test.run();
+    const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f);
+    expectEqual(test, expected);
+    if (size.x < 50) continue;
+    EXPECT_GT(expected.visible, 200);     // the test tests something
+    EXPECT_GT(expected.unassigned, 100);
+  }
+}
+
+// A wall across the whole image, one cell a pixel and so on: all that is known of a side is its own pixels.
+Picture wallPicture(int size) {
+  Picture picture(size, size);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      Pixel& p = picture.at(x, y);
+      p.position = {(2 * (float(x) + 0.5f) / float(size) - 1) * 0.995f, (1 - 2 * (float(y) + 0.5f) / float(size)) * 0.995f, -1};
+      p.distance = 2;
+    }
+  return picture;
+}
+
+std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::vec2 gaze, const Picture& picture) {
+  setVoxels(test, voxels);
+  picture.wire(test);
+  test.beforeFrame([gaze](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
+  test.run();
+  return test.values<float>("weights");
+}
+
+// Inside the disc exactly 1, r_f / r at the nearest pixel outside: continuous across its edge, and wherever the gaze is.
+TEST(WeightMap, FallsOutsideTheDisc) {
+  const scene::Scene s = room();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
+  const int size = 96;
+  const Picture picture = wallPicture(size);
+  for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.1f, 0.95f), glm::vec2(-1.5f, 0.5f)}) {
+    PassTest test("weight-map");
+    const auto weights = wallWeights(test.scene(s), voxels, gaze, picture);
+    const double radius = 0.25 * size;
+    std::map<uint32_t, double> nearest;  // side -> distance of its nearest pixel from the gaze
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const glm::ivec3 cell(glm::floor(voxels.grid.worldToVoxel(picture.at(x, y).position)));
+        const uint32_t side = 2 * (voxels.index[size_t(cell.x + kResolution * (cell.y + kResolution * cell.z))] - 1);
+        const double r = glm::distance(glm::dvec2(x + 0.5, y + 0.5), glm::dvec2(gaze) * double(size));
+        nearest[side] = nearest.contains(side) ? std::min(nearest[side], r) : r;
+      }
+    double sum = 0;
+    for (const auto& [side, r] : nearest) {
+      ASSERT_NEAR(weights[side], r <= radius ? 1.0 : radius / r, 1e-6);
+      sum += weights[side];
+    }
+    EXPECT_EQ(test.counter("visible"), double(nearest.size()));
+    EXPECT_EQ(test.counter("unassigned"), 0);
+    double all = 0;
+    for (const float w : weights) all += w;
+    EXPECT_NEAR(all, sum, 1e-3);  // nothing else is seen
+    if (gaze.x < 0) {
+      EXPECT_LT(*std::max_element(weights.begin(), weights.end()), 0.2f);
+    }
+  }
+}
+
+TEST(WeightMap, RegionImageWeighsAllThatIsSeenAlike) {
+  const scene::Scene s = room();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
+  PassTest test("weight-map");
+  test.scene(s).param("region", "image");
+  double seen = 0;
+  for (const float w : wallWeights(test, voxels, {0.1f, 0.1f}, wallPicture(96))) {
+    EXPECT_TRUE(w == 0 || w == 1);
+    seen += w;
+  }
+  EXPECT_EQ(test.counter("visible"), seen);
+  EXPECT_GT(seen, 200);
+}
+
+// Nothing stays from the frame before.
+TEST(WeightMap, ForgetsTheLastFrame) {
+  const scene::Scene s = room();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
+  Picture picture = wallPicture(64);
+  PassTest test("weight-map");
+  wallWeights(test.scene(s), voxels, glm::vec2(0.5f), picture);
+  EXPECT_GT(test.counter("visible"), 200);
+  for (Pixel& p : picture.pixels) p.distance = 0;
+  test.set("gbuffer.position", picture.positions());
+  test.run();
+  EXPECT_EQ(test.counter("visible"), 0);
+  for (const float w : test.values<float>("weights")) ASSERT_EQ(w, 0);
+}
+
+// No triangles: an empty grid, and a picture that does not know it.
+TEST(WeightMap, EmptySceneHasNothingToWeigh) {
+  scene::Scene s;
+  PassTest test("weight-map");
+  test.scene(s);
+  const auto weights = wallWeights(test, voxelizeReference(s, scene::flatten(s), kResolution), glm::vec2(0.5f), wallPicture(32));
+  EXPECT_GE(weights.size(), 1u);
+  for (const float w : weights) EXPECT_EQ(w, 0);
+  EXPECT_EQ(test.counter("visible"), 0);
+  EXPECT_EQ(test.counter("unassigned"), 32 * 32);
+}
+
+}  // namespace
+}  // namespace fovea::test
