@@ -1,0 +1,102 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// One attempt an invocation: a pixel of the region, the surface it shows, one diffuse bounce from there; the side of a
+// voxel that the bounce meets becomes a candidate. It need not be visible to the eye.
+#include "common/scene.glsl"
+#include "common/random.glsl"
+#include "common/fovea.glsl"
+#include "common/voxel_trace.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform texture2D gbufferPosition;
+layout(set = 0) uniform texture2D gbufferNormal;
+layout(set = 0) uniform texture2D gbufferFace;
+#if TWO_EYES
+layout(set = 0) uniform texture2D gbuffer2Position;
+layout(set = 0) uniform texture2D gbuffer2Normal;
+layout(set = 0) uniform texture2D gbuffer2Face;
+#endif
+#if HAS_RADIANCE
+layout(set = 0) uniform samplerBuffer radiance;
+#endif
+layout(set = 0, std430) writeonly buffer Candidates { Candidate candidates[]; };
+layout(set = 0, std430) buffer Counters { uint counters[]; };  // in the order below
+
+const uint kRays = 0u, kCandidates = 1u, kEscaped = 2u, kBackground = 3u;
+const uint kCandidateStream = 0x63616e64u;  // keeps the random numbers of this pass apart from others
+
+layout(push_constant) uniform Push {
+  vec2 secondGaze;
+  float foveaRadius;
+  uint region;
+  uint seed;
+  uint streamFrame;
+  uint count;
+};
+
+struct Seen {  // the surface that a pixel shows
+  vec3 position, normal, face;
+  bool background;
+};
+
+Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uint stream) {
+  ivec2 size = textureSize(position, 0);
+  ivec2 pixel = regionSample(region, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
+  vec4 place = texelFetch(position, pixel, 0);
+  return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
+}
+
+// Cosine-weighted around `normal`. What would go below the surface itself (a shading normal leans) is mirrored up; as both
+// normals point to the eye's side, that also stays above the shading normal.
+vec3 bounce(vec3 normal, vec3 face, vec2 u) {
+  float s = normal.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + normal.z), b = normal.x * normal.y * a;
+  vec3 tangent = vec3(1.0 + s * normal.x * normal.x * a, s * b, -s * normal.x);
+  vec3 bitangent = vec3(b, s + normal.y * normal.y * a, -normal.y);
+  float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+  vec3 d = normalize(r * cos(phi) * tangent + r * sin(phi) * bitangent + sqrt(1.0 - u.x) * normal);
+  return d - 2.0 * min(dot(d, face), 0.0) * face;
+}
+
+mat4x3 objectToWorld(uint object) { return mat4x3(1.0); }
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  Candidate candidate = Candidate(vec4(vec3(0.0), uintBitsToFloat(kNoSide)), vec4(0.0), vec4(0.0), vec4(0.0));
+  uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
+#if TWO_EYES
+  Seen seen;
+  if ((i & 1u) == 0u)
+    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream);
+  else
+    seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream);
+#else
+  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream);
+#endif
+  if (seen.background) {
+    atomicAdd(counters[kBackground], 1u);
+    candidates[i] = candidate;
+    return;
+  }
+  vec3 direction = bounce(normalize(seen.normal), seen.face, streamPoint(stream, kRegionDraws));
+  VoxelHit hit = traceVoxels(voxelsGrid(), seen.position, direction, seen.face);
+  atomicAdd(counters[kRays], 1u);
+  if (hit.side == kNoSide) {
+    atomicAdd(counters[kEscaped], 1u);
+    candidates[i] = candidate;
+    return;
+  }
+  atomicAdd(counters[kCandidates], 1u);
+  VoxelSide side = loadSide(hit.side);
+  mat4x3 moved = objectToWorld(uint(side.object));
+  candidate.positionSide = vec4(side.position, uintBitsToFloat(hit.side));
+  candidate.normalObject = vec4(side.normal, side.object);
+  candidate.reflectanceLuminance.rgb = side.reflectance;
+#if HAS_RADIANCE
+  candidate.reflectanceLuminance.w = texelFetch(radiance, int(hit.side)).w;
+#endif
+  candidate.localPosition = vec4(inverse(mat3(moved)) * (side.position - moved[3]), 0.0);
+  candidates[i] = candidate;
+}
