@@ -14,6 +14,7 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kTileWidth = 16, kTileHeight = 16;  // pixels that a work group works on (in shade.comp: of one subset)
+static_assert(kTileWidth * kTileHeight == 256);         // as pass reproject counts the groups of the indirect dispatch
 
 // A subset with fewer VPLs than this is no estimate of anything; fewer subsets cost little then.
 constexpr uint64_t kSmallestSubset = 4;
@@ -40,6 +41,7 @@ class Deferred : public Pass {
             "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
         .makeOptional();
     d.input("direct", image2D(), Usage::Sampled, "rgb: radiance to add the indirect light to").makeOptional();
+    addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageWrite,
              "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is `indirect`; background 0");
@@ -49,7 +51,8 @@ class Deferred : public Pass {
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
-    d.counter("vpls_per_pixel", "VPLs that shade one pixel, on average: times `pixels` the number of pixel-VPL pairs");
+    d.counter("vpls_per_pixel", "VPLs that shade one pixel, on average: times `shaded_pixels` the number of pixel-VPL pairs");
+    d.counter("shaded_pixels", "pixels that VPLs shade: `pixels`, or those of the blocks of `shade`");
     return d;
   }
 
@@ -61,10 +64,86 @@ class Deferred : public Pass {
                   "use 1, 2, 4 or 8");
     count_ = uint32_t(ctx.count("vpls"));
     side_ = subsetsPerSide(interleave, count_);
-    gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)},
-                         {"KERNEL_DISC", p.text("kernel") == "disc" ? "1" : "0"},
-                         {"SHADOWED", ctx.has("atlas") ? "1" : "0"},
-                         {"TILED", "0"}};
+    masked_ = ctx.has("shade");
+    if (masked_) checkMask(ctx, uint32_t(interleave));
+    gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
+    gpu::Defines filter = defines;
+    filter["HAS_DIRECT"] = ctx.has("direct") ? "1" : "0";
+    resolve_ = ctx.compute("deferred/resolve.comp", filter);
+    if (masked_) defines["BLOCK"] = std::to_string(interleave);
+    defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
+    preparePages(ctx, defines);
+  }
+
+  void record(RecordContext& ctx) override {
+    const Parameters& p = ctx.parameters();
+    const VkExtent3D size = ctx.extent("partial");
+    const auto groups = [&](uint32_t pixels, uint32_t tile) {
+      return (pixels + tile * side_ - 1) / (tile * side_) * side_;
+    };
+    for (uint32_t page = 0; page < pages_.size(); ++page) {
+      const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
+      if (page > 0) ctx.barrier();
+      Commands commands = ctx.use(pages_[page]);
+      commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
+      if (ctx.has("atlas")) commands.constant("firstSlot", first);
+      if (masked_)
+        commands.dispatchIndirect("shade.dispatch");
+      else
+        commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
+    }
+    ctx.barrier();
+    ctx.use(resolve_)
+        .constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f))
+        .dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
+    ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
+  }
+
+ private:
+  static void addMask(PassDeclaration& d) {
+    d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled,
+            "rgb: irradiance / pi where `shade` leaves pixels out (of pass reproject); with `shade` only")
+        .makeOptional();
+    d.input("shade", "shade-mask",
+            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::Sampled, "1: in a listed block"),
+             member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead, "x | y << 16, in blocks of `interleave` pixels"),
+             member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect, "groups; w: blocks listed")},
+            "only these blocks of pixels are shaded; without it all are")
+        .makeOptional();
+  }
+
+  static void addParameters(PassDeclaration& d) {
+    d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
+                "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
+                "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
+    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "for kernel `clamp`; 0: no clamp");
+    d.parameter("interleave", integer(4, 1, 8),
+                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset would have under 4");
+    d.parameter("shadow_bias", real(1, 0, 100),
+                "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
+    d.parameter("filter_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
+    d.parameter("filter_plane", real(0.005, 1e-6, 1),
+                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that belongs to its surface");
+  }
+
+  static void checkMask(PrepareContext& ctx, uint32_t interleave) {
+    if (!ctx.has("base"))
+      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` leaves pixels out, but nothing is wired to `base`",
+                  "wire reproject.irradiance to base");
+    const VkExtent3D size = ctx.extent("gbuffer.position"), mask = ctx.extent("shade.mask"), base = ctx.extent("base");
+    const uint64_t blocks = uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);
+    if (mask.width != size.width || mask.height != size.height || base.width != size.width || base.height != size.height)
+      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` and `base` are of another size than the image",
+                  "make them from the same G-buffer");
+    if (ctx.count("shade.blocks") != blocks)
+      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` lists blocks of another size than " + std::to_string(interleave) +
+                                          " x " + std::to_string(interleave) + " pixels",
+                  "give both passes the same `interleave`");
+  }
+
+  void preparePages(PrepareContext& ctx, gpu::Defines defines) {
+    defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
+    defines["TILED"] = "0";
     if (ctx.has("atlas")) {
       const VkExtent3D maps = ctx.extent("atlas");
       const uint64_t perLayer = std::max(maps.width / std::max(maps.height, 1u), 1u);
@@ -81,47 +160,10 @@ class Deferred : public Pass {
       pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage ? pages_.back()
                                                                              : ctx.compute("deferred/shade.comp", defines));
     }
-    resolve_ = ctx.compute("deferred/resolve.comp", {{"INTERLEAVE", std::to_string(side_)},
-                                                     {"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
-  }
-
-  void record(RecordContext& ctx) override {
-    const Parameters& p = ctx.parameters();
-    const VkExtent3D size = ctx.extent("partial");
-    const auto groups = [&](uint32_t pixels, uint32_t tile) {
-      return (pixels + tile * side_ - 1) / (tile * side_) * side_;
-    };
-    for (uint32_t page = 0; page < pages_.size(); ++page) {
-      const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
-      if (page > 0) ctx.barrier();
-      Commands commands = ctx.use(pages_[page]);
-      commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
-      if (ctx.has("atlas")) commands.constant("firstSlot", first);
-      commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
-    }
-    ctx.barrier();
-    ctx.use(resolve_)
-        .constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f))
-        .dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
-    ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
-  }
-
- private:
-  static void addParameters(PassDeclaration& d) {
-    d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
-                "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
-                "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
-    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "for kernel `clamp`; 0: no clamp");
-    d.parameter("interleave", integer(4, 1, 8),
-                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset would have under 4");
-    d.parameter("shadow_bias", real(1, 0, 100),
-                "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
-    d.parameter("filter_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
-    d.parameter("filter_plane", real(0.005, 1e-6, 1),
-                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that belongs to its surface");
   }
 
   uint32_t count_ = 0, side_ = 1;
+  bool masked_ = false;
   std::vector<Kernel> pages_;
   Kernel resolve_;
 };

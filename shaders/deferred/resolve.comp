@@ -3,13 +3,19 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only, and the composition
-// with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT.
+// with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED.
 //
 // Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once; where all of it lies on the surface of the pixel, the
 // mean over it is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
 // subset without a sample. Samples of that subset are then looked for on the surface in a window four times as wide; what
 // is still missing there is replaced by the mean of the subsets that were found, so that edges neither darken nor show a
 // pattern. Where less than half was found (leaves, chains) other surfaces nearby that face the same way are taken as well.
+//
+// MASKED: only the blocks of a mask were shaded, the others have their irradiance already, the base. A pixel outside takes
+// it. For a pixel inside, those of its window that are outside have no sample either; what they would add is known better,
+// though: the base there. The pixels of the window inside are then represented by the mean over all subsets (found as above,
+// in the shaded pixels only), the ones outside by their base: towards its rim a shaded patch passes into its surroundings,
+// without the noise that a part of the subsets would bring.
 
 const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
 const uint kSubsets = INTERLEAVE * INTERLEAVE;
@@ -23,9 +29,14 @@ layout(set = 0, binding = 3, rgba16f) uniform readonly image2D partial;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
-layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete
+layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
 #if HAS_DIRECT
 layout(set = 0, binding = 8) uniform texture2D direct;
+#endif
+
+#if MASKED
+layout(set = 0, binding = 9) uniform texture2D base;
+layout(set = 0, binding = 10) uniform texture2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -37,8 +48,17 @@ struct Centre {
   vec3 position, normal, sum;
   float plane;    // m; below 0: background
   uint found;     // subsets in the sum
+#if MASKED
+  vec4 outside;   // rgb: sum of the base over the window's pixels of the surface outside the mask, a: their number
+#endif
   uvec2 missing;  // bit per subset, numbered from the pixel: (dy mod INTERLEAVE) * INTERLEAVE + (dx mod INTERLEAVE)
 };
+
+#if MASKED
+bool isShaded(ivec2 p) { return texelFetch(shadeMask, p, 0).r > 0.5; }
+#else
+bool isShaded(ivec2 p) { return true; }
+#endif
 
 bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least) {
   return position.w > 0.0 && abs(dot(position.xyz - c.position, c.normal)) <= plane && dot(normal, c.normal) >= least;
@@ -53,6 +73,7 @@ void setMissing(inout Centre c, int subset) {
 void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
+  if (!isShaded(q)) return;
   if (!sameSurface(c, texelFetch(gbufferPosition, q, 0), texelFetch(gbufferNormal, q, 0).xyz, plane, least)) return;
   float w = 1.0 / float(d.x * d.x + d.y * d.y);
   sum += vec4(imageLoad(partial, q).rgb * w, w);
@@ -88,20 +109,25 @@ void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) 
   }
 }
 
-void main() {
-  ivec2 size = textureSize(gbufferPosition, 0);
-  ivec2 first = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
-                ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels);
-  Centre centres[kPixels];
-  for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = first + ivec2(0, k), inside = min(p, size - 1);
-    vec4 position = texelFetch(gbufferPosition, inside, 0);
-    bool surface = p == inside && position.w > 0.0;
-    centres[k] = Centre(position.xyz, texelFetch(gbufferNormal, inside, 0).xyz, vec3(0.0),
-                        surface ? filterPlane * position.w : -1.0, 0u, uvec2(0u));
-  }
+Centre centreAt(ivec2 p, ivec2 size) {
+  ivec2 inside = min(p, size - 1);
+  vec4 position = texelFetch(gbufferPosition, inside, 0);
+  bool surface = p == inside && position.w > 0.0;
+  Centre c;
+  c.position = position.xyz;
+  c.normal = texelFetch(gbufferNormal, inside, 0).xyz;
+  c.sum = vec3(0.0);
+  c.plane = surface ? filterPlane * position.w : -1.0;
+  c.found = 0u;
+  c.missing = uvec2(0u);
+#if MASKED
+  c.outside = vec4(0.0);
+#endif
+  return c;
+}
 
-  // Every pixel of the windows is loaded once and offered to all centres whose window holds it.
+// Every pixel of the windows is loaded once and offered to all centres whose window holds it.
+void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
   const int kBefore = INTERLEAVE / 2;
   for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
     for (int row = -kBefore; row < INTERLEAVE - kBefore + kPixels - 1; ++row) {
@@ -110,10 +136,19 @@ void main() {
       if (q != inside) position.w = 0.0;
       vec3 normal = texelFetch(gbufferNormal, inside, 0).xyz;
       vec3 value = imageLoad(partial, inside).rgb;
+#if MASKED
+      bool shaded = isShaded(inside);
+      vec4 known = vec4(texelFetch(base, inside, 0).rgb, 1.0);
+#endif
       for (int k = 0; k < kPixels; ++k) {
         int dy = row - k;
         if (dy < -kBefore || dy >= INTERLEAVE - kBefore) continue;
-        if (sameSurface(centres[k], position, normal, centres[k].plane, filterCos)) {
+        bool same = sameSurface(centres[k], position, normal, centres[k].plane, filterCos);
+#if MASKED
+        if (same && !shaded) centres[k].outside += known;
+        same = same && shaded;
+#endif
+        if (same) {
           centres[k].sum += value;
           ++centres[k].found;
         } else {
@@ -122,31 +157,62 @@ void main() {
       }
     }
   }
+}
 
-  uint surfaces = 0u, incompletes = 0u;
+// The mean over the subsets from what the window held; whether less than half of them was found on the surface.
+vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
+  incomplete = false;
+  if (c.found < kSubsets) {
+    if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
+      c.sum = imageLoad(partial, p).rgb;
+      c.found = 1u;
+      c.missing = uvec2(0u);
+    }
+#if MASKED
+    float inWindow = float(c.found);
+#endif
+    searchWider(c, p, size, c.plane, filterCos);
+    incomplete = 2u * c.found < kSubsets;
+#if MASKED
+    if (c.outside.a > 0.0) {  // the base also stands in for subsets that are nowhere on the surface
+      vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
+      return (inWindow * inside + c.outside.rgb) / (inWindow + c.outside.a);
+    }
+#endif
+    if (incomplete) searchWider(c, p, size, 8.0 * c.plane, 0.5);
+  }
+  return c.sum / float(c.found);
+}
+
+void main() {
+  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 first = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
+                ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels);
+  Centre centres[kPixels];
+  bool shaded[kPixels], anyShaded = false;
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = first + ivec2(0, k);
-    bool surface = centres[k].plane >= 0.0;
+    centres[k] = centreAt(p, size);
+    shaded[k] = centres[k].plane >= 0.0 && isShaded(min(p, size - 1));
+    anyShaded = anyShaded || shaded[k];
+  }
+#if MASKED
+  if (anyShaded)
+#endif
+    filterWindows(centres, first, size);
+
+  uint surfaces = 0u, incompletes = 0u, shadedPixels = 0u;
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 p = first + ivec2(0, k);
+    bool surface = centres[k].plane >= 0.0, incomplete = false;
     vec3 e = vec3(0.0);
-    bool incomplete = false;
-    if (surface) {
-      if (centres[k].found < kSubsets) {
-        Centre c = centres[k];
-        if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
-          c.sum = imageLoad(partial, p).rgb;
-          c.found = 1u;
-          c.missing = uvec2(0u);
-        }
-        searchWider(c, p, size, c.plane, filterCos);
-        incomplete = 2u * c.found < kSubsets;
-        if (incomplete) searchWider(c, p, size, 8.0 * c.plane, 0.5);
-        centres[k].sum = c.sum;
-        centres[k].found = c.found;
-      }
-      e = centres[k].sum / float(centres[k].found);
-    }
+    if (shaded[k]) e = meanOfSubsets(centres[k], p, size, incomplete);
+#if MASKED
+    else if (surface) e = texelFetch(base, p, 0).rgb;
+#endif
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
     incompletes += subgroupBallotBitCount(subgroupBallot(incomplete));
+    shadedPixels += subgroupBallotBitCount(subgroupBallot(shaded[k]));
     if (any(greaterThanEqual(p, size))) continue;
     vec3 reflected = surface ? texelFetch(gbufferAlbedo, p, 0).rgb * e : vec3(0.0);
     vec3 total = reflected;
@@ -160,5 +226,6 @@ void main() {
   if (subgroupElect()) {
     atomicAdd(counters[0], surfaces);
     if (incompletes > 0u) atomicAdd(counters[1], incompletes);
+    if (shadedPixels > 0u) atomicAdd(counters[3], shadedPixels);
   }
 }

@@ -3,7 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (METHOD Eq. 2 without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
-// Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page.
+// Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page;
+// MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
@@ -22,6 +23,11 @@ layout(set = 0, binding = 3, rgba16f) uniform image2D partial;
 #if SHADOWED
 layout(set = 0, binding = 4) uniform texture2D gbufferFace;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
+#endif
+
+#if MASKED
+layout(set = 0, binding = 6) uniform usamplerBuffer shadeBlocks;
+layout(set = 0, binding = 7) uniform usamplerBuffer shadeDispatch;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -45,17 +51,34 @@ float vplKernel(float d2, float d, float area) {
 #endif
 }
 
-void main() {
-  // All invocations of a work group share a subset, so that they read the same VPLs at the same time: a work group covers
-  // every INTERLEAVE-th pixel of a block.
-  uvec2 subset2 = gl_WorkGroupID.xy % INTERLEAVE;
+// All invocations of a work group share a subset, so that they read the same VPLs at the same time.
+#if MASKED
+// A work group shades the same pixel of 256 listed blocks.
+uvec2 inBlock() { return uvec2(gl_WorkGroupID.y % BLOCK, gl_WorkGroupID.y / BLOCK); }
+uvec2 subsetOfGroup() { return inBlock() % INTERLEAVE; }
+ivec2 pixelAt(int k, ivec2 size) {
+  uint perRow = gl_WorkGroupSize.x * gl_WorkGroupSize.y, item = (gl_WorkGroupID.x * kPixels + k) * perRow + gl_LocalInvocationIndex;
+  if (item >= texelFetch(shadeDispatch, 0).w) return size;  // past the last one
+  uint block = texelFetch(shadeBlocks, int(item)).x;
+  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + inBlock());
+}
+#else
+// A work group covers every INTERLEAVE-th pixel of a block.
+uvec2 subsetOfGroup() { return gl_WorkGroupID.xy % INTERLEAVE; }
+ivec2 pixelAt(int k, ivec2 size) {
   uvec2 block = gl_WorkGroupID.xy / INTERLEAVE * (gl_WorkGroupSize.xy * uvec2(1, kPixels));
-  ivec2 first = ivec2((block + gl_LocalInvocationID.xy) * INTERLEAVE + subset2);
-  ivec2 step_ = ivec2(0, gl_WorkGroupSize.y * INTERLEAVE), size = imageSize(partial);
+  uvec2 place = block + gl_LocalInvocationID.xy + uvec2(0, k * gl_WorkGroupSize.y);
+  return ivec2(place * INTERLEAVE + subsetOfGroup());
+}
+#endif
+
+void main() {
+  uvec2 subset2 = subsetOfGroup();
+  ivec2 size = imageSize(partial);
   Receiver receivers[kPixels];
   bool any_ = false;
   for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = min(first + k * step_, size - 1);
+    ivec2 p = min(pixelAt(k, size), size - 1);
     vec4 position = texelFetch(gbufferPosition, p, 0);
     receivers[k].position = position.xyz;
     receivers[k].normal = texelFetch(gbufferNormal, p, 0).xyz;
@@ -97,8 +120,8 @@ void main() {
     }
   }
   for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = first + k * step_;
-    if (any(greaterThanEqual(p, size))) break;
+    ivec2 p = pixelAt(k, size);
+    if (any(greaterThanEqual(p, size))) continue;
     // Units of `irradiance`: E / pi; a subset stands for all of them.
     vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
 #if ACCUMULATE

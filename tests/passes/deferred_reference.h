@@ -47,7 +47,8 @@ struct GBuffer {
     }
   }
 
-  void wire(PassTest& test) const {
+  // As the bundle at `port`; only the first `members` of position, normal, face, albedo.
+  void wire(PassTest& test, const std::string& port = "gbuffer", int members = 4) const {
     std::vector<float> position;
     std::vector<uint16_t> normal, face, albedo;
     const auto half = [](std::vector<uint16_t>& to, std::initializer_list<float> values) {
@@ -62,10 +63,10 @@ struct GBuffer {
     }
     const auto w = uint32_t(width), h = uint32_t(height);
     test.viewSize(w, h);
-    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
-    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
-    test.image("gbuffer.face", VK_FORMAT_R16G16_SFLOAT, w, h, 1, face);
-    test.image("gbuffer.albedo", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
+    test.image(port + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+    test.image(port + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
+    if (members > 2) test.image(port + ".face", VK_FORMAT_R16G16_SFLOAT, w, h, 1, face);
+    if (members > 3) test.image(port + ".albedo", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
   }
 };
 
@@ -76,6 +77,8 @@ struct DeferredReference {
   double filterPlane = 0.005, filterAngle = 25;
   const std::vector<uint32_t>* atlas = nullptr;  // `size` x `size` x VPLs, the bits of floats
   int size = 0;
+  const std::vector<uint8_t>* mask = nullptr;     // which pixels are shaded; all without it
+  const std::vector<glm::vec3>* base = nullptr;   // irradiance / pi of the others
   int nearTies = 0;  // shadow comparisons too close to call in single precision
 
   // E / pi at a surface from the VPLs first, first + step, ...
@@ -126,7 +129,10 @@ struct DeferredReference {
               double(n * n) * shade(g.at(x, y), vpls, size_t((y % n) * n + x % n), size_t(n * n));
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x)
-        if (g.at(x, y).distance > 0) result[size_t(y * g.width + x)] = n == 1 ? partial[size_t(y * g.width + x)] : filter(g, partial, x, y);
+        if (g.at(x, y).distance > 0) {
+          const size_t i = size_t(y * g.width + x);
+          result[i] = mask && !(*mask)[i] ? glm::dvec3((*base)[i]) : n == 1 ? partial[i] : filter(g, partial, x, y);
+        }
     return result;
   }
 
@@ -136,7 +142,9 @@ struct DeferredReference {
     const std::vector<glm::dvec3>& partial;
     int x, y;
     double plane, least;
+    const std::vector<uint8_t>* mask;
 
+    bool shaded(int qx, int qy) const { return !mask || (*mask)[size_t(qy * g.width + qx)]; }
     bool sameSurface(int qx, int qy) const {
       if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return false;
       const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
@@ -149,7 +157,7 @@ struct DeferredReference {
     glm::dvec4 wide(int ax, int ay, int n) const {
       glm::dvec4 s(0);
       const auto add = [&](int dx, int dy) {
-        if (sameSurface(x + dx, y + dy)) s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
+        if (sameSurface(x + dx, y + dy) && shaded(x + dx, y + dy)) s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
       };
       const int inX = ax < n - n / 2 ? ax : ax - n, inY = ay < n - n / 2 ? ay : ay - n;
       const int acrossX = inX < 0 ? inX + n : inX - n, acrossY = inY < 0 ? inY + n : inY - n;
@@ -165,13 +173,16 @@ struct DeferredReference {
 
   glm::dvec3 filter(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y) const {
     const int n = interleave;
-    const Search strict{g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle))};
-    glm::dvec4 sum(0);
+    const Search strict{g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle)), mask};
+    glm::dvec4 sum(0), outside(0);  // outside: the base where the window leaves the mask
     std::vector<glm::ivec2> missing;
     for (int dy = -n / 2; dy < n / 2; ++dy)
       for (int dx = -n / 2; dx < n / 2; ++dx) {
-        if (strict.sameSurface(x + dx, y + dy)) sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
+        const bool same = strict.sameSurface(x + dx, y + dy);
+        if (same && strict.shaded(x + dx, y + dy)) sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
         else missing.push_back({(dx + n) % n, (dy + n) % n});
+        if (same && !strict.shaded(x + dx, y + dy))
+          outside += glm::dvec4(glm::dvec3((*base)[size_t((y + dy) * g.width + x + dx)]), 1);
       }
     const auto search = [&](const Search& how) {
       std::vector<glm::ivec2> still;
@@ -182,7 +193,13 @@ struct DeferredReference {
       }
       missing = still;
     };
+    const double inside = sum.w;
     search(strict);
+    if (outside.w > 0) {
+      const glm::dvec3 rest = glm::dvec3(outside) / outside.w;
+      const glm::dvec3 all = (glm::dvec3(sum) + (double(n * n) - sum.w) * rest) / double(n * n);
+      return (inside * all + glm::dvec3(outside)) / (inside + outside.w);
+    }
     Search relaxed = strict;
     relaxed.plane *= 8;
     relaxed.least = 0.5;

@@ -1,0 +1,105 @@
+// The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that the second eye
+// sees, and the blocks of pixels that have no source and are shaded anew (METHOD, reproject).
+#include <cmath>
+#include <glm/glm.hpp>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kTile = 16;  // pixels a side that a work group of warp.comp works on: whole blocks of any size allowed
+
+class Reproject : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("reproject", "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
+    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
+    d.input("gbuffer", "gbuffer",
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+             member("face", image2D(), Usage::Sampled)},
+            "surfaces seen by the second eye");
+    d.input("source_gbuffer", "gbuffer",
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+            "surfaces seen by the first eye");
+    d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled,
+            "rgb: what is warped, of the first eye: `irradiance` of pass deferred");
+    d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
+             "rgb: the source's, warped; a: 1 where it is known, 0 where there is no source, and in the background");
+    const SizeExpr blocks = ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
+    d.output("shade", "shade-mask",
+             {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height), Usage::StorageRead | Usage::StorageWrite,
+                     "1: the pixel is in a block to shade"),
+              member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
+                     "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
+              member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
+                     "groups of an indirect dispatch, a column for 256 blocks and a row for a pixel of a block; w: blocks")},
+             "what the second eye has to shade");
+    d.scratch("tile_blocks", buffer("uint", 4, ceilDiv(width, kTile) * ceilDiv(height, kTile)),
+              Usage::StorageRead | Usage::StorageWrite, "blocks to shade in each tile of 16 x 16 pixels, then in those before it");
+    addParameters(d);
+    d.counter("pixels", "pixels that show a surface");
+    d.counter("new_pixels", "of these, pixels without a source");
+    d.counter("shaded_pixels", "pixels with a surface in blocks that hold one without a source");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const int64_t n = ctx.parameters().integer("interleave");
+    if ((n & (n - 1)) != 0)
+      throw Error(ExitCode::BadInput, "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
+                  "use 1, 2, 4 or 8, the same as for the shading");
+    const gpu::Defines defines{{"INTERLEAVE", std::to_string(n)}};
+    warp_ = ctx.compute("reproject/warp.comp", defines);
+    scan_ = ctx.compute("reproject/scan.comp", defines);
+    compact_ = ctx.compute("reproject/compact.comp", defines);
+  }
+
+  void record(RecordContext& ctx) override {
+    const Parameters& p = ctx.parameters();
+    const auto tiles = uint32_t(ctx.count("tile_blocks"));
+    ctx.use(warp_)
+        .constant("sourceWorldToClip", sourceView(ctx).worldToClip)
+        .constant("leastCos", std::cos(float(p.real("normal_angle")) * 0.017453293f))
+        .dispatchOver("irradiance");
+    ctx.barrier();
+    ctx.use(scan_).constant("tiles", tiles).dispatch(1);
+    ctx.barrier();
+    ctx.use(compact_).constant("tiles", tiles).dispatchThreads(tiles);
+  }
+
+ private:
+  static void addParameters(PassDeclaration& d) {
+    d.parameter("source_view", text("left"), "view that the source was rendered through");
+    d.parameter("interleave", integer(4, 1, 8),
+                "pixels without a source make the whole block of n x n pixels be shaded: 1, 2, 4 or 8, as for the shading");
+    d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
+                "distance of a source from the tangent plane of a pixel, in parts of the pixel's distance to the eye, that "
+                "belongs to its surface");
+    d.parameter("normal_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
+    d.parameter("least_weight", real(0.1, 1e-3, 1),
+                "of the bilinear weights of the four texels around, what must lie on the pixel's surface");
+  }
+
+  static const scene::View& sourceView(RecordContext& ctx) {
+    const std::string& name = ctx.parameters().text("source_view");
+    if (const scene::View* view = ctx.frame().findView(name)) return *view;
+    std::string known;
+    for (const scene::View& view : ctx.frame().views) known += (known.empty() ? "" : ", ") + view.name;
+    throw Error(ExitCode::BadInput, "pass `reproject`: source_view `" + name + "` is no view of the frame", "there is: " + known);
+  }
+
+  Kernel warp_, scan_, compact_;
+};
+
+FOVEA_PASS(Reproject);
+
+}  // namespace
+}  // namespace fovea::passes

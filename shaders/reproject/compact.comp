@@ -1,0 +1,25 @@
+#version 460
+// The list of blocks to shade: tile after tile, in each tile row after row. One tile an invocation. Defines: INTERLEAVE.
+
+const uint kTile = 16u;
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, r8) uniform readonly image2D shadeMask;
+layout(set = 0, std430) readonly buffer TileBlocks { uint count[]; } tileBlocks;
+layout(set = 0, std430) writeonly buffer ShadeBlocks { uint list[]; } shadeBlocks;
+
+layout(push_constant) uniform Constants {
+  uint tiles;
+};
+
+void main() {
+  uint tile = gl_GlobalInvocationID.x;
+  if (tile >= tiles) return;
+  uvec2 size = uvec2(imageSize(shadeMask));
+  uint columns = (size.x + kTile - 1u) / kTile, next = tileBlocks.count[tile];
+  uvec2 first = uvec2(tile % columns, tile / columns) * kTile, end = min(first + kTile, size);
+  for (uint y = first.y; y < end.y; y += INTERLEAVE)
+    for (uint x = first.x; x < end.x; x += INTERLEAVE)
+      if (imageLoad(shadeMask, ivec2(x, y)).r > 0.5) shadeBlocks.list[next++] = x / INTERLEAVE | y / INTERLEAVE << 16u;
+}
