@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// One slot an invocation: the VPL moves with its object and takes what the voxel it comes to says of the surface there.
+#include "common/scene.glsl"
+#include "common/voxel_trace.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, std430) readonly buffer Previous { VplState previous[]; };
+layout(set = 0, std430) writeonly buffer Vpls { VplState vpls[]; };
+layout(set = 0, std430) buffer Counters { uint counters[]; };  // alive, deleted
+
+layout(push_constant) uniform Push {
+  float turnCos;  // of the largest angle between the VPL's own normal and its voxel's
+};
+
+mat4x3 objectToWorld(uint object) { return mat4x3(1.0); }
+
+// Side of this frame's voxel at `position` that is the VPL's surface: of its object, and the one of the two that turned the
+// least; kNoSide: none, it came, went or turned.
+uint sideAt(vec3 position, vec3 normal, float object) {
+  VoxelGrid grid = voxelsGrid();
+  vec3 p = worldToVoxel(grid, position);
+  if (!(all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, vec3(grid.resolution))))) return kNoSide;
+  uint voxel = texelFetch(voxelsIndex, ivec3(p), 0).r;
+  if (voxel == 0u) return kNoSide;
+  uint found = kNoSide;
+  float best = turnCos;
+  for (uint side = 2u * voxel - 2u; side < 2u * voxel; ++side) {
+    VoxelSide s = loadSide(side);
+    float cosine = dot(s.normal, normal);
+    if (s.area > 0.0 && s.object == object && cosine >= best && (found == kNoSide || cosine > best)) {
+      best = cosine;
+      found = side;
+    }
+  }
+  return found;
+}
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= uint(previous.length())) return;
+  VplState vpl = previous[slot];
+  bool lived = vpl.normalLife.w > 0.0;
+  if (lived) {
+    mat4x3 moved = objectToWorld(uint(vpl.localPosition.w));
+    vec3 position = moved * vec4(vpl.localPosition.xyz, 1.0);
+    vec3 normal = normalize(transpose(inverse(mat3(moved))) * vpl.localNormal.xyz);
+    uint side = sideAt(position, normal, vpl.localPosition.w);
+    if (side != kNoSide) {
+      VoxelSide surface = loadSide(side);
+      vpl.localNormal.w = vpl.positionImportance.w;  // I of the frame before; pass `importance` makes a new one
+      vpl.positionImportance.xyz = position;
+      vpl.normalLife = vec4(surface.normal, vpl.normalLife.w + 1.0);
+      vpl.reflectanceSide = vec4(surface.reflectance, uintBitsToFloat(side));
+      vpls[slot] = vpl;
+      atomicAdd(counters[0], 1u);
+      return;
+    }
+    atomicAdd(counters[1], 1u);
+  }
+  vpls[slot] = VplState(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+}
