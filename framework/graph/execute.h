@@ -59,6 +59,9 @@ MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
 // compile() for a device: sizes as its driver reports them.
 CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph);
 
+// The views that scene::makeFrame gives every frame.
+std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
+
 // What a graph is bound to: views, the device's limits (device may be null: unknown) and the scene's quantities.
 Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,
                              std::vector<std::pair<std::string, VkExtent2D>> views);

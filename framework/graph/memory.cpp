@@ -5,6 +5,7 @@
 #include "framework/gpu/format.h"
 #include "framework/graph/execute.h"
 #include "framework/graph/execute_state.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
 
 namespace fovea::graph {
@@ -156,6 +157,12 @@ CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const B
   options.granularity = device.limits().bufferImageGranularity;
   options.memory = [&device, graph](uint32_t resource) { return deviceMemory(device, graph->resources[resource]); };
   return options;
+}
+
+std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
+  std::vector<std::pair<std::string, VkExtent2D>> views;
+  for (const char* name : scene::kViewNames) views.emplace_back(name, size);
+  return views;
 }
 
 Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,

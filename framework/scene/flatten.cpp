@@ -1,8 +1,10 @@
 // World-space triangles of a scene: what every renderer, rasteriser and ray tracer of the project reads.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "framework/base/diagnostic.h"
+#include "framework/scene/motion.h"
 #include "framework/scene/scene.h"
 
 namespace fovea::scene {
@@ -24,23 +26,47 @@ std::vector<bool> dynamicNodes(const Scene& scene) {
   return dynamic;
 }
 
+// The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det, and it exists
+// for flattened (singular) transforms too.
+glm::mat3 normalMatrix(const glm::mat4& m) {
+  const glm::mat3 a(m);
+  const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;
+  return sign * glm::mat3(glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1]));
+}
+
+// A singular transform can swallow a normal; any unit vector will do for what is then a sliver.
+glm::vec3 unitNormal(const glm::vec3& n) {
+  const float length = glm::length(n);
+  return length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0, 1, 0);
+}
+
+// Invisible: all of it in one point, triangles that nothing draws or hits.
+glm::mat4 placement(const glm::mat4& toWorld, bool visible) {
+  if (visible) return toWorld;
+  glm::mat4 point(0.0f);
+  point[3] = toWorld[3];
+  return point;
+}
+
 class Flattener {
  public:
-  explicit Flattener(const Scene& scene) : scene_(scene), world_(worldTransforms(scene)) {}
+  explicit Flattener(const Scene& scene) : scene_(scene), world_(worldTransforms(scene)), poses_(scene) {}
 
   Geometry run() {
     checkLimits();
     const std::vector<bool> dynamic = dynamicNodes(scene_);
     begin("static", kNoIndex, false);
     for (uint32_t i = 0; i < scene_.nodes.size(); ++i)
-      if (!dynamic[i]) append(i);
+      if (!dynamic[i]) append(i, world_[i]);
     end();
     out_.staticTriangles = uint32_t(out_.triangles.size());
     for (uint32_t i = 0; i < scene_.nodes.size(); ++i) {
       if (!dynamic[i] || scene_.nodes[i].mesh == kNoIndex) continue;
       begin(scene_.nodes[i].name, i, true);
-      append(i);
+      const NodePoses::Pose pose = poses_.at(i, 0);
+      append(i, placement(pose.toWorld, pose.visible));
       end();
+      includePath(i);
     }
     return std::move(out_);
   }
@@ -86,24 +112,20 @@ class Flattener {
     out_.objects.push_back(object_);
   }
 
-  void append(uint32_t nodeIndex) {
+  // The winding is that of the visible object: it must not change with time.
+  void append(uint32_t nodeIndex, const glm::mat4& m) {
     const Node& node = scene_.nodes[nodeIndex];
     if (node.mesh == kNoIndex) return;
-    const glm::mat4& m = world_[nodeIndex];
+    const bool mirrored = glm::determinant(glm::mat3(world_[nodeIndex])) < 0.0f;
     for (const Primitive& p : scene_.meshes.at(node.mesh).primitives) {
       const uint32_t base = uint32_t(out_.positions.size());
       appendVertices(p, m, node);
-      appendTriangles(p, base, glm::determinant(glm::mat3(m)) < 0.0f);
+      appendTriangles(p, base, mirrored);
     }
   }
 
   void appendVertices(const Primitive& p, const glm::mat4& m, const Node& node) {
-    // The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of
-    // det, and it exists for flattened (singular) transforms too.
-    const glm::mat3 a(m);
-    const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;
-    const glm::mat3 cofactor =
-        sign * glm::mat3(glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1]));
+    const glm::mat3 normals = normalMatrix(m);
     for (size_t i = 0; i < p.positions.size(); ++i) {
       const glm::vec3 position(m * glm::vec4(p.positions[i], 1.0f));
       if (!isFinite(position))
@@ -115,12 +137,26 @@ class Flattener {
       out_.positions.push_back(position);
       out_.boundsMin = glm::min(out_.boundsMin, position);
       out_.boundsMax = glm::max(out_.boundsMax, position);
-      const glm::vec3 n = cofactor * p.normals[i];
-      const float length = glm::length(n);
-      // A singular transform can swallow a normal; any unit vector will do for what is then a sliver.
-      out_.normals.push_back(length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0, 1, 0));
+      out_.normals.push_back(unitNormal(normals * p.normals[i]));
       out_.uvs.push_back(p.uvs[i]);
     }
+  }
+
+  void includePath(uint32_t nodeIndex) {
+    const Mover* mover = poses_.moverOf(nodeIndex);
+    if (!mover) return;
+    Bounds mesh;
+    for (const Primitive& p : scene_.meshes[scene_.nodes[nodeIndex].mesh].primitives)
+      for (const glm::vec3& v : p.positions) mesh.include(v);
+    if (mesh.low.x > mesh.high.x) return;
+    const Bounds swept = sweptBounds(poses_, nodeIndex, *mover, mesh);
+    if (!isFinite(swept.low) || !isFinite(swept.high))
+      throw Error(ExitCode::BadInput,
+                  "scene `" + scene_.name + "`: node `" + scene_.nodes[nodeIndex].name +
+                      "` moves to a place that is not finite",
+                  "check its keys and the scales and matrices of the nodes above it");
+    out_.boundsMin = glm::min(out_.boundsMin, swept.low);
+    out_.boundsMax = glm::max(out_.boundsMax, swept.high);
   }
 
   void appendTriangles(const Primitive& p, uint32_t base, bool flip) {
@@ -133,6 +169,7 @@ class Flattener {
 
   const Scene& scene_;
   std::vector<glm::mat4> world_;
+  NodePoses poses_;
   Geometry out_;
   Object object_;
 };
@@ -140,5 +177,20 @@ class Flattener {
 }  // namespace
 
 Geometry flatten(const Scene& scene) { return Flattener(scene).run(); }
+
+void moveObjects(const Frame& frame, Geometry& geometry) {
+  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic) continue;
+    const glm::mat4 m = placement(frame.objects[i].toWorld, frame.objects[i].visible);
+    const glm::mat3 normals = normalMatrix(m);
+    uint32_t v = object.firstVertex;
+    for (const Primitive& p : frame.scene->meshes[frame.scene->nodes[object.node].mesh].primitives)
+      for (size_t k = 0; k < p.positions.size(); ++k, ++v) {
+        geometry.positions[v] = glm::vec3(m * glm::vec4(p.positions[k], 1.0f));
+        geometry.normals[v] = unitNormal(normals * p.normals[k]);
+      }
+  }
+}
 
 }  // namespace fovea::scene

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
+
+#include "framework/scene/motion.h"
 
 namespace fovea::scene {
 namespace {
@@ -17,61 +20,10 @@ float farPlane(const Camera& camera, const Geometry& geometry) {
   return std::max(1.01f * reach, 10.0f * camera.zNear);
 }
 
-// Catmull-Rom through the four keys around u in [0, 1] between p1 and p2, with the keys' own times (finite
-// differences).
-template <class V>
-V hermite(const V& p0, const V& p1, const V& p2, const V& p3, float t0, float t1, float t2, float t3,
-          float u) {
-  const float span = t2 - t1;
-  const V m1 = (p2 - p0) * (span / (t2 - t0));
-  const V m2 = (p3 - p1) * (span / (t3 - t1));
-  const float u2 = u * u, u3 = u2 * u;
-  return p1 * (2 * u3 - 3 * u2 + 1) + m1 * (u3 - 2 * u2 + u) + p2 * (3 * u2 - 2 * u3) + m2 * (u3 - u2);
-}
-
-glm::quat sameSide(const glm::quat& q, const glm::quat& reference) {
-  return glm::dot(q, reference) < 0 ? -q : q;
-}
-
-Camera cameraOnPath(const std::vector<CameraKey>& path, float time) {
-  if (time <= path.front().time) return path.front().camera;
-  if (time >= path.back().time) return path.back().camera;
-  const auto after = std::upper_bound(path.begin(), path.end(), time,
-                                      [](float t, const CameraKey& k) { return t < k.time; });
-  const size_t i2 = size_t(after - path.begin()), i1 = i2 - 1;
-  const size_t i0 = i1 > 0 ? i1 - 1 : i1, i3 = i2 + 1 < path.size() ? i2 + 1 : i2;
-  const CameraKey &k0 = path[i0], &k1 = path[i1], &k2 = path[i2], &k3 = path[i3];
-  const float u = (time - k1.time) / (k2.time - k1.time);
-  Camera c = k1.camera;
-  c.position = hermite(k0.camera.position, k1.camera.position, k2.camera.position, k3.camera.position,
-                       k0.time, k1.time, k2.time, k3.time, u);
-  // The same spline on the sphere of rotations (then normalised): no jump of the turning speed at a key.
-  const glm::quat q1 = k1.camera.orientation, q2 = sameSide(k2.camera.orientation, q1);
-  c.orientation =
-      glm::normalize(hermite(sameSide(k0.camera.orientation, q1), q1, q2, sameSide(k3.camera.orientation, q2),
-                             k0.time, k1.time, k2.time, k3.time, u));
-  c.verticalFov = glm::mix(k1.camera.verticalFov, k2.camera.verticalFov, u);
-  return c;
-}
-
-// The sample in force at `time`: the last one at or before it that is valid; linear between two valid
-// neighbours would smear a saccade over the sampling interval, so samples hold.
-glm::vec2 gazeAt(const std::vector<GazeSample>& gaze, double time) {
-  glm::vec2 position(0.5f);
-  bool found = false;
-  for (const GazeSample& g : gaze) {
-    if (!g.valid) continue;
-    if (found && double(g.time) > time) break;
-    position = g.position;
-    found = true;
-    if (double(g.time) > time) break;  // before the first valid sample: that one
-  }
-  return position;
-}
-
-Camera cameraAt(const Scene& scene, double time) {
-  if (!scene.cameraPath.empty()) return cameraOnPath(scene.cameraPath, float(time));
-  return scene.cameras.empty() ? Camera{} : scene.cameras.front();
+// One eye of a camera: `side` -1 left, 1 right, 0 the camera itself.
+Camera eyeOf(Camera camera, float side, float ipd) {
+  camera.position += 0.5f * side * ipd * (glm::normalize(camera.orientation) * glm::vec3(1, 0, 0));
+  return camera;
 }
 
 }  // namespace
@@ -117,15 +69,22 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
   f.seed = seed;
   f.exposure = scene.exposure;
   f.cameraCut = index == 0;
-  f.lights = scene.lights;
+  f.lights = lightsAt(scene, f.time);
   f.scene = &scene;
   f.geometry = &geometry;
-  View view = makeView(cameraAt(scene, f.time), size, geometry, gazeAt(scene.gaze, f.time));
-  if (index > 0) {
-    const double before = double(index - 1) / framesPerSecond;
-    view.previousWorldToClip = makeView(cameraAt(scene, before), size, geometry).worldToClip;
+  const double before = index > 0 ? double(index - 1) / framesPerSecond : f.time;
+  const Camera camera = cameraAt(scene, f.time), previousCamera = cameraAt(scene, before);
+  const GazeSample gaze = gazeAt(scene.gaze, f.time);
+  const glm::vec2 gazes[] = {gaze.position, gaze.left.value_or(gaze.position), gaze.right.value_or(gaze.position)};
+  const float sides[] = {0, -1, 1};
+  for (size_t i = 0; i < std::size(kViewNames); ++i) {
+    View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i]);
+    view.name = kViewNames[i];
+    if (index > 0)
+      view.previousWorldToClip = makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry).worldToClip;
+    f.views.push_back(std::move(view));
   }
-  f.views.push_back(view);
+  f.objects = objectsAt(scene, geometry, f.time, before);
   return f;
 }
 

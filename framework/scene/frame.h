@@ -28,6 +28,21 @@ struct View {
 // zFar 0 in the camera: taken from the scene's bounds.
 View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, glm::vec2 gaze = glm::vec2(0.5f));
 
+// Where an object (index into Geometry::objects) is. An object's own space is that of its node's mesh; what is known of a
+// point in it (VplState::localPosition) stays true while the object moves. Object 0 is all that never moves; its own space
+// is the world's.
+struct ObjectTransform {
+  glm::mat4 toWorld{1}, previousToWorld{1};  // this frame's and the last one's; affine
+  glm::mat4 toObject{1};                     // inverse of toWorld; zeros where there is none
+  bool visible = true, previousVisible = true;
+
+  // The same as in shaders/common/scene.glsl.
+  glm::vec3 fromObject(glm::vec3 position) const { return glm::vec3(toWorld * glm::vec4(position, 1)); }
+  glm::vec3 intoObject(glm::vec3 position) const { return glm::vec3(toObject * glm::vec4(position, 1)); }
+  glm::vec3 normalFromObject(glm::vec3 n) const { return glm::normalize(glm::transpose(glm::mat3(toObject)) * n); }
+  glm::vec3 normalIntoObject(glm::vec3 n) const { return glm::normalize(glm::transpose(glm::mat3(toWorld)) * n); }
+};
+
 struct Frame {
   uint64_t index = 0;      // since the start of the sequence
   double time = 0;         // seconds
@@ -36,6 +51,7 @@ struct Frame {
   bool cameraCut = false;  // history of views is void
   std::vector<View> views;
   std::vector<Light> lights;
+  std::vector<ObjectTransform> objects;  // as Geometry::objects
   const Scene* scene = nullptr;
   const Geometry* geometry = nullptr;  // world space, this frame
   GpuScene* gpu = nullptr;
@@ -43,8 +59,16 @@ struct Frame {
   const View* findView(std::string_view name) const;
 };
 
-// Camera, gaze and lights at frame `index` of a sequence at `framesPerSecond` (42 Hz is the paper's).
+// The views of every frame: the camera, and the two eyes half of Scene::ipd to its left and right, looking the same way.
+inline constexpr const char* kViewNames[] = {"main", "left", "right"};
+
+// Camera, eyes, gaze, lights and objects at frame `index` of a sequence at `framesPerSecond` (42 Hz is the paper's). The
+// geometry is not touched: moveObjects() brings it to the frame.
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,
                 double framesPerSecond = 42.0);
+
+// Vertices of the dynamic objects as Frame::objects has them; what is invisible collapses to a point. `geometry` is
+// flatten()'s for Frame::scene. Allocates nothing.
+void moveObjects(const Frame& frame, Geometry& geometry);
 
 }  // namespace fovea::scene

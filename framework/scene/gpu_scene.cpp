@@ -38,6 +38,12 @@ struct LightBlock {
 };
 static_assert(sizeof(LightBlock) == 64 * kMaxLights);
 
+// One vec4 a texel; the shader's kObjectTexels of them.
+struct ObjectTexels {
+  glm::vec4 toWorld[3], previous[3], toObject[3], flags;
+};
+static_assert(sizeof(ObjectTexels) == 10 * sizeof(glm::vec4));
+
 // One vec4 a texel; the shader's kMaterialTexels of them.
 struct TextureTexels {
   glm::vec4 place{-1, 0, 0, 0}, extent{0}, axes{0};
@@ -99,6 +105,15 @@ void checkCount(const char* what, size_t count, size_t limit) {
               std::string("remove some ") + what);
 }
 
+ObjectTexels objectEntry(const ObjectTransform& o) {
+  ObjectTexels texels;
+  const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld), glm::transpose(o.toObject)};
+  for (int i = 0; i < 3; ++i)
+    texels.toWorld[i] = rows[0][i], texels.previous[i] = rows[1][i], texels.toObject[i] = rows[2][i];
+  texels.flags = glm::vec4(o.visible, o.previousVisible, 0, 0);
+  return texels;
+}
+
 LightBlock::Light lightEntry(const Light& light, uint32_t firstShadowLayer) {
   const SpotCone cone = spotCone(light);
   return {glm::vec4(light.position, float(light.type)), glm::vec4(light.direction, light.range),
@@ -120,7 +135,11 @@ struct GpuScene::Impl {
   gpu::Device& device;
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
+  uint32_t staticVertices;
   gpu::Buffer indices, triangles, positions, attributes, materials, srgb, uniforms;
+  uint32_t objectCount;
+  std::vector<gpu::Buffer> objects;  // one a slot
+  std::vector<gpu::Buffer> moves;    // one a slot: positions, then attributes, of the vertices past the static ones
   GpuTextures textures;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -130,7 +149,8 @@ struct GpuScene::Impl {
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
       : device(d), triangleCount(uint32_t(g.triangles.size())), staticTriangles(g.staticTriangles),
-        vertexCount(uint32_t(g.positions.size())), environment(scene.environment), textures(d, scene),
+        vertexCount(uint32_t(g.positions.size())), environment(scene.environment),
+        staticVertices(g.staticVertices()), objectCount(std::max(1u, uint32_t(g.objects.size()))), textures(d, scene),
         runs(fovea::scene::drawRuns(scene, g)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
@@ -155,6 +175,10 @@ struct GpuScene::Impl {
   TextureTexels textureEntry(const Scene& scene, const TextureUse& use) const;
   MaterialTexels materialEntry(const Scene& scene, const Material& m) const;
   void makeUniforms(uint32_t slots);
+  void makeMoves(uint32_t slots);
+  void storeObjects(const Frame& frame, uint32_t slot) const;
+  void storeMoves(const Geometry& geometry, uint32_t slot) const;
+  uint32_t movedVertices() const { return vertexCount - staticVertices; }
   void makeLayout();
   void makeSets(uint32_t slots);
   void writeSet(uint32_t slot);
@@ -195,6 +219,32 @@ void GpuScene::Impl::makeUniforms(uint32_t slots) {
   std::memset(uniforms.mapped(), 0, slots * slotStride);
 }
 
+void GpuScene::Impl::makeMoves(uint32_t slots) {
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    objects.emplace_back(device, gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
+                                                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
+    storeObjects({}, slot);
+    if (movedVertices() > 0)
+      moves.emplace_back(device, gpu::BufferDesc{"vertices that move", movedVertices() * 2 * sizeof(glm::vec4),
+                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
+  }
+}
+
+// Objects that the frame says nothing about stay where their vertices are.
+void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
+  auto* entries = static_cast<ObjectTexels*>(objects[slot].mapped());
+  for (uint32_t i = 0; i < objectCount; ++i)
+    entries[i] = objectEntry(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
+}
+
+void GpuScene::Impl::storeMoves(const Geometry& g, uint32_t slot) const {
+  auto* entries = static_cast<glm::vec4*>(moves[slot].mapped());
+  for (uint32_t v = staticVertices; v < vertexCount; ++v, ++entries) {
+    entries[0] = glm::vec4(g.positions[v], 1);
+    entries[movedVertices()] = glm::vec4(octEncode(g.normals[v]), g.uvs[v]);
+  }
+}
+
 constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,          // 0 frame
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,  // 1 view
@@ -205,6 +255,7 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 6 materials
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 sRGB table
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 objects
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
@@ -220,7 +271,7 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 5 * slots},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
@@ -242,11 +293,12 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  const VkBufferView texels[5] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
+  const VkBufferView texels[6] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
                                   positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  srgb.texelView(VK_FORMAT_R32_SFLOAT)};
+                                  srgb.texelView(VK_FORMAT_R32_SFLOAT),
+                                  objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorImageInfo image{nearest, textures.image().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   VkWriteDescriptorSet writes[kBindingCount]{};
@@ -258,7 +310,7 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     writes[i].descriptorType = kBindings[i];
     if (i < 3) writes[i].pBufferInfo = &blocks[i];
     else if (i == 7) writes[i].pImageInfo = &image;
-    else writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : 4];
+    else writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
   }
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }
@@ -267,6 +319,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geom
     : impl_(std::make_unique<Impl>(device, scene, geometry)) {
   const uint32_t slots = std::max(1u, framesInFlight);
   impl_->makeUniforms(slots);
+  impl_->makeMoves(slots);
   impl_->makeLayout();
   impl_->makeSets(slots);
 }
@@ -289,6 +342,20 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   }
   for (size_t i = 0; i < frame.views.size(); ++i)
     impl_->store(slot, s.viewOffset + i * s.viewStride, viewEntry(frame.views[i]));
+  s.storeObjects(frame, slot);
+  if (s.movedVertices() == 0) return;
+  if (!frame.geometry || frame.geometry->positions.size() != s.vertexCount)
+    throw Error(ExitCode::Internal, "the frame has no geometry, or another one than the scene on the device");
+  s.storeMoves(*frame.geometry, slot);
+}
+
+void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
+  const Impl& s = *impl_;
+  if (s.movedVertices() == 0) return;
+  const uint64_t first = s.staticVertices * sizeof(glm::vec4), bytes = s.movedVertices() * sizeof(glm::vec4);
+  const VkBufferCopy positions{0, first, bytes}, attributes{bytes, first, bytes};
+  vkCmdCopyBuffer(cmd, s.moves[slot].handle(), s.positions.handle(), 1, &positions);
+  vkCmdCopyBuffer(cmd, s.moves[slot].handle(), s.attributes.handle(), 1, &attributes);
 }
 
 VkDescriptorSetLayout GpuScene::setLayout() const { return impl_->layout; }

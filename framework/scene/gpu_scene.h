@@ -27,9 +27,12 @@ class GpuScene {
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
   ~GpuScene();
 
-  // Writes this frame's uniforms (frame, views, lights) into the slot of the frame in flight; no GPU wait, no allocation.
-  // Throws Error(BadInput) on more than kMaxViews or kMaxLights.
+  // Writes this frame's uniforms (frame, views, lights, objects) and the vertices that moved (of Frame::geometry) into the
+  // slot of the frame in flight; no GPU wait, no allocation. Throws Error(BadInput) on more than kMaxViews or kMaxLights.
   void update(const Frame& frame, uint32_t slot);
+  // Copies those vertices to positions() and attributes(). The caller's barriers keep the copy (transfer stage) behind all
+  // earlier readers and before all later ones. Records nothing for a scene in which nothing moves.
+  void recordMoves(VkCommandBuffer cmd, uint32_t slot) const;
 
   VkDescriptorSetLayout setLayout() const;
   // Binding 1, the view, is a dynamic uniform buffer: viewOffset(i) is the offset for Frame::views[i].

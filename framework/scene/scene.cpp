@@ -77,6 +77,40 @@ void hash(Hasher& h, const Camera& c) {
   h.floats(scalars, 7);
 }
 
+template <class Motion>
+void hashPath(Hasher& h, uint32_t what, const Motion& m) {
+  h.value(what);
+  h.value(uint32_t(m.smooth) | uint32_t(m.repeat) << 1);
+  h.value(uint64_t(m.keys.size()));
+}
+
+// Adds nothing for a scene that has none of it: such scenes keep the hash they had before scenes could move.
+void hashMotion(Hasher& h, const Scene& scene) {
+  for (const Mover& m : scene.movers) {
+    hashPath(h, m.node, m);
+    for (const MotionKey& k : m.keys) {
+      const float values[] = {k.time,       k.translation.x, k.translation.y, k.translation.z,        k.rotation.w,
+                              k.rotation.x, k.rotation.y,    k.rotation.z,    k.visible ? 1.0f : 0.0f};
+      h.floats(values, 9);
+    }
+  }
+  for (const LightMotion& m : scene.lightMotions) {
+    hashPath(h, ~m.light, m);
+    for (const LightKey& k : m.keys) {
+      h.value(k.time);
+      for (const glm::vec3& v : {k.position, k.direction, k.color}) h.floats(&v[0], 3);
+      h.value(k.intensity);
+    }
+  }
+  for (size_t i = 0; i < scene.gaze.size(); ++i)
+    for (const auto& eye : {scene.gaze[i].left, scene.gaze[i].right})
+      if (eye) {
+        h.value(uint64_t(i));
+        h.floats(&(*eye)[0], 2);
+      }
+  if (scene.ipd != Scene{}.ipd) h.value(scene.ipd);
+}
+
 }  // namespace
 
 glm::mat4 localTransform(const Node& node) {
@@ -140,6 +174,7 @@ uint64_t contentHash(const Scene& scene) {
   }
   h.value(scene.exposure);
   h.floats(&scene.environment[0], 3);
+  hashMotion(h, scene);
   return h.digest();
 }
 

@@ -102,6 +102,43 @@ struct GazeSample {
   float time = 0;
   glm::vec2 position{0.5f};
   bool valid = true;  // an invalid sample (blink) holds the last valid one
+  std::optional<glm::vec2> left, right;  // of one eye, where a tracker tells them apart; else `position`
+};
+
+enum class Repeat : uint8_t {
+  Once,      // holds the last key
+  Loop,      // starts again from the first key
+  PingPong,  // runs back and forth
+};
+
+// Where a node is at a time, relative to the node above it; takes the place of the node's own translation and rotation
+// (its scale stays), as an animation of glTF does.
+struct MotionKey {
+  float time = 0;
+  glm::vec3 translation{0};
+  glm::quat rotation{1, 0, 0, 0};
+  bool visible = true;  // from this key until the next one
+};
+
+// A node that moves rigidly along keys, with everything below it.
+struct Mover {
+  uint32_t node = kNoIndex;  // not above or below the node of another mover
+  bool smooth = true;        // through the keys without a jump in speed and without overshooting them; false: straight
+  Repeat repeat = Repeat::Once;
+  std::vector<MotionKey> keys;  // at least one, times increase
+};
+
+struct LightKey {
+  float time = 0;
+  glm::vec3 position{0}, direction{0, 0, -1}, color{1};
+  float intensity = 1;
+};
+
+struct LightMotion {
+  uint32_t light = kNoIndex;
+  bool smooth = true;
+  Repeat repeat = Repeat::Once;
+  std::vector<LightKey> keys;
 };
 
 struct Scene {
@@ -114,17 +151,21 @@ struct Scene {
   std::vector<Camera> cameras;  // world space; [0] is the one to use
   std::vector<CameraKey> cameraPath;  // empty: a still camera
   std::vector<GazeSample> gaze;
+  std::vector<Mover> movers;         // their nodes are dynamic
+  std::vector<LightMotion> lightMotions;
+  float ipd = 0.064f;           // distance between the eyes (the views "left" and "right"), m
   float exposure = 1;           // display = sRGB(exposure * radiance)
   glm::vec3 environment{0};     // radiance where nothing is hit
   uint64_t hash = 0;            // of all content, for caches and reports
 };
 
-// World-space triangles of the whole scene at one time: static objects first.
+// World-space triangles of the whole scene at one time: static objects first. What is invisible at that time is there with
+// triangles of no area.
 struct Object {
   std::string name;
   uint32_t firstTriangle = 0, triangleCount = 0;
   uint32_t firstVertex = 0, vertexCount = 0;
-  uint32_t node = kNoIndex;
+  uint32_t node = kNoIndex;  // its mesh's space is the object's own space; object 0: the world's
   bool dynamic = false;
 };
 
@@ -143,6 +184,10 @@ struct Geometry {
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
   glm::vec3 boundsMin{std::numeric_limits<float>::max()}, boundsMax{std::numeric_limits<float>::lowest()};
   bool empty() const { return triangles.empty(); }
+  // Vertices [0, staticVertices()) never move.
+  uint32_t staticVertices() const {
+    return objects.size() > 1 ? objects[1].firstVertex : uint32_t(positions.size());
+  }
 };
 
 // Of everything that a picture depends on (names do not count); loaders store it in Scene::hash.
@@ -150,7 +195,8 @@ uint64_t contentHash(const Scene& scene);
 
 glm::mat4 localTransform(const Node& node);
 std::vector<glm::mat4> worldTransforms(const Scene& scene);
-// Object 0 is all static geometry; every dynamic node with a mesh is one more object.
+// Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0. The bounds hold
+// the whole paths of the movers, so that they are the same in every frame.
 // Throws Error(BadInput) past 65535 materials or objects.
 Geometry flatten(const Scene& scene);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/scene/load.h"
+#include "framework/scene/scene_file_reader.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -21,19 +22,6 @@ struct ModelEntry {
   Placement placement;
 };
 
-std::string at(const std::string& path, size_t i) { return path + "[" + std::to_string(i) + "]"; }
-
-glm::vec3 vector(ObjectReader& r, std::string_view key, glm::vec3 fallback) {
-  const auto v = r.numbers(key, 3);
-  return v ? glm::vec3((*v)[0], (*v)[1], (*v)[2]) : fallback;
-}
-
-void mistake(ObjectReader& r, std::string_view key, const std::string& message,
-             const std::string& remedy = {}) {
-  const Value* v = r.value().find(key);
-  r.diagnostics().error((v ? *v : r.value()).where.location(), r.pathOf(key), message, remedy);
-}
-
 class Parser {
  public:
   Parser(const Value& root, const fs::path& file) : root_(root) {
@@ -47,55 +35,38 @@ class Parser {
     r.text("$schema");
     r.text("description");
     scene_.name = r.text("name", scene_.name);
-    each(r, "models", [&](const Value& v, const std::string& path) { model(v, path); });
+    eachItem(r, "models", [&](const Value& v, const std::string& path) { model(v, path); });
     if (root_.isObject() && !r.has("models"))
       mistake(r, "models", "the scene has no `models`",
               R"(add "models": [{"file": "folder/model.gltf"}] or [{"builtin": "cornellbox"}])");
-    each(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
+    eachItem(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
     if (const Value* c = r.find("camera")) camera(*c);
     hasExposure_ = r.has("exposure");
     scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
     hasEnvironment_ = r.has("environment");
-    scene_.environment = color(r, "environment", glm::vec3(0));
-    each(r, "gaze", [&](const Value& v, const std::string& path) { gaze(v, path); });
+    scene_.environment = readColor(r, "environment", glm::vec3(0));
+    scene_.ipd = float(r.number("ipd", scene_.ipd, 0, 10));
+    gaze(r);
+    motion_.read(r);
     r.finish();
     errors_.throwIfErrors();
   }
 
   Scene assemble(const fs::path& folder, Diagnostics& warnings) {
     Scene out = std::move(scene_);
+    if (gazeFile_) out.gaze = readGazeCsv(findFile(*gazeFile_, folder));
     for (const ModelEntry& m : models_) {
-      Scene model = m.builtin.empty() ? loadGltf(find(m, folder), warnings) : builtin(m.builtin);
+      Scene model = m.builtin.empty() ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings) : builtin(m.builtin);
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;
       appendModel(out, std::move(model), m.placement);
     }
+    motion_.apply(out, folder, warnings);
     return out;
   }
 
  private:
-  template <class Visit>
-  void each(ObjectReader& r, std::string_view key, const Visit& visit) {
-    const Value* list = r.array(key);
-    for (size_t i = 0; list && list->isArray() && i < list->items.size(); ++i)
-      visit(list->items[i], at(r.pathOf(key), i));
-  }
-
-  glm::vec3 color(ObjectReader& r, std::string_view key, glm::vec3 fallback) {
-    const glm::vec3 c = vector(r, key, fallback);
-    if (c.x < 0 || c.y < 0 || c.z < 0) mistake(r, key, "a colour has no negative parts");
-    return c;
-  }
-
-  glm::vec3 direction(ObjectReader& r, std::string_view key, glm::vec3 fallback) {
-    const glm::vec3 d = vector(r, key, fallback);
-    const float length = glm::length(d);
-    if (length > 1e-12f && std::isfinite(length)) return d / length;
-    mistake(r, key, "a direction cannot be zero");
-    return fallback;
-  }
-
   void model(const Value& v, const std::string& path) {
     ObjectReader r(v, path, errors_);
     ModelEntry m;
@@ -111,22 +82,12 @@ class Parser {
       r.choice("builtin", "", names);
     Placement& p = m.placement;
     p.name = r.text("name", m.builtin.empty() ? fs::path(m.file).stem().string() : m.builtin);
-    p.translation = vector(r, "translate", glm::vec3(0));
-    p.rotation = glm::quat(glm::radians(vector(r, "rotate", glm::vec3(0))));
-    p.scale = scale(r);
+    p.translation = readVector(r, "translate", glm::vec3(0));
+    p.rotation = glm::quat(glm::radians(readVector(r, "rotate", glm::vec3(0))));
+    p.scale = readScale(r, "scale", glm::vec3(1));
     p.lights = r.boolean("lights", true);
     r.finish();
     models_.push_back(std::move(m));
-  }
-
-  // One number or three; never 0.
-  glm::vec3 scale(ObjectReader& r) {
-    const Value* v = r.find("scale");
-    if (!v) return glm::vec3(1);
-    const glm::vec3 s =
-        v->isNumber() ? glm::vec3(float(r.number("scale", 1))) : vector(r, "scale", glm::vec3(1));
-    if (s.x == 0 || s.y == 0 || s.z == 0) mistake(r, "scale", "a scale of 0 leaves nothing to see");
-    return s;
   }
 
   void light(const Value& v, const std::string& path) {
@@ -138,16 +99,16 @@ class Parser {
              : type == "spot"      ? LightType::Spot
                                    : LightType::Point;
     l.name = r.text("name", type);
-    l.color = color(r, "color", glm::vec3(1));
+    l.color = readColor(r, "color", glm::vec3(1));
     l.intensity = float(r.number("intensity", 1, 0, 1e12));
     if (l.type != LightType::Directional) {
       r.require("position");
-      l.position = vector(r, "position", glm::vec3(0));
+      l.position = readVector(r, "position", glm::vec3(0));
       l.range = float(r.number("range", 0, 0, 1e12));
     }
     if (l.type != LightType::Point) {
       r.require("direction");
-      l.direction = direction(r, "direction", glm::vec3(0, -1, 0));
+      l.direction = readDirection(r, "direction", glm::vec3(0, -1, 0));
     }
     if (l.type == LightType::Spot) {
       const double inner = r.number("inner_cone_deg", 0, 0, 90),
@@ -163,14 +124,14 @@ class Parser {
   void camera(const Value& v) {
     ObjectReader r(v, "camera", errors_);
     const double fov = r.number("fov_deg", 50, 1, 170);
-    const glm::vec3 up = direction(r, "up", glm::vec3(0, 1, 0));
+    const glm::vec3 up = readDirection(r, "up", glm::vec3(0, 1, 0));
     Camera base;
     base.name = "scene";
     base.zNear = float(r.number("near", 0.05, 1e-5, 1e6));
     base.zFar = float(r.number("far", 0, 0, 1e9));
     if (base.zFar != 0 && base.zFar <= base.zNear) mistake(r, "far", "`far` must be larger than `near`");
     if (r.has("path")) {
-      each(r, "path",
+      eachItem(r, "path",
            [&](const Value& key, const std::string& path) { cameraKey(key, path, base, up, fov); });
       if (const Value* list = r.value().find("path"); list->isArray() && list->items.empty())
         mistake(r, "path", "a camera path needs at least one key");
@@ -190,7 +151,7 @@ class Parser {
     if (!scene_.cameraPath.empty() && r.has("t") && key.time <= scene_.cameraPath.back().time)
       mistake(r, "t", "the times of a path must increase");
     fov = r.number("fov_deg", fov, 1, 170);
-    up = direction(r, "up", up);
+    up = readDirection(r, "up", up);
     look(r, base, up, fov);
     key.camera = base;
     r.finish();
@@ -200,51 +161,30 @@ class Parser {
   void look(ObjectReader& r, Camera& camera, glm::vec3 up, double fov) {
     r.require("eye");
     r.require("target");
-    camera.position = vector(r, "eye", glm::vec3(0));
-    const glm::vec3 target = vector(r, "target", camera.position + glm::vec3(0, 0, -1));
+    camera.position = readVector(r, "eye", glm::vec3(0));
+    const glm::vec3 target = readVector(r, "target", camera.position + glm::vec3(0, 0, -1));
     camera.verticalFov = float(glm::radians(fov));
     const glm::vec3 forward = target - camera.position;
     if (glm::length(forward) <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
     camera.orientation = lookAlong(forward, up);
   }
 
-  void gaze(const Value& v, const std::string& path) {
-    ObjectReader r(v, path, errors_);
-    r.require("t");
-    GazeSample g;
-    g.time = float(r.number("t", 0, 0, 1e6));
-    g.valid = r.boolean("valid", true);
-    g.position = {float(r.number("x", 0.5, 0, 1)), float(r.number("y", 0.5, 0, 1))};
-    if (!scene_.gaze.empty() && r.has("t") && g.time <= scene_.gaze.back().time)
-      mistake(r, "t", "the times of the gaze must increase");
-    r.finish();
-    scene_.gaze.push_back(g);
-  }
-
-  // Beside the scene file, then along the search path.
-  fs::path find(const ModelEntry& m, const fs::path& folder) const {
-    std::vector<fs::path> folders = {folder};
-    const std::vector<fs::path> search = modelSearchPath();
-    folders.insert(folders.end(), search.begin(), search.end());
-    std::string tried;
-    std::error_code ec;
-    for (const fs::path& f : folders) {
-      const fs::path candidate = f / m.file;  // an absolute m.file replaces f
-      if (fs::is_regular_file(candidate, ec)) return candidate;
-      if (tried.find(candidate.string()) == std::string::npos)
-        tried += (tried.empty() ? "" : ", ") + candidate.string();
-    }
-    std::string remedy =
-        "put it there, or name the folder that holds it in the environment variable FOVEA_SCENES";
-    if (!m.get.empty()) remedy = m.get + "; then " + remedy;
-    throw Error(ExitCode::BadInput, {{Severity::Error, m.where, m.path + ".file",
-                                      "the model `" + m.file + "` is missing; looked for " + tried, remedy}});
+  // An array of samples, or the name of a table.
+  void gaze(ObjectReader& r) {
+    const Value* v = r.find("gaze");
+    if (!v) return;
+    if (v->isString())
+      gazeFile_ = {"gaze file", v->string, "", v->where.location(), "gaze"};
+    else if (r.array("gaze"))
+      scene_.gaze = readGaze(*v, errors_);
   }
 
   const Value& root_;
   Scene scene_;
   std::vector<ModelEntry> models_;
   Diagnostics errors_;
+  MotionReader motion_{errors_};
+  std::optional<NamedFile> gazeFile_;
   bool hasExposure_ = false, hasEnvironment_ = false;
 };
 
@@ -258,6 +198,27 @@ void warnOfDarkness(const Scene& scene, Diagnostics& warnings) {
 }
 
 }  // namespace
+
+// Beside the scene file, then along the search path.
+fs::path findFile(const NamedFile& m, const fs::path& folder) {
+  std::vector<fs::path> folders = {folder};
+  const std::vector<fs::path> search = modelSearchPath();
+  folders.insert(folders.end(), search.begin(), search.end());
+  std::string tried;
+  std::error_code ec;
+  for (const fs::path& f : folders) {
+    const fs::path candidate = f / m.file;  // an absolute m.file replaces f
+    if (fs::is_regular_file(candidate, ec)) return candidate;
+    if (tried.find(candidate.string()) == std::string::npos)
+      tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  std::string remedy =
+      "put it there, or name the folder that holds it in the environment variable FOVEA_SCENES";
+  if (!m.get.empty()) remedy = m.get + "; then " + remedy;
+  throw Error(ExitCode::BadInput,
+              {{Severity::Error, m.where, m.path,
+                "the " + m.what + " `" + m.file + "` is missing; looked for " + tried, remedy}});
+}
 
 Scene parseSceneFile(const Value& root, const fs::path& file, Diagnostics& warnings) {
   Parser parser(root, file);

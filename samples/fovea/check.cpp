@@ -23,7 +23,7 @@ ExitCode check(const CheckOptions& options) {
   Diagnostics messages;
   const graph::Description description = loadGraph(options.graph, messages);
   auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
-      description, graph::sceneEnvironment(nullptr, {}, {}, {{"main", {size.x, size.y}}}), messages));
+      description, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size.x, size.y})), messages));
   const graph::Plan plan = graph::compile(bound);
   graph::warnAboutPlan(plan, messages);
   printWarnings(messages);

@@ -69,6 +69,7 @@ class Render {
   void writeResults();
   void report() const;
   scene::Frame frame(uint64_t index) const;
+  void submit(uint64_t index, bool readOutputs);
   image::Metadata metadata() const;
 
   const RenderOptions& options_;
@@ -125,7 +126,7 @@ void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
   // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
-  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, {{"main", {size_.x, size_.y}}}), early);
+  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})), early);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
   geometry_ = scene::flatten(scene_);
@@ -145,10 +146,8 @@ void Render::buildPlan() {
                 fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size_.x,
                             size_.y, limit),
                 "render a smaller picture");
-  std::vector<std::pair<std::string, VkExtent2D>> views;
-  for (const scene::View& view : frame(0).views) views.push_back({view.name, {view.size.x, view.size.y}});
   auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
-      description_, graph::sceneEnvironment(device_.get(), scene_, geometry_, std::move(views)), messages_));
+      description_, graph::sceneEnvironment(device_.get(), scene_, geometry_, graph::frameViews({size_.x, size_.y})), messages_));
   readback_ = outputs_->outputsOf(*bound, size_);
   plan_ = std::make_shared<const graph::Plan>(
       graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
@@ -187,6 +186,12 @@ scene::Frame Render::frame(uint64_t index) const {
     for (scene::View& view : f.views) view.gaze = *gaze_;
   f.gpu = gpuScene_.get();
   return f;
+}
+
+void Render::submit(uint64_t index, bool readOutputs) {
+  const scene::Frame f = frame(index);
+  scene::moveObjects(f, geometry_);
+  executor_->submit(f, readOutputs);
 }
 
 image::Metadata Render::metadata() const {
@@ -232,12 +237,12 @@ void Render::renderFrames() {
   uint64_t index = 0;
   for (; index < total && !interrupted(); ++index) {
     const bool keep = outputs_->hasSequence() || index + 1 == total || lastWallMs_ > kSlowFrameMs;
-    executor_->submit(frame(index), pictures && keep && index >= options_.warmup);
+    submit(index, pictures && keep && index >= options_.warmup);
     takeFinished();
   }
   while (auto result = executor_->next()) take(std::move(*result));
   if (interrupted() && pictures && !picture_ && index >= options_.warmup) {
-    executor_->submit(frame(index), true);
+    submit(index, true);
     while (auto result = executor_->next()) take(std::move(*result));
   }
   progress_.clear();

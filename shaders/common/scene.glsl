@@ -50,6 +50,8 @@ layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // kMate
 layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
 layout(set = 1, binding = 8) uniform samplerBuffer sceneSrgb;           // linear light of the 256 sRGB codes
 
+layout(set = 1, binding = 9) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
+
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
 // Unit vectors as octahedra (Meyer et al. 2010): both components in [-1, 1].
@@ -72,6 +74,30 @@ vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int
 vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
 uint materialOf(uvec4 triangle) { return triangle.w & 0xffffu; }
 uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
+
+// ---- Objects -----------------------------------------------------------------------------------------------------
+
+// An object's own space is that of its mesh; what is known of a point in it (VplState.localPosition) stays true while the
+// object moves. Object 0 is all that never moves; its own space is the world's. The same as scene::ObjectTransform.
+// Texels of one object: rows of the transform to the world (0-2), of last frame's (3-5), of the inverse (6-8; zeros where
+// there is none), 9: x: visible, y: last frame.
+const int kObjectTexels = 10;
+
+mat4x3 objectRows(uint object, int row) {
+  int i = int(object) * kObjectTexels + row;
+  return transpose(mat3x4(texelFetch(sceneObjects, i), texelFetch(sceneObjects, i + 1), texelFetch(sceneObjects, i + 2)));
+}
+mat4x3 objectTransform(uint object) { return objectRows(object, 0); }
+mat4x3 previousObjectTransform(uint object) { return objectRows(object, 3); }
+mat4x3 inverseObjectTransform(uint object) { return objectRows(object, 6); }
+bool objectVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
+bool objectWasVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
+
+vec3 fromObject(uint object, vec3 position) { return objectTransform(object) * vec4(position, 1.0); }
+vec3 toObject(uint object, vec3 position) { return inverseObjectTransform(object) * vec4(position, 1.0); }
+// Unit normals, also through a scale that differs between the axes.
+vec3 normalFromObject(uint object, vec3 n) { return normalize(transpose(mat3(inverseObjectTransform(object))) * n); }
+vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objectTransform(object))) * n); }
 
 // ---- Materials ---------------------------------------------------------------------------------------------------
 

@@ -62,7 +62,7 @@ struct Setup {
     geometry = scene::flatten(scene);
     gpuScene = std::make_unique<scene::GpuScene>(testDevice(), scene, geometry, kFramesInFlight);
     const graph::Environment environment =
-        graph::sceneEnvironment(&testDevice(), scene, geometry, {{"main", {size.x, size.y}}});
+        graph::sceneEnvironment(&testDevice(), scene, geometry, graph::frameViews({size.x, size.y}));
     auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(description, environment, messages));
     plan = std::make_shared<const graph::Plan>(
         graph::compile(bound, graph::deviceCompileOptions(testDevice(), bound)));
@@ -232,6 +232,7 @@ void PassTest::run(uint32_t frames) {
   for (uint32_t i = 0; i < frames; ++i) {
     scene::Frame frame = impl_->setup.frame(impl_->size, impl_->frameIndex++, impl_->seed);
     if (impl_->hook) impl_->hook(*this, frame);
+    scene::moveObjects(frame, impl_->setup.geometry);
     for (auto& [name, input] : impl_->inputs) {
       if (input.changed) executor.setInput(name, input.raw);
       input.changed = false;
@@ -288,6 +289,7 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
   for (uint32_t i = 0; i < options.frames; ++i) {
     scene::Frame frame = setup.frame(options.size, i, options.seed);
     if (options.beforeFrame) options.beforeFrame(frame);
+    scene::moveObjects(frame, setup.geometry);
     setup.executor->submit(frame, options.everyFrame || i + 1 == options.frames);
     if (options.everyFrame) collect();
   }

@@ -147,12 +147,34 @@ TEST(Frame, GazeHoldsThroughBlinks) {
   EXPECT_EQ(gaze(3), glm::vec2(0.5f));
 }
 
+TEST(Frame, EyesAreHalfTheirDistanceFromTheCamera) {
+  Scene s = sceneWithPath();
+  s.ipd = 0.1f;
+  s.gaze = {{0, {0.25f, 0.5f}, true, glm::vec2(0.3f, 0.5f), std::nullopt}};
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const Frame before = makeFrame(s, g, {64, 64}, 14, 0, 10.0), f = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
+  ASSERT_EQ(f.views.size(), 3u);
+  EXPECT_EQ(f.views[0].name, "main");
+  const glm::mat3 axes = glm::transpose(glm::mat3(f.views[0].worldToView));
+  EXPECT_LT(glm::distance(f.findView("left")->eye, f.views[0].eye - 0.05f * axes[0]), 1e-6f);
+  EXPECT_LT(glm::distance(f.findView("right")->eye, f.views[0].eye + 0.05f * axes[0]), 1e-6f);
+  for (const View& v : f.views) {  // parallel axes
+    for (int i = 0; i < 3; ++i) EXPECT_LT(glm::distance(v.worldToView[i], f.views[0].worldToView[i]), 1e-6f);
+    EXPECT_EQ(v.previousWorldToClip, before.findView(v.name)->worldToClip) << v.name;
+  }
+  EXPECT_EQ(f.views[0].gaze, glm::vec2(0.25f, 0.5f));
+  EXPECT_EQ(f.findView("left")->gaze, glm::vec2(0.3f, 0.5f));
+  EXPECT_EQ(f.findView("right")->gaze, glm::vec2(0.25f, 0.5f));
+}
+
 TEST(Frame, FindsViewsByName) {
   Scene s;
   const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
   const Frame f = makeFrame(s, g, {8, 8}, 0, 7);
   ASSERT_NE(f.findView("main"), nullptr);
-  EXPECT_EQ(f.findView("left"), nullptr);
+  ASSERT_NE(f.findView("left"), nullptr);
+  ASSERT_NE(f.findView("right"), nullptr);
+  EXPECT_EQ(f.findView("centre"), nullptr);
   EXPECT_EQ(f.seed, 7u);
   EXPECT_EQ(f.scene, &s);
 }
