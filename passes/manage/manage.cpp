@@ -1,0 +1,179 @@
+// The list of VPLs from frame to frame: which ones are reused (Eq. 1), which candidates come in (Algorithm
+// 2), and in which slots. A VPL keeps its slot for life. Every decision is made in integers and every order
+// is a stable sort, so the list is that of the serial algorithm to the bit (tests/passes/manage_reference.h).
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/device.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/vpl.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kMost = 65536;          // slots, and candidates: sums of importance stay below 2^57
+constexpr uint32_t kCells = 64 * 64 * 64;  // of the density grid, shaders/manage/memory.glsl
+
+class Manage : public Pass {
+ public:
+  static PassDeclaration declaration();
+  void prepare(PrepareContext& ctx) override;
+  void record(RecordContext& ctx) override;
+
+ private:
+  Commands use(RecordContext& ctx, Kernel kernel);
+  bool none_ = false;  // reuse
+  Kernel accept_, thin_, reuse_, order_, choose_, refill_, write_;
+};
+
+void addScratch(PassDeclaration& d) {
+  const Usage both = Usage::StorageRead | Usage::StorageWrite;
+  const SizeExpr slots = parameter("count"), candidates = countOf("candidates"),
+                 more = max(slots, candidates);
+  d.scratch("state", buffer("ManageState", 24), both | Usage::TransferWrite, "lengths of the lists");
+  d.scratch("slot_records", buffer("SlotRecord", 16, slots), both,
+            "importance, flags, cell, key of each slot");
+  d.scratch("candidate_records", buffer("uvec2", 8, candidates), both,
+            "importance and cell of each candidate");
+  d.scratch("sources", buffer("uint", 4, slots), both, "what each slot gets");
+  d.scratch("lists", buffer("uvec2", 8, SizeExpr(2) * (slots + candidates + more)), both, "lists to sort");
+  d.scratch("attempts", buffer("uint", 4, more), both, "what Algorithm 2 tries to add, in order");
+  d.scratch("added", buffer("uint", 4, candidates), both, "candidates that are added, in order");
+  d.scratch("density", buffer("uint", 4, kCells), both | Usage::TransferWrite, "VPLs reused in each cell");
+  d.scratch("segments", buffer("uint", 4, kCells), both, "first of the sorted attempts in each cell");
+}
+
+PassDeclaration Manage::declaration() {
+  PassDeclaration d("manage", "which VPLs stay, which candidates become VPLs, and in which slots");
+  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
+          "VPLs that could be; attempts that hit nothing are skipped");
+  d.input("candidate_importance", buffer("float", 4), Usage::TexelRead, "I of each candidate, in [0, 1]");
+  d.input("vpl_importance", buffer("float", 4), Usage::TexelRead,
+          "I of each slot's VPL in this frame, in [0, 1]");
+  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+          "the list of the frame before, updated: as many slots as `count`");
+  d.output("list", buffer("VplState", sizeof(scene::VplState), parameter("count")), Usage::StorageWrite,
+           "this frame's list. A VPL that stays keeps its slot and takes its new importance; a new one has "
+           "life 1 and, as its "
+           "importance before, its importance");
+  addScratch(d);
+
+  // The list comes round through the pass that updates it, so its length is said here, not taken from the
+  // input.
+  d.parameter("count", integer(1000, 1, kMost), "slots: most VPLs there can be (N)");
+  d.parameter(
+      "reuse", choice("linear", {"linear", "cosine", "random", "none"}),
+      "VPLs that are reused for certain (Eq. 1), C the ratio of importance to the frame before. linear: with "
+      "probability "
+      "min(C, 1); cosine: 1 - cos(pi/2 min(C, 1)); random: as many as linear, any of them; none: the list is "
+      "the first candidates of this frame, as they come");
+  d.parameter("keep", integer(0, 0, kMost),
+              "candidates left by thinning (K): each stays with probability min(1, K I / sum I); 0: as many "
+              "as `limit`");
+  d.parameter("order", choice("fixed", {"literal", "fixed"}),
+              "Algorithm 2. literal: as printed; fixed: when more old VPLs failed Eq. 1 than there are "
+              "candidates, the best "
+              "of those that it never reaches are tried, too");
+  d.parameter("limit", integer(0, 0, kMost),
+              "most VPLs in the list (N_MAX), at most the slots; 0: all slots");
+  d.parameter("max_density", integer(0, 0, kMost),
+              "a cell with this many VPLs takes no more (D_MAX); 0: max(2, 3 N_MAX / cells that hold a VPL "
+              "or candidate)");
+  d.parameter("density_constant", real(1, 0.5, 1024),
+              "CONST in the weight I + 1 / (density + CONST), rounded to 1/64: less spreads the VPLs more");
+  d.parameter("cell", real(1.0 / 48, 1.0 / 64, 1, "scene diagonals"), "edge of a cell of the density grid");
+
+  d.counter("kept", "old VPLs that stay");
+  d.counter("deleted", "old VPLs that go");
+  d.counter("added", "candidates that become VPLs");
+  d.counter("candidates", "candidates before thinning");
+  d.counter("rejected", "old VPLs that failed the test of Eq. 1");
+  d.counter("alive", "VPLs in the list");
+  d.counter("dense", "old VPLs and candidates refused because their cell was full");
+  return d;
+}
+
+void require(const PrepareContext& ctx, const char* port, uint64_t wanted, const char* remedy) {
+  const uint64_t count = ctx.count(port);
+  if (count == wanted) return;
+  throw Error(ExitCode::BadInput,
+              "pass manage: `" + std::string(port) + "` has " + std::to_string(count) + " elements, not " +
+                  std::to_string(wanted),
+              remedy);
+}
+
+void Manage::prepare(PrepareContext& ctx) {
+  const uint64_t candidates = ctx.count("candidates");
+  if (candidates > kMost)
+    throw Error(
+        ExitCode::BadInput,
+        "pass manage: " + std::to_string(candidates) + " candidates are more than " + std::to_string(kMost),
+        "lower the `count` of the pass that finds them");
+  require(ctx, "vpls", ctx.count("list"), "set `count` to the slots of the list that comes in");
+  require(ctx, "vpl_importance", ctx.count("list"), "wire the importances of `vpls`");
+  require(ctx, "candidate_importance", candidates, "wire the importances of `candidates`");
+  if (!ctx.device().features().shaderInt64)
+    throw Error(ExitCode::NoDevice,
+                "pass manage needs 64-bit integers in shaders (shaderInt64), which the device lacks");
+  none_ = ctx.parameters().text("reuse") == "none";
+  accept_ = ctx.compute("manage/accept.comp");
+  write_ = ctx.compute("manage/write.comp");
+  if (none_) {
+    refill_ = ctx.compute("manage/refill.comp");
+    return;
+  }
+  thin_ = ctx.compute("manage/thin.comp");
+  reuse_ = ctx.compute("manage/reuse.comp");
+  order_ = ctx.compute("manage/order.comp");
+  choose_ = ctx.compute("manage/choose.comp");
+}
+
+Commands Manage::use(RecordContext& ctx, Kernel kernel) {
+  const Parameters& p = ctx.parameters();
+  const scene::Geometry& geometry = *ctx.frame().geometry;
+  const bool empty = geometry.empty();
+  const glm::vec3 origin = empty ? glm::vec3(0.0f) : geometry.boundsMin;
+  const float diagonal = empty ? 1.0f : std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
+  const uint32_t slots = uint32_t(ctx.count("list"));
+  const uint32_t limit = p.integer("limit") > 0 ? std::min(uint32_t(p.integer("limit")), slots) : slots;
+  Commands commands = ctx.use(kernel);
+  commands.constant("gridOrigin", origin)
+      .constant("cellsPerMetre", 1.0f / (float(p.real("cell")) * diagonal))
+      .constant("slots", slots)
+      .constant("candidateCount", uint32_t(ctx.count("candidates")))
+      .constant("listLimit", limit)
+      .constant("keepCount", p.integer("keep") > 0 ? uint32_t(p.integer("keep")) : limit)
+      .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
+  return commands;
+}
+
+void Manage::record(RecordContext& ctx) {
+  const uint32_t slots = uint32_t(ctx.count("list")), candidates = uint32_t(ctx.count("candidates"));
+  ctx.fill("state", 0);
+  ctx.fill("density", 0);
+  ctx.barrier();
+  use(ctx, accept_).dispatchThreads(std::max(slots, candidates));
+  ctx.barrier();
+  if (none_) {
+    use(ctx, refill_).dispatch(1);
+  } else {
+    use(ctx, reuse_).dispatch(1);  // together: neither needs the other
+    use(ctx, thin_).dispatch(1);
+    ctx.barrier();
+    use(ctx, order_).dispatch(2);
+    ctx.barrier();
+    use(ctx, choose_).dispatch(1);
+  }
+  ctx.barrier();
+  use(ctx, write_).dispatchThreads(slots);
+}
+
+FOVEA_PASS(Manage);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,59 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One slot and one candidate an invocation: importance in fixed point, Eq. 1, cells of the density grid.
+#include "common/random.glsl"
+#include "common/vpl.glsl"
+#include "manage/acceptance.glsl"
+#include "manage/memory.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform usamplerBuffer candidates;
+layout(set = 0) uniform samplerBuffer candidateImportance;
+layout(set = 0) uniform samplerBuffer vplImportance;
+layout(set = 0) uniform samplerBuffer vpls;  // VplState: five texels a slot
+
+const uint kManageStream = 0x6d616e61u;  // keeps the random numbers of this pass apart from others
+
+void occupy(uint cell) {
+  if ((atomicOr(density.cells[cell], kOccupied) & kOccupied) == 0u) atomicAdd(state.occupied, 1u);
+}
+
+void testSlot(uint slot) {
+  sources.list[slot] = kEmpty;
+  int texel = 5 * int(slot);
+  if (!(texelFetch(vpls, texel + 1).w > 0.0)) {  // life
+    slotRecords.list[slot] = SlotRecord(0u, 0u, 0u, 0u);
+    return;
+  }
+  uint importance = quantiseImportance(texelFetch(vplImportance, int(slot)).r);
+  uint before = quantiseImportance(texelFetch(vpls, texel + 4).w);
+  uint stream = randomStream(seed, frameIndex, kManageStream, slot);
+  uint u = hashCombine(stream, 0u) >> 8;
+  // `random` reuses as many as `linear` would.
+  bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
+  uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
+  uint cell = cellOf(texelFetch(vpls, texel).xyz);
+  slotRecords.list[slot] = SlotRecord(importance, kAlive | (accepted ? kAccepted : 0u), cell, key);
+  occupy(cell);
+  atomicAdd(state.alive, 1u);
+  if (accepted) atomicAdd(state.accepted, 1u);
+}
+
+void readCandidate(uint i) {
+  uvec4 positionSide = texelFetch(candidates, 4 * int(i));
+  if (positionSide.w == kNoSide) {
+    candidateRecords.list[i] = uvec2(kNoCandidate, 0u);
+    return;
+  }
+  uint cell = cellOf(uintBitsToFloat(positionSide.xyz));
+  candidateRecords.list[i] = uvec2(quantiseImportance(texelFetch(candidateImportance, int(i)).r), cell);
+  occupy(cell);
+  atomicAdd(counters.candidates, 1u);
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i < slots) testSlot(i);
+  if (i < candidateCount) readCandidate(i);
+}

@@ -1,0 +1,63 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+// One work group: the candidates Lc, thinned by the inverse transform of the CDF of importance. K samples at equal distances
+// from a random start on [0, K sum I) meet a candidate with probability min(1, K I / sum I); one that several meet is taken
+// once (systematic, without replacement). Sums are whole numbers below 2^57.
+#include "common/random.glsl"
+#include "common/vpl.glsl"
+#define GROUP 64
+#include "manage/group.glsl"
+#include "manage/memory.glsl"
+
+layout(local_size_x = GROUP) in;
+
+const uint kThinStream = 0x7468696eu;  // keeps the random numbers of this kernel apart from others
+
+shared uint64_t groupSums[GROUP];
+
+uint importanceOf(uint i) {
+  uint importance = candidateRecords.list[i].x;
+  return importance == kNoCandidate ? 0u : importance;
+}
+
+// Sum of the importances before this invocation's run, and of all.
+uint64_t importanceBefore(Run run, out uint64_t total) {
+  uint64_t sum = 0ul, before = 0ul;
+  for (uint i = run.begin; i < run.end; ++i) sum += uint64_t(importanceOf(i));
+  groupSums[gl_LocalInvocationIndex] = sum;
+  groupBarrier();
+  total = 0ul;
+  for (uint i = 0u; i < GROUP; ++i) {
+    if (i == gl_LocalInvocationIndex) before = total;
+    total += groupSums[i];
+  }
+  return before;
+}
+
+void main() {
+  Run run = runOf(candidateCount);
+  uint64_t total;
+  uint64_t before = importanceBefore(run, total);
+  uint64_t start = (total * uint64_t(randomStream(seed, frameIndex, kThinStream, 0u) >> 8)) >> 24;
+  uint64_t spacing = max(total, 1ul);
+
+  uint count = 0u, all;
+  uint64_t sum = before, samples = (keepCount * sum + start) / spacing;  // in front of the candidate
+  for (uint i = run.begin; i < run.end; ++i) {
+    sum += uint64_t(importanceOf(i));
+    uint64_t next = (keepCount * sum + start) / spacing;
+    if (next > samples) ++count;
+    samples = next;
+  }
+  uint place = candidateList() + sumBefore(count, all);
+  sum = before;
+  samples = (keepCount * sum + start) / spacing;
+  for (uint i = run.begin; i < run.end; ++i) {
+    sum += uint64_t(importanceOf(i));
+    uint64_t next = (keepCount * sum + start) / spacing;
+    if (next > samples) lists.entries[place++] = uvec2(0u, i);
+    samples = next;
+  }
+  if (gl_LocalInvocationIndex == 0u) state.candidateCount = all;
+}

@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One slot an invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty.
+#include "common/vpl.glsl"
+#include "manage/memory.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform usamplerBuffer candidates;
+layout(set = 0) uniform usamplerBuffer candidateImportance;  // bits of floats, so that they pass unchanged
+layout(set = 0) uniform usamplerBuffer vplImportance;
+layout(set = 0) uniform usamplerBuffer vpls;
+layout(set = 0, std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  // VplState: five a slot
+
+const uint kOne = 0x3f800000u;  // bits of 1.0
+
+void writeCandidate(uint slot, int i) {
+  uvec4 positionSide = texelFetch(candidates, 4 * i), normalObject = texelFetch(candidates, 4 * i + 1);
+  uvec4 reflectance = texelFetch(candidates, 4 * i + 2), localPosition = texelFetch(candidates, 4 * i + 3);
+  uint importance = texelFetch(candidateImportance, i).r;
+  list.texels[5u * slot] = uvec4(positionSide.xyz, importance);
+  list.texels[5u * slot + 1u] = uvec4(normalObject.xyz, kOne);
+  list.texels[5u * slot + 2u] = uvec4(reflectance.xyz, positionSide.w);
+  list.texels[5u * slot + 3u] = uvec4(localPosition.xyz, normalObject.w);
+  list.texels[5u * slot + 4u] = uvec4(normalObject.xyz, importance);
+}
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= slots) return;
+  uint source = sources.list[slot];
+  if (source >= kFirstCandidate) {
+    writeCandidate(slot, int(source - kFirstCandidate));
+    return;
+  }
+  for (uint t = 0u; t < 5u; ++t)
+    list.texels[5u * slot + t] = source == kKept ? texelFetch(vpls, int(5u * slot + t)) : uvec4(0u);
+  if (source == kKept) list.texels[5u * slot].w = texelFetch(vplImportance, int(slot)).r;
+}
