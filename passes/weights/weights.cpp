@@ -1,0 +1,191 @@
+// How much light a VPL stands for: its radiosity times a piece of surface A_l (METHOD section 2, weights). Each strategy is
+// a way to fill the scratch buffer `areas`; the rest is shared.
+#include <algorithm>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/gpu/resources.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/voxel_grid.h"
+#include "framework/scene/vpl.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere but in bricks.comp
+constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
+constexpr uint32_t kBrick = 4;            // cells; shaders/weights/weights.glsl
+constexpr uint32_t kMostCompeting = 16384;  // VPLs that bricks.comp loops over, twice: below the 65,535 turns of a loop
+
+uint32_t groups(uint64_t threads, uint32_t size = kGroup) { return uint32_t((threads + size - 1) / size); }
+
+class Weights : public Pass {
+ public:
+  static PassDeclaration declaration();
+  void prepare(PrepareContext& ctx) override;
+  void record(RecordContext& ctx) override;
+
+ private:
+  static void addScratch(PassDeclaration& d);
+  void recordDensities(RecordContext& ctx);
+  void recordVoronoi(RecordContext& ctx);
+
+  std::string strategy_;
+  uint32_t vplCount_ = 0, candidateCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
+  Kernel tally_, finish_;
+  Kernel points_, density_, pdf_, constant_;  // `pdf`, and `constant` after it
+  Kernel brick_, nearest_, sum_;        // `area`
+};
+
+PassDeclaration Weights::declaration() {
+  PassDeclaration d("weights", "the area A_l that each VPL stands for, and with it its intensity B_l A_l / pi");
+  d.view();
+  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead, "VPLs of this frame, a slot each");
+  d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead, "rgb: B_l, W/m^2; w: its luminance; slots as in `vpls`");
+  d.input("voxels", "voxels",
+          {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+           member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead),
+           member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::Uniform)},
+          "surfaces that VPLs stand for");
+  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each voxel side; w: luminance, above 0 it is lit");
+  d.input("gbuffer", "gbuffer",
+          {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
+           member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+           member("face", image2D(), Usage::Sampled)},
+          "surfaces seen by the eye, from which eye paths start");
+  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
+          "this frame's attempts to find a VPL, for the share that escapes; without them none does")
+      .makeOptional();
+  d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
+           "VPLs to shade with, in their slots; an empty slot is all zeros");
+  addScratch(d);
+  d.parameter("strategy", choice("pdf", {"constant", "pdf", "area"}),
+              "A_l: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N p), p the density of eye "
+              "paths from the region; `area` the surface nearest to the VPL (Voronoi)");
+  d.parameter("region", choice("fovea", {"fovea", "image"}), "where the eye paths start: as in pass candidates");
+  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
+  d.parameter("points", integer(128, 8, 1024), "screen points that a density is averaged over, for `pdf` and `constant`");
+  d.parameter("area_cap", real(4, 1, 1e6),
+              "the most that A_l can be, in medians of all, for `pdf` and `constant`; also what a VPL stands for that the region "
+              "does not see");
+  d.parameter("sides", choice("lit", {"lit", "all"}),
+              "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such sides; `all` every "
+              "side, among all VPLs");
+  d.parameter("normal_weight", real(0.5, 0, 100),
+              "how far apart for `area` turned normals put surfaces: d^2 + lambda (1 - n.n'), lambda in squared mean free paths "
+              "of the scene");
+  d.parameter("offset", real(0, 0, 10, "cells"), "moves a VPL along its normal, out of the surface that its voxel averages");
+  d.counter("alive", "slots that hold a VPL");
+  d.counter("unseen", "VPLs that no screen point sees (`pdf`)");
+  d.counter("capped", "VPLs that are seen and whose area is cut to the cap (`pdf`)");
+  d.counter("given_sides", "sides that were given to a VPL (`area`)");
+  return d;
+}
+
+void Weights::addScratch(PassDeclaration& d) {
+  const Usage readWrite = Usage::StorageRead | Usage::StorageWrite;
+  d.scratch("totals", buffer("WeightTotals", 16), readWrite | Usage::TransferWrite, "counts, and surface of the scene");
+  d.scratch("areas", buffer("float", 4, countOf("vpls")), readWrite, "A_l, m^2: what a strategy computes");
+  d.scratch("screen", buffer("ScreenPoint", 48, parameter("points")), Usage::StorageWrite | Usage::TexelRead,
+            "position, normal, face of what the screen points see");
+  d.scratch("densities", buffer("float", 4, countOf("vpls")), Usage::StorageWrite | Usage::TexelRead, "p_A, 1/m^2");
+  d.scratch("kept", buffer("WeightsKept", 8), readWrite,
+            "total area of `constant`, m^2, 0: not known yet; last median of the densities, 1/m^2")
+      .keep(Lifetime::View);
+  // A choice counts as its index: 0 constant, 1 pdf, 2 area.
+  const SizeExpr area = min(max(parameter("strategy") - 1, 0), 1), side = ceilDiv(widthOf("voxels.index"), kBrick);
+  const SizeExpr bricks = side * side * side * area;
+  d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * area)), Usage::StorageWrite | Usage::TexelRead,
+            "position, normal of the VPLs that compete for surface");
+  d.scratch("bricks", buffer("uint", 4, max(1, bricks)), readWrite | Usage::TransferWrite, "1: holds surface to give away");
+  d.scratch("masks", buffer("uint", 4, max(1, bricks * ceilDiv(countOf("vpls"), 32))), Usage::StorageWrite | Usage::TexelRead,
+            "a bit for each VPL that can be nearest in a brick");
+  d.scratch("sums", buffer("AreaSum", 8, max(1, countOf("vpls") * area)), readWrite | Usage::TransferWrite,
+            "surface given to each VPL, as whole numbers");
+}
+
+void Weights::prepare(PrepareContext& ctx) {
+  const Parameters& p = ctx.parameters();
+  strategy_ = p.text("strategy");
+  vplCount_ = uint32_t(ctx.count("vpls"));
+  candidateCount_ = ctx.has("candidates") ? uint32_t(ctx.count("candidates")) : 0;
+  sideCapacity_ = uint32_t(std::min(ctx.count("voxels.surface"), ctx.count("radiance")));
+  bricks_ = (ctx.extent("voxels.index").width + kBrick - 1) / kBrick;
+  const bool area = strategy_ == "area";
+  const std::string lit = p.text("sides") == "lit" ? "1" : "0";
+  if (area && vplCount_ > kMostCompeting)
+    throw Error(ExitCode::BadInput,
+                "pass `weights`: strategy `area` takes at most " + std::to_string(kMostCompeting) + " VPLs, these are " +
+                    std::to_string(vplCount_),
+                "set weights.strategy to `pdf`, or use fewer VPLs");
+  tally_ = ctx.compute("weights/tally.comp",
+                       {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}, {"HAS_CANDIDATES", candidateCount_ > 0 ? "1" : "0"}});
+  finish_ = ctx.compute("weights/finish.comp");
+  if (area) {
+    brick_ = ctx.compute("weights/bricks.comp");
+    nearest_ = ctx.compute("weights/nearest.comp", {{"LIT_ONLY", lit}});
+    sum_ = ctx.compute("weights/sum.comp");
+    return;
+  }
+  points_ = ctx.compute("weights/points.comp");
+  density_ = ctx.compute("weights/density.comp");
+  pdf_ = ctx.compute("weights/pdf.comp");
+  if (strategy_ == "constant") constant_ = ctx.compute("weights/constant.comp");
+}
+
+void Weights::recordDensities(RecordContext& ctx) {
+  const uint32_t region = ctx.parameters().text("region") == "image" ? 1u : 0u;  // kRegionFovea, kRegionImage
+  ctx.use(points_).constant("region", region).dispatchThreads(uint32_t(ctx.parameters().integer("points")));
+  ctx.barrier();
+  const uint32_t row = std::min(vplCount_, 32768u);
+  ctx.use(density_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
+  ctx.barrier();
+  ctx.use(pdf_).constant("vplCount", vplCount_).constant("candidateCount", candidateCount_).dispatch(1);
+  ctx.barrier();
+  if (strategy_ != "constant") return;
+  ctx.use(constant_).constant("vplCount", vplCount_).dispatch(1);
+  ctx.barrier();
+}
+
+void Weights::recordVoronoi(RecordContext& ctx) {
+  const float share = float(ctx.parameters().real("normal_weight"));
+  ctx.use(brick_).constant("vplCount", vplCount_).constant("normalShare", share).dispatchThreads(bricks_, bricks_, bricks_);
+  ctx.barrier();
+  const uint32_t all = groups(sideCapacity_), row = std::min(all, 32768u);
+  ctx.use(nearest_)
+      .constant("vplCount", vplCount_)
+      .constant("sideCapacity", sideCapacity_)
+      .constant("normalShare", share)
+      .dispatch(row, (all + row - 1) / row);
+  ctx.barrier();
+  ctx.use(sum_).constant("vplCount", vplCount_).dispatchThreads(vplCount_);
+  ctx.barrier();
+}
+
+void Weights::record(RecordContext& ctx) {
+  const bool area = strategy_ == "area";
+  ctx.fill("totals", 0);
+  if (area) {
+    ctx.fill("bricks", 0);
+    ctx.fill("sums", 0);
+  }
+  ctx.barrier();
+  Commands tally = ctx.use(tally_);
+  tally.constant("vplCount", vplCount_);
+  if (area) tally.constant("sideCapacity", sideCapacity_);
+  if (candidateCount_ > 0) tally.constant("candidateCount", candidateCount_);
+  tally.dispatch(kTallyGroups);
+  ctx.barrier();
+  if (area)
+    recordVoronoi(ctx);
+  else
+    recordDensities(ctx);
+  ctx.use(finish_).constant("vplCount", vplCount_).dispatchThreads(vplCount_);
+}
+
+FOVEA_PASS(Weights);
+
+}  // namespace
+}  // namespace fovea::passes

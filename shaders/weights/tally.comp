@@ -1,0 +1,80 @@
+// Counts what the areas hang on: VPLs alive and candidates that hit something; for `area` also the surface of the voxels, and
+// lists the VPLs that compete for sides and marks the bricks that hold any to give away.
+// Defines: HAS_CANDIDATES 0/1; AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
+#include "common/scene.glsl"
+#include "weights/weights.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform samplerBuffer vpls;
+layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
+#if HAS_CANDIDATES
+layout(set = 0) uniform samplerBuffer candidates;
+#endif
+#if AREA
+layout(set = 0) uniform samplerBuffer radiance;
+layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
+layout(set = 0, std430) buffer BricksBlock { uint list[]; } bricks;
+#endif
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+#if HAS_CANDIDATES
+  uint candidateCount;
+#endif
+#if AREA
+  uint sideCapacity;
+#endif
+};
+
+#if AREA
+bool litSide(uint side) { return side < sideCapacity && texelFetch(radiance, int(side)).w > 0.0; }
+#endif
+
+void tallyVpls(uint first, uint stride) {
+  uint alive = 0u;
+  for (uint i = first; i < vplCount; i += stride) {
+    vec4 normalLife = texelFetch(vpls, int(i) * kStateTexels + 1);
+    bool there = normalLife.w > 0.0;
+    alive += uint(there);
+#if AREA
+    uint side = floatBitsToUint(texelFetch(vpls, int(i) * kStateTexels + 2).w);
+    bool competes = there && (LIT_ONLY == 0 || litSide(side));
+    sites.list[2u * i] = vec4(texelFetch(vpls, int(i) * kStateTexels).xyz, competes ? 1.0 : 0.0);
+    sites.list[2u * i + 1u] = vec4(normalLife.xyz, 0.0);
+#endif
+  }
+  if (alive > 0u) atomicAdd(totals.value.alive, alive);
+}
+
+#if AREA
+void tallySides(uint first, uint stride) {
+  VoxelGrid grid = voxelsGrid();
+  uint low = 0u, high = 0u, sides = min(2u * voxelsInfo.value.voxels, sideCapacity);
+  for (uint i = first; i < sides; i += stride) {
+    vec4 positionArea = texelFetch(voxelsSurface, int(i) * kVoxelSideTexels);
+    if (!(positionArea.w > 0.0)) continue;
+    uint units = areaUnits(grid, positionArea.w);
+    low += units;
+    high += uint(low < units);
+    if (LIT_ONLY == 0 || litSide(i)) atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
+  }
+  ADD_WIDE(totals.value.areaLow, totals.value.areaHigh, low);
+  if (high > 0u) atomicAdd(totals.value.areaHigh, high);
+}
+#endif
+
+void main() {
+  uint first = gl_GlobalInvocationID.x, stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  tallyVpls(first, stride);
+#if AREA
+  tallySides(first, stride);
+#endif
+#if HAS_CANDIDATES
+  uint hits = 0u;
+  for (uint i = first; i < candidateCount; i += stride)
+    hits += uint(floatBitsToUint(texelFetch(candidates, int(i) * 4).w) != kNoSide);
+  if (hits > 0u) atomicAdd(totals.value.hits, hits);
+#endif
+}

@@ -1,0 +1,56 @@
+// What the kernels of pass weights share. Needs common/scene.glsl; includes the voxels.
+#ifndef FOVEA_WEIGHTS_GLSL
+#define FOVEA_WEIGHTS_GLSL
+
+#include "common/voxel_trace.glsl"
+
+// Sums over the scene and the lists. Areas as 64-bit whole numbers (low, high word) of 1 / kAreaUnits cell faces: whole
+// numbers add up to the same sum in any order.
+struct Totals {
+  uint alive;              // slots that hold a VPL
+  uint hits;               // candidates that found a surface
+  uint areaLow, areaHigh;  // surface of all voxel sides (`area` only)
+};
+
+const float kAreaUnits = 65536.0;
+
+uint areaUnits(VoxelGrid grid, float area) {
+  return uint(min(area / (grid.cell * grid.cell) * kAreaUnits + 0.5, 4.2e9));
+}
+
+float unitsToArea(VoxelGrid grid, uint low, uint high) {
+  return (float(high) * 4294967296.0 + float(low)) * (grid.cell * grid.cell / kAreaUnits);
+}
+
+// Adds to a 64-bit sum in a buffer: whoever wraps the low word carries.
+#define ADD_WIDE(LOW, HIGH, VALUE) { \
+  uint before_ = atomicAdd(LOW, VALUE); \
+  if (before_ + (VALUE) < before_) atomicAdd(HIGH, 1u); \
+}
+
+// Texels of a VplState.
+const int kStateTexels = 5;
+
+// Cells along the edge of a brick: the sides of a brick share one list of the VPLs that can be nearest to any of them.
+const int kBrick = 4;
+
+ivec3 brickGrid(VoxelGrid grid) { return ivec3((grid.resolution + kBrick - 1) / kBrick); }
+
+ivec3 brickOf(VoxelGrid grid, vec3 position) {
+  return clamp(ivec3(floor(worldToVoxel(grid, position))), ivec3(0), ivec3(grid.resolution - 1)) / kBrick;
+}
+
+uint brickIndex(VoxelGrid grid, ivec3 brick) {
+  int n = brickGrid(grid).x;
+  return uint(brick.x + n * (brick.y + n * brick.z));
+}
+
+// Weight of the normals in the distance between surfaces, m^2: `share` of the squared mean free path 4 V / S of the scene
+// (mean chord of a room of volume V and surface S), so that one number serves a cupboard and a cathedral.
+float normalWeight(VoxelGrid grid, float share, uint areaLow, uint areaHigh) {
+  vec3 extent = max(frame.boundsMax.xyz - frame.boundsMin.xyz, vec3(0.0));
+  float path = 4.0 * extent.x * extent.y * extent.z / max(unitsToArea(grid, areaLow, areaHigh), 1e-12);
+  return share * path * path;
+}
+
+#endif

@@ -1,0 +1,184 @@
+// Pass weights on the CPU, plain loops over METHOD section 2, and a room to run it in.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "framework/scene/fovea.h"
+#include "framework/scene/voxel_trace.h"
+#include "framework/scene/vpl.h"
+#include "tests/passes/ray_reference.h"
+#include "tests/support/pass_test.h"
+#include "tests/support/shapes.h"
+#include "tests/support/voxels.h"
+
+namespace fovea::test {
+
+// What an eye in the scene sees: one entry a pixel.
+struct Seen {
+  glm::vec3 position{0}, normal{0};
+  bool there = false;
+};
+
+struct Room {
+  scene::Scene scene;
+  scene::Geometry geometry;
+  VoxelArrays voxels;
+  glm::ivec2 size{0};
+  std::vector<Seen> pixels;
+  scene::Voxels view() const { return {voxels.grid, voxels.index, voxels.surface}; }
+};
+
+inline Room lookInto(scene::Scene scene, int resolution, glm::ivec2 size, float verticalFov = 0.8f) {
+  Room room;
+  scene::Camera camera;
+  camera.verticalFov = verticalFov;
+  room.scene = std::move(scene);
+  room.scene.cameras = {camera};
+  room.geometry = scene::flatten(room.scene);
+  room.voxels = voxelizeReference(room.scene, room.geometry, resolution);
+  room.size = size;
+  const scene::View view = scene::makeView(camera, size, room.geometry);
+  for (int i = 0; i < size.x * size.y; ++i) {
+    const glm::dvec3 d = view.rayDirection(glm::vec2(i % size.x, i / size.x) + 0.5f);
+    const RayHit hit = castRay(room.scene, room.geometry, view.eye, d);
+    Seen seen;
+    if (hit) {
+      const glm::dvec3 n = faceNormal(room.geometry, hit.triangle);
+      seen = {glm::vec3(glm::dvec3(view.eye) + hit.t * d), glm::vec3(glm::dot(n, d) < 0 ? n : -n), true};
+    }
+    room.pixels.push_back(seen);
+  }
+  return room;
+}
+
+// A closed room of 4 m with, if wanted, a block in it. The camera stands in the middle and looks along -z.
+inline Room closedRoom(bool block, int resolution = 24, glm::ivec2 size = glm::ivec2(64), float verticalFov = 0.8f) {
+  scene::Scene s;
+  const uint32_t material = addMaterial(s, glm::vec3(0.5f)), walls[6] = {};
+  addRoom(s, walls, 2);
+  if (block) addBox(s, material, {-1.1f, -2, -1.6f}, {0.2f, -0.4f, -0.7f});
+  return lookInto(std::move(s), resolution, size, verticalFov);
+}
+
+inline glm::vec2 sequencePoint(uint32_t i) {
+  return {uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u)};
+}
+
+struct WeightSettings {
+  uint32_t region = scene::kRegionFovea;
+  float foveaRadius = 0.25f;
+  uint32_t points = 128;
+  double areaCap = 4, normalWeight = 0.5;
+  bool litOnly = true;
+  glm::vec2 gaze{0.5f};
+};
+
+inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& settings) {
+  const glm::vec2 high(room.size);
+  const scene::Fovea fovea = scene::makeFovea(settings.gaze, high, settings.foveaRadius);
+  const glm::vec2 low = glm::max(glm::vec2(0), fovea.centre - fovea.radius), up = glm::min(high, fovea.centre + fovea.radius);
+  std::vector<Seen> points;
+  for (uint32_t i = 0; i < settings.points; ++i) {
+    glm::ivec2 pixel(-1);
+    if (settings.region == scene::kRegionImage) pixel = glm::ivec2(high * sequencePoint(i));
+    for (uint32_t k = 0; pixel.x < 0 && k < scene::kRegionTries; ++k) {
+      const glm::vec2 p = glm::mix(low, up, sequencePoint(i + k * settings.points));
+      const bool inside = glm::all(glm::greaterThanEqual(up, low)) && glm::distance(p, fovea.centre) <= fovea.radius;
+      if (inside) pixel = glm::ivec2(p);
+    }
+    if (pixel.x < 0) pixel = scene::regionSample(settings.region, fovea, room.size, randomStream(0, 0, 0x77656967u, i));
+    pixel = glm::clamp(pixel, glm::ivec2(0), room.size - 1);
+    points.push_back(room.pixels[size_t(pixel.y) * room.size.x + pixel.x]);
+  }
+  return points;
+}
+
+inline bool seesSide(const scene::Voxels& voxels, const Seen& from, const scene::VplState& vpl) {
+  const glm::vec3 to = vpl.position - from.position;
+  const float d = glm::length(to), cell = voxels.grid.cell;
+  const scene::VoxelHit hit = scene::traceVoxels(voxels, from.position, to / d, from.normal);
+  if (hit.side == vpl.side || hit.side == scene::kNoSide || hit.distance >= d) return true;
+  const scene::VoxelSide& side = voxels.surface[hit.side];
+  const glm::vec3 off = side.position - vpl.position;
+  return glm::length(off) < 1.5f * cell ||
+         (glm::dot(side.normal, vpl.normal) > 0.5f && std::abs(glm::dot(off, vpl.normal)) < cell);
+}
+
+// p_A of each slot, 1/m^2.
+inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
+                                     const std::vector<Seen>& points) {
+  const scene::Voxels voxels = room.view();
+  const double cell = voxels.grid.cell;
+  std::vector<double> result;
+  for (const scene::VplState& vpl : vpls) {
+    double sum = 0;
+    for (const Seen& s : points) {
+      const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
+      const double d2 = glm::dot(to, to);
+      const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) * std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
+      if (vpl.life > 0 && s.there && cosines > 1e-12 * d2 && d2 > 1e-12 && seesSide(voxels, s, vpl))
+        sum += cosines / (d2 * (glm::pi<double>() * d2 + cell * cell));
+    }
+    result.push_back(sum / double(points.size()));
+  }
+  return result;
+}
+
+// escaping: attempts of the candidates for each that hit something, 1: all do.
+inline std::vector<double> pdfAreas(const std::vector<scene::VplState>& vpls, const std::vector<double>& p, double areaCap,
+                                    double escaping) {
+  std::vector<double> seen, areas;
+  double alive = 0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    if (p[i] > 0) seen.push_back(p[i]);
+    alive += vpls[i].life > 0;
+  }
+  std::sort(seen.begin(), seen.end());
+  const double least = seen.empty() ? 0 : seen[(seen.size() + 1) / 2 - 1] / areaCap;
+  for (size_t i = 0; i < vpls.size(); ++i)
+    areas.push_back(vpls[i].life > 0 && least > 0 ? 1 / (alive * escaping * std::max(p[i], least)) : 0);
+  return areas;
+}
+
+inline double normalLambda(const Room& room, double normalWeight) {
+  const glm::dvec3 extent = room.geometry.boundsMax - room.geometry.boundsMin;
+  double surface = 0;
+  for (const scene::VoxelSide& side : room.voxels.surface) surface += side.area;
+  const double path = surface > 0 ? 4 * extent.x * extent.y * extent.z / surface : 0;
+  return normalWeight * path * path;
+}
+
+// Area of the sides nearest to each VPL, by trying every one. `doubtful`: area of the sides that two VPLs are equally near to.
+inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scene::VplState>& vpls,
+                                        const std::vector<glm::vec4>& radiance, const WeightSettings& settings,
+                                        double* doubtful) {
+  std::vector<double> areas(vpls.size(), 0.0);
+  const double lambda = normalLambda(room, settings.normalWeight);
+  *doubtful = 0;
+  for (size_t s = 0; s < room.voxels.surface.size(); ++s) {
+    const scene::VoxelSide& side = room.voxels.surface[s];
+    if (!(side.area > 0) || (settings.litOnly && !(radiance[s].w > 0))) continue;
+    double best = 1e300, second = 1e300;
+    size_t owner = 0;
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      if (!(vpls[i].life > 0) || (settings.litOnly && !(radiance[vpls[i].side].w > 0))) continue;
+      const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
+      const double cost = glm::dot(d, d) + lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
+      second = std::min(second, std::max(cost, best));
+      if (cost < best) {
+        best = cost;
+        owner = i;
+      }
+    }
+    if (best > 1e299) continue;
+    areas[owner] += side.area;
+    if (second - best < 1e-5 * (1 + best)) *doubtful += side.area;
+  }
+  return areas;
+}
+
+}  // namespace fovea::test

@@ -1,0 +1,411 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "framework/base/low_discrepancy.h"
+#include "tests/passes/weights_reference.h"
+
+namespace fovea::test {
+namespace {
+
+scene::VplState vplAt(const Room& room, uint32_t side) {
+  const scene::VoxelSide& s = room.voxels.surface[side];
+  scene::VplState vpl;
+  vpl.position = s.position;
+  vpl.normal = s.normal;
+  vpl.reflectance = s.reflectance;
+  vpl.side = side;
+  vpl.life = 1;
+  return vpl;
+}
+
+glm::vec3 cosineDirection(glm::vec3 n, float u, float v) {
+  const glm::vec3 t = glm::normalize(glm::cross(std::abs(n.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), n));
+  const float phi = glm::two_pi<float>() * v, r = std::sqrt(u);
+  return glm::normalize(r * std::cos(phi) * t + r * std::sin(phi) * glm::cross(n, t) + std::sqrt(1 - u) * n);
+}
+
+// As pass candidates: a pixel of the region, one diffuse bounce.
+std::vector<scene::Candidate> candidatesOf(const Room& room, uint32_t count, const WeightSettings& settings) {
+  const scene::Fovea fovea = scene::makeFovea(settings.gaze, room.size, settings.foveaRadius);
+  std::vector<scene::Candidate> list;
+  for (uint32_t i = 0; i < count; ++i) {
+    scene::Candidate candidate;
+    const uint32_t stream = randomStream(5, 0, 0, i);
+    const glm::ivec2 pixel = scene::regionSample(settings.region, fovea, room.size, stream);
+    const Seen& seen = room.pixels[size_t(pixel.y) * room.size.x + pixel.x];
+    scene::VoxelHit hit;
+    if (seen.there)
+      hit = scene::traceVoxels(room.view(), seen.position, cosineDirection(seen.normal, sobol(i, 0, 3), sobol(i, 1, 3)), seen.normal);
+    candidate.side = hit.side;
+    if (hit.side != scene::kNoSide) {
+      candidate.position = room.voxels.surface[hit.side].position;
+      candidate.normal = room.voxels.surface[hit.side].normal;
+    }
+    list.push_back(candidate);
+  }
+  return list;
+}
+
+std::vector<scene::VplState> vplsOf(const Room& room, const std::vector<scene::Candidate>& candidates) {
+  std::vector<scene::VplState> vpls;
+  for (const scene::Candidate& c : candidates)
+    if (c.side != scene::kNoSide) vpls.push_back(vplAt(room, c.side));
+  return vpls;
+}
+
+// Inputs of the pass; radiosity and radiance 1 everywhere until changed.
+struct Inputs {
+  const Room* room = nullptr;
+  std::vector<scene::VplState> vpls;
+  std::vector<glm::vec4> radiosity, radiance;
+  std::vector<scene::Candidate> candidates;  // empty: not wired
+};
+
+Inputs inputs(const Room& room, std::vector<scene::VplState> vpls) {
+  Inputs in;
+  in.room = &room;
+  in.radiosity.assign(vpls.size(), glm::vec4(1));
+  in.radiance.assign(std::max<size_t>(room.voxels.surface.size(), 1), glm::vec4(1 / glm::pi<float>()));
+  in.vpls = std::move(vpls);
+  return in;
+}
+
+void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSettings& settings) {
+  const Room& room = *in.room;
+  std::vector<float> position;
+  std::vector<uint16_t> normal;
+  std::vector<int16_t> face;
+  for (const Seen& s : room.pixels) {
+    position.insert(position.end(), {s.position.x, s.position.y, s.position.z, s.there ? 1.0f : 0.0f});
+    for (const float x : {s.normal.x, s.normal.y, s.normal.z, 0.0f}) normal.push_back(glm::packHalf1x16(x));
+    // All faces of the test scenes are axis-parallel.
+    const glm::vec2 oct = s.normal.z >= -0.5f ? glm::vec2(s.normal) : glm::vec2(1);
+    for (const float x : {oct.x, oct.y}) face.push_back(int16_t(std::lround(32767 * x)));
+  }
+  const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
+  test.param("strategy", strategy).param("region", settings.region == scene::kRegionImage ? "image" : "fovea");
+  test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
+  test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
+  test.param("sides", settings.litOnly ? "lit" : "all");
+  test.viewSize(w, h).scene(room.scene);
+  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+  test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
+  test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
+  setVoxels(test, room.voxels);
+  test.buffer("vpls", in.vpls, "VplState").buffer("radiosity", in.radiosity, "VplRadiosity");
+  test.buffer("radiance", in.radiance, "VoxelRadiance");
+  if (!in.candidates.empty()) test.buffer("candidates", in.candidates, "Candidate");
+}
+
+std::vector<scene::Vpl> weigh(const Inputs& in, const char* strategy, const WeightSettings& settings = {}) {
+  PassTest test("weights");
+  wire(test, in, strategy, settings);
+  if (settings.gaze != glm::vec2(0.5f))
+    test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = settings.gaze; });
+  test.run();
+  return test.values<scene::Vpl>("emitters");
+}
+
+double sumOfAreas(const std::vector<scene::Vpl>& list) {
+  double sum = 0;
+  for (const scene::Vpl& v : list) sum += v.area;
+  return sum;
+}
+
+// Slots whose area is off by more than `tolerance`, relative; what is not area must be right in all of them.
+int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::vector<double>& want, double tolerance) {
+  EXPECT_EQ(got.size(), want.size());
+  int wrong = 0;
+  for (size_t i = 0; i < want.size(); ++i) {
+    wrong += std::abs(got[i].area - want[i]) > tolerance * want[i] + 1e-7;
+    const scene::Vpl none;
+    if (!(in.vpls[i].life > 0)) {
+      EXPECT_EQ(std::memcmp(&got[i], &none, sizeof none), 0) << i;
+      continue;
+    }
+    EXPECT_EQ(got[i].position, in.vpls[i].position);
+    EXPECT_EQ(got[i].normal, in.vpls[i].normal);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(got[i].intensity[c], in.radiosity[i][c] * got[i].area / glm::pi<float>(), 1e-6f * got[i].intensity[c]);
+  }
+  return wrong;
+}
+
+// Irradiance at a point from all VPLs, with the disc kernel; nothing stands in between.
+double irradiance(const std::vector<scene::Vpl>& list, const Seen& s) {
+  double e = 0;
+  for (const scene::Vpl& v : list) {
+    const glm::dvec3 to = glm::dvec3(v.position) - glm::dvec3(s.position);
+    const double d2 = std::max(glm::dot(to, to), 1e-12);
+    const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) * std::max(-glm::dot(glm::dvec3(v.normal), to), 0.0);
+    e += v.intensity.x * cosines / d2 / (d2 + v.area / glm::pi<double>());
+  }
+  return e;
+}
+
+TEST(Weights, PdfEqualsTheReference) {
+  const Room room = closedRoom(true);
+  for (const uint32_t region : {scene::kRegionFovea, scene::kRegionImage}) {
+    WeightSettings settings;
+    settings.region = region;
+    settings.points = region == scene::kRegionFovea ? 128 : 100;
+    settings.gaze = region == scene::kRegionFovea ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.5f);  // a clipped disc
+    const auto candidates = candidatesOf(room, 400, settings);
+    Inputs in = inputs(room, vplsOf(room, candidates));
+    ASSERT_GT(in.vpls.size(), 300u);
+    for (size_t i = 0; i < in.vpls.size(); i += 7) in.vpls[i] = {};
+    for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = {0.1f * i, 2, 0.5f, 1};
+    const auto p = densities(room, in.vpls, screenPoints(room, settings));
+    // A test of visibility or a pixel may fall to the other side by rounding.
+    EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, 1), 1e-4), 4);
+
+    in.candidates = candidates;
+    for (size_t i = 0; i < in.candidates.size(); i += 3) in.candidates[i] = {};  // escaped
+    int hits = 0;
+    for (const scene::Candidate& c : in.candidates) hits += c.side != scene::kNoSide;
+    const double escaping = double(in.candidates.size()) / hits;
+    EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, escaping), 1e-4), 4);
+  }
+}
+
+TEST(Weights, PdfSpreadsOverTheSurfaceThatIsReached) {
+  const Room room = closedRoom(false, 32);
+  WeightSettings settings;
+  settings.points = 512;
+  settings.areaCap = 1000;
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 2000, settings)));
+  const auto list = weigh(in, "pdf", settings);
+  // The wall that is looked at: most of it is reached by no path of its own region, 5/6 of 96 m^2 are.
+  EXPECT_NEAR(sumOfAreas(list), 80, 8);
+}
+
+// Light that is the same everywhere in a closed room: irradiance B on every surface, pi L with L = B / pi.
+TEST(Weights, FurnaceOfDensities) {
+  const Room room = closedRoom(false, 32);
+  WeightSettings settings;
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 2000, settings)));
+  const auto list = weigh(in, "pdf", settings);
+  const scene::Fovea fovea = scene::makeFovea(settings.gaze, room.size, settings.foveaRadius);
+  double mean = 0;
+  for (uint32_t i = 0; i < 500; ++i) {  // other points than the densities'
+    const glm::ivec2 p = scene::regionSample(scene::kRegionFovea, fovea, room.size, randomStream(8, 0, 0, i));
+    mean += irradiance(list, room.pixels[size_t(p.y) * room.size.x + p.x]) / 500;
+  }
+  EXPECT_NEAR(mean, 1, 0.04);
+}
+
+// Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine elsewhere.
+TEST(Weights, FurnaceOfAreas) {
+  const Room room = closedRoom(false, 32, glm::ivec2(64), 2.2f);
+  WeightSettings settings;
+  settings.region = scene::kRegionImage;
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 2000, settings)));
+  const auto list = weigh(in, "area", settings);
+  double mean = 0;
+  for (uint32_t i = 0; i < 500; ++i) {
+    const glm::ivec2 p = scene::regionSample(scene::kRegionImage, {}, room.size, randomStream(8, 0, 0, i));
+    mean += irradiance(list, room.pixels[size_t(p.y) * room.size.x + p.x]) / 500;
+  }
+  EXPECT_NEAR(mean, 1, 0.05);
+}
+
+TEST(Weights, AreasEqualASearchOfAllVpls) {
+  const Room room = closedRoom(true);
+  for (const bool litOnly : {true, false}) {
+    WeightSettings settings;
+    settings.litOnly = litOnly;
+    settings.region = scene::kRegionImage;
+    Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 1500, settings)));
+    for (size_t i = 0; i < in.vpls.size(); i += 5) in.vpls[i] = {};
+    for (uint32_t i = 0; i < in.vpls.size(); ++i)  // off the lattice, where many are equally near
+      if (in.vpls[i].life > 0) in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+    double lit = 0;
+    for (size_t s = 0; s < in.radiance.size(); ++s) {
+      if (room.voxels.surface[s].position.x > 0.3f) in.radiance[s] = glm::vec4(0);
+      if (!litOnly || in.radiance[s].w > 0) lit += room.voxels.surface[s].area;
+    }
+    double doubtful = 0;
+    const auto want = voronoiAreas(room, in.vpls, in.radiance, settings, &doubtful);
+    const auto got = weigh(in, "area", settings);
+    double off = 0;
+    for (size_t i = 0; i < want.size(); ++i) off += std::abs(got[i].area - want[i]);
+    EXPECT_LE(off, 2 * doubtful + 1e-4 * lit);
+    EXPECT_LT(doubtful, 0.01 * lit);  // the test tests something
+    wrongAreas(got, in, want, 1);
+    EXPECT_NEAR(sumOfAreas(got), lit, 1e-5 * lit);
+  }
+}
+
+TEST(Weights, AConstantStaysWhatTheFirstFrameMadeIt) {
+  const Room room = closedRoom(true);
+  WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
+  for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = glm::vec4(float(i % 7));
+  const auto areas = pdfAreas(in.vpls, densities(room, in.vpls, screenPoints(room, settings)), 4, 1);
+  double flux = 0, sum = 0;
+  for (size_t i = 0; i < areas.size(); ++i) {
+    flux += in.radiosity[i].w * areas[i];
+    sum += in.radiosity[i].w;
+  }
+  const double total = double(in.vpls.size()) * flux / sum;
+
+  PassTest test("weights");
+  wire(test, in, "constant", settings);
+  uint32_t frame = 0;
+  test.beforeFrame([&](PassTest& t, scene::Frame&) {
+    if (frame == 0) t.set("radiosity", std::vector<glm::vec4>(in.radiosity.size(), glm::vec4(0)));  // no flux: waits
+    if (frame == 1) t.set("radiosity", in.radiosity);
+    if (frame == 2) {  // others, and half of them: the total is divided among those
+      for (size_t i = 0; i < in.vpls.size(); ++i) in.vpls[i] = i % 2 ? in.vpls[0] : scene::VplState{};
+      t.set("vpls", in.vpls);
+    }
+    ++frame;
+  });
+  for (const uint32_t frames : {1u, 2u, 3u}) {
+    test.run(1);
+    const auto list = test.values<scene::Vpl>("emitters");
+    double alive = 0;
+    for (const scene::VplState& vpl : in.vpls) alive += vpl.life > 0;
+    for (size_t i = 0; i < list.size(); ++i) {
+      const double want = frames > 1 && in.vpls[i].life > 0 ? total / alive : 0;
+      ASSERT_NEAR(list[i].area, want, 2e-3 * want) << frames << " " << i;
+    }
+  }
+}
+
+TEST(Weights, AVplOutOfSightHasTheLargestArea) {
+  const Room room = closedRoom(true);
+  WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 100, settings)));
+  in.vpls[3].position = {0, -1.9f, 1.9f};  // turned away from all that is looked at
+  in.vpls[3].normal = {0, 0, 1};
+  const auto list = weigh(in, "pdf", settings);
+  float largest = 0;
+  std::vector<float> areas;
+  for (const scene::Vpl& v : list) areas.push_back(v.area);
+  largest = *std::max_element(areas.begin(), areas.end());
+  EXPECT_EQ(list[3].area, largest);
+  std::sort(areas.begin(), areas.end());
+  EXPECT_NEAR(largest, 4 * areas[areas.size() / 2], 0.15f * largest);
+}
+
+TEST(Weights, NothingToWeigh) {
+  const Room room = closedRoom(false, 12, glm::ivec2(16));
+  const scene::VplState empty;
+  for (const char* strategy : {"constant", "pdf", "area"}) {
+    SCOPED_TRACE(strategy);
+    for (const size_t count : {1, 70}) {
+      const auto list = weigh(inputs(room, std::vector<scene::VplState>(count, empty)), strategy);
+      ASSERT_EQ(list.size(), count);
+      for (const scene::Vpl& v : list) EXPECT_EQ(std::memcmp(&v, &empty, sizeof v), 0);
+    }
+  }
+}
+
+TEST(Weights, OneVplStandsForAll) {
+  const Room room = closedRoom(false, 12, glm::ivec2(16));
+  WeightSettings settings;
+  const auto candidates = candidatesOf(room, 1, settings);
+  const Inputs in = inputs(room, {vplAt(room, candidates[0].side)});
+  double all = 0;
+  for (const scene::VoxelSide& s : room.voxels.surface) all += s.area;
+  EXPECT_NEAR(weigh(in, "area")[0].area, all, 1e-5 * all);
+  const auto p = densities(room, in.vpls, screenPoints(room, settings));
+  EXPECT_NEAR(weigh(in, "pdf")[0].area, 1 / p[0], 1e-3 / p[0]);
+  EXPECT_NEAR(weigh(in, "constant")[0].area, 1 / p[0], 1e-3 / p[0]);
+}
+
+TEST(Weights, NothingLit) {
+  const Room room = closedRoom(false, 12, glm::ivec2(16));
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 50, {})));
+  for (glm::vec4& r : in.radiance) r = glm::vec4(0);
+  for (glm::vec4& r : in.radiosity) r = glm::vec4(0);
+  for (const char* strategy : {"constant", "pdf", "area"})
+    for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.intensity, glm::vec3(0)) << strategy;
+}
+
+// The eye looks elsewhere: the region is the whole image then. No surface on screen: no path starts.
+TEST(Weights, FoveaOutsideAndBackground) {
+  Room room = closedRoom(true, 16, glm::ivec2(32));
+  WeightSettings settings;
+  settings.gaze = {3, -2};
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 100, settings)));
+  const auto p = densities(room, in.vpls, screenPoints(room, settings));
+  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, 1), 1e-4), 1);
+  for (Seen& s : room.pixels) s.there = false;
+  for (const char* strategy : {"constant", "pdf"})
+    for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.area, 0) << strategy;
+}
+
+TEST(Weights, NoVoxels) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  const Room room = lookInto(s, 8, glm::ivec2(8));
+  ASSERT_EQ(room.voxels.info.voxels, 0u);
+  scene::VplState vpl;
+  vpl.life = 1;
+  vpl.normal = {0, 1, 0};
+  vpl.side = 7;  // of another scene
+  for (const char* strategy : {"constant", "pdf", "area"})
+    for (const scene::Vpl& v : weigh(inputs(room, {vpl, {}}), strategy)) EXPECT_EQ(v.area, 0) << strategy;
+}
+
+// Whatever comes in, what goes out to the shading is a number.
+TEST(Weights, OutputsAreFinite) {
+  const Room room = closedRoom(true, 16, glm::ivec2(32));
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 60, {})));
+  in.radiosity[0] = glm::vec4(nan);
+  in.radiosity[1] = glm::vec4(1, inf, 1, inf);
+  in.radiosity[2] = glm::vec4(3e38f);
+  in.radiosity[3] = glm::vec4(-1);
+  in.vpls[4].position.y = nan;
+  in.vpls[5].normal.z = inf;
+  in.vpls[6].normal = glm::vec3(0);
+  in.vpls[7].position = glm::vec3(1e30f);
+  in.vpls[8].side = 0xfffffffeu;
+  in.vpls[9].position = room.pixels[room.pixels.size() / 2].position;  // on a point of the screen
+  in.radiance[room.voxels.surface.size() / 2] = glm::vec4(nan);
+  for (const char* strategy : {"constant", "pdf", "area"}) {
+    SCOPED_TRACE(strategy);
+    const auto list = weigh(in, strategy);
+    for (size_t i = 0; i < list.size(); ++i) {
+      const scene::Vpl& v = list[i];
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_TRUE(std::isfinite(v.position[c]) && std::isfinite(v.normal[c]) && std::isfinite(v.intensity[c])) << i;
+        EXPECT_GE(v.intensity[c], 0) << i;
+        EXPECT_LE(v.intensity[c], 1e18f) << i;
+      }
+      EXPECT_TRUE(std::isfinite(v.area) && v.area >= 0) << i;
+    }
+    const scene::Vpl none;
+    for (const int i : {0, 1, 4, 5}) EXPECT_EQ(std::memcmp(&list[i], &none, sizeof none), 0) << i;
+    EXPECT_GT(list[20].area, 0);
+  }
+}
+
+TEST(Weights, TheSameBitsEveryTime) {
+  const Room room = closedRoom(true);
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, {})));
+  for (const char* strategy : {"constant", "pdf", "area"}) {
+    const auto a = weigh(in, strategy), b = weigh(in, strategy);
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0) << strategy;
+  }
+}
+
+TEST(Weights, OffsetMovesAlongTheNormal) {
+  const Room room = closedRoom(false, 12, glm::ivec2(16));
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 20, {})));
+  PassTest test("weights");
+  wire(test, in, "pdf", {});
+  test.param("offset", 0.5).run();
+  const auto list = test.values<scene::Vpl>("emitters");
+  for (size_t i = 0; i < list.size(); ++i)
+    EXPECT_LT(glm::distance(list[i].position, in.vpls[i].position + 0.5f * room.voxels.grid.cell * in.vpls[i].normal), 1e-5f);
+}
+
+}  // namespace
+}  // namespace fovea::test
