@@ -45,8 +45,9 @@ inline bool facesRay(const Voxels& voxels, uint32_t side, glm::vec3 origin, glm:
   return s.area > 0.0f && facing < 0.0f && glm::dot(to, normal) > kOwnSurface * voxels.grid.cell;
 }
 
-// First side along a ray; origin and direction (unit) in world space, normal: see the shader.
-inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal) {
+// First side along a ray; origin and direction (unit) in world space, normal, far: see the shader.
+inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal,
+                            float far = 1e30f) {
   const VoxelGrid& grid = voxels.grid;
   const glm::vec3 p = grid.worldToVoxel(origin);
   const float size = float(grid.resolution), length2 = glm::dot(direction, direction);
@@ -88,7 +89,7 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
     const int through = walls.x == next ? 0 : walls.y == next ? 1 : 2;
     cell[through] += stride[through];
     t = next;
-    if (!voxels.inside(cell)) break;
+    if (!voxels.inside(cell) || t * grid.cell > far) break;
   }
   return {};
 }

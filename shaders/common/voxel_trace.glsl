@@ -51,7 +51,8 @@ bool facesRay(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norma
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray
 // Tracing", Eurographics 1987); the distances to the walls follow from the cell's whole numbers, so no error adds up, and
 // a direction component of 0 never comes to a wall. At most 3R + 3 turns; anything that is not a number hits nothing.
-VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal) {
+// far: cells that the ray enters beyond this distance (m) are not looked at.
+VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, float far) {
   VoxelHit miss = VoxelHit(kNoSide, 0.0);
   vec3 p = (origin - grid.origin) / grid.cell;  // in cells, as are all distances below
   float size = float(grid.resolution);
@@ -90,9 +91,13 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal) {
     bvec3 through = bvec3(walls.x == next, walls.x != next && walls.y == next, walls.x != next && walls.y != next);
     cell += stride * ivec3(through);
     t = next;
-    if (!insideGrid(grid, cell)) break;
+    if (!insideGrid(grid, cell) || t * grid.cell > far) break;
   }
   return miss;
+}
+
+VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal) {
+  return traceVoxels(grid, origin, direction, normal, 1e30);
 }
 
 #endif

@@ -1,0 +1,44 @@
+// Another bounce of light from voxel to voxel: light-inject -> mipmap -> bounce -> mipmap -> ...
+#include "framework/graph/registry.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class Bounce : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("bounce", "radiance of every voxel side after one more bounce: direct plus rho E / pi of six cones");
+    d.input("voxels", "voxels",
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+             member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
+             member("info", buffer("VoxelInfo", 16), Usage::TexelRead)},
+            "surfaces in the voxels");
+    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "radiance of every side that arrives at others");
+    d.input("mips", "voxel-mips", {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
+            "mips of that radiance");
+    d.input("direct", buffer("VoxelRadiance", 16), Usage::TexelRead,
+            "what the bounced light is added to: that of light-inject, also for the second bounce and later; "
+            "without it `radiance`, which is right for the first")
+        .makeOptional();
+    d.output("bounced", buffer("VoxelRadiance", 16, countOf("voxels.surface")), Usage::StorageWrite,
+             "rgb: direct + rho E / pi, W/(sr m^2); w: its luminance; 0 for empty sides, undefined past the last voxel");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    kernel_ = ctx.compute("bounce/bounce.comp", {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
+  }
+  void record(RecordContext& ctx) override {
+    ctx.use(kernel_).dispatchThreads(uint32_t(ctx.count("voxels.surface")));
+  }
+
+ private:
+  Kernel kernel_;
+};
+
+FOVEA_PASS(Bounce);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One level of the mips from the level below.
+#include "mipmap/combine.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
+
+layout(set = 0, rgba16f) uniform readonly image3D sourceColor;
+layout(set = 0, r16f) uniform readonly image3D sourceWeight;
+layout(set = 0, rgba16f) uniform writeonly image3D targetColor;
+layout(set = 0, r16f) uniform writeonly image3D targetWeight;
+
+layout(push_constant) uniform Constants {
+  int size;  // cells a side of the target's face; 0: the level is no half of the last, nobody reads it
+};
+
+Cell load(ivec3 texel) { return Cell(imageLoad(sourceColor, texel), imageLoad(sourceWeight, texel).r); }
+
+void main() {
+  ivec3 texel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(texel, imageSize(targetColor)))) return;
+  Cell sum = kEmpty;
+  if (all(lessThan(texel, ivec3(kFaces * size, size, size)))) {
+    int face = texel.x / size;
+    ivec3 corner = 2 * texel;
+    for (int column = 0; column < 4; ++column) {
+      int near = nearChild(face, column), far = farChild(face, column);
+      sum = add(sum, behind(load(corner + ivec3(near & 1, near >> 1 & 1, near >> 2)),
+                            load(corner + ivec3(far & 1, far >> 1 & 1, far >> 2))));
+    }
+  }
+  imageStore(targetColor, texel, stored(0.25 * sum.color));
+  imageStore(targetWeight, texel, stored(vec4(0.25 * sum.weight)));
+}

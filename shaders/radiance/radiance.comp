@@ -1,0 +1,41 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones).
+#include "common/scene.glsl"
+#include "common/random.glsl"
+#define CONE_GATHER
+#include "common/cone.glsl"
+
+layout(local_size_x = 8) in;
+
+layout(set = 0) uniform samplerBuffer vpls;
+layout(set = 0, std430) writeonly buffer Radiosity { vec4 radiosity[]; };
+
+layout(push_constant) uniform Constants {
+  uint count;
+  int terms;  // 0 both, 1 direct, 2 cones
+};
+
+const uint kRadiance = 0x4adu;  // of the random numbers
+const int kVplStateTexels = 5;
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= count) return;
+  int first = int(slot) * kVplStateTexels;
+  vec4 normalLife = texelFetch(vpls, first + 1);
+  vec3 result = vec3(0.0);
+  if (normalLife.w > 0.0) {
+    vec4 reflectanceSide = texelFetch(vpls, first + 2);
+    int side = int(floatBitsToUint(reflectanceSide.w));
+    // Reflected direct light and emission of the voxel are what light-inject has found already: rho E_direct = pi L.
+    if (terms != 2 && side >= 0 && side < textureSize(radiance)) result += kPi * texelFetch(radiance, side).rgb;
+    if (terms != 1) {
+      // A slot keeps its cones while its VPL lives.
+      float turn = 2.0 * kPi * uniformFloat(randomStream(frame.seed, 0u, kRadiance, slot));
+      result += reflectanceSide.rgb * gatherHemisphere(voxelsGrid(), texelFetch(vpls, first).xyz, normalLife.xyz, turn);
+    }
+  }
+  radiosity[slot] = vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
+}
