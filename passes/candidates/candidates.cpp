@@ -37,7 +37,8 @@ class Candidates : public Pass {
     d.parameter("region", choice("fovea", {"fovea", "image"}), "pixels to start from");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "of the disc around the gaze");
     d.parameter("per_frame", flag(true), "new random numbers every frame; false: the same ones");
-    d.parameter("second_view", text("right"), "view of `gbuffer2`: where its eye gazes; a missing view: as the first eye");
+    d.parameter("second_view", text("right"),
+                "view of `gbuffer2`: where its eye gazes; a missing view: as the first eye");
     d.counter("rays", "bounces traced");
     d.counter("candidates", "attempts that found a voxel");
     d.counter("escaped", "bounces that left the scene");

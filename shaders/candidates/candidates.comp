@@ -59,8 +59,6 @@ vec3 bounce(vec3 normal, vec3 face, vec2 u) {
   return d - 2.0 * min(dot(d, face), 0.0) * face;
 }
 
-mat4x3 objectToWorld(uint object) { return mat4x3(1.0); }
-
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
@@ -90,13 +88,12 @@ void main() {
   }
   atomicAdd(counters[kCandidates], 1u);
   VoxelSide side = loadSide(hit.side);
-  mat4x3 moved = objectToWorld(uint(side.object));
   candidate.positionSide = vec4(side.position, uintBitsToFloat(hit.side));
   candidate.normalObject = vec4(side.normal, side.object);
   candidate.reflectanceLuminance.rgb = side.reflectance;
 #if HAS_RADIANCE
   candidate.reflectanceLuminance.w = texelFetch(radiance, int(hit.side)).w;
 #endif
-  candidate.localPosition = vec4(inverse(mat3(moved)) * (side.position - moved[3]), 0.0);
+  candidate.localPosition = vec4(toObject(uint(side.object), side.position), 0.0);
   candidates[i] = candidate;
 }

@@ -15,8 +15,6 @@ layout(push_constant) uniform Push {
   float turnCos;  // of the largest angle between the VPL's own normal and its voxel's
 };
 
-mat4x3 objectToWorld(uint object) { return mat4x3(1.0); }
-
 // Side of this frame's voxel at `position` that is the VPL's surface: of its object, and the one of the two that turned the
 // least; kNoSide: none, it came, went or turned.
 uint sideAt(vec3 position, vec3 normal, float object) {
@@ -44,9 +42,9 @@ void main() {
   VplState vpl = previous[slot];
   bool lived = vpl.normalLife.w > 0.0;
   if (lived) {
-    mat4x3 moved = objectToWorld(uint(vpl.localPosition.w));
-    vec3 position = moved * vec4(vpl.localPosition.xyz, 1.0);
-    vec3 normal = normalize(transpose(inverse(mat3(moved))) * vpl.localNormal.xyz);
+    uint object = uint(vpl.localPosition.w);
+    vec3 position = fromObject(object, vpl.localPosition.xyz);
+    vec3 normal = normalFromObject(object, vpl.localNormal.xyz);
     uint side = sideAt(position, normal, vpl.localPosition.w);
     if (side != kNoSide) {
       VoxelSide surface = loadSide(side);

@@ -55,7 +55,9 @@ struct SeenImage {
         oct[k] = float(face.back()) / 32767.0f;
       }
       n = glm::vec3(oct, 1 - std::abs(oct.x) - std::abs(oct.y));
-      if (n.z < 0) n = glm::vec3((1.0f - glm::abs(glm::vec2(oct.y, oct.x))) * glm::vec2(oct.x < 0 ? -1 : 1, oct.y < 0 ? -1 : 1), n.z);
+      if (n.z < 0)
+        n = glm::vec3((1.0f - glm::abs(glm::vec2(oct.y, oct.x))) * glm::vec2(oct.x < 0 ? -1 : 1, oct.y < 0 ? -1 : 1),
+                      n.z);
       p.face = glm::normalize(n);
     }
     const auto w = uint32_t(size.x), h = uint32_t(size.y);

@@ -21,8 +21,8 @@ bool isEmpty(const Candidate& c) {
 
 float random(uint32_t what, uint32_t i) { return uniformFloat(randomStream(23, 0, what, i)); }
 
-// A room without its front wall and a box in it.
-scene::Scene makeRoom() {
+// A room without its front wall and a box in it, each face of which may be an object of its own.
+scene::Scene makeRoom(bool moving = false) {
   scene::Scene s;
   s.materials.clear();
   uint32_t m[6];
@@ -35,6 +35,12 @@ scene::Scene makeRoom() {
   addQuad(s, m[5], low + x, y, z);
   addQuad(s, m[5], low + z, x, y);
   addQuad(s, m[5], low + y, z, x);
+  for (size_t i = 5; moving && i < s.nodes.size(); ++i) {
+    s.nodes[i].dynamic = true;
+    s.nodes[i].translation = {0.1f, 0.05f, 0.2f};
+    s.nodes[i].rotation = glm::angleAxis(0.3f, glm::normalize(glm::vec3(0.1f, 1, 0)));
+    s.nodes[i].scale = {0.9f, 1.1f, 1};
+  }
   s.cameras.emplace_back();
   return s;
 }
@@ -52,7 +58,8 @@ SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Cam
       SeenPixel& p = image.at({x, y});
       p.position = glm::vec3(glm::dvec3(view.eye) + hit.t * ray);
       p.distance = glm::distance(p.position, view.eye);
-      p.face = glm::normalize(glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
+      p.face = glm::normalize(
+          glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
       if (glm::dot(p.face, glm::vec3(ray)) > 0) p.face = -p.face;
       const uint32_t i = uint32_t(y * size.x + x);
       p.normal = glm::normalize(p.face + 0.7f * (2.0f * glm::vec3(random(0, i), random(1, i), random(2, i)) - 1.0f));
@@ -61,7 +68,7 @@ SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Cam
 }
 
 struct Counts {
-  double candidates = 0, escaped = 0, background = 0;
+  double candidates = 0, escaped = 0, background = 0, moving = 0;
 };
 
 void expectCounters(const PassTest& test, const Counts& want, double count) {
@@ -72,10 +79,12 @@ void expectCounters(const PassTest& test, const Counts& want, double count) {
   EXPECT_EQ(test.counter("background"), want.background);
 }
 
-// ---- Against the replay ----------------------------------------------------------------------------------------------
+// ---- Against the replay
+// ----------------------------------------------------------------------------------------------
 
-void expectReplay(const CandidateReference& reference, const std::vector<Candidate>& list,
-                  const std::vector<glm::vec4>& radiance, Counts& counts) {
+void expectReplay(const CandidateReference& reference, const PassTest& test, const std::vector<glm::vec4>& radiance,
+                  Counts& counts) {
+  const auto list = test.values<Candidate>("candidates");
   int rounded = 0;
   for (uint32_t i = 0; i < list.size(); ++i) {
     const Candidate& c = list[i];
@@ -89,7 +98,8 @@ void expectReplay(const CandidateReference& reference, const std::vector<Candida
     }
     if (c.side != attempt.side) {
       ++rounded;
-      ASSERT_TRUE(reference.mayMeet(i, c.side)) << "attempt " << i << ": side " << c.side << " instead of " << attempt.side;
+      ASSERT_TRUE(reference.mayMeet(i, c.side))
+          << "attempt " << i << ": side " << c.side << " instead of " << attempt.side;
     }
     if (c.side == kNoSide) {
       ASSERT_TRUE(isEmpty(c)) << "attempt " << i;
@@ -104,18 +114,22 @@ void expectReplay(const CandidateReference& reference, const std::vector<Candida
     ASSERT_EQ(c.reflectance, side.reflectance);
     ASSERT_EQ(c.object, side.object);
     ASSERT_EQ(c.luminance, radiance.empty() ? 0 : radiance[c.side].w);
-    ASSERT_EQ(c.localPosition, side.position);  // object 0 is never moved
+    const scene::ObjectTransform& object = test.lastFrame().objects.at(size_t(c.object));
+    ASSERT_LT(glm::distance(c.localPosition, object.intoObject(side.position)), c.object > 0 ? 1e-6f : 1e-30f);
+    counts.moving += c.object > 0;
     ASSERT_EQ(c.unused, 0);
   }
   EXPECT_LE(rounded, int(list.size() / 500) + 1) << "bounces that rounding sent elsewhere";
 }
 
-enum class Where { InFront, InsideTheBox, Outside };
+enum class Where { InFront, InsideTheBox, Outside, InFrontOfMovers };
+constexpr const char* kCameras[] = {"InFront", "InsideTheBox", "Outside", "InFrontOfMovers"};
 
 class Replay : public testing::TestWithParam<Where> {};
 
 TEST_P(Replay, EveryCandidateIsTheCpus) {
-  const scene::Scene s = makeRoom();
+  const bool moving = GetParam() == Where::InFrontOfMovers;
+  const scene::Scene s = makeRoom(moving);
   const scene::Geometry g = scene::flatten(s);
   scene::Camera camera;
   camera.position = {0.1f, 0, 1.8f};
@@ -137,21 +151,20 @@ TEST_P(Replay, EveryCandidateIsTheCpus) {
   for (uint32_t frame = 0; frame < 2; ++frame) {
     test.run();
     Counts counts;
-    const CandidateReference reference{.image = image, .voxels = voxels, .fovea = scene::makeFovea(gaze, image.size, 0.3f),
-                                       .seed = 9, .frame = frame};
-    expectReplay(reference, test.values<Candidate>("candidates"), radiance, counts);
+    const CandidateReference reference{
+        .image = image, .voxels = voxels, .fovea = scene::makeFovea(gaze, image.size, 0.3f), .seed = 9, .frame = frame};
+    expectReplay(reference, test, radiance, counts);
     expectCounters(test, counts, kCount);
     EXPECT_GT(counts.candidates, GetParam() == Where::Outside ? 100 : 500);
     EXPECT_GT(counts.escaped, GetParam() == Where::InFront ? 100 : -1);
+    EXPECT_GT(counts.moving, moving ? 50 : -1);
     EXPECT_GT(counts.background, GetParam() == Where::Outside ? 500 : -1);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cameras, Replay, testing::Values(Where::InFront, Where::InsideTheBox, Where::Outside),
-                         [](const auto& info) {
-                           return info.param == Where::InFront ? "InFront"
-                                  : info.param == Where::Outside ? "Outside" : "InsideTheBox";
-                         });
+INSTANTIATE_TEST_SUITE_P(Cameras, Replay,
+                         testing::Values(Where::InFront, Where::InsideTheBox, Where::Outside, Where::InFrontOfMovers),
+                         [](const auto& info) { return kCameras[int(info.param)]; });
 
 TEST(Candidates, PerFrameOrAlwaysTheSame) {
   const scene::Scene s = makeRoom();
@@ -173,7 +186,8 @@ TEST(Candidates, PerFrameOrAlwaysTheSame) {
   }
 }
 
-// ---- The pixels: each starts in a chamber of its own, so that a candidate tells where it comes from --------------------
+// ---- The pixels: each starts in a chamber of its own, so that a candidate tells where it comes from
+// --------------------
 
 constexpr glm::ivec2 kSize{24, 16};
 
@@ -225,7 +239,8 @@ std::vector<double> coverage(const scene::Fovea& fovea) {
   for (int i = 0; i < kSize.x * kSize.y; ++i) {
     int inside = 0;
     for (int k = 0; k < 32 * 32; ++k) {
-      const glm::vec2 p(float(i % kSize.x) + (float(k % 32) + 0.5f) / 32, float(i / kSize.x) + (float(k / 32) + 0.5f) / 32);
+      const glm::vec2 p(float(i % kSize.x) + (float(k % 32) + 0.5f) / 32,
+                        float(i / kSize.x) + (float(k / 32) + 0.5f) / 32);
       inside += glm::distance(p, fovea.centre) <= fovea.radius;
     }
     part.push_back(inside / 1024.0);
@@ -297,12 +312,12 @@ TEST(Candidates, TwoEyesTakeTurns) {
   Chambers chambers;
   const glm::vec2 gazes[2] = {{0.25f, 0.5f}, {0.75f, 0.5f}};
   PassTest test("candidates");
-  test.scene(chambers.scene).viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).param("count", 2000).param("fovea_radius", 0.1);
+  test.scene(chambers.scene)
+      .viewSize(uint32_t(kSize.x), uint32_t(kSize.y))
+      .param("count", 2000)
+      .param("fovea_radius", 0.1);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) {
-    frame.views[0].gaze = gazes[0];
-    frame.views.push_back(frame.views[0]);
-    frame.views[1].name = "right";
-    frame.views[1].gaze = gazes[1];
+    for (scene::View& view : frame.views) view.gaze = gazes[view.name == "right"];
   });
   chambers.image.wire(test);
   chambers.image.wire(test, "gbuffer2");
@@ -315,7 +330,8 @@ TEST(Candidates, TwoEyesTakeTurns) {
   }
 }
 
-// ---- The bounces: from one point into a hemisphere of voxels -----------------------------------------------------------
+// ---- The bounces: from one point into a hemisphere of voxels
+// -----------------------------------------------------------
 
 TEST(Candidates, BouncesAreCosineDistributed) {
   constexpr int kResolution = 96, kCount = 40000, kRings = 8, kSectors = 12;
@@ -328,10 +344,12 @@ TEST(Candidates, BouncesAreCosineDistributed) {
   voxels.resolution = kResolution;
   voxels.grid = scene::voxelGrid(g.boundsMin, g.boundsMax, kResolution);
   voxels.index.resize(size_t(kResolution) * kResolution * kResolution);
-  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, -1.5f)), centre = voxels.grid.voxelToWorld(glm::vec3(kResolution / 2.0f));
+  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, -1.5f)),
+                  centre = voxels.grid.voxelToWorld(glm::vec3(kResolution / 2.0f));
   const glm::mat3 frame = scene::orthonormalFrame(normal);
   for (int i = 0; i < kResolution * kResolution * kResolution; ++i) {  // cells that the sphere passes through
-    const glm::vec3 cell(float(i % kResolution), float(i / kResolution % kResolution), float(i / kResolution / kResolution));
+    const glm::vec3 cell(float(i % kResolution), float(i / kResolution % kResolution),
+                         float(i / kResolution / kResolution));
     const glm::vec3 d = cell + 0.5f - kResolution / 2.0f;
     if (std::abs(glm::length(d) - 0.45f * kResolution) > 0.9f) continue;
     scene::VoxelSide side;
@@ -363,7 +381,8 @@ TEST(Candidates, BouncesAreCosineDistributed) {
   EXPECT_LT(deviation(std::vector<double>(counted.size(), 1), counted), 5);
 }
 
-// ---- Little or nothing to work on --------------------------------------------------------------------------------------
+// ---- Little or nothing to work on
+// --------------------------------------------------------------------------------------
 
 TEST(Candidates, EmptyScene) {
   PassTest test("candidates");
@@ -382,9 +401,13 @@ TEST(Candidates, OnlyTheFoveaCounts) {
   Chambers chambers;
   const scene::Fovea f = scene::makeFovea({0.5f, 0.5f}, kSize, 0.2f);
   for (int i = 0; i < kSize.x * kSize.y; ++i)
-    if (glm::distance(glm::vec2(i % kSize.x, i / kSize.x) + 0.5f, f.centre) < f.radius + 1) chambers.image.pixels[size_t(i)].distance = 0;
+    if (glm::distance(glm::vec2(i % kSize.x, i / kSize.x) + 0.5f, f.centre) < f.radius + 1)
+      chambers.image.pixels[size_t(i)].distance = 0;
   PassTest test("candidates");
-  test.scene(chambers.scene).viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).param("count", 300).param("fovea_radius", 0.2);
+  test.scene(chambers.scene)
+      .viewSize(uint32_t(kSize.x), uint32_t(kSize.y))
+      .param("count", 300)
+      .param("fovea_radius", 0.2);
   chambers.image.wire(test);
   setVoxels(test, chambers.voxels);
   test.run();

@@ -15,7 +15,8 @@ std::vector<double> coverage(const Fovea& fovea, glm::ivec2 size) {
     for (int x = 0; x < size.x; ++x) {
       int inside = 0;
       for (int k = 0; k < 64 * 64; ++k) {
-        const double dx = x + (k % 64 + 0.5) / 64 - double(fovea.centre.x), dy = y + (k / 64 + 0.5) / 64 - double(fovea.centre.y);
+        const double dx = x + (k % 64 + 0.5) / 64 - double(fovea.centre.x),
+                     dy = y + (k / 64 + 0.5) / 64 - double(fovea.centre.y);
         inside += dx * dx + dy * dy <= double(fovea.radius) * double(fovea.radius);
       }
       part.push_back(inside / 4096.0);
@@ -25,7 +26,8 @@ std::vector<double> coverage(const Fovea& fovea, glm::ivec2 size) {
 
 // Chi-square of the drawn pixels against `part`; pixels that expect less than 8 draws are thrown together. In standard
 // deviations from its mean.
-double deviation(uint32_t region, const Fovea& fovea, glm::ivec2 size, const std::vector<double>& part, uint32_t draws) {
+double deviation(uint32_t region, const Fovea& fovea, glm::ivec2 size, const std::vector<double>& part,
+                 uint32_t draws) {
   std::vector<uint32_t> count(part.size());
   for (uint32_t i = 0; i < draws; ++i) {
     const glm::ivec2 p = regionSample(region, fovea, size, randomStream(7, 0, 1, i));
@@ -75,8 +77,8 @@ TEST(RegionSample, WholeImageIsUniform) {
 }
 
 TEST(RegionSample, DiscIsUniform) {
-  for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.43f, 0.55f), glm::vec2(0), glm::vec2(1, 0.4f), glm::vec2(0.7f, 1.1f),
-                               glm::vec2(-0.12f, -0.2f)}) {
+  for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.43f, 0.55f), glm::vec2(0), glm::vec2(1, 0.4f),
+                               glm::vec2(0.7f, 1.1f), glm::vec2(-0.12f, -0.2f)}) {
     const Fovea f = makeFovea(gaze, kSize, 0.25f);
     EXPECT_LT(std::abs(deviation(kRegionFovea, f, kSize, coverage(f, kSize), 40000)), 5) << gaze.x << ", " << gaze.y;
   }

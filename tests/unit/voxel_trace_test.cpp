@@ -74,9 +74,9 @@ Volume randomVolume(int resolution, float filled, Stream& random) {
 // Every cell against the ray, in double precision.
 struct BruteForce {
   uint32_t side = kNoSide;
-  double cellIn = 0, cellOut = 0;        // where the ray is in its cell, m
-  std::vector<uint32_t> alsoPossible;    // in cells before that one that the ray only just touches
-  bool unclear = false;                  // a side that is seen from its edge or lies right at the start's plane
+  double cellIn = 0, cellOut = 0;      // where the ray is in its cell, m
+  std::vector<uint32_t> alsoPossible;  // in cells before that one that the ray only just touches
+  bool unclear = false;                // a side that is seen from its edge or lies right at the start's plane
 };
 
 BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal) {
@@ -160,8 +160,8 @@ TEST(VoxelTrace, EqualsTheSearchThroughAllCells) {
     for (int ray = 0; ray < 2000; ++ray) {
       // Half of them start inside, the others around the grid.
       const glm::vec3 origin = v.grid.origin + edge * (ray % 2 ? random.point() : 3.0f * random.point() - 1.0f);
-      const glm::vec3 direction = ray % 4 < 2 ? random.direction()
-                                              : glm::normalize(v.grid.origin + edge * random.point() - origin);
+      const glm::vec3 direction =
+          ray % 4 < 2 ? random.direction() : glm::normalize(v.grid.origin + edge * random.point() - origin);
       expectRay(v, origin, direction, ray % 3 ? direction : random.direction(), counts);
     }
   }
