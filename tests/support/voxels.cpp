@@ -23,14 +23,17 @@ struct Sums {
 };
 using Cells = std::map<uint32_t, std::array<Sums, 2>>;  // by linear cell index
 
-// A triangle in units of cells.
+// A triangle in units of cells, the axes turned so that z is the one of the largest component of n.
 struct Triangle {
   vec3 a{0}, b{0}, c{0}, n{0};
-  float inverseLength = 0;  // 1 / |n|
-  float areaScale = 0;      // area per doubled area seen along the dominant axis
-  int axis = 0;             // of the largest component of n
+  vec3 normal{0};           // unit, axes not turned
+  float areaScale = 0;      // area per doubled area seen along z
+  int axis = 0;             // that z is
   ivec3 lo{0}, hi{-1};      // cells of its box
 };
+
+vec3 turn(vec3 v, int axis) { return axis == 0 ? vec3(v.y, v.z, v.x) : axis == 1 ? vec3(v.z, v.x, v.y) : v; }
+vec3 turnBack(vec3 v, int axis) { return axis == 0 ? vec3(v.z, v.x, v.y) : axis == 1 ? vec3(v.y, v.z, v.x) : v; }
 
 Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   Triangle t;
@@ -46,13 +49,17 @@ Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   t.axis = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
   if (!(m[t.axis] > 1e-12f)) return t;
   const float length = std::sqrt((t.n.x * t.n.x + t.n.y * t.n.y) + t.n.z * t.n.z);
-  t.inverseLength = 1.0f / length;
+  t.normal = t.n * (1.0f / length);
   t.areaScale = 0.5f * length * (1.0f / m[t.axis]);
   const vec3 least = glm::floor(glm::min(glm::min(t.a, t.b), t.c)), most = glm::max(glm::max(t.a, t.b), t.c);
   const vec3 last = glm::max(least, glm::ceil(most) - 1.0f);  // half-open: what lies on a border belongs to the upper cell
   const float r = float(grid.resolution);
-  t.lo = ivec3(glm::min(glm::max(least, vec3(0.0f)), vec3(r)));
-  t.hi = ivec3(glm::max(glm::min(last, vec3(r - 1.0f)), vec3(-1.0f)));
+  t.lo = ivec3(turn(glm::min(glm::max(least, vec3(0.0f)), vec3(r)), t.axis));
+  t.hi = ivec3(turn(glm::max(glm::min(last, vec3(r - 1.0f)), vec3(-1.0f)), t.axis));
+  t.a = turn(t.a, t.axis);
+  t.b = turn(t.b, t.axis);
+  t.c = turn(t.c, t.axis);
+  t.n = turn(t.n, t.axis);
   return t;
 }
 
@@ -110,14 +117,13 @@ Piece clipToCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   Polygon polygon{a, b, c};
   for (int axis = 0; axis < 3; ++axis) polygon = clip(clip(polygon, axis, false), axis, true);
   if (polygon.size() < 3) return {};
-  // Weights of the fan's triangles are seen along the dominant axis; none is negative, so the centroid stays inside.
-  const int u = (t.axis + 1) % 3, v = (t.axis + 2) % 3;
+  // Weights of the fan's triangles are as seen along z; none is negative, so the centroid stays inside.
   const vec3 first = polygon[0];
   float sum = 0;
   vec3 moment{0};
   for (size_t i = 1; i + 1 < polygon.size(); ++i) {
     const vec3 p = polygon[i] - first, q = polygon[i + 1] - first;
-    const float w = std::abs(p[u] * q[v] - p[v] * q[u]);
+    const float w = std::abs(p.x * q.y - p.y * q.x);
     sum += w;
     moment += w * (p + q);
   }
@@ -126,10 +132,9 @@ Piece clipToCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
 }
 
 vec2 uvAt(const scene::Geometry& g, const scene::Triangle& indices, const Triangle& t, vec3 a, vec3 p) {
-  const int u = (t.axis + 1) % 3, v = (t.axis + 2) % 3;
   const vec3 e1 = t.b - t.a, e2 = t.c - t.a, d = p - a;
-  const float inverse = 1.0f / t.n[t.axis];
-  const float s = (d[u] * e2[v] - d[v] * e2[u]) * inverse, r = (e1[u] * d[v] - e1[v] * d[u]) * inverse;
+  const float inverse = 1.0f / t.n.z;
+  const float s = (d.x * e2.y - d.y * e2.x) * inverse, r = (e1.x * d.y - e1.y * d.x) * inverse;
   return g.uvs[indices.v[0]] * (1.0f - s - r) + g.uvs[indices.v[1]] * s + g.uvs[indices.v[2]] * r;
 }
 
@@ -149,22 +154,23 @@ void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scen
                  const scene::Triangle& indices, Cells& cells) {
   const Triangle t = makeTriangle(grid, g.positions[indices.v[0]], g.positions[indices.v[1]], g.positions[indices.v[2]]);
   const scene::Material& material = scene.materials[indices.material()];
-  const uint32_t side = scene::voxelSideOf(t.n);
-  const vec3 normal = t.n * t.inverseLength;
+  const uint32_t side = scene::voxelSideOf(t.normal);
   for (int z = t.lo.z; z <= t.hi.z; ++z)
     for (int y = t.lo.y; y <= t.hi.y; ++y)
       for (int x = t.lo.x; x <= t.hi.x; ++x) {
         const vec3 cell(x, y, z), a = t.a - cell, b = t.b - cell, c = t.c - cell;
         if (!overlapsCell(t, a, b, c)) continue;
-        const Piece piece = clipToCell(t, a, b, c);
+        Piece piece = clipToCell(t, a, b, c);
         if (fixedPoint(piece.area) == 0) continue;
         const vec2 uv = uvAt(g, indices, t, a, piece.centroid);
+        piece.centroid = turnBack(piece.centroid, t.axis);
         const glm::vec4 color = scene::reflectance(scene, material, uv);
         if (material.masked && color.a < material.alphaCutoff) continue;
         const vec3 emission = scene::emission(scene, material, uv);
-        auto& sides = cells[uint32_t(x) + uint32_t(grid.resolution) * (uint32_t(y) + uint32_t(grid.resolution) * uint32_t(z))];
-        add(sides[side], piece, normal, vec3(color), emission, indices.object());
-        if (material.doubleSided) add(sides[1 - side], piece, -normal, vec3(color), emission, indices.object());
+        const glm::uvec3 place(turnBack(cell, t.axis));
+        auto& sides = cells[place.x + uint32_t(grid.resolution) * (place.y + uint32_t(grid.resolution) * place.z)];
+        add(sides[side], piece, t.normal, vec3(color), emission, indices.object());
+        if (material.doubleSided) add(sides[1 - side], piece, -t.normal, vec3(color), emission, indices.object());
       }
 }
 

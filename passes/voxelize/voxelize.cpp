@@ -1,0 +1,201 @@
+// Surface voxels of the scene. Triangles are clipped to the cells that a conservative test says they overlap; area, position,
+// normal, reflectance and emission add up in fixed point, so that no order of atomics shows. Cells are marked first and
+// numbered by a prefix sum, since sums for every cell of the grid would not fit. Static triangles are voxelised once; those of
+// dynamic objects every frame, as voxels of their own that hide the static voxel of their cell (METHOD: overlaid, not averaged).
+#include <algorithm>
+
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/voxel_grid.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+// Shared with shaders/voxelize/state.glsl.
+constexpr uint32_t kSumWords = 28;
+constexpr uint32_t kRow = 32768;
+constexpr uint32_t kScanBlock = 256;
+constexpr uint32_t kStateBytes = 80;
+constexpr uint64_t kChunkGroupsOffset = 0, kPhaseOffset = 16, kPhaseBytes = 32;
+
+// Sides of this many voxels fill the 128 MiB that a storage buffer is sure to take.
+constexpr int64_t kMostVoxels = 1 << 20;
+constexpr int64_t kBatch = 1 << 19;  // voxels whose sums fit: 224 bytes each
+
+enum Phase : uint32_t { Static = 0, Dynamic = 1 };
+
+class Voxelize : public Pass {
+ public:
+  static PassDeclaration declaration();
+  void prepare(PrepareContext& ctx) override;
+  void record(RecordContext& ctx) override;
+
+ private:
+  struct Triangles {
+    uint32_t first, count;
+  };
+  struct Visit {
+    Kernel small, large;
+  };
+  Commands useVisit(RecordContext& ctx, Kernel kernel, Triangles triangles);
+  void recordMarks(RecordContext& ctx, Triangles triangles);
+  void recordAssignment(RecordContext& ctx, Phase phase);
+  void recordSums(RecordContext& ctx, Phase phase, Triangles triangles, uint32_t first);
+  void recordPhase(RecordContext& ctx, Phase phase, Triangles triangles);
+
+  Visit mark_, accumulate_;
+  Kernel chunkBlocks_, chunkTops_, chunkOffsets_, markBlocks_, markTops_, assign_, clear_, resolve_, restore_, count_;
+  bool voxelized_ = false;  // the static scene
+};
+
+PassDeclaration Voxelize::declaration() {
+  PassDeclaration d("voxelize", "surface voxels of the scene: averages of both sides of every cell that holds surface");
+  const SizeExpr r = parameter("resolution");
+  const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
+  d.output("voxels", "voxels",
+           {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
+                   "0 empty, else 1 + number of the cell's voxel"),
+            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
+                   "two sides a voxel, see shaders/common/voxel.glsl; area 0: an empty side"),
+            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::StorageRead | Usage::StorageWrite,
+                   "numbers of voxels")},
+           "voxels of static surfaces, then those of dynamic objects")
+      .keep(Lifetime::Scene);
+  const SizeExpr words = ceilDiv(r * r * r, 32), triangles = environment("scene.triangles");
+  const Usage both = Usage::StorageRead | Usage::StorageWrite;
+  d.scratch("marks", buffer("uint", 4, words), both | Usage::TransferWrite, "a bit a cell: holds surface").keep(Lifetime::Scene);
+  d.scratch("cells", buffer("VoxelCell", 8, room), both, "of each voxel: its linear cell index, and the index that it hides")
+      .keep(Lifetime::Scene);
+  d.scratch("state", buffer("VoxelizeState", kStateBytes), both | Usage::Indirect, "numbers of both phases, and dispatches")
+      .keep(Lifetime::Scene);
+  d.scratch("chunks", buffer("uint", 4, triangles), both, "of each triangle: chunks, then those of the triangles before it");
+  d.scratch("blocks", buffer("uint", 4, max(ceilDiv(words, kScanBlock), ceilDiv(triangles, kScanBlock))), both,
+            "prefix sum of the sums of blocks");
+  d.scratch("sums", buffer("uint", 4, min(room, kBatch) * (2 * kSumWords)), both, "sums of both sides of a batch of voxels");
+
+  d.parameter("resolution", integer(128, 8, 512), "cells along the longest axis of the scene's bounds");
+  d.parameter("capacity", integer(16, 1, 512),
+              "voxels that find room, in squares of the resolution, 1,048,576 at most; the others are counted as overflow and "
+              "left out, the last ones in linear order first");
+  d.counter("voxels", "voxels in the list");
+  d.counter("static_voxels", "of static surfaces");
+  d.counter("overflow", "cells with surface that found no room");
+  return d;
+}
+
+void Voxelize::prepare(PrepareContext& ctx) {
+  const gpu::Defines accumulate{{"ACCUMULATE", "1"}}, marks{{"MARKS", "1"}};
+  mark_ = {ctx.compute("voxelize/small.comp"), ctx.compute("voxelize/large.comp")};
+  accumulate_ = {ctx.compute("voxelize/small.comp", accumulate), ctx.compute("voxelize/large.comp", accumulate)};
+  chunkBlocks_ = ctx.compute("voxelize/scan_blocks.comp");
+  chunkTops_ = ctx.compute("voxelize/scan_tops.comp");
+  chunkOffsets_ = ctx.compute("voxelize/scan_chunks.comp");
+  markBlocks_ = ctx.compute("voxelize/scan_blocks.comp", marks);
+  markTops_ = ctx.compute("voxelize/scan_tops.comp", marks);
+  assign_ = ctx.compute("voxelize/assign.comp");
+  clear_ = ctx.compute("voxelize/clear.comp");
+  resolve_ = ctx.compute("voxelize/resolve.comp");
+  restore_ = ctx.compute("voxelize/restore.comp");
+  count_ = ctx.compute("voxelize/count.comp");
+}
+
+uint32_t blocksOf(uint32_t count, uint32_t size) { return (count + size - 1) / size; }
+
+// More groups than fit a row go into several; shaders use groupIndex().
+void dispatchGroups(Commands commands, uint32_t groups) {
+  if (groups > 0) commands.dispatch(std::min(groups, kRow), blocksOf(groups, kRow));
+}
+
+Commands Voxelize::useVisit(RecordContext& ctx, Kernel kernel, Triangles triangles) {
+  Commands commands = ctx.use(kernel);
+  commands.constant("firstTriangle", triangles.first).constant("triangleCount", triangles.count);
+  return commands;
+}
+
+void Voxelize::recordMarks(RecordContext& ctx, Triangles triangles) {
+  if (triangles.count == 0) return;
+  dispatchGroups(useVisit(ctx, mark_.small, triangles), blocksOf(triangles.count, 64));
+  ctx.barrier();
+  const uint32_t blocks = blocksOf(triangles.count, kScanBlock);
+  dispatchGroups(ctx.use(chunkBlocks_).constant("count", triangles.count), blocks);
+  ctx.barrier();
+  ctx.use(chunkTops_).constant("count", blocks).dispatch(1);
+  ctx.barrier();
+  dispatchGroups(ctx.use(chunkOffsets_).constant("count", triangles.count), blocks);
+  ctx.barrier();
+  useVisit(ctx, mark_.large, triangles).dispatchIndirect("state", kChunkGroupsOffset);
+  ctx.barrier();
+}
+
+void Voxelize::recordAssignment(RecordContext& ctx, Phase phase) {
+  const uint32_t words = uint32_t(ctx.count("marks")), blocks = blocksOf(words, kScanBlock);
+  dispatchGroups(ctx.use(markBlocks_).constant("count", words), blocks);
+  ctx.barrier();
+  ctx.use(markTops_)
+      .constant("count", blocks)
+      .constant("phase", uint32_t(phase))
+      .constant("room", uint32_t(ctx.count("cells")))
+      .dispatch(1);
+  ctx.barrier();
+  dispatchGroups(ctx.use(assign_).constant("count", words).constant("phase", uint32_t(phase)), blocks);
+  ctx.barrier();
+}
+
+void Voxelize::recordSums(RecordContext& ctx, Phase phase, Triangles triangles, uint32_t first) {
+  const uint32_t batch = uint32_t(ctx.count("sums") / (2 * kSumWords));
+  const uint64_t groups = kPhaseOffset + phase * kPhaseBytes;
+  ctx.use(clear_)
+      .constant("phase", uint32_t(phase))
+      .constant("base", first)
+      .constant("batch", batch)
+      .dispatchIndirect("state", groups);
+  ctx.barrier();
+  auto visit = [&](Kernel kernel) {
+    Commands commands = useVisit(ctx, kernel, triangles);
+    commands.constant("phase", uint32_t(phase)).constant("base", first).constant("batch", batch);
+    return commands;
+  };
+  dispatchGroups(visit(accumulate_.small), blocksOf(triangles.count, 64));
+  visit(accumulate_.large).dispatchIndirect("state", kChunkGroupsOffset);
+  ctx.barrier();
+  ctx.use(resolve_)
+      .constant("phase", uint32_t(phase))
+      .constant("base", first)
+      .constant("batch", batch)
+      .dispatchIndirect("state", groups);
+  ctx.barrier();
+}
+
+void Voxelize::recordPhase(RecordContext& ctx, Phase phase, Triangles triangles) {
+  recordMarks(ctx, triangles);
+  recordAssignment(ctx, phase);
+  if (triangles.count == 0) return;
+  const uint32_t room = uint32_t(ctx.count("cells"));
+  for (uint32_t first = 0; first < room; first += uint32_t(kBatch)) recordSums(ctx, phase, triangles, first);
+}
+
+void Voxelize::record(RecordContext& ctx) {
+  const scene::Geometry& geometry = *ctx.frame().geometry;
+  const uint32_t all = uint32_t(geometry.triangles.size()), fixed = std::min(geometry.staticTriangles, all);
+  const bool dynamic = fixed < all;
+  if (!voxelized_) {
+    recordPhase(ctx, Static, {0, fixed});
+    if (dynamic) {
+      ctx.fill("marks", 0);
+      ctx.barrier();
+    }
+    voxelized_ = true;
+  } else if (dynamic) {
+    ctx.use(restore_).dispatchIndirect("state", kPhaseOffset + Dynamic * kPhaseBytes);
+    ctx.barrier();
+  }
+  if (dynamic) recordPhase(ctx, Dynamic, {fixed, all - fixed});
+  ctx.use(count_).dispatch(1);
+}
+
+FOVEA_PASS(Voxelize);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Third of the prefix sum over marked cells: gives each its voxel, in linear order. A voxel of a dynamic object remembers
+// what it hides.
+#include "voxelize/scan.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(set = 0, std430) readonly buffer MarksBlock { uint words[]; } marks;
+layout(set = 0, std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
+layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
+layout(set = 0, std430) writeonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(set = 0, r32ui) uniform uimage3D voxelsIndex;
+
+layout(push_constant) uniform Constants {
+  uint count;  // words
+  uint resolution;
+  uint phase;
+};
+
+void main() {
+  uint block = groupIndex(), i = block * kScanBlock + gl_LocalInvocationIndex;
+  uint bits = i < count ? marks.words[i] : 0u, total;
+  uint rank = exclusiveSum(uint(bitCount(bits)), total) + (i < count ? blocks.sums[block] : 0u);
+  uint room = state.value.phases[phase].voxels, first = state.value.phases[phase].first;
+  while (bits != 0u && rank < room) {
+    uint linear = i * 32u + uint(findLSB(bits));
+    ivec3 cell = ivec3(linear % resolution, linear / resolution % resolution, linear / (resolution * resolution));
+    cells.list[first + rank] = uvec2(linear, imageLoad(voxelsIndex, cell).r);
+    imageStore(voxelsIndex, cell, uvec4(first + rank + 1u));
+    bits &= bits - 1u;
+    ++rank;
+  }
+}

@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Sums to averages; an invocation a side.
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
+#include "voxelize/state.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
+layout(set = 0, std430) readonly buffer SumsBlock { uint words[]; } sums;
+layout(set = 0, std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(set = 0, std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+
+layout(push_constant) uniform Constants {
+  uint resolution;
+  uint phase;
+  uint base;   // first voxel of the batch, within the phase
+  uint batch;  // voxels
+};
+
+float sumAt(uint word) { return float(sums.words[word + 1u]) * 4294967296.0 + float(sums.words[word]); }
+vec3 sums3At(uint word) { return vec3(sumAt(word), sumAt(word + 2u), sumAt(word + 4u)); }
+
+void main() {
+  uint entry = groupIndex() * 64u + gl_LocalInvocationIndex, word = entry * kSumWords;
+  if (entry >= 2u * min(batch, state.value.phases[phase].voxels - min(base, state.value.phases[phase].voxels))) return;
+  uint voxel = state.value.phases[phase].first + base + entry / 2u, side = entry % 2u;
+  uint linear = cells.list[voxel].x, texel = uint(kVoxelSideTexels) * (2u * voxel + side);
+  float area = sumAt(word);
+  if (area == 0.0) {
+    for (uint i = 0u; i < uint(kVoxelSideTexels); ++i) voxelsSurface.texels[texel + i] = vec4(0.0);
+    return;
+  }
+  VoxelGrid grid = voxelGrid(resolution);
+  float inverse = 1.0 / area;
+  uvec3 cell = uvec3(linear % resolution, linear / resolution % resolution, linear / (resolution * resolution));
+  vec3 position = voxelToWorld(grid, vec3(cell) + sums3At(word + 2u) * inverse);
+  vec3 normal = sums3At(word + 8u) * inverse - 1.0;
+  // Normals of one side can cancel, if three or more meet: any direction to that side will do.
+  float len = length(normal);
+  normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
+  float object = float(0xffffu - (sums.words[word + 26u] & 0xffffu));
+  voxelsSurface.texels[texel] = vec4(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell);
+  voxelsSurface.texels[texel + 1u] = vec4(normal, object);
+  voxelsSurface.texels[texel + 2u] = vec4(sums3At(word + 14u) * inverse, 0.0);
+  voxelsSurface.texels[texel + 3u] = vec4(sums3At(word + 20u) * inverse, 0.0);
+}

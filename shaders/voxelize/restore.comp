@@ -1,0 +1,28 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Takes last frame's voxels of dynamic objects back: what they hid shows again, and their cells lose their marks.
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
+#include "voxelize/state.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
+layout(set = 0, std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(set = 0, std430) writeonly buffer MarksBlock { uint words[]; } marks;
+layout(set = 0, std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+layout(set = 0, r32ui) uniform writeonly uimage3D voxelsIndex;
+
+layout(push_constant) uniform Constants { uint resolution; };
+
+void main() {
+  uint side = groupIndex() * 64u + gl_LocalInvocationIndex;
+  if (side >= 2u * state.value.phases[1].voxels) return;
+  uint voxel = state.value.phases[1].first + side / 2u, texel = uint(kVoxelSideTexels) * (2u * voxel + side % 2u);
+  for (uint i = 0u; i < uint(kVoxelSideTexels); ++i) voxelsSurface.texels[texel + i] = vec4(0.0);
+  if (side % 2u != 0u) return;
+  uvec2 entry = cells.list[voxel];
+  marks.words[entry.x / 32u] = 0u;
+  imageStore(voxelsIndex, ivec3(entry.x % resolution, entry.x / resolution % resolution, entry.x / (resolution * resolution)),
+             uvec4(entry.y));
+}

@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Triangles of few columns, one an invocation. Counts the chunks of the others.
+#include "voxelize/visit.glsl"
+
+layout(local_size_x = 64) in;
+
+#ifndef ACCUMULATE
+layout(set = 0, std430) writeonly buffer ChunksBlock { uint list[]; } chunks;
+#endif
+
+void main() {
+  uint i = groupIndex() * 64u + gl_LocalInvocationIndex;
+  if (i >= constants.triangleCount) return;
+  uvec4 indices = sceneTriangle(constants.firstTriangle + i);
+  CellTriangle t = loadCellTriangle(voxelGrid(constants.resolution), indices);
+  uint columns = columnCount(t);
+  bool large = columns > kSmallColumns;
+#ifndef ACCUMULATE
+  chunks.list[i] = large ? (columns + kChunkColumns - 1u) / kChunkColumns : 0u;
+#endif
+  if (large) return;
+  Material material = loadMaterial(materialOf(indices));
+  for (uint column = 0u; column < columns; ++column) visitColumn(t, indices, material, column);
+}

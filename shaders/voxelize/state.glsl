@@ -1,0 +1,26 @@
+// What the steps of one voxelisation tell each other. Kept in step with passes/voxelize.
+#ifndef FOVEA_VOXELIZE_STATE_GLSL
+#define FOVEA_VOXELIZE_STATE_GLSL
+
+const uint kSmallColumns = 16u;   // a triangle with more columns of cells is split into chunks
+const uint kChunkColumns = 256u;  // of this many, a work group each
+const uint kSumWords = 28u;       // of one side, see add.glsl
+const uint kRow = 32768u;         // work groups in a row of a dispatch
+const uint kScanBlock = 256u;     // words that a work group of a prefix sum works on
+
+struct Phase {     // 0: static triangles, 1: dynamic ones
+  uint groups[3];  // indirect dispatch: an invocation a side of the phase's voxels, 64 in a group
+  uint voxels;     // that found room
+  uint first;      // number of the first of them
+  uint overflow;
+  uint unused0, unused1;
+};
+struct State {
+  uint chunkGroups[3];  // indirect dispatch: a work group a chunk
+  uint chunks;
+  Phase phases[2];
+};
+
+uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+#endif
