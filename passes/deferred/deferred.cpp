@@ -66,11 +66,15 @@ class Deferred : public Pass {
     side_ = subsetsPerSide(interleave, count_);
     masked_ = ctx.has("shade");
     if (masked_) checkMask(ctx, uint32_t(interleave));
+    const gpu::Defines composition{{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}};
     gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
+    if (masked_) {
+      defines["BLOCK"] = std::to_string(interleave);
+      compose_ = ctx.compute("deferred/compose.comp", composition);
+    }
     gpu::Defines filter = defines;
-    filter["HAS_DIRECT"] = ctx.has("direct") ? "1" : "0";
+    filter.insert(composition.begin(), composition.end());
     resolve_ = ctx.compute("deferred/resolve.comp", filter);
-    if (masked_) defines["BLOCK"] = std::to_string(interleave);
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);
   }
@@ -93,9 +97,14 @@ class Deferred : public Pass {
         commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
     }
     ctx.barrier();
-    ctx.use(resolve_)
-        .constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f))
-        .dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
+    Commands resolve = ctx.use(resolve_);
+    resolve.constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f));
+    if (masked_) {
+      resolve.dispatchIndirect("shade.dispatch");
+      ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
+    } else {
+      resolve.dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
+    }
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
@@ -165,7 +174,7 @@ class Deferred : public Pass {
   uint32_t count_ = 0, side_ = 1;
   bool masked_ = false;
   std::vector<Kernel> pages_;
-  Kernel resolve_;
+  Kernel resolve_, compose_;
 };
 
 FOVEA_PASS(Deferred);

@@ -11,13 +11,17 @@
 // is still missing there is replaced by the mean of the subsets that were found, so that edges neither darken nor show a
 // pattern. Where less than half was found (leaves, chains) other surfaces nearby that face the same way are taken as well.
 //
-// MASKED: only the blocks of a mask were shaded, the others have their irradiance already, the base. A pixel outside takes
-// it. For a pixel inside, those of its window that are outside have no sample either; what they would add is known better,
+// MASKED: only listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here, the other pixels have their irradiance
+// already, the base. Of a pixel's window, what lies outside the blocks has no sample; what it would add is known better,
 // though: the base there. The pixels of the window inside are then represented by the mean over all subsets (found as above,
-// in the shaded pixels only), the ones outside by their base: towards its rim a shaded patch passes into its surroundings,
+// in shaded pixels only), the ones outside by their base: towards its rim a shaded patch passes into its surroundings,
 // without the noise that a part of the subsets would bring.
-
+#if MASKED
+#include "deferred/blocks.glsl"
+const int kPixels = 1;  // that are filtered together
+#else
 const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
+#endif
 const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
 layout(local_size_x = 16, local_size_y = 4) in;
@@ -31,12 +35,12 @@ layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
 layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
 #if HAS_DIRECT
-layout(set = 0, binding = 8) uniform texture2D direct;
+layout(set = 0, binding = 12) uniform texture2D direct;
 #endif
 
 #if MASKED
-layout(set = 0, binding = 9) uniform texture2D base;
-layout(set = 0, binding = 10) uniform texture2D shadeMask;
+layout(set = 0, binding = 10) uniform texture2D base;
+layout(set = 0, binding = 11) uniform texture2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -184,35 +188,18 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
   return c.sum / float(c.found);
 }
 
-void main() {
-  ivec2 size = textureSize(gbufferPosition, 0);
-  ivec2 first = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
-                ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels);
+// Filters kPixels pixels from `first` downwards and writes them; adds to pixels, incomplete.
+void resolve(ivec2 first, ivec2 size, inout uvec2 counted) {
   Centre centres[kPixels];
-  bool shaded[kPixels], anyShaded = false;
-  for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = first + ivec2(0, k);
-    centres[k] = centreAt(p, size);
-    shaded[k] = centres[k].plane >= 0.0 && isShaded(min(p, size - 1));
-    anyShaded = anyShaded || shaded[k];
-  }
-#if MASKED
-  if (anyShaded)
-#endif
-    filterWindows(centres, first, size);
-
-  uint surfaces = 0u, incompletes = 0u, shadedPixels = 0u;
+  for (int k = 0; k < kPixels; ++k) centres[k] = centreAt(first + ivec2(0, k), size);
+  filterWindows(centres, first, size);
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = first + ivec2(0, k);
     bool surface = centres[k].plane >= 0.0, incomplete = false;
     vec3 e = vec3(0.0);
-    if (shaded[k]) e = meanOfSubsets(centres[k], p, size, incomplete);
-#if MASKED
-    else if (surface) e = texelFetch(base, p, 0).rgb;
-#endif
-    surfaces += subgroupBallotBitCount(subgroupBallot(surface));
-    incompletes += subgroupBallotBitCount(subgroupBallot(incomplete));
-    shadedPixels += subgroupBallotBitCount(subgroupBallot(shaded[k]));
+    if (surface) e = meanOfSubsets(centres[k], p, size, incomplete);
+    counted.x += subgroupBallotBitCount(subgroupBallot(surface));
+    counted.y += subgroupBallotBitCount(subgroupBallot(incomplete));
     if (any(greaterThanEqual(p, size))) continue;
     vec3 reflected = surface ? texelFetch(gbufferAlbedo, p, 0).rgb * e : vec3(0.0);
     vec3 total = reflected;
@@ -223,9 +210,22 @@ void main() {
     imageStore(indirect, p, vec4(reflected, 1.0));
     imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
   }
+}
+
+void main() {
+  ivec2 size = textureSize(gbufferPosition, 0);
+  uvec2 counted = uvec2(0u);
+#if MASKED
+  for (int k = 0; k < kListedPixels; ++k) resolve(listedPixel(k, size), size, counted);
+#else
+  resolve(ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
+              ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size, counted);
+#endif
   if (subgroupElect()) {
-    atomicAdd(counters[0], surfaces);
-    if (incompletes > 0u) atomicAdd(counters[1], incompletes);
-    if (shadedPixels > 0u) atomicAdd(counters[3], shadedPixels);
+#if !MASKED
+    atomicAdd(counters[0], counted.x);  // MASKED: compose.comp counts them
+#endif
+    if (counted.y > 0u) atomicAdd(counters[1], counted.y);
+    atomicAdd(counters[3], counted.x);
   }
 }

@@ -26,8 +26,7 @@ layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
 #endif
 
 #if MASKED
-layout(set = 0, binding = 6) uniform usamplerBuffer shadeBlocks;
-layout(set = 0, binding = 7) uniform usamplerBuffer shadeDispatch;
+#include "deferred/blocks.glsl"
 #endif
 
 layout(push_constant) uniform Constants {
@@ -53,15 +52,8 @@ float vplKernel(float d2, float d, float area) {
 
 // All invocations of a work group share a subset, so that they read the same VPLs at the same time.
 #if MASKED
-// A work group shades the same pixel of 256 listed blocks.
-uvec2 inBlock() { return uvec2(gl_WorkGroupID.y % BLOCK, gl_WorkGroupID.y / BLOCK); }
-uvec2 subsetOfGroup() { return inBlock() % INTERLEAVE; }
-ivec2 pixelAt(int k, ivec2 size) {
-  uint perRow = gl_WorkGroupSize.x * gl_WorkGroupSize.y, item = (gl_WorkGroupID.x * kPixels + k) * perRow + gl_LocalInvocationIndex;
-  if (item >= texelFetch(shadeDispatch, 0).w) return size;  // past the last one
-  uint block = texelFetch(shadeBlocks, int(item)).x;
-  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + inBlock());
-}
+uvec2 subsetOfGroup() { return placeInBlock() % INTERLEAVE; }
+ivec2 pixelAt(int k, ivec2 size) { return listedPixel(k, size); }
 #else
 // A work group covers every INTERLEAVE-th pixel of a block.
 uvec2 subsetOfGroup() { return gl_WorkGroupID.xy % INTERLEAVE; }

@@ -1,0 +1,122 @@
+// Both eyes from end to end: the right eye made from the left one's light against the right eye rendered on its own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/scene/load.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr uint32_t kSide = 256;
+
+// Pages of the same VPLs in every frame and run: light paths do not depend on the eye.
+const std::vector<std::string> kSettings = {"vpl_count=320", "map_size=32", "shadow_map_size=512", "per_frame=false"};
+
+GraphRun run(const std::string& graph, const scene::Scene& s, const std::string& view, int interleave = 4, uint32_t frames = 1) {
+  GraphRunOptions options;
+  options.size = {kSide, kSide};
+  options.frames = frames;
+  options.set = kSettings;
+  options.set.push_back("interleave=" + std::to_string(interleave));
+  // What the graph takes for its only view.
+  if (!view.empty())
+    options.beforeFrame = [view](scene::Frame& frame) {
+      const std::string name = frame.views[0].name;
+      frame.views[0] = *frame.findView(view);
+      frame.views[0].name = name;
+    };
+  return runGraph(graph, s, options);
+}
+
+double counter(const GraphRun& run, const std::string& name) {
+  for (const auto& [n, value] : run.frames.back().counters)
+    if (n == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+double luminance(const std::vector<float>& image, size_t i) {
+  return 0.2126 * image[4 * i] + 0.7152 * image[4 * i + 1] + 0.0722 * image[4 * i + 2];
+}
+
+struct Errors {
+  double mean = 0, p95 = 0, bias = 0;  // of luminance, in parts of the picture's mean
+};
+
+// Over the pixels with mask != 0 (`in`) or == 0.
+Errors compare(const std::vector<float>& image, const std::vector<float>& want, const std::vector<float>& mask, bool in) {
+  double brightness = 0;
+  for (size_t i = 0; i < mask.size(); ++i) brightness += luminance(want, i) / double(mask.size());
+  std::vector<double> errors;
+  Errors e;
+  for (size_t i = 0; i < mask.size(); ++i) {
+    if ((mask[i] > 0) != in) continue;
+    const double difference = (luminance(image, i) - luminance(want, i)) / brightness;
+    e.bias += difference;
+    e.mean += std::abs(difference);
+    errors.push_back(std::abs(difference));
+  }
+  if (errors.empty()) return e;
+  e.bias /= double(errors.size());
+  e.mean /= double(errors.size());
+  const auto at = errors.begin() + std::ptrdiff_t(0.95 * double(errors.size() - 1));
+  std::nth_element(errors.begin(), at, errors.end());
+  e.p95 = *at;
+  return e;
+}
+
+class Interleave : public testing::TestWithParam<int> {};
+
+// Without interleaving only the warp itself is left: bilinear between pixels, shadows of VPLs a pixel off. With it both pictures
+// have their own noise from subsets.
+TEST_P(Interleave, RightEyeEqualsTheOneRenderedOnItsOwn) {
+  const int n = GetParam();
+  const scene::Scene s = scene::builtin("cornellbox");
+  const GraphRun both = run("ir_stereo", s, "", n), own = run("ir_1000", s, "right", n), left = run("ir_1000", s, "left", n);
+  // The first eye does not notice the second; direct light is never warped.
+  EXPECT_EQ(both.outputs.at("radiance").bytes, left.outputs.at("radiance").bytes);
+  EXPECT_EQ(both.outputs.at("direct_right").bytes, own.outputs.at("direct").bytes);
+
+  const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(own.outputs.at("indirect"));
+  const auto mask = toFloats(both.outputs.at("mask"));
+  const double pixels = counter(both, "right/reproject.pixels"), fresh = counter(both, "right/reproject.new_pixels") / pixels,
+               shaded = counter(both, "right/reproject.shaded_pixels") / pixels;
+  const Errors warped = compare(image, want, mask, false), again = compare(image, want, mask, true);
+  std::printf("new %.2f%%, shaded %.2f%%; warped: mean %.4f p95 %.4f bias %.4f; shaded: mean %.4f p95 %.4f bias %.4f\n", 100 * fresh,
+              100 * shaded, warped.mean, warped.p95, warped.bias, again.mean, again.p95, again.bias);
+  EXPECT_EQ(counter(both, "right/deferred.shaded_pixels"), shaded * pixels);
+  EXPECT_GT(fresh, 0.005);
+  EXPECT_LT(fresh, 0.03);
+  EXPECT_LT(shaded, n == 1 ? 0.03 : 0.05);
+  EXPECT_LT(warped.mean, n == 1 ? 0.006 : 0.015);
+  EXPECT_LT(warped.p95, n == 1 ? 0.02 : 0.05);
+  EXPECT_LT(std::abs(warped.bias), 0.003);
+  EXPECT_LT(again.mean, n == 1 ? 1e-6 : 0.02);  // pixels of their own are what they would be anyway
+  EXPECT_LT(again.p95, n == 1 ? 1e-6 : 0.08);
+  EXPECT_LT(std::abs(again.bias), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stereo, Interleave, testing::Values(1, 4));
+
+TEST(Stereo, RepeatsBitForBit) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  const GraphRun a = run("ir_stereo", s, "", 4, 2), b = run("ir_stereo", s, "", 4, 2);
+  EXPECT_EQ(a.outputs.at("radiance_right").bytes, b.outputs.at("radiance_right").bytes);
+  EXPECT_EQ(a.outputs.at("mask").bytes, b.outputs.at("mask").bytes);
+}
+
+// Nothing to see, nothing to warp, nothing to shade.
+TEST(Stereo, EmptySceneIsBlack) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  s.cameras.emplace_back();
+  const GraphRun empty = run("ir_stereo", s, "");
+  for (float x : toFloats(empty.outputs.at("indirect_right"))) ASSERT_TRUE(x == 0 || x == 1);
+  EXPECT_EQ(counter(empty, "right/reproject.shaded_pixels"), 0);
+}
+
+}  // namespace
+}  // namespace fovea::test
