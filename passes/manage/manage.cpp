@@ -75,7 +75,7 @@ PassDeclaration Manage::declaration() {
   d.parameter("keep", integer(0, 0, kMost),
               "candidates left by thinning (K): each stays with probability min(1, K I / sum I); 0: as many "
               "as `limit`");
-  d.parameter("order", choice("fixed", {"literal", "fixed"}),
+  d.parameter("order", choice("literal", {"literal", "fixed"}),
               "Algorithm 2. literal: as printed; fixed: when more old VPLs failed Eq. 1 than there are "
               "candidates, the best "
               "of those that it never reaches are tried, too");

@@ -14,7 +14,7 @@
 namespace fovea::test {
 
 struct ManageSettings {
-  std::string reuse = "linear", order = "fixed";
+  std::string reuse = "linear", order = "literal";
   uint32_t keep = 0, limit = 0, maxDensity = 0;
   double densityConstant = 1, cell = 1.0 / 48;
 };

@@ -74,9 +74,9 @@ float randomImportance(Dice& dice, Importance kind) {
   return 0;
 }
 
-VplState randomVpl(Dice& dice, float spread, Importance kind) {
+VplState randomVpl(Dice& dice, float spread, Importance kind, float empty) {
   VplState vpl;
-  if (dice.below(4) == 0) return vpl;
+  if (dice.uniform() < empty) return vpl;
   const Candidate c = randomCandidate(dice, spread);
   vpl.position = c.position;
   vpl.normal = vpl.localNormal = c.normal;
@@ -92,6 +92,7 @@ struct Content {  // of random inputs
   uint32_t slots = 16, candidates = 32;
   float spread = 0.3f;
   Importance kind = Importance::Fine;
+  float empty = 0.25f;  // share of slots
 };
 
 void newCandidates(ManageInput& in, Dice& dice, const Content& content) {
@@ -107,7 +108,7 @@ ManageInput randomInput(Dice& dice, const Content& content) {
   ManageInput in;
   newCandidates(in, dice, content);
   for (uint32_t i = 0; i < content.slots; ++i) {
-    in.vpls.push_back(randomVpl(dice, content.spread, content.kind));
+    in.vpls.push_back(randomVpl(dice, content.spread, content.kind, content.empty));
     in.vplImportance.push_back(in.vpls[i].life > 0 ? randomImportance(dice, content.kind) : 0.0f);
   }
   return in;
@@ -185,9 +186,9 @@ void nextFrame(ManageInput& in, const std::vector<VplState>& vpls, Dice& dice) {
 ManageSettings randomSettings(Dice& dice, uint32_t slots) {
   ManageSettings s;
   s.order = dice.any({"literal", "fixed"});
-  s.keep = dice.any<uint32_t>({0, 1, slots / 3 + 1, 2 * slots});
-  s.limit = dice.any<uint32_t>({0, 0, 1, slots / 2 + 1, slots + 10});
-  s.maxDensity = dice.any<uint32_t>({0, 0, 1, 2, 5});
+  s.keep = dice.any<uint32_t>({0, 0, 1, slots / 3 + 1, 2 * slots, 2 * slots});
+  s.limit = dice.any<uint32_t>({0, 0, 0, 1, slots / 2 + 1, slots + 10});
+  s.maxDensity = dice.any<uint32_t>({0, 1, 2, 5});
   s.densityConstant = dice.any({1.0, 1.0, 0.5, 7.3});
   s.cell = dice.any({1.0 / 48, 1.0 / 64, 0.13, 1.0});
   return s;
@@ -195,23 +196,30 @@ ManageSettings randomSettings(Dice& dice, uint32_t slots) {
 
 // Random settings and random lists, then a few frames with the list fed back.
 void compareRandomCases(const char* reuse, uint32_t firstSeed) {
+  ManageOutput sum;  // to see that the cases exercise what they are for
   for (uint32_t seed = firstSeed; seed < firstSeed + 20; ++seed) {
     SCOPED_TRACE(testing::Message() << reuse << ", seed " << seed);
     Dice dice(seed);
     Content content;
-    content.slots = dice.any<uint32_t>({1, 2, 7, 40, 130, 400});
-    content.candidates = dice.any<uint32_t>({1, 3, 50, 200, 700});
+    content.slots = dice.any<uint32_t>({1, 2, 7, 40, 130, 300, 400});
+    content.candidates = dice.any<uint32_t>({1, 3, 50, 200, 700, 700});
     ManageSettings settings = randomSettings(dice, content.slots);
     settings.reuse = reuse;
     ManageInput in = randomInput(dice, content);
     Manager manager(settings, in, seed);
     for (uint32_t i = 0; i < 5; ++i) {
       SCOPED_TRACE(testing::Message() << "case " << i);
-      content.spread = dice.any({0.0f, 0.05f, 0.3f, 0.8f});
+      content.spread = dice.any({0.0f, 0.05f, 0.3f, 0.8f, 0.8f});
+      content.empty = dice.any({0.0f, 0.25f, 0.6f, 0.9f});
       content.kind = dice.any(
           {Importance::Fine, Importance::Fine, Importance::Ties, Importance::Small, Importance::Zero});
       in = randomInput(dice, content);
-      manager.run(in);
+      const ManageOutput out = manager.run(in);
+      sum.kept += out.kept;
+      sum.dense += out.dense;
+      sum.rejected += out.rejected;
+      sum.deleted += out.deleted;
+      sum.added += out.added;
     }
     content.kind = Importance::Fine;
     for (uint32_t i = 0; i < 5 && !testing::Test::HasFailure(); ++i) {
@@ -221,6 +229,12 @@ void compareRandomCases(const char* reuse, uint32_t firstSeed) {
     }
     if (testing::Test::HasFailure()) return;
   }
+  EXPECT_GT(sum.added, 300u);
+  EXPECT_GT(sum.deleted, 300u);
+  if (std::string(reuse) == "none") return;
+  EXPECT_GT(sum.dense, 100u);
+  EXPECT_GT(sum.rejected, 300u);
+  EXPECT_GT(sum.kept, sum.deleted / 4);
 }
 
 TEST(Manage, LinearEqualsTheSerialAlgorithm) { compareRandomCases("linear", 100); }
@@ -351,7 +365,7 @@ TEST(Manage, DensityAndOrder) {
 
 // A candidate is kept with probability min(1, K I / sum I), and K of them are when none reaches 1.
 TEST(Manage, ThinningFollowsTheCdf) {
-  constexpr uint32_t kFrames = 400, kCandidates = 40, kKeep = 10;
+  constexpr uint32_t kFrames = 250, kCandidates = 40, kKeep = 10;
   Dice dice(6);
   ManageInput in = randomInput(dice, {kCandidates, kCandidates, 0.9f, Importance::Fine});
   for (auto& vpl : in.vpls) vpl = {};
