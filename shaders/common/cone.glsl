@@ -37,49 +37,55 @@ struct ConeSample {
   float weight;  // likewise times the coverage; 0 without CONE_WEIGHT
 };
 
-ConeSample mipFetch(MipGrid grid, vec3 at, float face, float faceCount, int level) {
+ConeSample mipFetch(vec3 at, float face, float faceCount, float level) {
   vec3 uvw = vec3((face + at.x) / faceCount, at.yz);
   ConeSample s;
-  s.color = textureLod(sampler3D(mipsColor, linearClamp), uvw, float(level));
+  s.color = textureLod(sampler3D(mipsColor, linearClamp), uvw, level);
 #ifdef CONE_WEIGHT
-  s.weight = textureLod(sampler3D(mipsWeight, linearClamp), uvw, float(level)).r;
+  s.weight = textureLod(sampler3D(mipsWeight, linearClamp), uvw, level).r;
 #else
   s.weight = 0.0;
 #endif
   return s;
 }
 
-// What faces `direction` around p (cells of level 0).
-ConeSample sampleMips(MipGrid grid, vec3 p, vec3 direction, int level) {
+// What faces `direction` around p (cells of level 0), between the levels.
+ConeSample sampleMips(MipGrid grid, vec3 p, vec3 direction, float level) {
   float size = float(grid.size);
-  float half_ = 0.5 * float(1 << level) / size;
+  float half_ = 0.5 * exp2(ceil(level)) / size;
   vec3 at = clamp(p / size, half_, 1.0 - half_);  // filtering must not reach into the next face
-  if (!grid.faces) return mipFetch(grid, at, 0.0, 1.0, level);
+  if (!grid.faces) return mipFetch(at, 0.0, 1.0, level);
   // Faces +x -x +y -y +z -z by the way a surface looks: a direction to the right meets what looks to the left.
   vec3 towards = abs(direction);
   vec3 face = vec3(0.0, 2.0, 4.0) + vec3(greaterThan(direction, vec3(0.0)));
-  ConeSample x = mipFetch(grid, at, face.x, 6.0, level), y = mipFetch(grid, at, face.y, 6.0, level),
-             z = mipFetch(grid, at, face.z, 6.0, level);
+  ConeSample x = mipFetch(at, face.x, 6.0, level), y = mipFetch(at, face.y, 6.0, level),
+             z = mipFetch(at, face.z, 6.0, level);
   return ConeSample(towards.x * x.color + towards.y * y.color + towards.z * z.color,
                     dot(towards, vec3(x.weight, y.weight, z.weight)));
 }
 
-const float kConeStep = 0.5;  // cells of the level; what a wall adds up to then errs by 2% at most
+const float kConeStep = 0.5;  // cells of the level
 const int kConeTurns = 512;
 
-// Front-to-back along a cone. origin, start: cells of level 0; growth: width of the filter's cells by the distance.
+// Front-to-back along a cone. origin, start: cells of level 0; growth: width of the filter's cells by the distance. The
+// filter has to widen smoothly: where it jumps from one level to the next in front of a wall, the part of the wall that the fine
+// level has not shown yet and the coarse one no longer shows is lost.
 // Returns radiance and weight premultiplied with the coverage that was met, at most 1.
 ConeSample coneTrace(MipGrid grid, vec3 origin, vec3 direction, float start, float growth) {
   ConeSample sum = ConeSample(vec4(0.0), 0.0);
   float t = start;
+  // A wall may stand half a cell behind the middle of its cell: by then the filter has become wider by this much, and what the
+  // wall adds up to smaller. A whole wall must hide all, so coverage counts that much more.
+  float opaque = 1.0 + 0.5 * growth;
   for (int turn = 0; turn < kConeTurns && sum.color.a < 0.999; ++turn) {
-    int level = clamp(int(floor(log2(max(growth * t, 1.0)))), 0, grid.levels - 1);
-    float width = kConeStep * float(1 << level);
+    float level = clamp(log2(max(growth * t, 1.0)), 0.0, float(grid.levels - 1));
+    float width = kConeStep * exp2(level);
     vec3 p = origin + (t + 0.5 * width) * direction;
-    if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(grid.size)))) break;
+    // Walls at the rim of the grid are filtered with what they repeat outside of it.
+    if (any(lessThan(p, vec3(-width))) || any(greaterThan(p, grid.size + vec3(width)))) break;
     ConeSample s = sampleMips(grid, p, direction, level);
     // What is already hidden adds nothing.
-    float share = min(kConeStep, (1.0 - sum.color.a) / max(s.color.a, 1e-6));
+    float share = min(opaque * kConeStep, (1.0 - sum.color.a) / max(s.color.a, 1e-6));
     sum.color += share * s.color;
     sum.weight += share * s.weight;
     t += width;
@@ -88,9 +94,12 @@ ConeSample coneTrace(MipGrid grid, vec3 origin, vec3 direction, float start, flo
 }
 
 // How far above a surface its own voxels reach into the filter, in widths of its cells: one cell of filter and half a cell
-// because the wall stands anywhere in its cell. So cones start where they have risen that far above level 0, and
-// widen so that they stay clear of the own wall (its back, if it is thin) for ever.
+// because the wall stands anywhere in its cell. Cones start where they have risen that far above level 0, and their
+// cells grow to this part of the height: they stay clear of the own wall (its back, if it is thin) for ever. Wider
+// ones look through walls that others stand behind: behind a thin wall in a room arrives 4% of the light of the lit half with 2, 11%
+// with 1.5, 2% with 3; against many rays all three err by 4% a VPL.
 const float kOwnReach = 1.5;
+const float kHeightPerCell = 2.0;
 
 #ifdef CONE_GATHER
 #include "common/hemisphere_rays.glsl"
@@ -114,9 +123,9 @@ vec3 gatherHemisphere(VoxelGrid grid, vec3 position, vec3 normal, float turn) {
     vec3 local = kHemisphereRay[i];
     vec3 direction = normalize(frame_ * vec3(c * local.x - s * local.y, s * local.x + c * local.y, local.z));
     float start = kOwnReach / local.z;
-    VoxelHit hit = traceVoxels(grid, position, direction, normal, (start + kOwnReach) * mips.cell);
+    VoxelHit hit = traceVoxels(grid, position, direction, normal, (start + 2.0 * kOwnReach) * mips.cell);
     sum += local.z * (hit.side != kNoSide ? texelFetch(radiance, int(hit.side)).rgb
-                                          : coneTrace(mips, origin, direction, start, local.z / kOwnReach).color.rgb);
+                                          : coneTrace(mips, origin, direction, start, local.z / kHeightPerCell).color.rgb);
   }
   return kPi * sum / kHemisphereCosines;
 }
