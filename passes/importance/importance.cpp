@@ -47,8 +47,8 @@ PassDeclaration Importance::declaration() {
   d.output("vpl_importance", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
            "I of each VPL, in [0, 1]; 0: an empty slot");
   d.parameter("method", choice("rays", {"rays", "cones"}),
-              "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the weights in a "
-              "cone of 60 degrees");
+              "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the mean weight "
+              "in a cone around it");
   d.parameter("luminance", flag(false),
               "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
   d.counter("rays", "rays or cones traced");
@@ -74,7 +74,7 @@ void Importance::prepare(PrepareContext& ctx) {
 void Importance::record(RecordContext& ctx) {
   const auto estimate = [&](Kernel kernel, const char* port) {
     const uint32_t count = uint32_t(ctx.count(port));
-    ctx.use(kernel).constant("count", count).dispatch((count + kGroupVpls - 1) / kGroupVpls);
+    ctx.use(kernel).constant("count", count).dispatch(1, (count + kGroupVpls - 1) / kGroupVpls);
   };
   estimate(candidates_, "candidates");
   estimate(vpls_, "vpls");

@@ -5,9 +5,9 @@
 // In the frame orthonormalFrame(normal) of common/paraboloid.glsl: the normal and five directions 60 degrees from it. These
 // are the axes of six cones with an opening angle of 60 degrees that cover the hemisphere (Crassin et al., "Interactive
 // Indirect Illumination Using Voxel Cone Tracing", 2011). Their mean points along the normal. Weighted by their cosines,
-// the normal stands for 1 / 3.5 of the cosine-weighted hemisphere, which is a cap of 32 degrees, and the others for the rest,
-// whose median is at 53 degrees. The ring is turned by 10.8 degrees so that no ray runs along the planes of the grid
-// when the normal is an axis: such rays would meet edges of cells everywhere, and rounding would pick the cell.
+// the normal stands for 1 / 3.5 of the cosine-weighted hemisphere, which is a cap of 32 degrees, and the others for the
+// rest, whose median is at 53 degrees. The ring is turned by 10.8 degrees so that no ray runs along the planes of the
+// grid when the normal is an axis: such rays would meet edges of cells everywhere, and rounding would pick the cell.
 const int kHemisphereRays = 6;
 const vec3 kHemisphereRay[kHemisphereRays] = vec3[](
     vec3(0.0, 0.0, 1.0), vec3(0.850685713, 0.162276979, 0.5), vec3(0.108541764, 0.859196535, 0.5),

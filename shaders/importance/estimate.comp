@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Importance of VPLs (METHOD importance step 2): with w_i the foveated weight of the first voxel side that direction i sees,
-//   I = sum(w_i cos_i) / sum(cos_i).
+// Importance of VPLs (METHOD importance step 2): with w_i the foveated weight of the first voxel side in direction i,
+//   I = sum(w_i cos_i) / sum(cos_i),
+// or (CONES) the mean weight in a cone around it, from the mips.
 // The directions hang on the VPL's normal alone, so that I is steady from frame to frame: Eq. 1 compares it with the I of
 // the frame before, and noise would delete VPLs in a still picture.
 // Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1.
@@ -10,10 +11,14 @@
 #include "common/paraboloid.glsl"
 #include "common/hemisphere_rays.glsl"
 #include "common/voxel_trace.glsl"
+#if CONES
+#define CONE_WEIGHT
+#include "common/cone.glsl"
+#endif
 
-// One invocation a direction. Neighbours trace the same direction from different VPLs: these often lie near each other.
+// One invocation a direction, those of a VPL side by side: they set out from the same place.
 const int kVpls = 16;
-layout(local_size_x = kVpls, local_size_y = kHemisphereRays) in;
+layout(local_size_x = kHemisphereRays, local_size_y = kVpls) in;
 
 #if CANDIDATES
 layout(set = 0) uniform usamplerBuffer candidates;
@@ -30,7 +35,7 @@ layout(set = 0, std430) buffer Counters { uint counters[]; };  // rays
 
 layout(push_constant) uniform Constants { uint count; };
 
-shared float seen[kHemisphereRays][kVpls];  // w_i cos_i
+shared float seen[kVpls][kHemisphereRays];  // w_i cos_i
 
 struct Source {
   vec3 position, normal;
@@ -49,13 +54,27 @@ Source loadSource(uint i) {
 #endif
 }
 
-float weightSeen(Source source, vec3 direction) {
-  uint side = traceVoxels(voxelsGrid(), source.position, direction, source.normal).side;
-  return side == kNoSide ? 0.0 : texelFetch(weights, int(side)).r;
+float sideWeight(uint side) { return side == kNoSide ? 0.0 : texelFetch(weights, int(side)).r; }
+
+#if CONES
+// The mean weight of what a cone of 60 degrees meets; where it leaves the scene nothing is seen. Its beginning, where the
+// mips cannot tell other surfaces from the own one, is a ray (see gatherHemisphere in common/cone.glsl).
+float weightSeen(Source source, vec3 direction, float cosine) {
+  VoxelGrid grid = voxelsGrid();
+  MipGrid mips = mipGrid(grid);
+  float start = kOwnReach / cosine;
+  uint side = traceVoxels(grid, source.position, direction, source.normal, (start + 2.0 * kOwnReach) * mips.cell).side;
+  if (side != kNoSide) return sideWeight(side);
+  return coneTrace(mips, (source.position - mips.origin) / mips.cell, direction, start, cosine / kOwnReach).weight;
 }
+#else
+float weightSeen(Source source, vec3 direction, float cosine) {
+  return sideWeight(traceVoxels(voxelsGrid(), source.position, direction, source.normal).side);
+}
+#endif
 
 void main() {
-  uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x, ray = gl_LocalInvocationID.y;
+  uint i = gl_GlobalInvocationID.y, vpl = gl_LocalInvocationID.y, ray = gl_LocalInvocationID.x;
   bool live = false;
   Source source;
   if (i < count) {
@@ -63,11 +82,12 @@ void main() {
     live = source.live;
   }
   vec3 local = kHemisphereRay[ray];
-  seen[ray][lane] = live ? weightSeen(source, toWorld(orthonormalFrame(source.normal), local)) * local.z : 0.0;
+  vec3 direction = toWorld(orthonormalFrame(source.normal), local);
+  seen[vpl][ray] = live ? local.z * weightSeen(source, direction, local.z) : 0.0;
   barrier();
   if (ray != 0u || i >= count) return;
   float sum = 0.0;
-  for (int k = 0; k < kHemisphereRays; ++k) sum += seen[k][lane];
+  for (int k = 0; k < kHemisphereRays; ++k) sum += seen[vpl][k];
   float result = clamp(sum / kHemisphereCosines, 0.0, 1.0);
 #if LUMINANCE
   if (live) result *= clamp(frame.exposure * texelFetch(radiance, int(source.side)).w, 0.0, 1.0);

@@ -25,8 +25,8 @@ layout(push_constant) uniform Constants {
 };
 #endif
 
-// The side that a surface point lies in; where that is empty (on the border of a cell the rounding decides) the voxel's other
-// side if it faces the eye.
+// The side that a surface point lies in; where that is empty (on the border of a cell the rounding decides) the voxel's
+// other side if it faces the eye.
 uint seenSide(VoxelGrid grid, ivec3 cell, uint exact) {
   uint voxel = voxelAt(grid, cell);
   if (voxel == 0u) return kNoSide;

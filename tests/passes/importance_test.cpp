@@ -9,6 +9,7 @@
 #include "framework/base/diagnostic.h"
 #include "framework/base/random.h"
 #include "framework/scene/hemisphere_rays.h"
+#include "framework/scene/load.h"
 #include "framework/scene/paraboloid.h"
 #include "framework/scene/voxel_trace.h"
 #include "framework/scene/vpl.h"
@@ -166,7 +167,8 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
       }
     }
   };
-  compare(test.values<float>("candidate_importance"), candidates, [](const Candidate& c) { return c.side != scene::kNoSide; });
+  compare(test.values<float>("candidate_importance"), candidates,
+          [](const Candidate& c) { return c.side != scene::kNoSide; });
   compare(test.values<float>("vpl_importance"), vpls, [](const VplState& v) { return v.life > 0; });
   EXPECT_EQ(test.counter("rays"), double(6 * live));
   // In the edges of the room rays run along walls exactly: whether they face them is up to rounding.
@@ -187,7 +189,8 @@ TEST(Importance, OccludersBlock) {
     if (lid) addQuad(s, grey, {-0.3f, 0.6f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f});
     const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 64);
     std::vector<float> weights;
-    for (const scene::VoxelSide& side : voxels.surface) weights.push_back(side.area > 0 && side.position.y > 0.9f ? 1.0f : 0.0f);
+    for (const scene::VoxelSide& side : voxels.surface)
+      weights.push_back(side.area > 0 && side.position.y > 0.9f ? 1.0f : 0.0f);
     PassTest test("importance");
     const std::vector<Candidate> candidates = {makeCandidate({0.02f, 0, 0.03f}, {0, 1, 0})};
     wire(test.scene(s), voxels, weights, candidates, makeVpls(candidates));
@@ -198,8 +201,8 @@ TEST(Importance, OccludersBlock) {
   }
 }
 
-// Where every ray hits something of weight 1, importance is 1. (In an edge of the room two walls share a side, whose normal lies
-// between theirs and whose position is so near to both that it may count as the own surface of its neighbours.)
+// Where every ray hits something of weight 1, importance is 1. (In an edge of the room two walls share a side, whose normal
+// lies between theirs and whose position is so near to both that it may count as the own surface of its neighbours.)
 TEST(Importance, IsOneWhereEverythingCounts) {
   const scene::Scene s = closedRoom();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
@@ -261,6 +264,89 @@ TEST(Importance, EmptyListsAndScenes) {
   wire(test.scene(empty), nothing, std::vector<float>(nothing.surface.size(), 1.0f), one, makeVpls(one));
   test.run();
   EXPECT_EQ(test.values<float>("candidate_importance")[0], 0);
+}
+
+// ---- Cones -------------------------------------------------------------------------------------------------------------
+
+// The bundle "voxel-mips" of these weights, made by its own pass.
+void wireMips(PassTest& test, const scene::Scene& s, const VoxelArrays& voxels, const std::vector<float>& weights) {
+  PassTest mipmap("mipmap");
+  setVoxels(mipmap.scene(s), voxels);
+  mipmap.buffer("weights", weights, "VoxelWeight");
+  mipmap.buffer("radiance", std::vector<glm::vec4>(weights.size(), glm::vec4(0.0f)), "VoxelRadiance");
+  mipmap.run();
+  for (const char* port : {"mips.color", "mips.weight"}) {
+    const graph::ResourceDesc& d = mipmap.desc(port);
+    test.volume(port, d.format, d.width, d.height, d.depth, mipmap.bytes(port), d.mips);
+  }
+}
+
+TEST(Importance, ConesInAClosedRoomMeetItsWalls) {
+  const scene::Scene s = closedRoom();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
+  const std::vector<float> weights(voxels.surface.size(), 1.0f);
+  std::vector<Candidate> candidates = {makeCandidate({0, 0, 0}, {0.3f, -0.2f, 0.5f})};
+  for (uint32_t i = 0; i < 100; ++i) {
+    const glm::vec3 p = 0.8f * randomVec3(60, i);
+    candidates.push_back(makeCandidate({p.x, -1, p.z}, {0, 1, 0}));
+    candidates.push_back(makeCandidate({1, p.y, p.z}, {-1, 0, 0}));
+  }
+  PassTest test("importance");
+  wire(test.scene(s).param("method", "cones"), voxels, weights, candidates, makeVpls(candidates));
+  wireMips(test, s, voxels, weights);
+  test.run();
+  for (const float i : test.values<float>("candidate_importance")) EXPECT_NEAR(i, 1, 0.05);
+  EXPECT_EQ(test.values<float>("vpl_importance"), test.values<float>("candidate_importance"));
+  EXPECT_EQ(test.counter("rays"), 2 * 6 * 201);  // both lists
+}
+
+// What the eye sees of a scene, weighted.
+std::vector<float> seenWeights(const scene::Scene& s, const VoxelArrays& voxels, glm::vec2 gaze) {
+  const auto look = [gaze](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; };
+  PassTest gbuffer("gbuffer"), weightMap("weight-map");
+  gbuffer.scene(s).viewSize(128, 128).run();
+  setVoxels(weightMap.scene(s).viewSize(128, 128).beforeFrame(look), voxels);
+  for (const char* port : {"gbuffer.position", "gbuffer.face"})
+    weightMap.image(port, gbuffer.desc(port).format, 128, 128, 1, gbuffer.bytes(port));
+  weightMap.run();
+  EXPECT_LT(weightMap.counter("unassigned"), 128 * 128 / 200);
+  return weightMap.values<float>("weights");
+}
+
+TEST(Importance, ConesAgreeWithRaysInTheCornellBox) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 64);
+  const std::vector<float> weights = seenWeights(s, voxels, {0.3f, 0.5f});
+  std::vector<Candidate> candidates;
+  std::vector<uint32_t> sides;
+  for (uint32_t i = 0; i < voxels.surface.size(); ++i)
+    if (voxels.surface[i].area > 0.3f * voxels.grid.cell * voxels.grid.cell) sides.push_back(i);
+  for (uint32_t i = 0; i < 600; ++i) {
+    const scene::VoxelSide& side = voxels.surface[sides[size_t(random(70, i) * float(sides.size()))]];
+    candidates.push_back(makeCandidate(side.position, side.normal));
+  }
+  std::vector<float> importance[2];
+  for (const char* method : {"rays", "cones"}) {
+    PassTest test("importance");
+    wire(test.scene(s).param("method", method), voxels, weights, candidates, makeVpls(candidates));
+    wireMips(test, s, voxels, weights);
+    test.run();
+    importance[method[0] == 'c'] = test.values<float>("candidate_importance");
+  }
+  double mean[2] = {}, square[2] = {}, product = 0;
+  const double n = double(candidates.size());
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    for (int m = 0; m < 2; ++m) {
+      mean[m] += double(importance[m][i]) / n;
+      square[m] += double(importance[m][i]) * double(importance[m][i]) / n;
+    }
+    product += double(importance[0][i]) * double(importance[1][i]) / n;
+  }
+  const double correlation = (product - mean[0] * mean[1]) /
+                             std::sqrt((square[0] - mean[0] * mean[0]) * (square[1] - mean[1] * mean[1]));
+  EXPECT_GT(correlation, 0.85);
+  EXPECT_NEAR(mean[1], mean[0], 0.2 * mean[0]);
+  EXPECT_GT(mean[0], 0.1);
 }
 
 TEST(Importance, SaysWhichInputIsMissing) {

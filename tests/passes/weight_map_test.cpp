@@ -168,7 +168,8 @@ Picture wallPicture(int size) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       Pixel& p = picture.at(x, y);
-      p.position = {(2 * (float(x) + 0.5f) / float(size) - 1) * 0.995f, (1 - 2 * (float(y) + 0.5f) / float(size)) * 0.995f, -1};
+      const glm::vec2 at = 2.0f * (glm::vec2(x, y) + 0.5f) / float(size) - 1.0f;
+      p.position = {0.995f * at.x, -0.995f * at.y, -1};
       p.distance = 2;
     }
   return picture;
@@ -250,7 +251,8 @@ TEST(WeightMap, EmptySceneHasNothingToWeigh) {
   scene::Scene s;
   PassTest test("weight-map");
   test.scene(s);
-  const auto weights = wallWeights(test, voxelizeReference(s, scene::flatten(s), kResolution), glm::vec2(0.5f), wallPicture(32));
+  const VoxelArrays nothing = voxelizeReference(s, scene::flatten(s), kResolution);
+  const auto weights = wallWeights(test, nothing, glm::vec2(0.5f), wallPicture(32));
   EXPECT_GE(weights.size(), 1u);
   for (const float w : weights) EXPECT_EQ(w, 0);
   EXPECT_EQ(test.counter("visible"), 0);
