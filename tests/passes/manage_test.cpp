@@ -197,7 +197,7 @@ ManageSettings randomSettings(Dice& dice, uint32_t slots) {
 // Random settings and random lists, then a few frames with the list fed back.
 void compareRandomCases(const char* reuse, uint32_t firstSeed) {
   ManageOutput sum;  // to see that the cases exercise what they are for
-  for (uint32_t seed = firstSeed; seed < firstSeed + 20; ++seed) {
+  for (uint32_t seed = firstSeed; seed < firstSeed + 14; ++seed) {
     SCOPED_TRACE(testing::Message() << reuse << ", seed " << seed);
     Dice dice(seed);
     Content content;
@@ -229,11 +229,11 @@ void compareRandomCases(const char* reuse, uint32_t firstSeed) {
     }
     if (testing::Test::HasFailure()) return;
   }
-  EXPECT_GT(sum.added, 300u);
-  EXPECT_GT(sum.deleted, 300u);
+  EXPECT_GT(sum.added, 150u);
+  EXPECT_GT(sum.deleted, 150u);
   if (std::string(reuse) == "none") return;
-  EXPECT_GT(sum.dense, 100u);
-  EXPECT_GT(sum.rejected, 300u);
+  EXPECT_GT(sum.dense, 50u);
+  EXPECT_GT(sum.rejected, 150u);
   EXPECT_GT(sum.kept, sum.deleted / 4);
 }
 
@@ -363,9 +363,29 @@ TEST(Manage, DensityAndOrder) {
   }
 }
 
+// One candidate in each of 40^3 cells: no two of them share a cell of the grid.
+TEST(Manage, CellsAreTheirOwn) {
+  constexpr uint32_t kEdge = 40, kCount = kEdge * kEdge * kEdge;
+  ManageInput in;
+  in.vpls.resize(kCount);
+  in.vplImportance.resize(kCount);
+  in.candidateImportance.assign(kCount, 0.5f);
+  in.candidates.resize(kCount);
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const glm::vec3 cell(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge));
+    in.candidates[i].position = kCorner + (cell + 0.5f) * (glm::length(kSize) / 48.0f);
+    in.candidates[i].side = i;
+  }
+  ManageSettings settings;
+  settings.maxDensity = 1;
+  const ManageOutput out = Manager(settings, in).run(in);
+  EXPECT_EQ(out.added, kCount);
+  EXPECT_EQ(out.dense, 0u);
+}
+
 // A candidate is kept with probability min(1, K I / sum I), and K of them are when none reaches 1.
 TEST(Manage, ThinningFollowsTheCdf) {
-  constexpr uint32_t kFrames = 250, kCandidates = 40, kKeep = 10;
+  constexpr uint32_t kFrames = 200, kCandidates = 40, kKeep = 10;
   Dice dice(6);
   ManageInput in = randomInput(dice, {kCandidates, kCandidates, 0.9f, Importance::Fine});
   for (auto& vpl : in.vpls) vpl = {};
