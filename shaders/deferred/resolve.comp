@@ -13,9 +13,9 @@
 //
 // MASKED: only listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here, the other pixels have their irradiance
 // already, the base. Of a pixel's window, what lies outside the blocks has no sample; what it would add is known better,
-// though: the base there. The pixels of the window inside are then represented by the mean over all subsets (found as above,
-// in shaded pixels only), the ones outside by their base: towards its rim a shaded patch passes into its surroundings,
-// without the noise that a part of the subsets would bring.
+// though: the base there. The pixels of the window inside are then represented by the mean over all subsets (those that the
+// window lacks from the pixel's block, else found as above, in shaded pixels only), the ones outside by their base: towards
+// its rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
 #if MASKED
 #include "deferred/blocks.glsl"
 const int kPixels = 1;  // that are filtered together
@@ -54,6 +54,7 @@ struct Centre {
   uint found;     // subsets in the sum
 #if MASKED
   vec4 outside;   // rgb: sum of the base over the window's pixels of the surface outside the mask, a: their number
+  uvec2 cut;      // as `missing`: subsets whose pixel of the window is outside the mask
 #endif
   uvec2 missing;  // bit per subset, numbered from the pixel: (dy mod INTERLEAVE) * INTERLEAVE + (dx mod INTERLEAVE)
 };
@@ -68,9 +69,10 @@ bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least)
   return position.w > 0.0 && abs(dot(position.xyz - c.position, c.normal)) <= plane && dot(normal, c.normal) >= least;
 }
 
-void setMissing(inout Centre c, int subset) {
-  if (subset < 32) c.missing.x |= 1u << subset;
-  else c.missing.y |= 1u << (subset - 32);
+// Where a subset is in `missing`; numbered from the pixel.
+uvec2 subsetBit(ivec2 d) {
+  int subset = (d.y + INTERLEAVE) % INTERLEAVE * INTERLEAVE + (d.x + INTERLEAVE) % INTERLEAVE;
+  return subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
 }
 
 // Adds a sample, nearer pixels with more weight; a: weight.
@@ -126,6 +128,7 @@ Centre centreAt(ivec2 p, ivec2 size) {
   c.missing = uvec2(0u);
 #if MASKED
   c.outside = vec4(0.0);
+  c.cut = uvec2(0u);
 #endif
   return c;
 }
@@ -150,18 +153,36 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
         bool same = sameSurface(centres[k], position, normal, centres[k].plane, filterCos);
 #if MASKED
         if (same && !shaded) centres[k].outside += known;
+        if (!shaded && q == inside) centres[k].cut |= subsetBit(ivec2(dx, dy));
         same = same && shaded;
 #endif
         if (same) {
           centres[k].sum += value;
           ++centres[k].found;
         } else {
-          setMissing(centres[k], (dy + INTERLEAVE) % INTERLEAVE * INTERLEAVE + (dx + INTERLEAVE) % INTERLEAVE);
+          centres[k].missing |= subsetBit(ivec2(dx, dy));
         }
       }
     }
   }
 }
+
+#if MASKED
+// Samples of the subsets that the mask cuts off, from the pixel's own block, where each is.
+void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
+  ivec2 corner = p / BLOCK * BLOCK;
+  for (int i = 0; i < BLOCK * BLOCK; ++i) {
+    ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), inside = min(q, size - 1);
+    uvec2 bit = subsetBit((q - p + BLOCK) % INTERLEAVE);
+    bool wanted = q == inside && (c.missing & c.cut & bit) != uvec2(0u);
+    if (wanted && sameSurface(c, texelFetch(gbufferPosition, inside, 0), texelFetch(gbufferNormal, inside, 0).xyz, c.plane, filterCos)) {
+      c.sum += imageLoad(partial, inside).rgb;
+      ++c.found;
+      c.missing &= ~bit;
+    }
+  }
+}
+#endif
 
 // The mean over the subsets from what the window held; whether less than half of them was found on the surface.
 vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
@@ -174,6 +195,7 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
     }
 #if MASKED
     float inWindow = float(c.found);
+    searchBlock(c, p, size);
 #endif
     searchWider(c, p, size, c.plane, filterCos);
     incomplete = 2u * c.found < kSubsets;
