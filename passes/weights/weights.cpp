@@ -96,11 +96,12 @@ void Weights::addScratch(PassDeclaration& d) {
       .keep(Lifetime::View);
   // A choice counts as its index: 0 constant, 1 pdf, 2 area.
   const SizeExpr area = min(max(parameter("strategy") - 1, 0), 1), side = ceilDiv(widthOf("voxels.index"), kBrick);
-  const SizeExpr bricks = side * side * side * area;
+  const SizeExpr bricks = side * side * side;
   d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * area)), Usage::StorageWrite | Usage::TexelRead,
             "position, normal of the VPLs that compete for surface");
-  d.scratch("bricks", buffer("uint", 4, max(1, bricks)), readWrite | Usage::TransferWrite, "1: holds surface to give away");
-  d.scratch("masks", buffer("uint", 4, max(1, bricks * ceilDiv(countOf("vpls"), 32))), Usage::StorageWrite | Usage::TexelRead,
+  d.scratch("bricks", buffer("uint", 4, bricks), readWrite | Usage::TexelRead | Usage::TransferWrite,
+            "1: holds surface (for `area`: to give away)");
+  d.scratch("masks", buffer("uint", 4, max(1, bricks * area * ceilDiv(countOf("vpls"), 32))), Usage::StorageWrite | Usage::TexelRead,
             "a bit for each VPL that can be nearest in a brick");
   d.scratch("sums", buffer("AreaSum", 8, max(1, countOf("vpls") * area)), readWrite | Usage::TransferWrite,
             "surface given to each VPL, as whole numbers");
@@ -130,7 +131,7 @@ void Weights::prepare(PrepareContext& ctx) {
     return;
   }
   points_ = ctx.compute("weights/points.comp");
-  density_ = ctx.compute("weights/density.comp");
+  density_ = ctx.compute("weights/density.comp", {{"ONCE", strategy_ == "constant" ? "1" : "0"}});
   pdf_ = ctx.compute("weights/pdf.comp");
   if (strategy_ == "constant") constant_ = ctx.compute("weights/constant.comp");
 }
@@ -167,14 +168,11 @@ void Weights::recordVoronoi(RecordContext& ctx) {
 void Weights::record(RecordContext& ctx) {
   const bool area = strategy_ == "area";
   ctx.fill("totals", 0);
-  if (area) {
-    ctx.fill("bricks", 0);
-    ctx.fill("sums", 0);
-  }
+  ctx.fill("bricks", 0);
+  if (area) ctx.fill("sums", 0);
   ctx.barrier();
   Commands tally = ctx.use(tally_);
-  tally.constant("vplCount", vplCount_);
-  if (area) tally.constant("sideCapacity", sideCapacity_);
+  tally.constant("vplCount", vplCount_).constant("sideCapacity", sideCapacity_);
   if (candidateCount_ > 0) tally.constant("candidateCount", candidateCount_);
   tally.dispatch(kTallyGroups);
   ctx.barrier();

@@ -5,6 +5,7 @@
 // from the one point that found the VPL. A VPL stands for the surface of a voxel: 1 / (pi d^2 + a) is the form factor of a
 // disc of area a, seen along its axis, over that area; so a point that happens to lie close by makes no spike. Points that
 // show the background start no path.
+// Defines: ONCE 0/1: not once the total of `constant` is known.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 #include "weights/visible.glsl"
@@ -15,6 +16,10 @@ layout(set = 0) uniform samplerBuffer vpls;
 layout(set = 0) uniform samplerBuffer screen;
 layout(set = 0, std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 
+#if ONCE
+layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
+#endif
+
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
@@ -22,14 +27,14 @@ layout(push_constant) uniform Constants {
 
 shared float sums[64];
 
-float landing(VoxelGrid grid, int point, vec3 position, vec3 normal, uint side) {
+float landing(VoxelGrid grid, int point, vec3 position, vec3 normal) {
   vec4 from = texelFetch(screen, 3 * point);
   vec3 to = position - from.xyz;
   float d2 = dot(to, to);
   float cosines = max(dot(texelFetch(screen, 3 * point + 1).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
   if (!(from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12)) return 0.0;
   vec3 face = texelFetch(screen, 3 * point + 2).xyz;
-  if (!seesSide(grid, from.xyz, face, position, normal, side)) return 0.0;
+  if (!seesVpl(grid, from.xyz, face, position, normal)) return 0.0;
   return cosines / (d2 * (kPi * d2 + grid.cell * grid.cell));
 }
 
@@ -38,11 +43,14 @@ void main() {
   int first = int(min(slot, vplCount - 1u)) * kStateTexels;
   vec3 position = texelFetch(vpls, first).xyz;
   vec4 normalLife = texelFetch(vpls, first + 1);
-  uint side = floatBitsToUint(texelFetch(vpls, first + 2).w);
   VoxelGrid grid = voxelsGrid();
   float sum = 0.0;
-  if (normalLife.w > 0.0)
-    for (uint i = lane; i < points; i += 64u) sum += landing(grid, int(i), position, normalLife.xyz, side);
+  bool wanted = normalLife.w > 0.0;
+#if ONCE
+  wanted = wanted && kept.total == 0.0;
+#endif
+  if (wanted)
+    for (uint i = lane; i < points; i += 64u) sum += landing(grid, int(i), position, normalLife.xyz);
   sums[lane] = sum;
   barrier();
   for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time

@@ -1,5 +1,5 @@
-// Counts what the areas hang on: VPLs alive and candidates that hit something; for `area` also the surface of the voxels, and
-// lists the VPLs that compete for sides and marks the bricks that hold any to give away.
+// Counts what the areas hang on: VPLs alive, candidates that hit something, surface of the voxels; marks the bricks that hold
+// sides (for `area`: to give away); and for `area` lists the VPLs that compete for them.
 // Defines: HAS_CANDIDATES 0/1; AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
@@ -7,15 +7,15 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0) uniform samplerBuffer vpls;
+layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(set = 0, std430) buffer BricksBlock { uint list[]; } bricks;
 layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
 #if HAS_CANDIDATES
 layout(set = 0) uniform samplerBuffer candidates;
 #endif
 #if AREA
 layout(set = 0) uniform samplerBuffer radiance;
-layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
-layout(set = 0, std430) buffer BricksBlock { uint list[]; } bricks;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -23,9 +23,7 @@ layout(push_constant) uniform Constants {
 #if HAS_CANDIDATES
   uint candidateCount;
 #endif
-#if AREA
   uint sideCapacity;
-#endif
 };
 
 #if AREA
@@ -48,7 +46,6 @@ void tallyVpls(uint first, uint stride) {
   if (alive > 0u) atomicAdd(totals.value.alive, alive);
 }
 
-#if AREA
 void tallySides(uint first, uint stride) {
   VoxelGrid grid = voxelsGrid();
   uint low = 0u, high = 0u, sides = min(2u * voxelsInfo.value.voxels, sideCapacity);
@@ -58,19 +55,19 @@ void tallySides(uint first, uint stride) {
     uint units = areaUnits(grid, positionArea.w);
     low += units;
     high += uint(low < units);
-    if (LIT_ONLY == 0 || litSide(i)) atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
+#if AREA && LIT_ONLY
+    if (!litSide(i)) continue;
+#endif
+    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
   }
   ADD_WIDE(totals.value.areaLow, totals.value.areaHigh, low);
   if (high > 0u) atomicAdd(totals.value.areaHigh, high);
 }
-#endif
 
 void main() {
   uint first = gl_GlobalInvocationID.x, stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   tallyVpls(first, stride);
-#if AREA
   tallySides(first, stride);
-#endif
 #if HAS_CANDIDATES
   uint hits = 0u;
   for (uint i = first; i < candidateCount; i += stride)

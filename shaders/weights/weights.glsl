@@ -9,7 +9,7 @@
 struct Totals {
   uint alive;              // slots that hold a VPL
   uint hits;               // candidates that found a surface
-  uint areaLow, areaHigh;  // surface of all voxel sides (`area` only)
+  uint areaLow, areaHigh;  // surface of all voxel sides
 };
 
 const float kAreaUnits = 65536.0;
@@ -31,7 +31,8 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
 // Texels of a VplState.
 const int kStateTexels = 5;
 
-// Cells along the edge of a brick: the sides of a brick share one list of the VPLs that can be nearest to any of them.
+// Cells along the edge of a brick. Rays step over empty bricks; the sides of a brick share one list of the VPLs that can be
+// nearest to any of them.
 const int kBrick = 4;
 
 ivec3 brickGrid(VoxelGrid grid) { return ivec3((grid.resolution + kBrick - 1) / kBrick); }

@@ -97,15 +97,31 @@ inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& se
   return points;
 }
 
-inline bool seesSide(const scene::Voxels& voxels, const Seen& from, const scene::VplState& vpl) {
-  const glm::vec3 to = vpl.position - from.position;
+// Whether no side of a voxel along the way blocks: one that faces the ray, in front of the start's tangent plane, neither
+// within 1.5 cells of the VPL nor within one of its tangent plane and turned the same way. Every cell is looked at.
+inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::VplState& vpl) {
+  const glm::vec3 to = vpl.position - from.position, p = voxels.grid.worldToVoxel(from.position);
   const float d = glm::length(to), cell = voxels.grid.cell;
-  const scene::VoxelHit hit = scene::traceVoxels(voxels, from.position, to / d, from.normal);
-  if (hit.side == vpl.side || hit.side == scene::kNoSide || hit.distance >= d) return true;
-  const scene::VoxelSide& side = voxels.surface[hit.side];
-  const glm::vec3 off = side.position - vpl.position;
-  return glm::length(off) < 1.5f * cell ||
-         (glm::dot(side.normal, vpl.normal) > 0.5f && std::abs(glm::dot(off, vpl.normal)) < cell);
+  const glm::vec3 direction = to / d;
+  auto blocks = [&](const scene::VoxelSide& side) {
+    const glm::vec3 off = side.position - vpl.position;
+    return side.area > 0 && glm::dot(side.normal, direction) < 0 &&
+           glm::dot(side.position - from.position, from.normal) > scene::kOwnSurface * cell && glm::length(off) >= 1.5f * cell &&
+           !(glm::dot(side.normal, vpl.normal) > 0.5f && std::abs(glm::dot(off, vpl.normal)) < cell);
+  };
+  float t = 0;
+  while (t < d / cell - 1) {
+    const glm::ivec3 at = glm::ivec3(glm::floor(p + (t + 1e-3f) * direction));
+    if (!voxels.inside(at)) break;
+    const uint32_t voxel = voxels.at(at);
+    if (voxel != 0 && (blocks(voxels.surface[2 * voxel - 2]) || blocks(voxels.surface[2 * voxel - 1]))) return false;
+    float next = 1e30f;
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(direction[k]) > 1e-7f)
+        next = std::min(next, (float(at[k]) + (direction[k] > 0 ? 1.0f : 0.0f) - p[k]) / direction[k]);
+    t = std::max(t, next);
+  }
+  return true;
 }
 
 // p_A of each slot, 1/m^2.
@@ -120,7 +136,7 @@ inline std::vector<double> densities(const Room& room, const std::vector<scene::
       const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
       const double d2 = glm::dot(to, to);
       const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) * std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
-      if (vpl.life > 0 && s.there && cosines > 1e-12 * d2 && d2 > 1e-12 && seesSide(voxels, s, vpl))
+      if (vpl.life > 0 && s.there && cosines > 1e-12 * d2 && d2 > 1e-12 && seesVpl(voxels, s, vpl))
         sum += cosines / (d2 * (glm::pi<double>() * d2 + cell * cell));
     }
     result.push_back(sum / double(points.size()));
