@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One slot an invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty.
+#include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "manage/memory.glsl"
 
@@ -14,6 +15,12 @@ layout(set = 0, std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  //
 
 const uint kOne = 0x3f800000u;  // bits of 1.0
 
+// In the space of its object, the world's when that never moves.
+uvec3 localNormal(uvec4 normalObject) {
+  uint object = uint(uintBitsToFloat(normalObject.w));
+  return object == 0u ? normalObject.xyz : floatBitsToUint(normalToObject(object, uintBitsToFloat(normalObject.xyz)));
+}
+
 void writeCandidate(uint slot, int i) {
   uvec4 positionSide = texelFetch(candidates, 4 * i), normalObject = texelFetch(candidates, 4 * i + 1);
   uvec4 reflectance = texelFetch(candidates, 4 * i + 2), localPosition = texelFetch(candidates, 4 * i + 3);
@@ -22,7 +29,7 @@ void writeCandidate(uint slot, int i) {
   list.texels[5u * slot + 1u] = uvec4(normalObject.xyz, kOne);
   list.texels[5u * slot + 2u] = uvec4(reflectance.xyz, positionSide.w);
   list.texels[5u * slot + 3u] = uvec4(localPosition.xyz, normalObject.w);
-  list.texels[5u * slot + 4u] = uvec4(normalObject.xyz, importance);
+  list.texels[5u * slot + 4u] = uvec4(localNormal(normalObject), importance);
 }
 
 void main() {

@@ -469,6 +469,40 @@ TEST(Manage, SceneWithoutTriangles) {
   for (std::byte b : test.bytes("list")) ASSERT_EQ(b, std::byte(0));
 }
 
+// The normal that turns are measured against is kept in the space of the object, which is turned and scaled
+// here.
+TEST(Manage, NormalInTheSpaceOfTheObject) {
+  scene::Scene s = boundsOnly();
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  scene::Node& node = s.nodes.back();
+  node.dynamic = true;
+  node.scale = {1, 3, 0.5f};
+  scene::MotionKey key;
+  key.rotation = glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+  s.movers = {{uint32_t(s.nodes.size() - 1), false, scene::Repeat::Once, {key}}};
+
+  Dice dice(10);
+  ManageInput in = randomInput(dice, {8, 8, 0.5f, Importance::Fine, 1.0f});
+  for (Candidate& c : in.candidates) {
+    c.side = 1;
+    c.object = 1;
+  }
+  in.candidateImportance.assign(8, 1.0f);
+  Manager manager(ManageSettings{}, in);
+  manager.test().scene(s).run(1);
+  ASSERT_EQ(manager.test().lastFrame().objects.size(), 2u);
+  const scene::ObjectTransform& object = manager.test().lastFrame().objects[1];
+  uint32_t alive = 0;
+  for (const VplState& vpl : manager.test().values<VplState>("list")) {
+    if (vpl.life == 0) continue;
+    ++alive;
+    EXPECT_EQ(vpl.object, 1);
+    EXPECT_LT(glm::length(object.normalFromObject(vpl.localNormal) - vpl.normal), 1e-5f);
+    EXPECT_GT(glm::length(vpl.localNormal - vpl.normal), 1e-2f);
+  }
+  EXPECT_GT(alive, 4u);
+}
+
 // Long lists are right, too; and the time of lists of a usual length.
 TEST(Manage, LongLists) {
   for (const Content& content :
