@@ -139,7 +139,9 @@ Piece clipToCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   polygons[1] = b;
   polygons[2] = c;
   int size = 3, from = 0;
-  [[dont_unroll]] for (int plane = 0; plane < 6; ++plane) {
+  vec3 least = min(min(a, b), c), most = max(max(a, b), c);
+  bool inside = all(greaterThanEqual(least, vec3(0.0))) && all(lessThanEqual(most, vec3(1.0)));  // clipping changes nothing
+  [[dont_unroll]] for (int plane = inside ? 6 : 0; plane < 6; ++plane) {
     size = clipPolygon(from, 9 - from, size, plane % 2 != 0);
     from = 9 - from;
   }

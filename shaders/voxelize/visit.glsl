@@ -72,7 +72,10 @@ void visitCell(CellTriangle t, uvec4 indices, Material material, ivec3 turned) {
   precise vec3 c = t.c - place;
   if (!overlapsCell(t, a, b, c)) return;
   uvec3 cell = uvec3(turnBack(place, t.axis));
-#ifdef ACCUMULATE
+#ifndef ACCUMULATE
+  uint linear = cell.x + constants.resolution * (cell.y + constants.resolution * cell.z), bit = 1u << (linear % 32u);
+  if ((marks.words[linear / 32u] & bit) != 0u) return;  // that another may just be setting it costs only time
+#else
   uint voxel = imageLoad(voxelsIndex, ivec3(cell)).r - 1u - state.value.phases[constants.phase].first - constants.base;
   // Not of this batch: too large, or below 0 and wrapped around.
   if (voxel >= constants.batch) return;
@@ -88,8 +91,7 @@ void visitCell(CellTriangle t, uvec4 indices, Material material, ivec3 turned) {
   if (material.doubleSided) addPiece(side ^ 1u, piece, -t.normal, surface, objectOf(indices));
 #else
   if (material.alphaCutoff > 0.0 && !alphaTest(materialOf(indices), cellUv(t, indices, a, piece.centre))) return;
-  uint linear = cell.x + constants.resolution * (cell.y + constants.resolution * cell.z);
-  atomicOr(marks.words[linear / 32u], 1u << (linear % 32u));
+  atomicOr(marks.words[linear / 32u], bit);
 #endif
 }
 
