@@ -1,0 +1,50 @@
+// Debug view: the voxels as the eye sees them.
+#include "framework/base/diagnostic.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/voxel_grid.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class ViewVoxels : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("view-voxels", "debug view: the first voxel side along each of the eye's rays");
+    d.view();
+    d.input("voxels", "voxels",
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+            "surface voxels");
+    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`").makeOptional();
+    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "of each side; for show `weight`").makeOptional();
+    d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
+             "rgb: for the pass `tonemap` at the scene's exposure; a: 1");
+    d.parameter("show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
+                "reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or normal (0.5 + 0.5 n)");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const std::string& show = ctx.parameters().text("show");
+    const char* wanted = show == "radiance" ? "radiance" : show == "weight" ? "weights" : nullptr;
+    if (wanted && !ctx.has(wanted))
+      throw Error(ExitCode::BadInput, "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
+                  std::string("wire `") + wanted + "` or show something else");
+    const gpu::Defines defines = show == "radiance" ? gpu::Defines{{"RADIANCE", "1"}}
+                                 : show == "weight" ? gpu::Defines{{"WEIGHT", "1"}}
+                                 : show == "normal" ? gpu::Defines{{"NORMAL", "1"}}
+                                                    : gpu::Defines{};
+    kernel_ = ctx.compute("view-voxels/view_voxels.comp", defines);
+  }
+  void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("image"); }
+
+ private:
+  Kernel kernel_;
+};
+
+FOVEA_PASS(ViewVoxels);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,45 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// The first voxel side along each of the eye's rays.
+#include "common/scene.glsl"
+#include "common/voxel_trace.glsl"
+#include "common/colour_map.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, rgba16f) uniform writeonly image2D image;
+#ifdef RADIANCE
+layout(set = 0) uniform samplerBuffer radiance;
+#endif
+#ifdef WEIGHT
+layout(set = 0) uniform samplerBuffer weights;
+#endif
+
+vec3 colourOf(uint side) {
+#if defined(RADIANCE)
+  return texelFetch(radiance, int(side)).rgb;
+#elif defined(WEIGHT)
+  return displayColour(colourMap(texelFetch(weights, int(side)).r));
+#elif defined(NORMAL)
+  return displayColour(0.5 + 0.5 * loadSide(side).normal);
+#else
+  return displayColour(pow(loadSide(side).reflectance, vec3(1.0 / 2.2)));
+#endif
+}
+
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image);
+  if (any(greaterThanEqual(p, size))) return;
+  vec2 ndc = 2.0 * (vec2(p) + 0.5) / vec2(size) - 1.0;
+  vec3 inView = vec3(ndc.x / view.viewToClip[0][0], ndc.y / view.viewToClip[1][1], -1.0);
+  vec3 direction = normalize(transpose(mat3(view.worldToView)) * inView);
+  VoxelHit hit = traceVoxels(voxelsGrid(), view.eye.xyz, direction, direction);
+#ifdef RADIANCE
+  vec3 colour = frame.environment.rgb;
+#else
+  vec3 colour = vec3(0.0);
+#endif
+  if (hit.side != kNoSide) colour = colourOf(hit.side);
+  imageStore(image, p, vec4(min(colour, vec3(65504.0)), 1.0));
+}

@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// A work group a slot: the disc of its VPL into the pixels' keys, where the nearest one stays.
+#include "common/scene.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform samplerBuffer state;  // VplState
+#ifdef DEPTH_TEST
+layout(set = 0) uniform texture2D gbufferPosition;
+#endif
+layout(set = 0, std430) buffer KeysBlock { uint pixel[]; } keys;
+
+layout(push_constant) uniform Constants {
+  ivec2 size;
+  float radius;  // px
+};
+
+const int kStateTexels = 5;
+
+void main() {
+  uint slot = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (slot >= uint(textureSize(state) / kStateTexels)) return;
+  vec3 position = texelFetch(state, int(slot) * kStateTexels).xyz;
+  float life = texelFetch(state, int(slot) * kStateTexels + 1).w;
+  vec4 clip = view.worldToClip * vec4(position, 1.0);
+  if (!(life > 0.0 && clip.w > 0.0)) return;
+  vec2 centre = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
+  if (!(all(greaterThanEqual(centre, vec2(0.0))) && all(lessThan(centre, vec2(size))))) return;
+  float distance = length(position - view.eye.xyz);
+#ifdef DEPTH_TEST
+  // In front of what the eye sees at its centre, or on it: voxels stand for a cell of surface.
+  vec4 seen = texelFetch(gbufferPosition, ivec2(centre), 0);
+  if (seen.w > 0.0 && distance > 1.03 * length(seen.xyz - view.eye.xyz)) return;
+#endif
+  // The upper bits of a positive float order as the float does; of VPLs that agree in them the lower slot is on top.
+  uint key = (floatBitsToUint(distance) >> 15) << 16 | slot;
+  ivec2 lo = max(ivec2(centre - radius), ivec2(0)), hi = min(ivec2(centre + radius), size - 1);
+  int width = hi.x - lo.x + 1, pixels = width * (hi.y - lo.y + 1);
+  for (int i = int(gl_LocalInvocationIndex); i < pixels; i += 64) {
+    ivec2 p = lo + ivec2(i % width, i / width);
+    vec2 d = vec2(p) + 0.5 - centre;
+    // The pixel under the centre counts always, so that no VPL in sight goes unseen.
+    if (dot(d, d) <= radius * radius || p == ivec2(centre)) atomicMin(keys.pixel[p.y * size.x + p.x], key);
+  }
+}

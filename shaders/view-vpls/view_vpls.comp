@@ -1,0 +1,42 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Keys of pixels to colours, over the picture.
+#include "common/scene.glsl"
+#include "common/colour_map.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0) uniform samplerBuffer state;  // VplState
+#ifdef LUMINANCE
+layout(set = 0) uniform samplerBuffer vpls;  // Vpl
+#endif
+#ifdef PICTURE
+layout(set = 0) uniform texture2D picture;
+#endif
+layout(set = 0, std430) readonly buffer KeysBlock { uint pixel[]; } keys;
+layout(set = 0, rgba16f) uniform writeonly image2D image;
+
+layout(push_constant) uniform Constants { float scale; };  // 1 / what is shown as the last colour
+
+float valueOf(int slot) {
+#if defined(LUMINANCE)
+  return dot(texelFetch(vpls, slot * 3 + 2).rgb, vec3(0.2126, 0.7152, 0.0722));
+#elif defined(AGE)
+  return texelFetch(state, slot * 5 + 1).w;
+#else
+  return texelFetch(state, slot * 5).w;
+#endif
+}
+
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image);
+  if (any(greaterThanEqual(p, size))) return;
+  uint key = keys.pixel[p.y * size.x + p.x];
+  vec3 colour = vec3(0.0);
+#ifdef PICTURE
+  if (all(lessThan(p, textureSize(picture, 0)))) colour = texelFetch(picture, p, 0).rgb;
+#endif
+  if (key != 0xffffffffu) colour = displayColour(colourMap(valueOf(int(key & 0xffffu)) * scale));
+  imageStore(image, p, vec4(min(colour, vec3(65504.0)), 1.0));
+}
