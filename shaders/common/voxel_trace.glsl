@@ -88,10 +88,12 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
                         clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
       }
     }
-    bvec3 through = bvec3(walls.x == next, walls.x != next && walls.y == next, walls.x != next && walls.y != next);
-    cell += stride * ivec3(through);
+    bool throughX = walls.x == next, throughY = !throughX && walls.y == next;
+    cell.x += throughX ? stride.x : 0;
+    cell.y += throughY ? stride.y : 0;
+    cell.z += throughX || throughY ? 0 : stride.z;
     t = next;
-    if (!insideGrid(grid, cell) || t * grid.cell > far) break;
+    if (any(greaterThanEqual(uvec3(cell), uvec3(grid.resolution))) || t * grid.cell > far) break;
   }
   return miss;
 }
