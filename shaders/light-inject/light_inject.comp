@@ -44,20 +44,23 @@ Patch patchOf(VoxelGrid grid, VoxelSide side) {
   return Patch(fromAxes(axis, vec3(r.x, 0.0, r.x * rise.x)), fromAxes(axis, vec3(0.0, r.y, r.y * rise.y)));
 }
 
-// Irradiance at one point of a side.
-vec3 irradianceAt(vec3 position, vec3 normal, float cell) {
+// Irradiance of a side by one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop: what it takes to load it counts.
+vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cell) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < frame.lightCount; ++i) {
-    LightSample light = sampleLight(lights[i], position);
-    float cosine = dot(normal, light.direction);
-    if (cosine <= 0.0 || light.irradiance == vec3(0.0)) continue;
+  for (int i = 0; i < taps; ++i) {
+    vec2 p = 2.0 * fract(first + float(i) * vec2(0.7548776662, 0.5698402910)) - 1.0;
+    vec3 position = side.position + p.x * area.u + p.y * area.v;
+    LightSample incoming = sampleLight(light, position);
+    float cosine = dot(side.normal, incoming.direction);
+    if (cosine <= 0.0 || incoming.irradiance == vec3(0.0)) continue;
 #if SHADOWED
     // The tangent plane cuts through the surface where that is curved or has an edge.
-    cosine *= lightVisibility(lights[i], firstShadowLayer(lights[i]), position + normal * (offset * cell), normal);
+    cosine *= lightVisibility(light, firstShadowLayer(light), position + side.normal * (offset * cell), side.normal);
 #endif
-    sum += light.irradiance * cosine;
+    sum += incoming.irradiance * cosine;
   }
-  return sum;
+  return sum / float(taps);
 }
 
 void main() {
@@ -72,17 +75,14 @@ void main() {
   if (side.area > 0.0) {
     VoxelGrid grid = voxelsGrid();
     Patch area = patchOf(grid, side);
-    // A lattice of points (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), shifted for each
-    // cell; by the cell and not by the number of the voxel, which changes when something moves.
+    // The points start anew for each cell; by the cell and not by the number of the voxel, which changes when
+    // something moves.
     uvec3 cell = uvec3(max(worldToVoxel(grid, side.position), vec3(0.0)));
     uint bits = randomStream(kLightInject, cell.x, cell.y, 2u * cell.z + (number & 1u));
-    vec2 at = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < taps; ++i) {
-      vec2 p = 2.0 * fract(at + float(i) * vec2(0.7548776662, 0.5698402910)) - 1.0;
-      sum += irradianceAt(side.position + p.x * area.u + p.y * area.v, side.normal, grid.cell);
-    }
-    result = side.reflectance * sum / (kPi * float(taps)) + side.emission;
+    vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
+    vec3 irradiance = vec3(0.0);
+    for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
+    result = side.reflectance * irradiance / kPi + side.emission;
   }
   radiance.sides[number] = vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
 }
