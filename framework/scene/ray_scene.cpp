@@ -31,44 +31,91 @@ Mask makeMask(const Scene& scene, const Material& material) {
 }
 
 // Content, not addresses: a scene that replaces another one may well live where the first one was.
-XXH64_hash_t contentKey(const Scene& scene, const Geometry& geometry) {
-  XXH3_state_t* state = XXH3_createState();
-  XXH3_64bits_reset(state);
-  const auto add = [&](const auto& list) {
-    const uint64_t count = list.size();
-    XXH3_64bits_update(state, &count, sizeof count);
-    if (count != 0) XXH3_64bits_update(state, list.data(), count * sizeof(list[0]));
-  };
-  add(geometry.positions);
-  add(geometry.triangles);
+class ContentHash {
+ public:
+  ContentHash() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
+  template <class T>
+  void add(const T* data, uint64_t count) {
+    XXH3_64bits_update(state_.get(), &count, sizeof count);
+    if (count != 0) XXH3_64bits_update(state_.get(), data, count * sizeof(T));
+  }
+  template <class List>
+  void add(const List& list) {
+    add(list.data(), list.size());
+  }
+  XXH64_hash_t digest() const { return XXH3_64bits_digest(state_.get()); }
+
+ private:
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+};
+
+// Of everything but the places of vertices that move.
+XXH64_hash_t stillKey(const Scene& scene, const Geometry& geometry) {
+  ContentHash hash;
+  hash.add(geometry.positions.data(), geometry.staticVertices());
+  hash.add(geometry.triangles);
+  hash.add(geometry.uvs);
+  hash.add(&geometry.staticTriangles, 1);
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     if (!m.masked) continue;
     const TextureUse& use = m.baseColorTexture;
-    const std::array<float, 9> values{float(i),           m.baseColor.a,       m.alphaCutoff,
-                                      use.transform[0].x, use.transform[0].y, use.transform[1].x,
-                                      use.transform[1].y, use.transform[2].x, use.transform[2].y};
-    const std::array<uint32_t, 3> modes{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)};
-    XXH3_64bits_update(state, values.data(), sizeof values);
-    XXH3_64bits_update(state, modes.data(), sizeof modes);
-    if (use && use.texture < scene.textures.size()) add(scene.textures[use.texture].rgba);
+    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x, use.transform[0].y,
+                                  use.transform[1].x, use.transform[1].y, use.transform[2].x, use.transform[2].y});
+    hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
+    if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
   }
-  add(geometry.uvs);
-  const XXH64_hash_t key = XXH3_64bits_digest(state);
-  XXH3_freeState(state);
-  return key;
+  return hash.digest();
+}
+
+XXH64_hash_t movingKey(const Geometry& geometry) {
+  ContentHash hash;
+  const size_t first = geometry.staticVertices();
+  hash.add(geometry.positions.data() + first, geometry.positions.size() - first);
+  return hash.digest();
+}
+
+std::unique_ptr<RayTracer> makeTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range) {
+#ifdef FOVEA_EMBREE
+  return makeEmbreeTracer(geometry, std::move(accepts), range);
+#else
+  return makeBvhTracer(geometry, std::move(accepts), range);
+#endif
+}
+
+double areaOf(const Geometry& geometry, uint32_t first, uint32_t end) {
+  double area = 0;
+  for (uint32_t i = first; i < end; ++i) {
+    const Triangle& t = geometry.triangles[i];
+    const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]],
+                    &c = geometry.positions[t.v[2]];
+    area += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
+  }
+  return area;
 }
 
 }  // namespace
 
-struct RayScene::Impl {
+// What stays the same while dynamic objects move: the tracer of all static triangles, and the masks of all.
+struct RayScene::Still {
   std::unique_ptr<RayTracer> tracer;
   // Masked triangles only: three uvs each, found through the triangle's index.
   std::vector<uint32_t> maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing is masked
   std::vector<std::array<glm::vec2, 3>> uvs;
   std::vector<Mask> masks;
-  float epsilon = 1e-5f;
   double area = 0;
+
+  Still(const Scene& scene, const Geometry& geometry) {
+    addMasks(scene, geometry);
+    const uint32_t end = std::min(geometry.staticTriangles, uint32_t(geometry.triangles.size()));
+    tracer = makeTracer(geometry, accepts(), {0, end});
+    area = areaOf(geometry, 0, end);
+  }
+
+  RayTracer::Accepts accepts() const {
+    if (masks.empty()) return {};
+    return [this](uint32_t t, float u, float v) { return opaqueAt(t, u, v); };
+  }
 
   bool opaqueAt(uint32_t triangle, float u, float v) const {
     const uint32_t m = maskOfTriangle[triangle];
@@ -100,40 +147,65 @@ struct RayScene::Impl {
   }
 };
 
-RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
+struct RayScene::Impl {
+  std::shared_ptr<const Still> still;
+  std::unique_ptr<RayTracer> moving;  // null: there is nothing that moves
+  float epsilon = 1e-5f;
+  double area = 0;
+};
+
+RayScene::RayScene(const Scene& scene, const Geometry& geometry)
+    : RayScene(std::make_shared<const Still>(scene, geometry), geometry) {}
+
+RayScene::RayScene(std::shared_ptr<const Still> still, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
   Impl& i = *impl_;
-  i.addMasks(scene, geometry);
-  RayTracer::Accepts accepts;
-  if (!i.masks.empty()) accepts = [&i](uint32_t t, float u, float v) { return i.opaqueAt(t, u, v); };
-#ifdef FOVEA_EMBREE
-  i.tracer = makeEmbreeTracer(geometry, std::move(accepts));
-#else
-  i.tracer = makeBvhTracer(geometry, std::move(accepts));
-#endif
+  i.still = std::move(still);
+  i.area = i.still->area;
   if (geometry.empty()) return;
   i.epsilon = 1e-5f * std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
-  for (const Triangle& t : geometry.triangles) {
-    const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]],
-                    &c = geometry.positions[t.v[2]];
-    i.area += 0.5 * double(glm::length(glm::cross(b - a, c - a)));
-  }
+  const uint32_t end = uint32_t(geometry.triangles.size());
+  if (geometry.staticTriangles >= end) return;
+  i.moving = makeTracer(geometry, i.still->accepts(), {geometry.staticTriangles, end});
+  i.area += areaOf(geometry, geometry.staticTriangles, end);
 }
 
 RayScene::~RayScene() = default;
 
-RayHit RayScene::intersect(const Ray& ray) const { return impl_->tracer->intersect(ray); }
-bool RayScene::occluded(const Ray& ray) const { return impl_->tracer->occluded(ray); }
+RayHit RayScene::intersect(const Ray& ray) const {
+  const RayHit hit = impl_->still->tracer->intersect(ray);
+  if (!impl_->moving) return hit;
+  Ray shorter = ray;
+  if (hit) shorter.far = hit.distance;
+  const RayHit nearer = impl_->moving->intersect(shorter);
+  return nearer ? nearer : hit;
+}
+
+bool RayScene::occluded(const Ray& ray) const {
+  return impl_->still->tracer->occluded(ray) || (impl_->moving && impl_->moving->occluded(ray));
+}
+
 float RayScene::epsilon() const { return impl_->epsilon; }
 double RayScene::surfaceArea() const { return impl_->area; }
 
 std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geometry& geometry) {
+  struct Entry {
+    XXH64_hash_t still = 0, moving = 0;
+    std::shared_ptr<const RayScene> rays;
+  };
   static std::mutex mutex;
-  static std::array<std::pair<XXH64_hash_t, std::shared_ptr<const RayScene>>, 2> entries;
-  const XXH64_hash_t key = contentKey(scene, geometry);
+  static std::array<Entry, 2> entries;  // the latest first
+  const XXH64_hash_t still = stillKey(scene, geometry), moving = movingKey(geometry);
+  const auto is = [&](const Entry& e) { return e.rays && e.still == still && e.moving == moving; };
   const std::scoped_lock lock(mutex);
-  if (!entries[0].second || entries[0].first != key) std::swap(entries[0], entries[1]);
-  if (!entries[0].second || entries[0].first != key) entries[0] = {key, std::make_shared<RayScene>(scene, geometry)};
-  return entries[0].second;
+  if (!is(entries[0])) std::swap(entries[0], entries[1]);
+  if (is(entries[0])) return entries[0].rays;
+  for (const Entry& e : entries)
+    if (e.rays && e.still == still) {
+      entries[0] = {still, moving, std::shared_ptr<const RayScene>(new RayScene(e.rays->impl_->still, geometry))};
+      return entries[0].rays;
+    }
+  entries[0] = {still, moving, std::make_shared<RayScene>(scene, geometry)};
+  return entries[0].rays;
 }
 
 SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit) {

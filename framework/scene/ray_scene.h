@@ -49,11 +49,14 @@ class RayScene {
   double surfaceArea() const;  // of all triangles, one side, m^2
 
   // The acceleration structure of `geometry`, built when its content (or the masks of `scene`) differs from what was asked
-  // for last; the two most recent ones are kept. Thread-safe.
+  // for last; the two most recent ones are kept. Where only dynamic objects have moved only their part is built anew.
+  // Thread-safe.
   static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry);
 
  private:
+  struct Still;
   struct Impl;
+  RayScene(std::shared_ptr<const Still> still, const Geometry& geometry);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -19,8 +19,14 @@ class RayTracer {
   virtual bool occluded(const Ray& ray) const = 0;
 };
 
+// Triangles [first, end) of a geometry.
+struct TriangleRange {
+  uint32_t first = 0, end = ~0u;
+};
+
 // Positions and indices are copied. Throw Error(OutOfMemory).
-std::unique_ptr<RayTracer> makeEmbreeTracer(const Geometry& geometry, RayTracer::Accepts accepts);
-std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts);
+std::unique_ptr<RayTracer> makeEmbreeTracer(const Geometry& geometry, RayTracer::Accepts accepts,
+                                            TriangleRange range = {});
+std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range = {});
 
 }  // namespace fovea::scene

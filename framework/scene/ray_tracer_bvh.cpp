@@ -171,16 +171,22 @@ RayHit hitTriangle(const PreparedRay& r, const std::array<glm::vec3, 3>& triangl
 
 class BvhTracer : public RayTracer {
  public:
-  BvhTracer(const Geometry& geometry, Accepts accepts) : accepts_(std::move(accepts)) {
+  BvhTracer(const Geometry& geometry, Accepts accepts, TriangleRange range) : accepts_(std::move(accepts)) {
     std::vector<std::array<glm::vec3, 3>> triangles;
-    triangles.reserve(geometry.triangles.size());
-    for (const Triangle& t : geometry.triangles)
+    const uint32_t end = std::min(range.end, uint32_t(geometry.triangles.size()));
+    triangles.reserve(end - range.first);
+    for (uint32_t i = range.first; i < end; ++i) {
+      const Triangle& t = geometry.triangles[i];
       triangles.push_back({geometry.positions[t.v[0]], geometry.positions[t.v[1]], geometry.positions[t.v[2]]});
+    }
     Builder builder(triangles);
     nodes_ = std::move(builder.nodes);
     order_ = std::move(builder.order);
     triangles_.reserve(order_.size());
-    for (uint32_t t : order_) triangles_.push_back(triangles[t]);
+    for (uint32_t& t : order_) {
+      triangles_.push_back(triangles[t]);
+      t += range.first;
+    }
   }
 
   RayHit intersect(const Ray& ray) const override { return trace(ray, false); }
@@ -235,8 +241,8 @@ class BvhTracer : public RayTracer {
 
 }  // namespace
 
-std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts) {
-  return std::make_unique<BvhTracer>(geometry, std::move(accepts));
+std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range) {
+  return std::make_unique<BvhTracer>(geometry, std::move(accepts), range);
 }
 
 }  // namespace fovea::scene

@@ -149,6 +149,8 @@ void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Meta
       layers.push_back({"", withoutAlpha(toImage(output))});
     }
   }
+  if (overlay_ && content == Content::Display)
+    for (image::Layer& layer : layers) overlay_(layer.image, frame.frame);
   const std::string path = file.path(frame.frame);
   image::write(path, layers, metadata);
   if (file.first.empty()) file.first = path;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <set>
 #include <string>
@@ -28,6 +29,10 @@ class OutputFiles {
   // Names of the graph outputs to read back. Throws Error(BadInput) when the graph lacks what a file shows.
   std::vector<std::string> outputsOf(const graph::BoundGraph& graph, glm::uvec2 size) const;
 
+  // Draws onto every picture that shows the output `image` before it is written.
+  using Overlay = std::function<void(image::Image& picture, uint64_t frame)>;
+  void setOverlay(Overlay overlay) { overlay_ = std::move(overlay); }
+
   // Files of the sequences.
   void writeFrame(const graph::FrameResult& frame, const image::Metadata& metadata);
   // All others: the last frame.
@@ -48,6 +53,7 @@ class OutputFiles {
   void write(File& file, const graph::FrameResult& frame, image::Metadata metadata);
   static File parse(const std::string& name);
   std::vector<File> files_;
+  Overlay overlay_;
 };
 
 // Texels of a colour or depth format as floats, one channel each. Throws Error(Internal) for integer formats.

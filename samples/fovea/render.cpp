@@ -20,6 +20,7 @@
 #include "samples/fovea/files.h"
 #include "samples/fovea/interrupt.h"
 #include "samples/fovea/outputs.h"
+#include "samples/fovea/overlay.h"
 #include "samples/fovea/progress.h"
 #include "samples/fovea/timings.h"
 #include "samples/fovea/trace.h"
@@ -36,7 +37,7 @@ struct RenderOptions {
   std::string scene, size = "1024x1024", gaze, device, timings, trace;
   std::vector<std::string> outputs;
   uint32_t frames = 1, warmup = 0, seed = 1;
-  bool quiet = false, validation = false;
+  bool quiet = false, validation = false, showFovea = false;
 };
 
 void stopIfInterrupted() {
@@ -70,7 +71,8 @@ class Render {
   void report() const;
   scene::Frame frame(uint64_t index) const;
   void submit(uint64_t index, bool readOutputs);
-  image::Metadata metadata() const;
+  void showFovea();
+  image::Metadata metadata(uint64_t index) const;
 
   const RenderOptions& options_;
   Progress progress_;
@@ -167,6 +169,7 @@ void Render::buildExecutor() {
   executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_,
                                                 executorOptions);
   timings_ = std::make_unique<Timings>(plan_);
+  showFovea();
   info_ = {device_->name(),
            description_.name,
            formatHash(plan_->graph->hash),
@@ -188,14 +191,32 @@ scene::Frame Render::frame(uint64_t index) const {
   return f;
 }
 
+// Radius as the graph's passes have it, gaze of the eye whose picture `image` is.
+void Render::showFovea() {
+  if (!options_.showFovea) return;
+  const graph::BoundGraph& graph = *plan_->graph;
+  float radius = 0.25f;
+  for (const graph::BoundPass& pass : graph.passes)
+    if (pass.parameters.find("fovea_radius")) radius = float(pass.parameters.real("fovea_radius"));
+  std::string eye = graph.views[0];
+  for (const graph::BoundOutput& output : graph.outputs)
+    for (const graph::BoundPass& pass : graph.passes)
+      for (const graph::Access& access : pass.accesses)
+        if (output.name == "image" && access.writes && access.resource == output.resource) eye = graph.views[pass.view];
+  outputs_->setOverlay([this, radius, eye](image::Image& picture, uint64_t index) {
+    const scene::Frame shown = frame(index);
+    drawFovea(picture, shown.findView(eye)->gaze, radius);
+  });
+}
+
 void Render::submit(uint64_t index, bool readOutputs) {
   const scene::Frame f = frame(index);
   scene::moveObjects(f, geometry_);
   executor_->submit(f, readOutputs);
 }
 
-image::Metadata Render::metadata() const {
-  const scene::Frame first = frame(0);
+image::Metadata Render::metadata(uint64_t index) const {
+  const scene::Frame shown = frame(index);
   std::string set;
   for (const std::string& text : options_.graph.set) set += (set.empty() ? "" : " ") + text;
   image::Metadata data = {{"version", FOVEA_VERSION},
@@ -206,7 +227,7 @@ image::Metadata Render::metadata() const {
                           {"device", info_.device},
                           {"seed", std::to_string(info_.seed)},
                           {"size", fmt::format("{}x{}", size_.x, size_.y)}};
-  if (!first.views.empty()) data["gaze"] = fmt::format("{},{}", first.views[0].gaze.x, first.views[0].gaze.y);
+  data["gaze"] = fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y);
   if (!set.empty()) data["set"] = set;
   return data;
 }
@@ -218,7 +239,7 @@ void Render::take(graph::FrameResult result) {
   if (warm) return;
   timings_->add(result);
   if (result.outputs.empty()) return;
-  outputs_->writeFrame(result, metadata());
+  outputs_->writeFrame(result, metadata(result.frame));
   picture_ = std::move(result);
 }
 
@@ -250,7 +271,7 @@ void Render::renderFrames() {
 
 void Render::writeResults() {
   if (timings_->frames().empty()) stopIfInterrupted();
-  if (picture_) outputs_->writeLast(*picture_, metadata());
+  if (picture_) outputs_->writeLast(*picture_, metadata(picture_->frame));
   picture_.reset();
   info_.peakDeviceBytes = device_->peakAllocatedBytes();
   info_.peakHostBytes = peakHostBytes();
@@ -300,7 +321,7 @@ void addOutputOptions(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--timings", options.timings,
-                  "Times and counters: .json (median, min, p95) or .csv (every frame)")
+                  "Times and counters: .json (median, min, p95, and every frame) or .csv (every\nframe and pass)")
       ->type_name("FILE");
   command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")
       ->type_name("FILE.json");
@@ -334,6 +355,8 @@ void addRender(CLI::App& program, Action& action) {
       ->add_option("--gaze", options->gaze,
                    "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
       ->type_name("X,Y");
+  command->add_flag("--show-fovea", options->showFovea,
+                    "Draw the foveal circle and a cross where the eye looks onto .png pictures");
   command
       ->add_option("--device", options->device,
                    "Vulkan device by number or part of its name; see `fovea devices`")

@@ -158,13 +158,19 @@ std::string Timings::json(const RunInfo& run) const {
                       {"cpu_ms", toJson(row.cpu)}});
   Json counted = Json::object();
   for (const auto& [name, value] : counters()) counted[name] = value;
+  Json frames = Json::array();
+  for (const graph::FrameResult& f : frames_) {
+    Json one = {{"frame", f.frame}, {"wall_ms", rounded(f.wallMs)}, {"gpu_ms", rounded(f.gpuMs)}, {"cpu_ms", rounded(f.cpuMs)}};
+    one["counters"] = Json::object();
+    for (const auto& [name, value] : f.counters) one["counters"][name] = value;
+    frames.push_back(std::move(one));
+  }
   const Json document = {
       {"device", run.device},
       {"graph", run.graph},
       {"graph_hash", run.graphHash},
       {"scene", run.scene},
       {"size", {run.width, run.height}},
-      {"frames", frames_.size()},
       {"warmup", run.warmup},
       {"seed", run.seed},
       {"frame",
@@ -173,6 +179,7 @@ std::string Timings::json(const RunInfo& run) const {
         {"wall_ms", toJson(frameSpread([](const auto& f) { return f.wallMs; }))}}},
       {"passes", passes},
       {"counters", counted},
+      {"frames", frames},
       {"peak_bytes", {{"device", run.peakDeviceBytes}, {"host", run.peakHostBytes}}},
   };
   return document.dump(2) + '\n';

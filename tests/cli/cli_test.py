@@ -288,6 +288,17 @@ class Files(CliTest):
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
                          ["a_001.png", "a_002.png", "a_003.png", "last.png"])
 
+    def test_moving_scene_and_fovea(self):
+        moving = ["render", "direct", "--scene", "cornellbox_moving", *SMALL, "--frames", "70"]
+        self.succeeds(*moving, "-o", "a_%03d.exr", "-o", "plain.png")
+        self.succeeds(*moving, "-o", "marked.png", "-o", "last.exr", "--show-fovea")
+        self.succeeds(*DIRECT, "-o", "still.exr")
+        differ = lambda a, b: subprocess.run(["idiff", "-q", a, b], cwd=self.folder, capture_output=True).returncode != 0
+        self.assertFalse(differ("a_000.exr", "still.exr"))
+        self.assertTrue(differ("a_000.exr", "a_060.exr"))
+        self.assertFalse(differ("a_069.exr", "last.exr"), "the circle belongs on pictures only")
+        self.assertTrue(differ("plain.png", "marked.png"))
+
     def test_cannot_write(self):
         (self.folder / "folder.png").mkdir()
         for name in ("missing/a.png", "folder.png", "/proc/fovea.png"):
@@ -323,7 +334,7 @@ class Timings(CliTest):
         self.succeeds(*DIRECT, "--timings", "t.json", "--frames", "3", "--warmup", "1")
         self.assertEqual([p.name for p in self.folder.iterdir()], ["t.json"])
         t = json.loads((self.folder / "t.json").read_text())
-        self.assertEqual((t["graph"], t["scene"], t["size"], t["frames"]), ("direct", "cornellbox", [48, 32], 3))
+        self.assertEqual((t["graph"], t["scene"], t["size"], len(t["frames"])), ("direct", "cornellbox", [48, 32], 3))
         self.assertTrue(t["device"])
         times = [t["frame"][key] for key in ("gpu_ms", "cpu_ms", "wall_ms")]
         self.assertGreaterEqual({p["name"] for p in t["passes"]}, {"gbuffer", "direct", "tonemap"})
@@ -334,6 +345,11 @@ class Timings(CliTest):
             self.assertEqual(set(spread), {"median", "min", "p95"})
             self.assertTrue(0 <= spread["min"] <= spread["median"] <= spread["p95"], spread)
         self.assertIsInstance(t["counters"], dict)
+        self.assertEqual([f["frame"] for f in t["frames"]], [1, 2, 3])
+        for f in t["frames"]:
+            self.assertEqual(set(f), {"frame", "wall_ms", "gpu_ms", "cpu_ms", "counters"})
+            self.assertEqual(set(f["counters"]), set(t["counters"]))
+            self.assertTrue(0 < f["gpu_ms"] and 0 < f["wall_ms"])
         # The passes are inside the frame.
         self.assertLessEqual(sum(p["gpu_ms"]["min"] for p in t["passes"]), t["frame"]["gpu_ms"]["p95"])
 
@@ -405,7 +421,7 @@ class Interrupt(CliTest):
         self.assertIn("interrupted", err)
         self.assertIn("wrote last.exr", out)
         t = json.loads((self.folder / "t.json").read_text())
-        self.assertEqual(t["frames"], len(list(self.folder.glob("a_*.png"))))
+        self.assertEqual(len(t["frames"]), len(list(self.folder.glob("a_*.png"))))
         subprocess.run(["iinfo", "last.exr"], cwd=self.folder, check=True, capture_output=True)
         self.assertEqual([p for p in self.folder.iterdir() if p.suffix not in (".png", ".exr", ".json")], [])
 

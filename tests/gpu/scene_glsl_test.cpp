@@ -293,6 +293,59 @@ TEST(SceneGlsl, GeometryFrameAndViews) {
   EXPECT_EQ(glm::vec3(blocks[11]), glm::vec3(0.25f, 0.75f, 32));
 }
 
+TEST(SceneGlsl, ObjectsEqualTheFrames) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Geometry objects;
+  objects.objects.resize(40);
+  GpuScene gpu(testDevice(), scene, objects, 2);
+  Frame frame;
+  for (uint32_t k = 0; k < 40; ++k) {
+    ObjectTransform o;
+    const auto transform = [&](uint32_t seed) {
+      const glm::vec3 axis(random(seed, k), random(seed + 1, k), 0.1f);
+      glm::mat4 m = glm::translate(glm::mat4(1), 10.0f * glm::vec3(random(seed + 2, k), -1, random(seed + 3, k)));
+      m = glm::rotate(m, 6.0f * random(seed + 4, k), glm::normalize(axis));
+      return glm::scale(m, glm::vec3(0.5f + random(seed + 5, k), 2, k % 3 == 0 ? -1.0f : 1.5f));
+    };
+    o.toWorld = transform(10);
+    o.previousToWorld = transform(20);
+    o.toObject = glm::inverse(o.toWorld);
+    o.visible = k % 4 != 0;
+    o.previousVisible = k % 5 != 0;
+    if (k < 39) frame.objects.push_back(o);  // of the last one the frame says nothing
+  }
+  std::vector<glm::vec4> queries;
+  for (uint32_t k = 0; k < 400; ++k)
+    queries.emplace_back(3 * random(31, k), 2 * random(32, k) - 1, random(33, k) + 0.1f, float(k % 40));
+  const auto places = evaluate(gpu, frame, queries, "objects", R"(
+    uint object = uint(q.w);
+    r[0] = vec4(fromObject(object, q.xyz), objectVisible(object) ? 1.0 : 0.0);
+    r[1] = vec4(toObject(object, q.xyz), objectWasVisible(object) ? 1.0 : 0.0);
+    r[2] = vec4(previousObjectTransform(object) * vec4(q.xyz, 1.0), 0.0);
+  )");
+  const auto normals = evaluate(gpu, frame, queries, "object_normals", R"(
+    uint object = uint(q.w);
+    r[0] = vec4(normalFromObject(object, normalize(q.xyz)), 0.0);
+    r[1] = vec4(normalToObject(object, normalize(q.xyz)), 0.0);
+  )");
+  const auto near = [](glm::vec4 got, glm::vec3 expected) {
+    return glm::distance(glm::vec3(got), expected) < 1e-5f * (1 + glm::length(expected));
+  };
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const size_t object = i % 40;
+    const ObjectTransform o = object < 39 ? frame.objects[object] : ObjectTransform{};
+    const glm::vec3 p(queries[i]), n = glm::normalize(p);
+    ASSERT_TRUE(near(places[3 * i], o.fromObject(p))) << object;
+    ASSERT_TRUE(near(places[3 * i + 1], o.intoObject(p))) << object;
+    ASSERT_TRUE(near(places[3 * i + 2], glm::vec3(o.previousToWorld * glm::vec4(p, 1)))) << object;
+    ASSERT_EQ(places[3 * i].w, float(o.visible));
+    ASSERT_EQ(places[3 * i + 1].w, float(o.previousVisible));
+    ASSERT_TRUE(near(normals[3 * i], o.normalFromObject(n))) << object;
+    ASSERT_TRUE(near(normals[3 * i + 1], o.normalIntoObject(n))) << object;
+  }
+}
+
 TEST(SceneGlsl, AnEmptySceneWorks) {
   GpuScene gpu(testDevice(), Scene{}, {}, 2);
   EXPECT_EQ(gpu.triangleCount(), 0u);

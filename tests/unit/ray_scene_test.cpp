@@ -137,5 +137,41 @@ TEST(RayScene, CacheFollowsTheContentNotTheAddress) {
   EXPECT_EQ(first, RayScene::cached(s, copy));  // the two most recent are kept
 }
 
+// Static triangles behind and before moving ones, a mask among both.
+TEST(RayScene, MovingPartsAreFoundWhereTheyAre) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  Material masked;
+  masked.masked = true;
+  masked.baseColor.a = 0;
+  s.materials.push_back(masked);
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  addQuad(s, 0, {0, 0, 2}, {0.5f, 0, 0}, {0, 1, 0});
+  addQuad(s, 0, {0, 0, 1}, {1, 0, 0}, {0, 1, 0});
+  addQuad(s, 1, {0, 0, 3}, {1, 0, 0}, {0, 1, 0});
+  s.nodes[2].dynamic = s.nodes[3].dynamic = true;
+  Geometry g = flatten(s);
+  const auto first = RayScene::cached(s, g);
+  EXPECT_DOUBLE_EQ(first->surfaceArea(), 3.5);
+  const auto hit = [&](const RayScene& rays, float x) { return rays.intersect({{x, 0.4f, 5}, {0, 0, -1}}); };
+  EXPECT_FLOAT_EQ(hit(*first, 0.25f).distance, 3);
+  EXPECT_EQ(hit(*first, 0.25f).triangle / 2, 1u);
+  EXPECT_FLOAT_EQ(hit(*first, 0.75f).distance, 4);
+  EXPECT_EQ(hit(*first, 0.75f).triangle / 2, 2u);
+  const Geometry before = g;
+  for (uint32_t v = g.objects[1].firstVertex; v < g.positions.size(); ++v) g.positions[v].z += 1.5f;
+  const auto moved = RayScene::cached(s, g);
+  EXPECT_NE(first, moved);
+  EXPECT_FLOAT_EQ(hit(*moved, 0.25f).distance, 2.5f);
+  EXPECT_FLOAT_EQ(hit(*moved, 0.75f).distance, 2.5f);
+  EXPECT_TRUE(moved->occluded({{0.75f, 0.4f, 5}, {0, 0, -1}, 0, 3}));
+  EXPECT_FALSE(first->occluded({{0.75f, 0.4f, 5}, {0, 0, -1}, 0, 3}));
+  EXPECT_EQ(first, RayScene::cached(s, before));
+  for (uint32_t v = g.objects[1].firstVertex; v < g.positions.size(); ++v) g.positions[v] = glm::vec3(0.3f);
+  const auto gone = RayScene::cached(s, g);  // no area: hit by nothing
+  EXPECT_FLOAT_EQ(hit(*gone, 0.75f).distance, 5);
+  EXPECT_FLOAT_EQ(gone->intersect({{0.3f, 0.3f, 5}, {0, 0, -1}}).distance, 3);
+}
+
 }  // namespace
 }  // namespace fovea::scene

@@ -101,6 +101,118 @@ TEST(SceneFile, AModelsLightsAndCamerasMoveWithIt) {
   EXPECT_EQ(s.gaze.size(), box.gaze.size());
 }
 
+TEST(SceneFile, MoversAndMovingLights) {
+  TemporaryFolder folder;
+  folder.write("tri.gltf", TriangleDocument{}.json());
+  Diagnostics warnings;
+  const Scene box = builtin("cornellbox");
+  const Scene s = loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "ipd": 0.07,
+    "movers": [
+      {"node": "yellow cube", "repeat": "loop", "keys": [{"t": 0}, {"t": 2, "translation": [1, 0, 0], "visible": false}]},
+      {"name": "plane", "shape": "paper_plane", "size": 0.4, "color": [0.9, 0.9, 0.8], "interpolation": "linear",
+       "keys": [{"t": 0, "translation": [0, 2, 0], "quaternion": [0, 2, 0, 0]}, {"t": 1, "rotation_deg": [0, 90, 0]}]},
+      {"shape": "box", "size": [1, 2, 3], "emission": [1, 2, 3], "keys": [{"t": 0}]},
+      {"file": "tri.gltf", "scale": 2, "repeat": "back_and_forth", "keys": [{"t": 1, "translation": [3, 0, 0]}]}
+    ],
+    "moving_lights": [{"light": "ceiling spot", "keys": [{"t": 0, "intensity": 10}, {"t": 1, "position": [0, 5, 1]}]}],
+    "gaze": [{"t": 0, "x": 0.5, "y": 0.5, "left": [0.4, 0.5]}]})",
+                           warnings);
+  EXPECT_FLOAT_EQ(s.ipd, 0.07f);
+  ASSERT_EQ(s.movers.size(), 4u);
+  const Mover& cube = s.movers[0];
+  EXPECT_EQ(s.nodes[cube.node].name, "yellow cube");
+  EXPECT_TRUE(s.nodes[cube.node].dynamic);
+  EXPECT_TRUE(cube.smooth);
+  EXPECT_EQ(cube.repeat, Repeat::Loop);
+  ASSERT_EQ(cube.keys.size(), 2u);
+  EXPECT_EQ(cube.keys[0].translation, box.nodes[1].translation);  // where the node is when nothing is said
+  EXPECT_EQ(cube.keys[1].rotation, box.nodes[1].rotation);
+  EXPECT_FALSE(cube.keys[1].visible);
+  const Mover& plane = s.movers[1];
+  EXPECT_FALSE(plane.smooth);
+  EXPECT_EQ(plane.keys[0].rotation, glm::quat(0, 0, 1, 0));
+  EXPECT_LT(glm::distance(plane.keys[1].rotation * glm::vec3(1, 0, 0), glm::vec3(0, 0, -1)), 1e-6f);
+  EXPECT_EQ(s.movers[3].repeat, Repeat::PingPong);
+  const Geometry g = flatten(s);
+  ASSERT_EQ(g.objects.size(), 5u);
+  EXPECT_EQ(g.objects[1].name, "yellow cube");
+  EXPECT_EQ(g.triangles.size(), flatten(box).triangles.size() + 4 + 12 + 1);
+  EXPECT_EQ(s.materials[g.triangles[g.objects[3].firstTriangle].material()].emission, glm::vec3(1, 2, 3));
+  EXPECT_EQ(g.positions[g.objects[4].firstVertex], glm::vec3(3, 0, 0));
+  ASSERT_EQ(s.lightMotions.size(), 1u);
+  EXPECT_EQ(s.lightMotions[0].keys[0].position, box.lights[0].position);
+  EXPECT_EQ(s.lightMotions[0].keys[0].intensity, 10);
+  EXPECT_EQ(s.lightMotions[0].keys[1].intensity, box.lights[0].intensity);
+  ASSERT_TRUE(s.gaze[0].left.has_value());
+  EXPECT_EQ(*s.gaze[0].left, glm::vec2(0.4f, 0.5f));
+  EXPECT_FALSE(s.gaze[0].right.has_value());
+  // At t = 0 the picture is that of the still scene.
+  const Geometry still = flatten(box);
+  EXPECT_EQ(g.positions[g.objects[1].firstVertex], still.positions[box.meshes[0].primitives[0].positions.size() +
+                                                                   box.meshes[0].primitives[1].positions.size() +
+                                                                   box.meshes[0].primitives[2].positions.size() +
+                                                                   box.meshes[0].primitives[3].positions.size()]);
+}
+
+TEST(SceneFile, MistakesOfMovers) {
+  const std::string message = errorOfJson(R"({"models": [{"builtin": "cornellbox"}],
+    "movers": [
+      {"node": "x", "shape": "box", "keys": [{"t": 0}]},
+      {"node": "x", "keys": []},
+      {"node": "x"},
+      {"shape": "boks", "size": 0, "keys": [{"t": 1, "quaternion": [0, 0, 0, 0]}, {"t": 1}, {"translation": [1, 2]}]},
+      {"shape": "box", "color": [2, 0, 0], "repeat": "always", "keys": [{"t": 0, "visibel": true}]}
+    ],
+    "moving_lights": [{"keys": [{"t": 0, "intensity": -1, "direction": [0, 0, 0]}]}]})");
+  for (const char* expected :
+       {"scene.json:3:", "one of `node`, `file` and `shape`", "movers[1].keys", "at least one key", "scene.json:5:",
+        "`keys` is missing", "expected one of box, paper_plane", "movers[3].size", "movers[3].keys[0].quaternion", "times of a path",
+        "`t` is missing", "movers[3].keys[2].translation", "movers[4].color", "movers[4].repeat", "did you mean `visible`",
+        "`light` is missing", "moving_lights[0].keys[0].intensity", "direction cannot be zero"})
+    EXPECT_THAT(message, HasSubstr(expected));
+  const auto mover = [](const std::string& movers, const std::string& more = "") {
+    return errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "movers": [)" + movers + "]" + more + "}");
+  };
+  EXPECT_THAT(mover(R"({"node": "yelow cube", "keys": [{"t": 0}]})"),
+              AllOf(HasSubstr("movers[0].node"), HasSubstr("no node `yelow cube`"), HasSubstr("`yellow cube`")));
+  EXPECT_THAT(mover(R"({"node": "vase", "keys": [{"t": 0}]}, {"node": "vase", "keys": [{"t": 0}]})"),
+              AllOf(HasSubstr("movers[1]"), HasSubstr("moves twice")));
+  EXPECT_THAT(mover(R"({"node": "vase", "keys": [{"t": 0}]}, {"node": "cornellbox", "keys": [{"t": 0}]})"),
+              AllOf(HasSubstr("`vase` hangs on `cornellbox`")));
+  EXPECT_THAT(mover(R"({"file": "none.gltf", "get": "from the attic", "keys": [{"t": 0}]})"),
+              AllOf(HasSubstr("none.gltf"), HasSubstr("from the attic")));
+  EXPECT_THAT(mover("", R"(, "moving_lights": [{"light": "ceiling spott", "keys": [{"t": 0}]}])"),
+              AllOf(HasSubstr("no light `ceiling spott`"), HasSubstr("`ceiling spot`")));
+}
+
+TEST(SceneFile, GazeFromATable) {
+  TemporaryFolder folder;
+  folder.write("gaze.csv", "# a trace\r\nt, x, y, valid, left_x, left_y\r\n0,0.25,0.5,1,0.2,0.5\n0.5,,,0,,\n\n1,0.75,0.5,1,,\n");
+  Diagnostics warnings;
+  const Scene s = loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings);
+  ASSERT_EQ(s.gaze.size(), 3u);
+  EXPECT_EQ(s.gaze[0].position, glm::vec2(0.25f, 0.5f));
+  ASSERT_TRUE(s.gaze[0].left.has_value());
+  EXPECT_EQ(*s.gaze[0].left, glm::vec2(0.2f, 0.5f));
+  EXPECT_FALSE(s.gaze[1].valid);
+  EXPECT_TRUE(s.gaze[2].valid);
+  EXPECT_FALSE(s.gaze[2].left.has_value());
+  const auto error = [&](const std::string& table) {
+    folder.write("gaze.csv", table);
+    return errorOf([&] { loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings); });
+  };
+  EXPECT_THAT(error("t,x,y\n0,0.5,2\n1,a,0.5\n2,0.5\n3,,0.5\n2.5,0.5,0.5\n4,0.1,0.1\n3.9,0.1,0.1\n"),
+              AllOf(HasSubstr("gaze.csv:2:"), HasSubstr("`y` is `2`"), HasSubstr("gaze.csv:3:"), HasSubstr("`x` is `a`"),
+                    HasSubstr("gaze.csv:4:"), HasSubstr("2 values in 3 columns"), HasSubstr("gaze.csv:5:"),
+                    HasSubstr("gaze.csv:8:"), HasSubstr("must increase")));
+  EXPECT_THAT(error("t,x,y,vlid\n"), AllOf(HasSubstr("gaze.csv:1:"), HasSubstr("did you mean `valid`")));
+  EXPECT_THAT(error("t,x,x\n"), AllOf(HasSubstr("`y` is missing"), HasSubstr("twice")));
+  EXPECT_THAT(error(""), HasSubstr("no header"));
+  EXPECT_THAT(errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "gaze": "none.csv"})"),
+              AllOf(HasSubstr("scene.json:1:"), HasSubstr("`none.csv` is missing")));
+  EXPECT_THAT(errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "gaze": 4})"), HasSubstr("gaze"));
+}
+
 TEST(SceneFile, CameraPath) {
   TemporaryFolder folder;
   Diagnostics warnings;
@@ -219,6 +331,21 @@ TEST(Load, NamesAndFiles) {
               AllOf(HasSubstr("known scenes"), HasSubstr("sponza")));
   EXPECT_THAT(errorOf([&] { load("/nowhere/a.json", warnings); }), HasSubstr("/nowhere/a.json"));
   EXPECT_THAT(errorOf([&] { load("/dev/null", warnings); }), HasSubstr("neither a scene file"));
+}
+
+TEST(Load, MovingScenesKeepTheBoundsOfTheirStillOnes) {
+  const bool sponza = !test::sharedScenes().empty();
+  for (const auto& [name, still] : {std::pair("cornellbox_moving", "cornellbox"), {"cornellbox_path", "cornellbox"}, {"sponza_plane", "sponza"}}) {
+    if (std::string(still) == "sponza" && !sponza) continue;
+    Diagnostics warnings;
+    const Scene s = load(name, warnings);
+    EXPECT_TRUE(warnings.list().empty()) << warnings.format();
+    EXPECT_TRUE(!s.movers.empty() || s.cameraPath.size() > 1) << name;
+    EXPECT_GT(s.gaze.size(), 10u) << name;
+    const Geometry g = flatten(s), stillGeometry = flatten(load(still, warnings));
+    EXPECT_EQ(g.boundsMin, stillGeometry.boundsMin) << name;
+    EXPECT_EQ(g.boundsMax, stillGeometry.boundsMax) << name;
+  }
 }
 
 TEST(Load, SponzaIsLitAndSeen) {

@@ -1,0 +1,197 @@
+// Every pass sees what moves where the frame has it: against rays through the frame's own geometry.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "framework/scene/paraboloid.h"
+#include "framework/scene/ray_scene.h"
+#include "framework/scene/voxel_grid.h"
+#include "framework/scene/vpl.h"
+#include "tests/passes/ray_reference.h"
+#include "tests/passes/shadow_view.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kSize = 40;
+// At 42 Hz: the box stands still at first, then slides and turns; it is away around frame 12.
+constexpr uint32_t kFrames[] = {0, 1, 6, 12, 15, 20};
+constexpr uint32_t kAway = 12;
+
+scene::MotionKey key(float frame, glm::vec3 at, float turnDeg, bool visible = true) {
+  return {frame / 42, at, glm::angleAxis(glm::radians(turnDeg), glm::vec3(0, 1, 0)), visible};
+}
+
+// A floor, a wall, and a box that moves; a sun, and a lamp that moves.
+scene::Scene movingScene() {
+  scene::Scene s;
+  s.name = "moving";
+  s.materials.resize(2);
+  s.materials[1].baseColor = {0.8f, 0.6f, 0.1f, 1};
+  addQuad(s, 0, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3});
+  addQuad(s, 0, {-3, 0, -3}, {3, 0, -3}, {3, 4, -3}, {-3, 4, -3});
+  scene::Node root;
+  root.dynamic = true;
+  s.nodes.push_back(root);
+  addBox(s, 1, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
+  for (size_t i = 3; i < s.nodes.size(); ++i) s.nodes[i].parent = 2;
+  s.movers = {{2, true, scene::Repeat::Once,
+               {key(0, {-1.5f, 0, 0}, 0), key(1.5f, {-1.5f, 0, 0}, 0), key(11.5f, {1, 0.5f, 0.5f}, 70, false),
+                key(12.5f, {1, 0.5f, 0.5f}, 70), key(20, {1.5f, 0, -1}, 120)}}};
+  s.cameras.emplace_back();
+  s.cameras[0].position = {0, 1.5f, 7};
+  scene::Light sun;
+  sun.direction = glm::normalize(glm::vec3(0.3f, -1, -0.4f));
+  scene::Light lamp;
+  lamp.name = "lamp";
+  lamp.type = scene::LightType::Spot;
+  lamp.position = {0, 4, 1};
+  lamp.direction = {0, -1, 0};
+  lamp.intensity = 50;
+  s.lights = {sun, lamp};
+  s.lightMotions = {{1, true, scene::Repeat::Once, {{0, {0, 4, 1}, {0, -1, 0}}, {0.5f, {1, 4, 0}, {0.2f, -1, 0}}}}};
+  return s;
+}
+
+template <class Check>
+void atFrames(PassTest& test, const Check& check) {
+  uint32_t done = 0;
+  for (const uint32_t index : kFrames) {
+    test.run(index + 1 - done);
+    done = index + 1;
+    ASSERT_EQ(test.lastFrame().index, index);
+    check(index);
+  }
+}
+
+bool isBox(const scene::Geometry& g, uint32_t triangle) { return g.triangles[triangle].object() > 0; }
+
+TEST(Movers, GBuffer) {
+  const scene::Scene s = movingScene();
+  PassTest test("gbuffer");
+  test.scene(s).viewSize(kSize, kSize);
+  std::set<size_t> counts;
+  atFrames(test, [&](uint32_t index) {
+    const auto id = test.values<uint32_t>("gbuffer.id");
+    const auto position = test.floats("gbuffer.position");
+    const scene::View& view = test.lastFrame().views[0];
+    size_t box = 0, wrong = 0;
+    for (uint32_t i = 0; i < id.size(); ++i) {
+      const glm::dvec3 ray(view.rayDirection({i % kSize + 0.5f, i / kSize + 0.5f}));
+      const RayHit hit = castRay(s, test.geometry(), glm::dvec3(view.eye), ray, {.cullSingleSided = true});
+      box += hit && isBox(test.geometry(), hit.triangle);
+      const uint32_t expected = hit ? test.geometry().triangles[hit.triangle].materialAndObject : ~0u;
+      const glm::dvec3 got(position[4 * i], position[4 * i + 1], position[4 * i + 2]);
+      wrong += id[i] != expected || (hit && glm::distance(got, glm::dvec3(view.eye) + hit.t * ray) > 1e-3);
+    }
+    EXPECT_LT(wrong, 12u) << "frame " << index;  // pixels on an edge
+    EXPECT_EQ(box > 0, index != kAway) << "frame " << index;
+    counts.insert(box);
+  });
+  EXPECT_GE(counts.size(), 4u);  // it did move
+}
+
+TEST(Movers, ShadowMap) {
+  const scene::Scene s = movingScene();
+  PassTest test("shadow-map");
+  test.scene(s).param("size", kSize);
+  atFrames(test, [&](uint32_t index) {
+    const auto depth = test.floats("maps.depth");
+    const auto views = test.values<ShadowView>("maps.views");
+    EXPECT_EQ(test.lastFrame().lights[1].position == s.lights[1].position, index == 0);
+    for (int layer = 0; layer < 2; ++layer) {
+      const glm::dmat4 worldToClip(views[size_t(layer)].worldToClip), clipToWorld = glm::inverse(worldToClip);
+      size_t box = 0, wrong = 0;
+      for (int i = 0; i < kSize * kSize; ++i) {
+        const glm::dvec2 ndc((2 * (i % kSize) + 1.0) / kSize - 1, (2 * (i / kSize) + 1.0) / kSize - 1);
+        const auto at = [&](double z) {
+          const glm::dvec4 p = clipToWorld * glm::dvec4(ndc, z, 1);
+          return glm::dvec3(p) / p.w;
+        };
+        const glm::dvec3 from = at(1), direction = at(0.001) - from;
+        const RayHit hit = castRay(s, test.geometry(), from, direction);
+        box += hit && isBox(test.geometry(), hit.triangle);
+        const glm::dvec4 clip = worldToClip * glm::dvec4(from + (hit ? hit.t : 0) * direction, 1);
+        const double expected = hit ? clip.z / clip.w : 0;
+        wrong += std::abs(double(depth[size_t(layer * kSize * kSize + i)]) - expected) > 1e-3;
+      }
+      EXPECT_LT(wrong, size_t(kSize * kSize / 50)) << "frame " << index << " layer " << layer;
+      EXPECT_EQ(box > 0, index != kAway) << "frame " << index << " layer " << layer;
+    }
+  });
+}
+
+TEST(Movers, ShadowAtlas) {
+  const scene::Scene s = movingScene();
+  std::vector<scene::Vpl> vpls(2);
+  vpls[0].position = {0, 0.01f, 1.5f};
+  vpls[0].normal = {0, 1, 0};
+  vpls[1].position = {0.2f, 1, -2.9f};
+  vpls[1].normal = {0, 0, 1};
+  for (scene::Vpl& v : vpls) v.intensity = glm::vec3(1);
+  PassTest test("shadow-atlas");
+  test.scene(s).param("size", kSize).param("refresh", "all").buffer("vpls", vpls, "Vpl");
+  atFrames(test, [&](uint32_t index) {
+    const auto atlas = test.values<float>("atlas");
+    size_t box = 0, wrong = 0;
+    for (size_t v = 0; v < vpls.size(); ++v)
+      for (int i = 0; i < kSize * kSize; ++i) {
+        const glm::vec3 local = scene::paraboloidTexelDirection({i % kSize, i / kSize}, kSize);
+        if (local.z <= 0.02f) continue;
+        const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(vpls[v].normal), local);
+        const RayHit hit = castRay(s, test.geometry(), glm::dvec3(vpls[v].position), glm::dvec3(direction));
+        box += hit && isBox(test.geometry(), hit.triangle);
+        const float got = atlas[v * kSize * kSize + size_t(i)];
+        wrong += hit ? !(std::abs(got - float(hit.t)) < 1e-3f * float(hit.t)) : !std::isinf(got);
+      }
+    EXPECT_LT(wrong, 8u) << "frame " << index;
+    EXPECT_EQ(box > 0, index != kAway) << "frame " << index;
+  });
+}
+
+TEST(Movers, Emit) {
+  const scene::Scene s = movingScene();
+  PassTest test("emit");
+  test.scene(s).param("count", 300);
+  atFrames(test, [&](uint32_t index) {
+    const scene::Geometry& g = test.geometry();
+    const scene::RayScene rays(s, g);
+    size_t box = 0;
+    for (const scene::Vpl& v : test.values<scene::Vpl>("vpls")) {
+      if (v.intensity == glm::vec3(0)) continue;
+      // The surface it lies on is just behind it.
+      const scene::RayHit hit = rays.intersect({v.position + 1e-3f * v.normal, -v.normal, 0, 2e-3f});
+      ASSERT_TRUE(hit) << "frame " << index;
+      box += isBox(g, hit.triangle);
+    }
+    EXPECT_EQ(box > 0, index != kAway) << "frame " << index;
+  });
+}
+
+TEST(Movers, Voxels) {
+  PassTest test("voxelize");
+  test.scene(movingScene()).param("resolution", 24);
+  const scene::Geometry& g = test.geometry();
+  atFrames(test, [&](uint32_t index) {
+    const auto info = test.values<scene::VoxelInfo>("voxels.info").at(0);
+    const auto sides = test.values<scene::VoxelSide>("voxels.surface");
+    EXPECT_EQ(info.voxels > info.staticVoxels, index != kAway) << "frame " << index;
+    glm::vec3 low(1e9f), high(-1e9f), moved(0);
+    for (uint32_t v = g.staticVertices(); v < g.positions.size(); ++v)
+      low = glm::min(low, g.positions[v]), high = glm::max(high, g.positions[v]);
+    double area = 0;
+    for (size_t i = 2 * size_t(info.staticVoxels); i < 2 * size_t(info.voxels); ++i) {
+      if (sides[i].area == 0) continue;
+      area += sides[i].area;
+      EXPECT_GT(sides[i].object, 0);
+      moved = glm::min(sides[i].position - low + 1e-3f, high + 1e-3f - sides[i].position);
+      EXPECT_TRUE(moved.x >= 0 && moved.y >= 0 && moved.z >= 0) << "frame " << index;
+    }
+    EXPECT_NEAR(area, index == kAway ? 0 : 6, 0.01) << "frame " << index;
+  });
+}
+
+}  // namespace
+}  // namespace fovea::test
