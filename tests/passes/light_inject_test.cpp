@@ -8,7 +8,6 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/ray_scene.h"
-#include "tests/passes/shadow_view.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
 
@@ -16,32 +15,6 @@ namespace fovea::test {
 namespace {
 
 const glm::vec3 kRho(0.5f, 0.25f, 0.75f);
-
-struct Inject {
-  int taps = 6;
-  double offset = 0.25;
-  bool shadows = false;
-  const char* filter = "bilinear";
-  int mapSize = 1024;
-};
-
-std::vector<glm::vec4> inject(const VoxelScene& s, const Inject& options = {}, uint32_t frames = 1) {
-  PassTest test("light-inject");
-  test.scene(s.scene).param("taps", options.taps).param("offset", options.offset).param("filter", options.filter);
-  setVoxels(test, s.voxels);
-  if (options.shadows) {
-    PassTest maps("shadow-map");
-    maps.scene(s.scene).param("size", options.mapSize);
-    maps.run();
-    const graph::ResourceDesc& d = maps.desc("maps.depth");
-    test.image("maps.depth", VK_FORMAT_D32_SFLOAT, d.width, d.height, d.layers, maps.floats("maps.depth"));
-    test.buffer("maps.views", maps.values<ShadowView>("maps.views"), "ShadowView");
-  }
-  test.run(frames);
-  auto result = test.values<glm::vec4>("radiance");
-  result.resize(s.sides().size());
-  return result;
-}
 
 // The point set of a side, as light_inject.comp describes it.
 std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelSide& side, uint32_t number, int taps) {

@@ -4,6 +4,9 @@
 #include <vector>
 
 #include "framework/base/random.h"
+#include "framework/scene/lights.h"
+#include "framework/scene/load.h"
+#include "framework/scene/ray_scene.h"
 #include "framework/scene/vpl.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
@@ -84,7 +87,9 @@ void expectFurnace(const scene::Scene& model, bool directional) {
   size_t dim = 0;
   for (const glm::vec4& b : got) {
     const double ratio = b.g / (glm::pi<double>() * kRho.g * light.g);
-    if (b.g > 0) EXPECT_NEAR(b.r / b.g, kRho.r * light.r / (kRho.g * light.g), 5e-3);
+    if (b.g > 0) {
+      EXPECT_NEAR(b.r / b.g, kRho.r * light.r / (kRho.g * light.g), 5e-3);
+    }
     EXPECT_LT(ratio, 1.01);
     mean += ratio / double(got.size());
     dim += ratio < 0.98;
@@ -226,6 +231,78 @@ TEST(Radiance, ConesAgreeWithManyRays) {
     EXPECT_NEAR(total / wanted, 1, directional ? 0.05 : 0.15);
     EXPECT_LT(off / wanted, directional ? 0.12 : 0.25);
   }
+}
+
+// VPLs at random points of the scene's surfaces.
+std::vector<scene::VplState> vplsOnSurfaces(const VoxelScene& s, size_t count) {
+  std::vector<scene::VplState> vpls;
+  const scene::RayScene rays(s.scene, s.geometry);
+  const glm::vec3 low = s.geometry.boundsMin, size = s.geometry.boundsMax - low;
+  for (uint32_t k = 0; vpls.size() < count; ++k) {
+    auto random = [&](uint32_t i) { return uniformFloat(randomStream(7, 0, i, k)); };
+    const glm::vec3 to(random(3) - 0.5f, random(4) - 0.5f, random(5) - 0.5f);
+    const scene::RayHit hit =
+        rays.intersect({low + size * glm::vec3(random(0), random(1), random(2)), glm::normalize(to)});
+    if (!hit) continue;
+    const scene::SurfaceHit surface = surfaceAt(s.geometry, hit);
+    if (glm::dot(surface.geometricNormal, to) >= 0) continue;
+    const uint32_t voxel = s.voxels.voxelAt(glm::ivec3(s.voxels.grid.worldToVoxel(surface.position)));
+    if (!voxel) continue;
+    scene::VplState v;
+    v.side = 2 * (voxel - 1) + scene::voxelSideOf(surface.geometricNormal);
+    v.position = surface.position;
+    v.normal = surface.geometricNormal;
+    v.reflectance = s.sides()[v.side].reflectance;
+    v.life = 1;
+    vpls.push_back(v);
+  }
+  return vpls;
+}
+
+// Green irradiance by light that has been reflected once, from traced rays.
+double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, const scene::VplState& vpl) {
+  const glm::mat3 frame = scene::orthonormalFrame(vpl.normal);
+  constexpr int kRays = 512;
+  double e = 0;
+  for (int k = 0; k < kRays; ++k) {
+    const float u = (float(k) + 0.5f) / kRays, phi = glm::two_pi<float>() * glm::fract(0.618034f * float(k));
+    const glm::vec3 d = frame * glm::vec3(std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u));
+    const float gap = 4 * rays.epsilon();
+    const scene::RayHit hit = rays.intersect({vpl.position + gap * vpl.normal, d});
+    if (!hit) continue;
+    const scene::SurfaceHit at = surfaceAt(s.geometry, hit);
+    if (glm::dot(at.geometricNormal, d) >= 0) continue;
+    const scene::Material& material = s.scene.materials[at.material];
+    double arriving = 0;
+    for (const scene::Light& light : s.scene.lights) {
+      const scene::LightSample l = scene::sampleLight(light, at.position);
+      const float cosine = glm::dot(at.geometricNormal, l.direction);
+      if (cosine <= 0 || l.irradiance.g <= 0) continue;
+      const scene::Ray shadow{at.position + gap * at.geometricNormal, l.direction, 0, std::min(l.distance, 1e4f) * 0.9999f};
+      if (!rays.occluded(shadow)) arriving += l.irradiance.g * cosine;
+    }
+    e += (reflectance(s.scene, material, at.uv).g * arriving + glm::pi<double>() * emission(s.scene, material, at.uv).g) / kRays;
+  }
+  return e;
+}
+
+// From the lights to the radiosity by the passes alone.
+TEST(Radiance, SecondBounceInTheCornellBoxAgreesWithRays) {
+  const VoxelScene s(scene::builtin("cornellbox"), 64);
+  const scene::RayScene rays(s.scene, s.geometry);
+  const auto radiance = inject(s, {.shadows = true});
+  const std::vector<scene::VplState> vpls = vplsOnSurfaces(s, 300);
+  const auto got = radiosity(s, radiance, runMips(s, radiance, true), vpls, "cones");
+  double total = 0, wanted = 0, off = 0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const double want = vpls[i].reflectance.g * tracedSecondBounce(s, rays, vpls[i]);
+    total += got[i].g;
+    wanted += want;
+    off += std::abs(got[i].g - want);
+  }
+  std::printf("second bounce in the Cornell box: %.3f of what rays find, mean error %.3f\n", total / wanted, off / wanted);
+  EXPECT_NEAR(total / wanted, 1, 0.1);
+  EXPECT_LT(off / wanted, 0.35);  // the light is a pool on the floor: six directions are few
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "framework/scene/hemisphere_rays.h"
 #include "framework/scene/paraboloid.h"
 #include "framework/scene/voxel_trace.h"
+#include "tests/passes/shadow_view.h"
 #include "tests/support/pass_test.h"
 #include "tests/support/voxels.h"
 
@@ -37,6 +38,33 @@ std::vector<glm::vec4> radianceOf(const VoxelScene& s, F f) {
   std::vector<glm::vec4> result(sideCount(s), glm::vec4(0));
   for (size_t i = 0; i < s.sides().size(); ++i)
     if (s.sides()[i].area > 0) result[i] = glm::vec4(glm::vec3(f(s.sides()[i])), 0);
+  return result;
+}
+
+// Pass light-inject, with the maps of pass shadow-map.
+struct Inject {
+  int taps = 6;
+  double offset = 0.25;
+  bool shadows = false;
+  const char* filter = "bilinear";
+  int mapSize = 1024;
+};
+
+inline std::vector<glm::vec4> inject(const VoxelScene& s, const Inject& options = {}, uint32_t frames = 1) {
+  PassTest test("light-inject");
+  test.scene(s.scene).param("taps", options.taps).param("offset", options.offset).param("filter", options.filter);
+  setVoxels(test, s.voxels);
+  if (options.shadows) {
+    PassTest maps("shadow-map");
+    maps.scene(s.scene).param("size", options.mapSize);
+    maps.run();
+    const graph::ResourceDesc& d = maps.desc("maps.depth");
+    test.image("maps.depth", VK_FORMAT_D32_SFLOAT, d.width, d.height, d.layers, maps.floats("maps.depth"));
+    test.buffer("maps.views", maps.values<ShadowView>("maps.views"), "ShadowView");
+  }
+  test.run(frames);
+  auto result = test.values<glm::vec4>("radiance");
+  result.resize(s.sides().size());
   return result;
 }
 
