@@ -326,6 +326,12 @@ void Executor::Impl::runPass(Slot& slot, PassInstance& pass, const scene::Frame&
   std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
   device.beginLabel(cmd, pass.bound->name.c_str());
   vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 1 + 2 * position);
+  // Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty barrier is one)
+  // a pass of dispatches alone would start after its own work.
+  if (device.isCpu()) {
+    const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    vkCmdPipelineBarrier2(cmd, &nothing);
+  }
   if (pass.bound->declaration->kind == PassKind::Host) {
     device.endLabel(cmd);  // a label cannot span two command buffers
     runHostPass(slot, pass, frame);
