@@ -139,7 +139,8 @@ void Voxelize::recordAssignment(RecordContext& ctx, Phase phase) {
       .constant("room", uint32_t(ctx.count("cells")))
       .dispatch(1);
   ctx.barrier();
-  dispatchGroups(ctx.use(assign_).constant("count", words).constant("phase", uint32_t(phase)), blocks);
+  dispatchGroups(
+      ctx.use(assign_).constant("count", words).constant("blockCount", blocks).constant("phase", uint32_t(phase)), blocks);
   ctx.barrier();
 }
 

@@ -14,14 +14,18 @@ layout(set = 0, r32ui) uniform uimage3D voxelsIndex;
 
 layout(push_constant) uniform Constants {
   uint count;  // words
+  uint blockCount;
   uint resolution;
   uint phase;
 };
 
 void main() {
   uint block = groupIndex(), i = block * kScanBlock + gl_LocalInvocationIndex;
+  if (block >= blockCount) return;
+  uint last = state.value.phases[phase].voxels + state.value.phases[phase].overflow;
+  if (blocks.sums[block] == (block + 1u < blockCount ? blocks.sums[block + 1u] : last)) return;  // nothing marked
   uint bits = i < count ? marks.words[i] : 0u, total;
-  uint rank = exclusiveSum(uint(bitCount(bits)), total) + (i < count ? blocks.sums[block] : 0u);
+  uint rank = exclusiveSum(uint(bitCount(bits)), total) + blocks.sums[block];
   uint room = state.value.phases[phase].voxels, first = state.value.phases[phase].first;
   while (bits != 0u && rank < room) {
     uint linear = i * 32u + uint(findLSB(bits));

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // First of a prefix sum: the sum of each block of 256 values.
-#include "voxelize/scan.glsl"
+#include "voxelize/state.glsl"
 
 layout(local_size_x = 256) in;
 
@@ -14,14 +14,18 @@ layout(set = 0, std430) writeonly buffer BlocksBlock { uint sums[]; } blocks;
 
 layout(push_constant) uniform Constants { uint count; };
 
+shared uint sum;
+
 void main() {
+  if (gl_LocalInvocationIndex == 0u) sum = 0u;
+  barrier();
   uint block = groupIndex(), i = block * kScanBlock + gl_LocalInvocationIndex;
 #ifdef MARKS
   uint value = i < count ? uint(bitCount(marks.words[i])) : 0u;
 #else
   uint value = i < count ? chunks.list[i] : 0u;
 #endif
-  uint total;
-  exclusiveSum(value, total);
-  if (gl_LocalInvocationIndex == 0u && block * kScanBlock < count) blocks.sums[block] = total;
+  if (value != 0u) atomicAdd(sum, value);
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && block * kScanBlock < count) blocks.sums[block] = sum;
 }

@@ -41,7 +41,9 @@ CellTriangle loadCellTriangle(VoxelGrid grid, uvec4 indices) {
   precise float areaScale = 0.5 * len * inverseZ;
   t.normal = normal;
   t.areaScale = areaScale;
-  t.slope = -t.n.xy / t.n.z;
+  precise float perZ = -1.0 / t.n.z;
+  precise vec2 slope = t.n.xy * perZ;
+  t.slope = slope;
   vec3 least = floor(min(min(a, b), c)), most = max(max(a, b), c);
   vec3 last = max(least, ceil(most) - 1.0);  // half-open: what lies on a border belongs to the upper cell
   float r = float(grid.resolution);
@@ -97,6 +99,15 @@ bool overlapsCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   precise float slack = kSlack * (most - least);
   return d >= least - slack && d <= most + slack && projectionMeetsCell(a.yz, b.yz, c.yz, n.x) &&
          projectionMeetsCell(a.zx, b.zx, c.zx, n.y) && projectionMeetsCell(a.xy, b.xy, c.xy, n.z);
+}
+
+// Whether the whole cell, seen along z, lies inside the edge p -> q.
+bool edgeHoldsCell(vec2 p, vec2 q, float side) {
+  precise float nu = -(q.y - p.y) * side;
+  precise float nv = (q.x - p.x) * side;
+  precise float least = min(nu, 0.0) + min(nv, 0.0);
+  precise float edge = nu * p.x + nv * p.y;
+  return least >= edge;
 }
 
 struct Piece {
@@ -161,6 +172,19 @@ Piece clipToCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   precise float third = 1.0 / (3.0 * sum);
   precise vec3 centre = first + moment * third;
   return Piece(area, centre);
+}
+
+// The piece of a triangle that goes through all four of the cell's edges along z: most of a large triangle. False: it does not.
+bool crossesCell(CellTriangle t, vec3 a, vec3 b, vec3 c, out Piece piece) {
+  float side = t.n.z < 0.0 ? -1.0 : 1.0;
+  precise float z = (a.z - t.slope.x * a.x) - t.slope.y * a.y;  // at the corner
+  precise float least = (z + min(t.slope.x, 0.0)) + min(t.slope.y, 0.0);
+  precise float most = (z + max(t.slope.x, 0.0)) + max(t.slope.y, 0.0);
+  precise float middle = z + 0.5 * (t.slope.x + t.slope.y);
+  precise float area = 2.0 * t.areaScale;
+  piece = Piece(area, vec3(0.5, 0.5, middle));
+  return least >= 0.0 && most < 1.0 && edgeHoldsCell(a.xy, b.xy, side) && edgeHoldsCell(b.xy, c.xy, side) &&
+         edgeHoldsCell(c.xy, a.xy, side);
 }
 
 // Texture coordinates at point p of the cell whose own coordinates of the first vertex are a; both with turned axes.

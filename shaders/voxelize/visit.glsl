@@ -80,7 +80,8 @@ void visitCell(CellTriangle t, uvec4 indices, Material material, ivec3 turned) {
   // Not of this batch: too large, or below 0 and wrapped around.
   if (voxel >= constants.batch) return;
 #endif
-  Piece piece = clipToCell(t, a, b, c);
+  Piece piece;
+  if (!crossesCell(t, a, b, c, piece)) piece = clipToCell(t, a, b, c);
   if (fixedPoint(piece.area) < 1.0) return;
 #ifdef ACCUMULATE
   SurfacePoint surface = surfaceAt(materialOf(indices), cellUv(t, indices, a, piece.centre));

@@ -27,6 +27,7 @@ using Cells = std::map<uint32_t, std::array<Sums, 2>>;  // by linear cell index
 struct Triangle {
   vec3 a{0}, b{0}, c{0}, n{0};
   vec3 normal{0};           // unit, axes not turned
+  vec2 slope{0};            // of z over x and y
   float areaScale = 0;      // area per doubled area seen along z
   int axis = 0;             // that z is
   ivec3 lo{0}, hi{-1};      // cells of its box
@@ -60,6 +61,7 @@ Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   t.b = turn(t.b, t.axis);
   t.c = turn(t.c, t.axis);
   t.n = turn(t.n, t.axis);
+  t.slope = vec2(t.n) * (-1.0f / t.n.z);
   return t;
 }
 
@@ -131,6 +133,22 @@ Piece clipToCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   return {sum * t.areaScale, first + moment * (1.0f / (3.0f * sum))};
 }
 
+// Whether the whole cell, seen along z, lies inside the edge p -> q.
+bool edgeHoldsCell(vec3 p, vec3 q, float side) {
+  const float nu = -(q.y - p.y) * side, nv = (q.x - p.x) * side;
+  return std::min(nu, 0.0f) + std::min(nv, 0.0f) >= nu * p.x + nv * p.y;
+}
+
+// The short way of the shader, for a triangle that goes through all four of the cell's edges along z.
+bool crossesCell(const Triangle& t, vec3 a, vec3 b, vec3 c, Piece& piece) {
+  const float side = t.n.z < 0.0f ? -1.0f : 1.0f;
+  const float z = (a.z - t.slope.x * a.x) - t.slope.y * a.y;  // at the corner
+  const float least = (z + std::min(t.slope.x, 0.0f)) + std::min(t.slope.y, 0.0f);
+  const float most = (z + std::max(t.slope.x, 0.0f)) + std::max(t.slope.y, 0.0f);
+  piece = {2.0f * t.areaScale, vec3(0.5f, 0.5f, z + 0.5f * (t.slope.x + t.slope.y))};
+  return least >= 0.0f && most < 1.0f && edgeHoldsCell(a, b, side) && edgeHoldsCell(b, c, side) && edgeHoldsCell(c, a, side);
+}
+
 vec2 uvAt(const scene::Geometry& g, const scene::Triangle& indices, const Triangle& t, vec3 a, vec3 p) {
   const vec3 e1 = t.b - t.a, e2 = t.c - t.a, d = p - a;
   const float inverse = 1.0f / t.n.z;
@@ -160,7 +178,8 @@ void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scen
       for (int x = t.lo.x; x <= t.hi.x; ++x) {
         const vec3 cell(x, y, z), a = t.a - cell, b = t.b - cell, c = t.c - cell;
         if (!overlapsCell(t, a, b, c)) continue;
-        Piece piece = clipToCell(t, a, b, c);
+        Piece piece;
+        if (!crossesCell(t, a, b, c, piece)) piece = clipToCell(t, a, b, c);
         if (fixedPoint(piece.area) == 0) continue;
         const vec2 uv = uvAt(g, indices, t, a, piece.centroid);
         piece.centroid = turnBack(piece.centroid, t.axis);
