@@ -14,8 +14,8 @@
 // MASKED: only listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here, the other pixels have their irradiance
 // already, the base. Of a pixel's window, what lies outside the blocks has no sample; what it would add is known better,
 // though: the base there. The pixels of the window inside are then represented by the mean over all subsets (those that the
-// window lacks from the pixel's block, else found as above, in shaded pixels only), the ones outside by their base: towards
-// its rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
+// window lacks from the pixel's block, the base for what is not there either), the ones outside by their base: towards its
+// rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
 #if MASKED
 #include "deferred/blocks.glsl"
 const int kPixels = 1;  // that are filtered together
@@ -54,7 +54,6 @@ struct Centre {
   uint found;     // subsets in the sum
 #if MASKED
   vec4 outside;   // rgb: sum of the base over the window's pixels of the surface outside the mask, a: their number
-  uvec2 cut;      // as `missing`: subsets whose pixel of the window is outside the mask
 #endif
   uvec2 missing;  // bit per subset, numbered from the pixel: (dy mod INTERLEAVE) * INTERLEAVE + (dx mod INTERLEAVE)
 };
@@ -94,9 +93,9 @@ vec4 wideSample(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float 
   addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
   addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
   addSample(sum, c, p, across, size, plane, least);
-  if (sum.a == 0.0)
-    for (int j = -2; j < 2; ++j)
-      for (int i = -2; i < 2; ++i) addSample(sum, c, p, offset + INTERLEAVE * ivec2(i, j), size, plane, least);
+  // A loop of no turns is skipped where a branch is not, on a CPU device.
+  int samples = sum.a == 0.0 ? 16 : 0;
+  for (int i = 0; i < samples; ++i) addSample(sum, c, p, offset + INTERLEAVE * (ivec2(i & 3, i >> 2) - 2), size, plane, least);
   return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
 }
 
@@ -128,7 +127,6 @@ Centre centreAt(ivec2 p, ivec2 size) {
   c.missing = uvec2(0u);
 #if MASKED
   c.outside = vec4(0.0);
-  c.cut = uvec2(0u);
 #endif
   return c;
 }
@@ -153,7 +151,6 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
         bool same = sameSurface(centres[k], position, normal, centres[k].plane, filterCos);
 #if MASKED
         if (same && !shaded) centres[k].outside += known;
-        if (!shaded && q == inside) centres[k].cut |= subsetBit(ivec2(dx, dy));
         same = same && shaded;
 #endif
         if (same) {
@@ -168,13 +165,13 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
 }
 
 #if MASKED
-// Samples of the subsets that the mask cuts off, from the pixel's own block, where each is.
+// Samples of missing subsets from the pixel's own block, where each is.
 void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
   ivec2 corner = p / BLOCK * BLOCK;
   for (int i = 0; i < BLOCK * BLOCK; ++i) {
     ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), inside = min(q, size - 1);
     uvec2 bit = subsetBit((q - p + BLOCK) % INTERLEAVE);
-    bool wanted = q == inside && (c.missing & c.cut & bit) != uvec2(0u);
+    bool wanted = q == inside && (c.missing & bit) != uvec2(0u);
     if (wanted && sameSurface(c, texelFetch(gbufferPosition, inside, 0), texelFetch(gbufferNormal, inside, 0).xyz, c.plane, filterCos)) {
       c.sum += imageLoad(partial, inside).rgb;
       ++c.found;
@@ -195,12 +192,15 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
     }
 #if MASKED
     float inWindow = float(c.found);
-    searchBlock(c, p, size);
+    if (c.outside.a > 0.0) {
+      searchBlock(c, p, size);
+      c.missing = uvec2(0u);  // the base also stands in for those that are neither in the window nor in the block
+    }
 #endif
     searchWider(c, p, size, c.plane, filterCos);
     incomplete = 2u * c.found < kSubsets;
 #if MASKED
-    if (c.outside.a > 0.0) {  // the base also stands in for subsets that are nowhere on the surface
+    if (c.outside.a > 0.0) {
       vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
       return (inWindow * inside + c.outside.rgb) / (inWindow + c.outside.a);
     }

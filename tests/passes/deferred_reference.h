@@ -36,8 +36,6 @@ struct GBuffer {
   std::vector<SurfacePixel> pixels;
   const SurfacePixel& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
-
   GBuffer(int w, int h, const std::function<SurfacePixel(int, int)>& pixel) : width(w), height(h) {
     for (int y = 0; y < h; ++y) {
       for (int x = 0; x < w; ++x) {
@@ -177,15 +175,13 @@ struct DeferredReference {
     const int n = interleave;
     const Search strict{g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle)), mask};
     glm::dvec4 sum(0), outside(0);  // outside: the base where the window leaves the mask
-    std::vector<glm::ivec2> missing, cut;
+    std::vector<glm::ivec2> missing;
     for (int dy = -n / 2; dy < n / 2; ++dy)
       for (int dx = -n / 2; dx < n / 2; ++dx) {
         const bool same = strict.sameSurface(x + dx, y + dy);
         if (same && strict.shaded(x + dx, y + dy)) sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
         else missing.push_back({(dx + n) % n, (dy + n) % n});
-        if (!g.inside(x + dx, y + dy) || strict.shaded(x + dx, y + dy)) continue;
-        cut.push_back({(dx + n) % n, (dy + n) % n});
-        if (same)
+        if (same && !strict.shaded(x + dx, y + dy))
           outside += glm::dvec4(glm::dvec3((*base)[size_t((y + dy) * g.width + x + dx)]), 1);
       }
     const auto search = [&](const Search& how) {
@@ -198,16 +194,16 @@ struct DeferredReference {
       missing = still;
     };
     const double inside = sum.w;
-    if (mask) {  // what the mask cuts off, from the block of the pixel
+    if (outside.w > 0) {  // what the window lacks, from the block of the pixel
       for (int qy = y / n * n; qy < y / n * n + n; ++qy)
         for (int qx = x / n * n; qx < x / n * n + n; ++qx) {
           const auto at = std::find(missing.begin(), missing.end(), glm::ivec2((qx - x + n) % n, (qy - y + n) % n));
-          if (at == missing.end() || !strict.sameSurface(qx, qy) || std::find(cut.begin(), cut.end(), *at) == cut.end()) continue;
+          if (at == missing.end() || !strict.sameSurface(qx, qy)) continue;
           sum += glm::dvec4(strict.value(qx, qy), 1);
           missing.erase(at);
         }
     }
-    search(strict);
+    if (outside.w == 0) search(strict);
     if (outside.w > 0) {
       const glm::dvec3 rest = glm::dvec3(outside) / outside.w;
       const glm::dvec3 all = (glm::dvec3(sum) + (double(n * n) - sum.w) * rest) / double(n * n);
