@@ -33,6 +33,12 @@ std::string formatLight(const scene::Light& light) {
   return {};
 }
 
+template <class Motion>
+std::string formatPath(const std::string& name, const Motion& m) {
+  const char* after = m.repeat == scene::Repeat::Loop ? ", again and again" : m.repeat == scene::Repeat::PingPong ? ", back and forth" : "";
+  return fmt::format("{}, {} keys over {:.3g} s{}", name, m.keys.size(), m.keys.back().time, after);
+}
+
 void printContents(const Scene& s, const scene::Geometry& geometry) {
   size_t textureBytes = 0, masked = 0, emissive = 0;
   for (const scene::Texture& t : s.textures) textureBytes += t.rgba.size();
@@ -68,6 +74,8 @@ ExitCode info(const std::string& name) {
                      formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
+  for (const scene::Mover& m : s.movers) line("moves", formatPath(s.nodes[m.node].name, m));
+  for (const scene::LightMotion& m : s.lightMotions) line("moves", "light " + formatPath(s.lights[m.light].name, m));
   if (s.gaze.size() == 1)
     line("gaze", fmt::format("at {:.3g}, {:.3g}", s.gaze[0].position.x, s.gaze[0].position.y));
   if (s.gaze.size() > 1)
