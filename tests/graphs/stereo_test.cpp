@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "framework/scene/load.h"
 #include "tests/support/pass_test.h"
@@ -106,6 +108,28 @@ TEST(Stereo, RepeatsBitForBit) {
   const GraphRun a = run("ir_stereo", s, "", 4, 2), b = run("ir_stereo", s, "", 4, 2);
   EXPECT_EQ(a.outputs.at("radiance_right").bytes, b.outputs.at("radiance_right").bytes);
   EXPECT_EQ(a.outputs.at("mask").bytes, b.outputs.at("mask").bytes);
+}
+
+// The foveated method: the second eye against all of it shaded with the same VPLs.
+TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "stereo_whole.json";
+  std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/stereo.json",
+    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "weights", "atlas": "shadow-atlas"},
+                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
+    "outputs": {"whole": "whole.indirect"}})";
+  GraphRunOptions options;
+  options.size = {kSide, kSide};
+  options.frames = 3;
+  options.set = {"vpl_count=320", "map_size=32", "shadow_map_size=512", "voxels=48", "interleave=1"};
+  const GraphRun both = runGraph(file.string(), scene::builtin("cornellbox"), options);
+  const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(both.outputs.at("whole"));
+  const auto mask = toFloats(both.outputs.at("mask"));
+  const Errors warped = compare(image, want, mask, false), again = compare(image, want, mask, true);
+  std::printf("warped: mean %.4f p95 %.4f bias %.4f\n", warped.mean, warped.p95, warped.bias);
+  EXPECT_GT(counter(both, "right/reproject.new_pixels"), 0);
+  EXPECT_LT(warped.mean, 0.006);
+  EXPECT_LT(warped.p95, 0.02);
+  EXPECT_LT(again.p95, 1e-6);
 }
 
 // Nothing to see, nothing to warp, nothing to shade.
