@@ -95,11 +95,12 @@ ConeSample coneTrace(MipGrid grid, vec3 origin, vec3 direction, float start, flo
 
 // How far above a surface its own voxels reach into the filter, in widths of its cells: one cell of filter and half a cell
 // because the wall stands anywhere in its cell. Cones start where they have risen that far above level 0, and their
-// cells grow to this part of the height: they stay clear of the own wall (its back, if it is thin) for ever. Wider
-// ones look through walls that others stand behind: behind a thin wall in a room arrives 4% of the light of the lit half with 2, 11%
-// with 1.5, 2% with 3; against many rays all three err by 4% a VPL.
+// cells grow to this part of the height: they stay clear of the own wall (its back, if it is thin) for ever. What is
+// behind another wall still reaches through it by as much: of the light in one half of a room, 10% arrive behind a thin wall with
+// 1.5, 5% with 2, 3% with 3. In Sponza, where all walls are thin, the sum of the light that arrives after one reflection
+// is 1.4 times that of traced rays with 2, 1.2 times with 3, 1.1 times with 6.
 const float kOwnReach = 1.5;
-const float kHeightPerCell = 2.0;
+const float kHeightPerCell = 3.0;
 
 #ifdef CONE_GATHER
 #include "common/hemisphere_rays.glsl"

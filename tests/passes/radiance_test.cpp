@@ -198,7 +198,7 @@ TEST(Radiance, ThinWallsDoNotLeak) {
   for (const float wall : {0.0f, 0.02f, 0.3f}) {
     const double faces = leak(true, wall), one = leak(false, wall);
     std::printf("leak through a thin wall at %.2f: faces %.4f, one volume %.4f of the lit side\n", wall, faces, one);
-    EXPECT_LT(faces, 0.08);  // the cells of the cones reach past the wall's edge
+    EXPECT_LT(faces, 0.06);  // the cells of the cones reach past the wall's edge
     EXPECT_LT(one, 0.16);    // besides, half of what the wall shows is its other side
   }
 }
@@ -301,7 +301,7 @@ TEST(Radiance, SecondBounceInTheCornellBoxAgreesWithRays) {
     off += std::abs(got[i].g - want);
   }
   std::printf("second bounce in the Cornell box: %.3f of what rays find, mean error %.3f\n", total / wanted, off / wanted);
-  EXPECT_NEAR(total / wanted, 1, 0.1);
+  EXPECT_NEAR(total / wanted, 1, 0.12);
   EXPECT_LT(off / wanted, 0.35);  // the light is a pool on the floor: six directions are few
 }
 

@@ -175,7 +175,7 @@ inline glm::vec3 referenceGather(const VoxelScene& s, const Mips& m, const std::
     const scene::VoxelHit hit = traceVoxels(s.trace(), position, direction, normal, (start + 3) * cell);
     sum += ray.z * (hit.side != scene::kNoSide
                         ? glm::vec3(radiance[hit.side])
-                        : glm::vec3(referenceCone(m, (position - grid.origin) / cell, direction, start, ray.z / 2)));
+                        : glm::vec3(referenceCone(m, (position - grid.origin) / cell, direction, start, ray.z / 3)));
   }
   return glm::pi<float>() * sum / 3.5f;
 }
