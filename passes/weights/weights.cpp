@@ -76,7 +76,10 @@ PassDeclaration Weights::declaration() {
   d.parameter("normal_weight", real(0.5, 0, 100),
               "how far apart for `area` turned normals put surfaces: d^2 + lambda (1 - n.n'), lambda in squared mean free paths "
               "of the scene");
-  d.parameter("offset", real(0, 0, 10, "cells"), "moves a VPL along its normal, out of the surface that its voxel averages");
+  // At 0 a VPL lies inside whatever else its voxel averages and is shadowed by it: against light-traced VPLs, at 128^3, the
+  // periphery of Sponza gets 0.38 of its light at 0, 0.88 at 0.25, 0.93 at 0.5 and at 1 cell; the relMSE in the fovea of the
+  // Cornell box falls from 0.025 at 0 to 0.018 at 0.5.
+  d.parameter("offset", real(0.5, 0, 10, "cells"), "moves a VPL along its normal, out of the surface that its voxel averages");
   d.counter("alive", "slots that hold a VPL");
   d.counter("unseen", "VPLs that no screen point sees (`pdf`)");
   d.counter("capped", "VPLs that are seen and whose area is cut to the cap (`pdf`)");

@@ -72,7 +72,7 @@ struct WeightSettings {
   uint32_t region = scene::kRegionFovea;
   float foveaRadius = 0.25f;
   uint32_t points = 128;
-  double areaCap = 4, normalWeight = 0.5;
+  double areaCap = 4, normalWeight = 0.5, offset = 0;
   bool litOnly = true;
   glm::vec2 gaze{0.5f};
 };

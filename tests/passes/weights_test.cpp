@@ -89,7 +89,7 @@ void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSe
   test.param("strategy", strategy).param("region", settings.region == scene::kRegionImage ? "image" : "fovea");
   test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
   test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
-  test.param("sides", settings.litOnly ? "lit" : "all");
+  test.param("sides", settings.litOnly ? "lit" : "all").param("offset", settings.offset);
   test.viewSize(w, h).scene(room.scene);
   test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
@@ -399,10 +399,9 @@ TEST(Weights, TheSameBitsEveryTime) {
 TEST(Weights, OffsetMovesAlongTheNormal) {
   const Room room = closedRoom(false, 12, glm::ivec2(16));
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 20, {})));
-  PassTest test("weights");
-  wire(test, in, "pdf", {});
-  test.param("offset", 0.5).run();
-  const auto list = test.values<scene::Vpl>("emitters");
+  WeightSettings settings;
+  settings.offset = 0.5;
+  const auto list = weigh(in, "pdf", settings);
   for (size_t i = 0; i < list.size(); ++i)
     EXPECT_LT(glm::distance(list[i].position, in.vpls[i].position + 0.5f * room.voxels.grid.cell * in.vpls[i].normal), 1e-5f);
 }
