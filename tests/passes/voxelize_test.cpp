@@ -383,6 +383,25 @@ TEST(Voxelize, DynamicOverflow) {
   }
 }
 
+// More voxels than sums find room at once (2^19): sheets that each fill a layer of cells.
+TEST(Voxelize, SumsInBatches) {
+  Scene s = emptyScene();
+  const uint32_t material = addMaterial(s, vec3(0.2f, 0.4f, 0.6f));
+  for (int i = 0; i < 15; ++i) addQuad(s, material, vec3(0, 0, 0.0637f * float(i)), vec3(1, 0, 0), vec3(0, 1, 0));
+  PassTest test("voxelize");
+  test.scene(s).param("resolution", 192).param("capacity", 512).run();
+  const VoxelArrays v = readBack(test, 192);
+  EXPECT_EQ(v.info.voxels, 15u * 192u * 192u);
+  EXPECT_EQ(v.info.overflow, 0u);
+  ASSERT_EQ(v.surface.size(), 2u << 20);
+  EXPECT_NEAR(voxelArea(v), 15, 1e-3);
+  for (size_t i = 0; i < 2 * size_t(v.info.voxels); i += 2) {
+    ASSERT_GT(v.surface[i].area, 0) << i;
+    ASSERT_EQ(v.surface[i + 1].area, 0) << i;
+    ASSERT_LT(glm::length(v.surface[i].reflectance - vec3(0.2f, 0.4f, 0.6f)), 1e-4f) << i;
+  }
+}
+
 TEST(Voxelize, StillScenesCostNothingLater) {
   Scene s = emptyScene();
   addMaterial(s, vec3(0.5f));
