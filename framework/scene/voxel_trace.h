@@ -36,13 +36,24 @@ struct VoxelHit {
 
 inline constexpr float kOwnSurface = 0.25f;  // cells
 
-inline bool facesRay(const Voxels& voxels, uint32_t side, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal,
-                     float& facing, float& distance) {
+inline constexpr float kBehindPlane = 0.1f;  // cells
+inline constexpr float kSideRadii = 1.5f;    // of a disc of the side's area
+
+enum class Meeting { None, Passed, Met };
+
+inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal,
+                         float exit, float& facing, float& distance) {
   const VoxelSide& s = voxels.surface[side];
+  const float cell = voxels.grid.cell;
   const glm::vec3 to = s.position - origin;
+  const float height = glm::dot(to, s.normal);
   facing = glm::dot(s.normal, direction);
-  distance = facing < 0.0f ? glm::dot(to, s.normal) / facing : 0.0f;
-  return s.area > 0.0f && facing < 0.0f && glm::dot(to, normal) > kOwnSurface * voxels.grid.cell;
+  distance = facing < 0.0f ? height / facing : 0.0f;
+  if (!(s.area > 0.0f && facing < 0.0f && glm::dot(to, normal) > kOwnSurface * cell)) return Meeting::None;
+  const glm::vec3 off = std::min(distance, exit) * direction - to;
+  const bool met = exit * facing - height < kBehindPlane * cell &&
+                   3.14159265f * glm::dot(off, off) < kSideRadii * kSideRadii * s.area;
+  return met ? Meeting::Met : Meeting::Passed;
 }
 
 // First side along a ray; origin and direction (unit) in world space, normal, far: see the shader.
@@ -72,6 +83,7 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
 
   glm::ivec3 cell =
       glm::clamp(glm::ivec3(glm::floor(p + t * direction)), glm::ivec3(0), glm::ivec3(grid.resolution - 1));
+  VoxelHit passed;  // beside the last side, see the shader
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
     const uint32_t voxel = voxels.at(cell);
     const glm::vec3 walls = (glm::vec3(cell) + ahead - p) * inverse + never;
@@ -79,19 +91,24 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
     if (voxel != 0u) {
       const uint32_t side = 2u * (voxel - 1u);
       float facing[2], distance[2];
-      const bool hit0 = facesRay(voxels, side, origin, direction, normal, facing[0], distance[0]);
-      const bool hit1 = facesRay(voxels, side + 1u, origin, direction, normal, facing[1], distance[1]);
-      if (hit0 || hit1) {
-        const uint32_t second = hit1 && !(hit0 && facing[0] <= facing[1]) ? 1u : 0u;
-        return {side + second, glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
+      const Meeting met0 = meetsSide(voxels, side, origin, direction, normal, next * grid.cell, facing[0], distance[0]);
+      const Meeting met1 =
+          meetsSide(voxels, side + 1u, origin, direction, normal, next * grid.cell, facing[1], distance[1]);
+      const Meeting met = std::max(met0, met1);
+      if (met != Meeting::None) {
+        const uint32_t second = met1 > met0 || (met1 == met0 && facing[1] < facing[0]) ? 1u : 0u;
+        const VoxelHit hit{side + second, glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
+        if (met == Meeting::Met) return hit;
+        passed = hit;
       }
     }
     const int through = walls.x == next ? 0 : walls.y == next ? 1 : 2;
     cell[through] += stride[through];
     t = next;
-    if (!voxels.inside(cell) || t * grid.cell > far) break;
+    if (t * grid.cell > far) return {};
+    if (!voxels.inside(cell)) break;
   }
-  return {};
+  return passed;
 }
 
 }  // namespace fovea::scene

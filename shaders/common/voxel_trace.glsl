@@ -32,28 +32,47 @@ struct VoxelHit {
 // by rounding only (the average position of a plane lies on it), curved ones by a little.
 const float kOwnSurface = 0.25;
 
-// Can the ray hit this side? Only its front, and only where it is not what the ray starts from.
-bool facesRay(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 normal, out float facing, out float distance) {
+// A voxel's surface is a piece of the plane through the side's average position: a ray that only passes through the cell
+// beside it has not met it. It has when it leaves the cell behind the plane (or all but, in cells), no farther from the
+// position than these radii of a disc of the side's area. Of diffuse bounces in Sponza (128^3 voxels) 82% end within 1.5
+// cells of where a ray through the triangles ends, in the Cornell box 99%; when any side that faces them stops them 59%
+// and 95%.
+const float kBehindPlane = 0.1;
+const float kSideRadii = 1.5;
+
+const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
+
+// Does the ray meet this side before it leaves the cell at distance `exit`, or only pass beside it? Only its front, and only
+// where it is not what the ray starts from. facing: cosine, negative towards the ray; distance: to the plane, m.
+uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 normal, float exit, out float facing,
+               out float distance) {
   int first = int(side) * kVoxelSideTexels;
   vec4 positionArea = texelFetch(voxelsSurface, first);
   vec3 sideNormal = texelFetch(voxelsSurface, first + 1).xyz;
   vec3 to = positionArea.xyz - origin;
+  float height = dot(to, sideNormal);
   facing = dot(sideNormal, direction);
-  distance = facing < 0.0 ? dot(to, sideNormal) / facing : 0.0;
-  return positionArea.w > 0.0 && facing < 0.0 && dot(to, normal) > kOwnSurface * grid.cell;
+  distance = facing < 0.0 ? height / facing : 0.0;
+  if (!(positionArea.w > 0.0 && facing < 0.0 && dot(to, normal) > kOwnSurface * grid.cell)) return kNotMet;
+  vec3 off = min(distance, exit) * direction - to;
+  return exit * facing - height < kBehindPlane * grid.cell &&
+                 kPi * dot(off, off) < kSideRadii * kSideRadii * positionArea.w
+             ? kMet
+             : kPassed;
 }
 
 // First side along a ray. direction: unit; normal: of the surface the ray starts on, unit, pointing to where the ray goes
-// (a ray that starts on no surface: the direction itself). A side is hit that faces the ray and lies in front of the
-// start's tangent plane: that skips the own surface and the back of an own thin wall. If both sides of a voxel qualify, it
-// is the one that faces the ray more; a voxel without such a side is passed.
+// (a ray that starts on no surface: the direction itself). A side is hit that faces the ray, is met within its cell and lies
+// in front of the start's tangent plane: that skips the own surface and the back of an own thin wall. If both sides of a
+// voxel qualify, it is the one that faces the ray more; a voxel without such a side is passed. A ray that leaves the grid
+// hits the last side that it only passed, if any: a slit between the planes of neighbours is no hole in a wall.
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray
 // Tracing", Eurographics 1987); the distances to the walls follow from the cell's whole numbers, so no error adds up, and
 // a direction component of 0 never comes to a wall. At most 3R + 3 turns; anything that is not a number hits nothing.
 // far: cells that the ray enters beyond this distance (m) are not looked at.
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, float far) {
-  VoxelHit miss = VoxelHit(kNoSide, 0.0);
+  VoxelHit miss = VoxelHit(kNoSide, 0.0), passed = miss;
   vec3 p = (origin - grid.origin) / grid.cell;  // in cells, as are all distances below
   float size = float(grid.resolution);
   // Not a number, and too far away for a float to know a cell: false in every comparison.
@@ -80,12 +99,15 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
     if (voxel != 0u) {
       uint side = 2u * (voxel - 1u);
       float facing0, facing1, distance0, distance1;
-      bool hit0 = facesRay(grid, side, origin, direction, normal, facing0, distance0);
-      bool hit1 = facesRay(grid, side + 1u, origin, direction, normal, facing1, distance1);
-      if (hit0 || hit1) {
-        bool second = hit1 && !(hit0 && facing0 <= facing1);
-        return VoxelHit(second ? side + 1u : side,
-                        clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
+      uint met0 = meetsSide(grid, side, origin, direction, normal, next * grid.cell, facing0, distance0);
+      uint met1 = meetsSide(grid, side + 1u, origin, direction, normal, next * grid.cell, facing1, distance1);
+      uint met = max(met0, met1);
+      if (met != kNotMet) {
+        bool second = met1 > met0 || (met1 == met0 && facing1 < facing0);
+        VoxelHit hit = VoxelHit(second ? side + 1u : side,
+                                clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
+        if (met == kMet) return hit;
+        passed = hit;
       }
     }
     bool throughX = walls.x == next, throughY = !throughX && walls.y == next;
@@ -93,9 +115,10 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
     cell.y += throughY ? stride.y : 0;
     cell.z += throughX || throughY ? 0 : stride.z;
     t = next;
-    if (any(greaterThanEqual(uvec3(cell), uvec3(grid.resolution))) || t * grid.cell > far) break;
+    if (t * grid.cell > far) return miss;
+    if (any(greaterThanEqual(uvec3(cell), uvec3(grid.resolution)))) break;
   }
-  return miss;
+  return passed;
 }
 
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal) {

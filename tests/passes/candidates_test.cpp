@@ -122,6 +122,26 @@ void expectReplay(const CandidateReference& reference, const PassTest& test, con
   EXPECT_LE(rounded, int(list.size() / 500) + 1) << "bounces that rounding sent elsewhere";
 }
 
+// Rays through voxels against rays through the triangles: share of the bounces that end within two cells of each other,
+// or that both escape. Backs of single-sided triangles hide nothing from a voxel ray, so the rays pass them, too.
+double agreement(const CandidateReference& reference, const scene::Scene& s, const scene::Geometry& g, uint32_t count) {
+  double bounces = 0, same = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto a = reference.attempt(i);
+    if (a.background) continue;
+    ++bounces;
+    const glm::dvec3 origin(a.origin + 1e-4f * a.face);
+    const RayHit hit = castRay(s, g, origin, glm::dvec3(a.direction), {.cullSingleSided = true});
+    if (!hit || a.side == kNoSide) {
+      same += !hit == (a.side == kNoSide);
+      continue;
+    }
+    const glm::dvec3 met(reference.voxels.surface[a.side].position);
+    same += glm::distance(met, origin + hit.t * glm::dvec3(a.direction)) < 2 * double(reference.voxels.grid.cell);
+  }
+  return same / bounces;
+}
+
 enum class Where { InFront, InsideTheBox, Outside, InFrontOfMovers };
 constexpr const char* kCameras[] = {"InFront", "InsideTheBox", "Outside", "InFrontOfMovers"};
 
@@ -155,6 +175,7 @@ TEST_P(Replay, EveryCandidateIsTheCpus) {
         .image = image, .voxels = voxels, .fovea = scene::makeFovea(gaze, image.size, 0.3f), .seed = 9, .frame = frame};
     expectReplay(reference, test, radiance, counts);
     expectCounters(test, counts, kCount);
+    EXPECT_GT(agreement(reference, s, g, kCount), 0.9);
     EXPECT_GT(counts.candidates, GetParam() == Where::Outside ? 100 : 500);
     EXPECT_GT(counts.escaped, GetParam() == Where::InFront ? 100 : -1);
     EXPECT_GT(counts.moving, moving ? 50 : -1);
@@ -213,9 +234,9 @@ struct Chambers {
           const glm::vec3 normal = y == 2 ? glm::vec3(0, 1, 0) : wallX ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
           scene::VoxelSide side;
           side.area = 1;
-          side.position = voxels.grid.voxelToWorld(glm::vec3(x, y, z) + 0.5f);
           for (const float sign : {1.0f, -1.0f}) {
             side.normal = sign * normal;
+            side.position = voxels.grid.voxelToWorld(glm::vec3(x, y, z) + 0.5f + 0.49f * side.normal);
             voxels.surface.push_back(side);
           }
           voxels.index[size_t(x + 50 * (y + 50 * z))] = uint32_t(voxels.surface.size() / 2);
@@ -229,7 +250,7 @@ struct Chambers {
   }
 
   glm::ivec2 pixelOf(const Candidate& c) const {
-    const glm::vec3 chamber = voxels.grid.worldToVoxel(c.position) + c.normal;
+    const glm::vec3 chamber = voxels.grid.worldToVoxel(c.position) + 0.5f * c.normal;
     return (glm::ivec2(glm::floor(chamber.x), glm::floor(chamber.z)) - 1) / 2;
   }
 };

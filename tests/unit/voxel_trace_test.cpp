@@ -64,7 +64,7 @@ Volume randomVolume(int resolution, float filled, Stream& random) {
       glm::vec3 n = random.direction();
       if (voxelSideOf(n) != k) n = -n;
       sides[k] = makeSide(v.grid.voxelToWorld(glm::vec3(cell) + random.point()), n);
-      if (random.next() < 0.3f) sides[k].area = 0;
+      sides[k].area = random.next() < 0.3f ? 0.0f : v.grid.cell * v.grid.cell * random.next();
     }
     v.add(cell, sides[0], sides[1]);
   }
@@ -75,14 +75,46 @@ Volume randomVolume(int resolution, float filled, Stream& random) {
 struct BruteForce {
   uint32_t side = kNoSide;
   double cellIn = 0, cellOut = 0;      // where the ray is in its cell, m
-  std::vector<uint32_t> alsoPossible;  // in cells before that one that the ray only just touches
-  bool unclear = false;                // a side that is seen from its edge or lies right at the start's plane
+  std::vector<uint32_t> alsoPossible;  // in cells that the ray only just touches
+  bool unclear = false;                // rounding may decide whether a side is met
 };
+
+struct Side {
+  uint32_t side = kNoSide;
+  bool met = false;
+};
+
+// The side of a voxel that a ray which leaves it at `out` meets, or else passes.
+Side sideOf(const Volume& v, uint32_t voxel, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal, double out,
+            bool& unclear) {
+  const double cell = double(v.grid.cell);
+  Side best;
+  double facing = 0;
+  for (uint32_t s = 2 * voxel - 2; s < 2 * voxel; ++s) {
+    const VoxelSide& side = v.surface[s];
+    if (side.area == 0) continue;
+    const glm::dvec3 n(side.normal), position(side.position);
+    const double cosine = glm::dot(n, direction), front = glm::dot(position - origin, normal) - 0.25 * cell;
+    unclear |= std::abs(cosine) < 1e-5 || std::abs(front) < 1e-5;
+    if (cosine >= 0 || front <= 0) continue;
+    const glm::dvec3 leaves = origin + out * direction;
+    const double behind = 0.1 * cell - glm::dot(leaves - position, n);
+    const double plane = glm::dot(position - origin, n) / cosine;
+    const glm::dvec3 at = origin + std::min(plane, out) * direction;
+    const double radius = 1.5 * std::sqrt(double(side.area) / 3.14159265358979);
+    const double beside = radius - glm::distance(at, position);
+    unclear |= std::abs(behind) < 1e-5 || std::abs(beside) < 1e-4;
+    const bool met = behind > 0 && beside > 0;
+    if (best.side != kNoSide && (best.met != met ? best.met : cosine >= facing)) continue;
+    facing = cosine;
+    best = {s, met};
+  }
+  return best;
+}
 
 BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal) {
   BruteForce best;
-  best.cellIn = 1e30;
-  std::vector<std::pair<double, uint32_t>> touched;
+  bool met = false;
   const int r = v.grid.resolution;
   for (int i = 0; i < r * r * r; ++i) {
     const uint32_t voxel = v.index[size_t(i)];
@@ -100,29 +132,19 @@ BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, 
       out = std::min(out, std::max(a, b));
     }
     if (out < in - 1e-4) continue;
-    uint32_t side = kNoSide;
-    double facing = 0;
-    for (uint32_t s = 2 * voxel - 2; s < 2 * voxel; ++s) {
-      const VoxelSide& candidate = v.surface[s];
-      if (candidate.area == 0) continue;
-      const double cosine = glm::dot(glm::dvec3(candidate.normal), direction);
-      const double front = glm::dot(glm::dvec3(candidate.position) - origin, normal) - 0.25 * double(v.grid.cell);
-      best.unclear |= std::abs(cosine) < 1e-5 || std::abs(front) < 1e-5;
-      if (cosine >= facing || front <= 0) continue;
-      facing = cosine;
-      side = s;
-    }
-    if (side == kNoSide) continue;
+    const Side side = sideOf(v, voxel, origin, direction, normal, out, best.unclear);
+    if (side.side == kNoSide) continue;
     if (out - in < 1e-4) {
-      touched.emplace_back(in, side);
-    } else if (in < best.cellIn) {
-      best.side = side;
-      best.cellIn = in;
-      best.cellOut = out;
+      best.alsoPossible.push_back(side.side);
+      continue;
     }
+    // The first that is met; when there is none, the last that is passed.
+    if (best.side != kNoSide && (met != side.met ? met : met ? in >= best.cellIn : in <= best.cellIn)) continue;
+    met = side.met;
+    best.side = side.side;
+    best.cellIn = in;
+    best.cellOut = out;
   }
-  for (const auto& [in, side] : touched)
-    if (in <= best.cellIn + 1e-4) best.alsoPossible.push_back(side);
   return best;
 }
 
@@ -237,6 +259,39 @@ TEST(VoxelTrace, TheSideThatFacesMoreIsHit) {
   EXPECT_EQ(traceVoxels(v.voxels(), {2.5f, 3.5f, 2.5f}, down, down).side, 0u);
   v.surface[1].normal = n0;
   EXPECT_EQ(traceVoxels(v.voxels(), {1.5f, 3.5f, 2.5f}, both, both).side, 0u);
+}
+
+// Along a floor just under its voxels' tops the plane is met where it is, not where the first voxel is entered.
+TEST(VoxelTrace, GrazingRaysReachThePlane) {
+  Volume v(16, {glm::vec3(0), 1, 16});
+  for (int x = 0; x < 16; ++x)
+    for (int z = 0; z < 16; ++z) v.add({x, 2, z}, makeSide({x + 0.5f, 2.1f, z + 0.5f}, {0, 1, 0}), {});
+  const glm::vec3 origin(0.5f, 3.5f, 8.5f), direction = glm::normalize(glm::vec3(1, -0.1f, 0));
+  const VoxelHit hit = traceVoxels(v.voxels(), origin, direction, direction);
+  ASSERT_NE(hit.side, kNoSide);
+  EXPECT_FLOAT_EQ(v.surface[hit.side].position.x, 13.5f) << "at x = 13.5 it is 0.1 cells above the plane or less";
+}
+
+// Too small a piece of surface to be met: hit only where nothing is behind it.
+TEST(VoxelTrace, SmallSidesArePassedUnlessNothingFollows) {
+  Volume v(8, {glm::vec3(0), 1, 8});
+  const glm::vec3 back(-1, 0, 0), along(1, 0, 0), origin(0.5f, 3.9f, 3.9f);
+  VoxelSide small = makeSide({2.9f, 3.1f, 3.1f}, back);
+  small.area = 0.05f;
+  v.add({2, 3, 3}, {}, small);
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, along, along).side, 1u);
+  EXPECT_EQ(traceVoxels(v.voxels(), {0.5f, 3.2f, 3.0f}, along, along).side, 1u);
+  v.add({6, 3, 3}, {}, makeSide({6.5f, 3.5f, 3.5f}, back));
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, along, along).side, 3u);
+  EXPECT_EQ(traceVoxels(v.voxels(), {0.5f, 3.2f, 3.0f}, along, along).side, 1u);
+}
+
+TEST(VoxelTrace, CellsBeyondFarAreNotLookedAt) {
+  Volume v(8, {glm::vec3(0), 1, 8});
+  v.add({6, 3, 3}, {}, makeSide({6.5f, 3.5f, 3.5f}, {-1, 0, 0}));
+  const glm::vec3 along(1, 0, 0), origin(0.5f, 3.5f, 3.5f);
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, along, along, 5.4f).side, kNoSide);
+  EXPECT_EQ(traceVoxels(v.voxels(), origin, along, along, 5.6f).side, 1u);
 }
 
 TEST(VoxelTrace, NothingForWhatIsNoNumber) {
