@@ -47,13 +47,14 @@ void main() {
     voxels[i] = voxelAt(grid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2));
     any_ |= voxels[i];
   }
+  if (any_ == 0u) return;
   float faceArea = grid.cell * grid.cell;
   for (int face = 0; face < kFaces; ++face) {
     Cell sum = kEmpty;
-    if (any_ != 0u)
-      for (int column = 0; column < 4; ++column)
-        sum = add(sum, behind(voxelTowards(voxels[nearChild(face, column)], face, faceArea),
-                              voxelTowards(voxels[farChild(face, column)], face, faceArea)));
+    for (int column = 0; column < 4; ++column)
+      sum = add(sum, behind(voxelTowards(voxels[nearChild(face, column)], face, faceArea),
+                            voxelTowards(voxels[farChild(face, column)], face, faceArea)));
+    if (sum.color.a <= 0.0) continue;  // cleared before
     ivec3 texel = cell + ivec3(face * size, 0, 0);
     imageStore(mipsColor, texel, stored(0.25 * sum.color));
     imageStore(mipsWeight, texel, stored(vec4(0.25 * sum.weight)));

@@ -11,24 +11,23 @@ layout(set = 0, rgba16f) uniform writeonly image3D targetColor;
 layout(set = 0, r16f) uniform writeonly image3D targetWeight;
 
 layout(push_constant) uniform Constants {
-  int size;  // cells a side of the target's face; 0: the level is no half of the last, nobody reads it
+  int size;  // cells a side of the target's face
 };
 
 Cell load(ivec3 texel) { return Cell(imageLoad(sourceColor, texel), imageLoad(sourceWeight, texel).r); }
 
 void main() {
   ivec3 texel = ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(texel, imageSize(targetColor)))) return;
+  if (any(greaterThanEqual(texel, ivec3(kFaces * size, size, size)))) return;
   Cell sum = kEmpty;
-  if (all(lessThan(texel, ivec3(kFaces * size, size, size)))) {
-    int face = texel.x / size;
-    ivec3 corner = 2 * texel;
-    for (int column = 0; column < 4; ++column) {
-      int near = nearChild(face, column), far = farChild(face, column);
-      sum = add(sum, behind(load(corner + ivec3(near & 1, near >> 1 & 1, near >> 2)),
-                            load(corner + ivec3(far & 1, far >> 1 & 1, far >> 2))));
-    }
+  int face = texel.x / size;
+  ivec3 corner = 2 * texel;
+  for (int column = 0; column < 4; ++column) {
+    int near = nearChild(face, column), far = farChild(face, column);
+    sum = add(sum, behind(load(corner + ivec3(near & 1, near >> 1 & 1, near >> 2)),
+                          load(corner + ivec3(far & 1, far >> 1 & 1, far >> 2))));
   }
+  if (sum.color.a <= 0.0) return;  // cleared before
   imageStore(targetColor, texel, stored(0.25 * sum.color));
   imageStore(targetWeight, texel, stored(vec4(0.25 * sum.weight)));
 }
