@@ -1,4 +1,6 @@
 // Averages of light and foveated weight over ever larger cells, for cone tracing (METHOD 2, mipmap).
+#include <string>
+
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
 
@@ -37,7 +39,9 @@ class Mipmap : public Pass {
   void prepare(PrepareContext& ctx) override {
     directional_ = ctx.parameters().flag("directional");
     const char* directional = directional_ ? "1" : "0";
-    base_ = ctx.compute("mipmap/base.comp", {{"DIRECTIONAL", directional}, {"WEIGHTED", ctx.has("weights") ? "1" : "0"}});
+    base_ = ctx.compute("mipmap/base.comp", {{"DIRECTIONAL", directional},
+                                             {"WEIGHTED", ctx.has("weights") ? "1" : "0"},
+                                             {"ODD", std::to_string(ctx.extent("voxels.index").width % 2)}});
     down_ = ctx.compute("mipmap/down.comp", {{"DIRECTIONAL", directional}});
   }
 

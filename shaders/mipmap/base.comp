@@ -44,7 +44,8 @@ void main() {
   uint voxels[8];
   uint any_ = 0u;
   for (int i = 0; i < 8; ++i) {
-    voxels[i] = voxelAt(grid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2));
+    ivec3 at = 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2);
+    voxels[i] = ODD != 0 ? voxelAt(grid, at) : texelFetch(voxelsIndex, at, 0).r;
     any_ |= voxels[i];
   }
   if (any_ == 0u) return;
