@@ -25,12 +25,13 @@ class Mipmap : public Pass {
     const SizeExpr width = size * (SizeExpr(1) + SizeExpr(5) * parameter("directional"));
     d.output("mips", "voxel-mips",
              {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, kAllMips),
-                     Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
+                     Usage::StorageRead | Usage::StorageWrite,
                      "rgb: radiance times a; a: surface area by that of a cell's face, over 1 where a cell holds several surfaces"),
               member("weight", image3D(VK_FORMAT_R16_SFLOAT, width, size, size, kAllMips),
-                     Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite, "foveated weight times a of `color`")},
+                     Usage::StorageRead | Usage::StorageWrite, "foveated weight times a of `color`")},
              "level 0 has cells of 2x2x2 voxels; levels that are not half of the one before are 0 "
-             "(shaders/common/cone.glsl)");
+             "(shaders/common/cone.glsl)")
+        .keep(Lifetime::Scene);  // so that cells which are and stay empty need no store
     d.parameter("directional", flag(true),
                 "six volumes side by side, +x -x +y -y +z -z, each of what looks that way: a thin wall does not show the light of its back");
     return d;
@@ -49,10 +50,6 @@ class Mipmap : public Pass {
     gpu::Image& color = ctx.image("mips.color");
     gpu::Image& weight = ctx.image("mips.weight");
     uint32_t size = ctx.extent("mips.color").height;
-    // Most cells are empty. Clearing them all is cheaper than to store each (on lavapipe 5 times).
-    ctx.clear("mips.color", {});
-    ctx.clear("mips.weight", {});
-    ctx.barrier();
     ctx.use(base_).bind("mipsColor", color.mipView(0)).bind("mipsWeight", weight.mipView(0)).dispatchThreads(size, size, size);
     for (uint32_t level = 1; level < color.desc().mips && size % 2 == 0; ++level) {
       size /= 2;

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
-layout(set = 0, rgba16f) uniform writeonly image3D mipsColor;
+layout(set = 0, rgba16f) uniform image3D mipsColor;
 layout(set = 0, r16f) uniform writeonly image3D mipsWeight;
 layout(set = 0) uniform samplerBuffer radiance;
 #if WEIGHTED
@@ -48,15 +48,15 @@ void main() {
     voxels[i] = ODD != 0 ? voxelAt(grid, at) : texelFetch(voxelsIndex, at, 0).r;
     any_ |= voxels[i];
   }
-  if (any_ == 0u) return;
   float faceArea = grid.cell * grid.cell;
   for (int face = 0; face < kFaces; ++face) {
     Cell sum = kEmpty;
-    for (int column = 0; column < 4; ++column)
+    for (int column = 0; column < 4 && any_ != 0u; ++column)
       sum = add(sum, behind(voxelTowards(voxels[nearChild(face, column)], face, faceArea),
                             voxelTowards(voxels[farChild(face, column)], face, faceArea)));
-    if (sum.color.a <= 0.0) continue;  // cleared before
     ivec3 texel = cell + ivec3(face * size, 0, 0);
+    // Most cells are empty and have been so. Storing is what costs (on lavapipe 10 times a look).
+    if (sum.color.a <= 0.0 && imageLoad(mipsColor, texel).a <= 0.0) continue;
     imageStore(mipsColor, texel, stored(0.25 * sum.color));
     imageStore(mipsWeight, texel, stored(vec4(0.25 * sum.weight)));
   }

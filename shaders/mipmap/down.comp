@@ -7,14 +7,17 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
 layout(set = 0, rgba16f) uniform readonly image3D sourceColor;
 layout(set = 0, r16f) uniform readonly image3D sourceWeight;
-layout(set = 0, rgba16f) uniform writeonly image3D targetColor;
+layout(set = 0, rgba16f) uniform image3D targetColor;
 layout(set = 0, r16f) uniform writeonly image3D targetWeight;
 
 layout(push_constant) uniform Constants {
   int size;  // cells a side of the target's face
 };
 
-Cell load(ivec3 texel) { return Cell(imageLoad(sourceColor, texel), imageLoad(sourceWeight, texel).r); }
+Cell load(ivec3 texel) {
+  vec4 color = imageLoad(sourceColor, texel);
+  return color.a > 0.0 ? Cell(color, imageLoad(sourceWeight, texel).r) : kEmpty;
+}
 
 void main() {
   ivec3 texel = ivec3(gl_GlobalInvocationID);
@@ -27,7 +30,7 @@ void main() {
     sum = add(sum, behind(load(corner + ivec3(near & 1, near >> 1 & 1, near >> 2)),
                           load(corner + ivec3(far & 1, far >> 1 & 1, far >> 2))));
   }
-  if (sum.color.a <= 0.0) return;  // cleared before
+  if (sum.color.a <= 0.0 && imageLoad(targetColor, texel).a <= 0.0) return;  // empty as before
   imageStore(targetColor, texel, stored(0.25 * sum.color));
   imageStore(targetWeight, texel, stored(vec4(0.25 * sum.weight)));
 }

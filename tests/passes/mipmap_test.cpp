@@ -162,6 +162,27 @@ TEST(Mipmap, ThinWallsStayOpaqueAndTwoSided) {
   }
 }
 
+// Cells that become empty are emptied at all levels.
+TEST(Mipmap, NothingStaysWhereSomethingWas) {
+  const VoxelScene s(mixedScene(), 16);
+  const auto radiance = radianceOf(s, [](auto&) { return glm::vec3(1); });
+  PassTest test("mipmap");
+  test.scene(s.scene);
+  setVoxels(test, s.voxels);
+  test.buffer("radiance", radiance, "VoxelRadiance");
+  test.buffer("weights", std::vector<float>(radiance.size(), 0.5f), "VoxelWeight");
+  test.run();
+  const std::vector<float> first = test.floats("mips.color");
+  EXPECT_GT(*std::max_element(first.begin(), first.end()), 0.5f);
+  test.set("voxels.index", std::vector<uint32_t>(s.voxels.index.size(), 0));
+  test.run();
+  for (const float v : test.floats("mips.color")) ASSERT_EQ(v, 0);
+  for (const float v : test.floats("mips.weight")) ASSERT_EQ(v, 0);
+  test.set("voxels.index", s.voxels.index);
+  test.run();
+  EXPECT_EQ(test.floats("mips.color"), first);
+}
+
 TEST(Mipmap, NothingThere) {
   const VoxelScene s({}, 8);
   const Mips m = runMips(s, std::vector<glm::vec4>(2, glm::vec4(7)), true).mips;
