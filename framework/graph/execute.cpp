@@ -280,6 +280,9 @@ void Executor::Impl::emitBarriers(const BarrierBatch& batch) {
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
     barrier.srcStageMask = b.srcStage;
     barrier.srcAccessMask = b.srcAccess;
+    // What the memory's last occupant wrote may have been flushed levels ago. Naming it again costs nothing and lets
+    // validation follow, which takes an overlap for one resource.
+    if (b.oldLayout == VK_IMAGE_LAYOUT_UNDEFINED) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
     barrier.dstStageMask = b.dstStage;
     barrier.dstAccessMask = b.dstAccess;
     barrier.oldLayout = b.oldLayout;

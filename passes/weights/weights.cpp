@@ -16,6 +16,7 @@ using namespace graph;
 
 constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere but in bricks.comp
 constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
+constexpr uint32_t kEscapePoints = 1024;  // screen points that the share of escaping paths is taken from
 constexpr uint32_t kBrick = 4;            // cells; shaders/weights/weights.glsl
 constexpr uint32_t kMostCompeting = 16384;  // VPLs that bricks.comp loops over, twice: below the 65,535 turns of a loop
 
@@ -33,9 +34,9 @@ class Weights : public Pass {
   void recordVoronoi(RecordContext& ctx);
 
   std::string strategy_;
-  uint32_t vplCount_ = 0, candidateCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
+  uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
   Kernel tally_, finish_;
-  Kernel points_, density_, pdf_, constant_;  // `pdf`, and `constant` after it
+  Kernel points_, escapes_, density_, pdf_, constant_;  // `pdf`, and `constant` after it
   Kernel brick_, nearest_, sum_;        // `area`
 };
 
@@ -55,9 +56,6 @@ PassDeclaration Weights::declaration() {
            member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
            member("face", image2D(), Usage::Sampled)},
           "surfaces seen by the eye, from which eye paths start");
-  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
-          "this frame's attempts to find a VPL, for the share that escapes; without them none does")
-      .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
   addScratch(d);
@@ -66,7 +64,8 @@ PassDeclaration Weights::declaration() {
               "paths from the region; `area` the surface nearest to the VPL (Voronoi)");
   d.parameter("region", choice("fovea", {"fovea", "image"}), "where the eye paths start: as in pass candidates");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-  d.parameter("points", integer(128, 8, 1024), "screen points that a density is averaged over, for `pdf` and `constant`");
+  d.parameter("points", integer(2048, 64, 4096),
+              "screen points that a density is averaged over, for `pdf` and `constant`; rays go to 64 of them");
   d.parameter("area_cap", real(4, 1, 1e6),
               "the most that A_l can be, in medians of all, for `pdf` and `constant`; also what a VPL stands for that the region "
               "does not see");
@@ -114,7 +113,6 @@ void Weights::prepare(PrepareContext& ctx) {
   const Parameters& p = ctx.parameters();
   strategy_ = p.text("strategy");
   vplCount_ = uint32_t(ctx.count("vpls"));
-  candidateCount_ = ctx.has("candidates") ? uint32_t(ctx.count("candidates")) : 0;
   sideCapacity_ = uint32_t(std::min(ctx.count("voxels.surface"), ctx.count("radiance")));
   bricks_ = (ctx.extent("voxels.index").width + kBrick - 1) / kBrick;
   const bool area = strategy_ == "area";
@@ -125,7 +123,7 @@ void Weights::prepare(PrepareContext& ctx) {
                     std::to_string(vplCount_),
                 "set weights.strategy to `pdf`, or use fewer VPLs");
   tally_ = ctx.compute("weights/tally.comp",
-                       {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}, {"HAS_CANDIDATES", candidateCount_ > 0 ? "1" : "0"}});
+                       {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   finish_ = ctx.compute("weights/finish.comp");
   if (area) {
     brick_ = ctx.compute("weights/bricks.comp");
@@ -134,6 +132,7 @@ void Weights::prepare(PrepareContext& ctx) {
     return;
   }
   points_ = ctx.compute("weights/points.comp");
+  escapes_ = ctx.compute("weights/escapes.comp");
   density_ = ctx.compute("weights/density.comp", {{"ONCE", strategy_ == "constant" ? "1" : "0"}});
   pdf_ = ctx.compute("weights/pdf.comp");
   if (strategy_ == "constant") constant_ = ctx.compute("weights/constant.comp");
@@ -141,12 +140,14 @@ void Weights::prepare(PrepareContext& ctx) {
 
 void Weights::recordDensities(RecordContext& ctx) {
   const uint32_t region = ctx.parameters().text("region") == "image" ? 1u : 0u;  // kRegionFovea, kRegionImage
-  ctx.use(points_).constant("region", region).dispatchThreads(uint32_t(ctx.parameters().integer("points")));
+  const uint32_t points = uint32_t(ctx.parameters().integer("points")), escapePoints = std::min(points, kEscapePoints);
+  ctx.use(points_).constant("region", region).dispatchThreads(points);
   ctx.barrier();
+  ctx.use(escapes_).constant("escapePoints", escapePoints).dispatchThreads(escapePoints);
   const uint32_t row = std::min(vplCount_, 32768u);
   ctx.use(density_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
   ctx.barrier();
-  ctx.use(pdf_).constant("vplCount", vplCount_).constant("candidateCount", candidateCount_).dispatch(1);
+  ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", escapePoints).dispatch(1);
   ctx.barrier();
   if (strategy_ != "constant") return;
   ctx.use(constant_).constant("vplCount", vplCount_).dispatch(1);
@@ -174,10 +175,7 @@ void Weights::record(RecordContext& ctx) {
   ctx.fill("bricks", 0);
   if (area) ctx.fill("sums", 0);
   ctx.barrier();
-  Commands tally = ctx.use(tally_);
-  tally.constant("vplCount", vplCount_).constant("sideCapacity", sideCapacity_);
-  if (candidateCount_ > 0) tally.constant("candidateCount", candidateCount_);
-  tally.dispatch(kTallyGroups);
+  ctx.use(tally_).constant("vplCount", vplCount_).constant("sideCapacity", sideCapacity_).dispatch(kTallyGroups);
   ctx.barrier();
   if (area)
     recordVoronoi(ctx);

@@ -5,8 +5,13 @@
 // from the one point that found the VPL. A VPL stands for the surface of a voxel: 1 / (pi d^2 + a) is the form factor of a
 // disc of area a, seen along its axis, over that area; so a point that happens to lie close by makes no spike. Points that
 // show the background start no path.
+//
+// Most of the sum comes from the few points that are close, so many points are needed, but not a ray for each: an
+// invocation sums its share without V and traces one ray, to a point drawn in proportion to the terms, the same one as long
+// as nothing moves. Its share times V of that point has the right mean.
 // Defines: ONCE 0/1: not once the total of `constant` is known.
 #include "common/scene.glsl"
+#include "common/random.glsl"
 #include "weights/weights.glsl"
 #include "weights/visible.glsl"
 
@@ -27,15 +32,30 @@ layout(push_constant) uniform Constants {
 
 shared float sums[64];
 
-float landing(VoxelGrid grid, int point, vec3 position, vec3 normal) {
-  vec4 from = texelFetch(screen, 3 * point);
+const uint kDensityStream = 0x64656e73u;
+
+// Of a path from a screen point that nothing stops.
+float landing(VoxelGrid grid, uint point, vec3 position, vec3 normal) {
+  vec4 from = texelFetch(screen, int(3u * point));
   vec3 to = position - from.xyz;
   float d2 = dot(to, to);
-  float cosines = max(dot(texelFetch(screen, 3 * point + 1).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
-  if (!(from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12)) return 0.0;
-  vec3 face = texelFetch(screen, 3 * point + 2).xyz;
-  if (!seesVpl(grid, from.xyz, face, position, normal)) return 0.0;
-  return cosines / (d2 * (kPi * d2 + grid.cell * grid.cell));
+  float cosines = max(dot(texelFetch(screen, int(3u * point + 1u)).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
+  return from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * (kPi * d2 + grid.cell * grid.cell)) : 0.0;
+}
+
+float seenShare(VoxelGrid grid, uint slot, uint lane, vec3 position, vec3 normal) {
+  float sum = 0.0;
+  for (uint i = lane; i < points; i += 64u) sum += landing(grid, i, position, normal);
+  if (!(sum > 0.0)) return 0.0;
+  float target = sum * uniformFloat(randomStream(0u, 0u, kDensityStream, 64u * slot + lane)), reached = 0.0;
+  uint chosen = lane;
+  for (uint i = lane; i < points; i += 64u) {
+    float term = landing(grid, i, position, normal);
+    if (term > 0.0 && reached <= target) chosen = i;
+    reached += term;
+  }
+  vec3 from = texelFetch(screen, int(3u * chosen)).xyz, face = texelFetch(screen, int(3u * chosen + 2u)).xyz;
+  return seesVpl(grid, from, face, position, normal) ? sum : 0.0;
 }
 
 void main() {
@@ -43,15 +63,11 @@ void main() {
   int first = int(min(slot, vplCount - 1u)) * kStateTexels;
   vec3 position = texelFetch(vpls, first).xyz;
   vec4 normalLife = texelFetch(vpls, first + 1);
-  VoxelGrid grid = voxelsGrid();
-  float sum = 0.0;
   bool wanted = normalLife.w > 0.0;
 #if ONCE
   wanted = wanted && kept.total == 0.0;
 #endif
-  if (wanted)
-    for (uint i = lane; i < points; i += 64u) sum += landing(grid, int(i), position, normalLife.xyz);
-  sums[lane] = sum;
+  sums[lane] = wanted ? seenShare(voxelsGrid(), slot, lane, position, normalLife.xyz) : 0.0;
   barrier();
   for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
     if (lane < half_) sums[lane] += sums[lane + half_];

@@ -1,7 +1,6 @@
 // Strategy `pdf`: A_l = 1 / (N p_A(x_l)). One work group.
 //
-// N is the number of eye paths that the list stands for: the VPLs alive, plus the paths that escaped, in proportion to
-// those of this frame's candidates.
+// N is the number of eye paths that the list stands for: the VPLs alive, plus the paths that escaped, in proportion.
 //
 // No density counts as less than the median's areaCap-th part. Without that bound the few VPLs that hardly any point sees,
 // and whose density is mostly error, would shine through everything; the contribution of a VPL to the region's mean,
@@ -22,7 +21,7 @@ layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, given
 
 layout(push_constant) uniform Constants {
   uint vplCount;
-  uint candidateCount;  // 0: not known
+  uint tried;  // as Totals::found, had none escaped
   float areaCap;
 };
 
@@ -65,7 +64,7 @@ void main() {
   float before = kept.median, median = medianDensity();
   if (!(median > 0.0)) median = before;
   float paths = float(totals.value.alive);
-  if (candidateCount > 0u && totals.value.hits > 0u) paths *= float(candidateCount) / float(totals.value.hits);
+  if (totals.value.found > 0u) paths *= float(tried) / float(totals.value.found);
   float least = median / areaCap;
   uint unseen = 0u, capped = 0u;
   for (uint i = lane; i < vplCount; i += 64u) {

@@ -1,6 +1,6 @@
-// Counts what the areas hang on: VPLs alive, candidates that hit something, surface of the voxels; marks the bricks that hold
+// Counts what the areas hang on: VPLs alive, surface of the voxels; marks the bricks that hold
 // sides (for `area`: to give away); and for `area` lists the VPLs that compete for them.
-// Defines: HAS_CANDIDATES 0/1; AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
+// Defines: AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
@@ -10,9 +10,6 @@ layout(set = 0) uniform samplerBuffer vpls;
 layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(set = 0, std430) buffer BricksBlock { uint list[]; } bricks;
 layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
-#if HAS_CANDIDATES
-layout(set = 0) uniform samplerBuffer candidates;
-#endif
 #if AREA
 layout(set = 0) uniform samplerBuffer radiance;
 layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
@@ -20,9 +17,6 @@ layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
 
 layout(push_constant) uniform Constants {
   uint vplCount;
-#if HAS_CANDIDATES
-  uint candidateCount;
-#endif
   uint sideCapacity;
 };
 
@@ -68,10 +62,4 @@ void main() {
   uint first = gl_GlobalInvocationID.x, stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   tallyVpls(first, stride);
   tallySides(first, stride);
-#if HAS_CANDIDATES
-  uint hits = 0u;
-  for (uint i = first; i < candidateCount; i += stride)
-    hits += uint(floatBitsToUint(texelFetch(candidates, int(i) * 4).w) != kNoSide);
-  if (hits > 0u) atomicAdd(totals.value.hits, hits);
-#endif
 }

@@ -8,7 +8,7 @@
 // numbers add up to the same sum in any order.
 struct Totals {
   uint alive;              // slots that hold a VPL
-  uint hits;               // candidates that found a surface
+  uint found;              // eye paths that found a surface: see escapes.comp
   uint areaLow, areaHigh;  // surface of all voxel sides
 };
 

@@ -4,13 +4,10 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/ray_scene.h"
 #include "tests/support/pass_test.h"
+#include "tests/support/path_reference.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -56,69 +53,6 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
       ASSERT_NEAR(radiance[i], direct[i] + indirect[i], 2e-3f * radiance[i]);
   }
 }
-
-// ---- Reference: paths of up to `bounces` diffuse reflections before the last, by the plainest means -----------------------
-
-class PathReference {
- public:
-  PathReference(const scene::Scene& s, const scene::Geometry& g) : scene_(s), geometry_(g), rays_(s, g) {}
-
-  // Indirect radiance towards the eye along a ray: two indirect bounces.
-  glm::dvec3 indirect(glm::vec3 origin, glm::vec3 direction, uint32_t pixel, int samples) const {
-    scene::SurfaceHit first;
-    if (!hit({origin, direction}, first)) return glm::dvec3(0);
-    const glm::dvec3 rho = albedo(first);
-    glm::dvec3 sum(0);
-    for (int k = 0; k < samples; ++k) {
-      scene::SurfaceHit at = first;
-      glm::dvec3 throughput = rho;
-      for (uint32_t bounce = 0; bounce < 2; ++bounce) {
-        const glm::vec3 w = cosineAround(at.shadingNormal, pixel, uint32_t(k), bounce);
-        if (glm::dot(w, at.geometricNormal) <= 0) break;
-        const glm::vec3 from = at.position + at.geometricNormal * rays_.epsilon();
-        if (!hit({from, w}, at)) break;
-        throughput *= albedo(at);
-        sum += throughput * direct(at) / kPi / double(samples);
-      }
-    }
-    return sum;
-  }
-
- private:
-  bool hit(const scene::Ray& ray, scene::SurfaceHit& at) const {
-    const scene::RayHit h = rays_.intersect(ray);
-    if (!h) return false;
-    at = surfaceAt(geometry_, h);
-    if (glm::dot(at.geometricNormal, ray.direction) > 0) {
-      at.geometricNormal = -at.geometricNormal;
-      at.shadingNormal = -at.shadingNormal;
-    }
-    return true;
-  }
-  glm::dvec3 albedo(const scene::SurfaceHit& at) const {
-    return glm::dvec3(reflectance(scene_, scene_.materials[at.material], at.uv));
-  }
-  glm::dvec3 direct(const scene::SurfaceHit& at) const {
-    glm::dvec3 e(0);
-    for (const scene::Light& light : scene_.lights) {
-      const scene::LightSample l = sampleLight(light, at.position);
-      const float cosine = glm::dot(at.shadingNormal, l.direction);
-      if (cosine <= 0 || glm::dot(at.geometricNormal, l.direction) <= 0) continue;
-      const glm::vec3 from = at.position + at.geometricNormal * rays_.epsilon();
-      if (!rays_.occluded({from, l.direction, 0, l.distance * 0.9999f})) e += double(cosine) * glm::dvec3(l.irradiance);
-    }
-    return e;
-  }
-  static glm::vec3 cosineAround(glm::vec3 n, uint32_t pixel, uint32_t sample, uint32_t bounce) {
-    const float u = uniformFloat(randomStream(77, pixel, 2 * bounce, sample));
-    const float v = uniformFloat(randomStream(77, pixel, 2 * bounce + 1, sample));
-    const float r = std::sqrt(u), phi = glm::two_pi<float>() * v;
-    return scene::toWorld(scene::orthonormalFrame(n), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
-  }
-  const scene::Scene& scene_;
-  const scene::Geometry& geometry_;
-  scene::RayScene rays_;
-};
 
 struct Comparison {
   glm::dvec3 meanRatio{0};

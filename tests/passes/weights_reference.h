@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/scene/fovea.h"
+#include "framework/scene/paraboloid.h"
 #include "framework/scene/voxel_trace.h"
 #include "framework/scene/vpl.h"
 #include "tests/passes/ray_reference.h"
@@ -71,7 +72,7 @@ inline glm::vec2 sequencePoint(uint32_t i) {
 struct WeightSettings {
   uint32_t region = scene::kRegionFovea;
   float foveaRadius = 0.25f;
-  uint32_t points = 128;
+  uint32_t points = 1024;
   double areaCap = 4, normalWeight = 0.5, offset = 0;
   bool litOnly = true;
   glm::vec2 gaze{0.5f};
@@ -124,27 +125,56 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
   return true;
 }
 
-// p_A of each slot, 1/m^2.
+// p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion to the terms.
 inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
                                      const std::vector<Seen>& points) {
   const scene::Voxels voxels = room.view();
-  const double cell = voxels.grid.cell;
+  const float cell = voxels.grid.cell;
   std::vector<double> result;
-  for (const scene::VplState& vpl : vpls) {
-    double sum = 0;
-    for (const Seen& s : points) {
-      const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
-      const double d2 = glm::dot(to, to);
-      const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) * std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
-      if (vpl.life > 0 && s.there && cosines > 1e-12 * d2 && d2 > 1e-12 && seesVpl(voxels, s, vpl))
-        sum += cosines / (d2 * (glm::pi<double>() * d2 + cell * cell));
+  for (uint32_t slot = 0; slot < vpls.size(); ++slot) {
+    const scene::VplState& vpl = vpls[slot];
+    const auto landing = [&](const Seen& s) {
+      const glm::vec3 to = vpl.position - s.position;
+      const float d2 = glm::dot(to, to);
+      const float cosines = std::max(glm::dot(s.normal, to), 0.0f) * std::max(-glm::dot(vpl.normal, to), 0.0f);
+      const bool counts = vpl.life > 0 && s.there && cosines > 1e-12f * d2 && d2 > 1e-12f;
+      return counts ? cosines / (d2 * (glm::pi<float>() * d2 + cell * cell)) : 0.0f;
+    };
+    double total = 0;
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+      float sum = 0, reached = 0;
+      for (size_t i = lane; i < points.size(); i += 64) sum += landing(points[i]);
+      if (!(sum > 0)) continue;
+      const float target = sum * uniformFloat(randomStream(0, 0, 0x64656e73u, 64 * slot + lane));
+      size_t chosen = lane;
+      for (size_t i = lane; i < points.size(); i += 64) {
+        const float term = landing(points[i]);
+        if (term > 0 && reached <= target) chosen = i;
+        reached += term;
+      }
+      if (seesVpl(voxels, points[chosen], vpl)) total += sum;
     }
-    result.push_back(sum / double(points.size()));
+    result.push_back(total / double(points.size()));
   }
   return result;
 }
 
-// escaping: attempts of the candidates for each that hit something, 1: all do.
+// Attempts for each that finds a surface: one diffuse bounce from each of the first 1024 points.
+inline double escaping(const Room& room, const std::vector<Seen>& points) {
+  const uint32_t tried = std::min(uint32_t(points.size()), 1024u);
+  uint32_t found = 0;
+  for (uint32_t i = 0; i < tried; ++i) {
+    if (!points[i].there) continue;
+    const glm::vec2 u = scene::streamPoint(randomStream(0, 0, 0x65736361u, i), 0);
+    const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
+    const glm::vec3 local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x));
+    const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(points[i].normal), local);
+    found += scene::traceVoxels(room.view(), points[i].position, direction, points[i].normal).side != scene::kNoSide;
+  }
+  return found > 0 ? double(tried) / found : 1;
+}
+
+// escaping: attempts for each that finds a surface.
 inline std::vector<double> pdfAreas(const std::vector<scene::VplState>& vpls, const std::vector<double>& p, double areaCap,
                                     double escaping) {
   std::vector<double> seen, areas;

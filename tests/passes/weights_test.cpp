@@ -61,7 +61,6 @@ struct Inputs {
   const Room* room = nullptr;
   std::vector<scene::VplState> vpls;
   std::vector<glm::vec4> radiosity, radiance;
-  std::vector<scene::Candidate> candidates;  // empty: not wired
 };
 
 Inputs inputs(const Room& room, std::vector<scene::VplState> vpls) {
@@ -97,7 +96,6 @@ void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSe
   setVoxels(test, room.voxels);
   test.buffer("vpls", in.vpls, "VplState").buffer("radiosity", in.radiosity, "VplRadiosity");
   test.buffer("radiance", in.radiance, "VoxelRadiance");
-  if (!in.candidates.empty()) test.buffer("candidates", in.candidates, "Candidate");
 }
 
 std::vector<scene::Vpl> weigh(const Inputs& in, const char* strategy, const WeightSettings& settings = {}) {
@@ -151,7 +149,7 @@ TEST(Weights, PdfEqualsTheReference) {
   for (const uint32_t region : {scene::kRegionFovea, scene::kRegionImage}) {
     WeightSettings settings;
     settings.region = region;
-    settings.points = region == scene::kRegionFovea ? 128 : 100;
+    settings.points = region == scene::kRegionFovea ? 1024 : 100;
     settings.gaze = region == scene::kRegionFovea ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.5f);  // a clipped disc
     const auto candidates = candidatesOf(room, 400, settings);
     Inputs in = inputs(room, vplsOf(room, candidates));
@@ -160,22 +158,34 @@ TEST(Weights, PdfEqualsTheReference) {
     for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = {0.1f * i, 2, 0.5f, 1};
     const auto p = densities(room, in.vpls, screenPoints(room, settings));
     // A test of visibility or a pixel may fall to the other side by rounding.
-    EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, 1), 1e-4), 4);
-
-    in.candidates = candidates;
-    for (size_t i = 0; i < in.candidates.size(); i += 3) in.candidates[i] = {};  // escaped
-    int hits = 0;
-    for (const scene::Candidate& c : in.candidates) hits += c.side != scene::kNoSide;
-    const double escaping = double(in.candidates.size()) / hits;
-    EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, escaping), 1e-4), 4);
+    // A ray that loses one of 64 shares by rounding changes an area by a percent or two.
+    const double share = escaping(room, screenPoints(room, settings));
+    EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, share), 3e-4), 8);
   }
+}
+
+// The share that escapes belongs to the paths: a room of which only two walls are left.
+TEST(Weights, PathsThatEscapeCount) {
+  scene::Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  addQuad(s, 0, {-2, -2, -2}, {4, 0, 0}, {0, 4, 0});  // looked at
+  addQuad(s, 0, {-2, -2, 2}, {4, 0, 0}, {0, 0, -4});  // the floor
+  const Room room = lookInto(std::move(s), 32, glm::ivec2(64));
+  WeightSettings settings;
+  const auto candidates = candidatesOf(room, 3000, settings);
+  const Inputs in = inputs(room, vplsOf(room, candidates));
+  const auto points = screenPoints(room, settings);
+  const double share = escaping(room, points);
+  EXPECT_GT(share, 2);
+  EXPECT_NEAR(share, double(candidates.size()) / double(in.vpls.size()), 0.1 * share);
+  const auto want = pdfAreas(in.vpls, densities(room, in.vpls, points), 4, share);
+  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, want, 3e-4), int(want.size() / 50));
 }
 
 TEST(Weights, PdfSpreadsOverTheSurfaceThatIsReached) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
-  settings.points = 512;
-  settings.areaCap = 1000;
+  settings.areaCap = 16;  // few VPLs in edges, between two walls, are hardly seen
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 2000, settings)));
   const auto list = weigh(in, "pdf", settings);
   // The wall that is looked at: most of it is reached by no path of its own region, 5/6 of 96 m^2 are.
@@ -244,7 +254,7 @@ TEST(Weights, AConstantStaysWhatTheFirstFrameMadeIt) {
   WeightSettings settings;
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
   for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = glm::vec4(float(i % 7));
-  const auto areas = pdfAreas(in.vpls, densities(room, in.vpls, screenPoints(room, settings)), 4, 1);
+  const auto areas = pdfAreas(in.vpls, densities(room, in.vpls, screenPoints(room, settings)), 4, escaping(room, screenPoints(room, settings)));
   double flux = 0, sum = 0;
   for (size_t i = 0; i < areas.size(); ++i) {
     flux += in.radiosity[i].w * areas[i];
@@ -314,8 +324,9 @@ TEST(Weights, OneVplStandsForAll) {
   for (const scene::VoxelSide& s : room.voxels.surface) all += s.area;
   EXPECT_NEAR(weigh(in, "area")[0].area, all, 1e-5 * all);
   const auto p = densities(room, in.vpls, screenPoints(room, settings));
-  EXPECT_NEAR(weigh(in, "pdf")[0].area, 1 / p[0], 1e-3 / p[0]);
-  EXPECT_NEAR(weigh(in, "constant")[0].area, 1 / p[0], 1e-3 / p[0]);
+  const double want = 1 / (p[0] * escaping(room, screenPoints(room, settings)));
+  EXPECT_NEAR(weigh(in, "pdf", settings)[0].area, want, 1e-3 * want);
+  EXPECT_NEAR(weigh(in, "constant", settings)[0].area, want, 1e-3 * want);
 }
 
 TEST(Weights, NothingLit) {
@@ -334,7 +345,7 @@ TEST(Weights, FoveaOutsideAndBackground) {
   settings.gaze = {3, -2};
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 100, settings)));
   const auto p = densities(room, in.vpls, screenPoints(room, settings));
-  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, 1), 1e-4), 1);
+  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, escaping(room, screenPoints(room, settings))), 3e-4), 4);
   for (Seen& s : room.pixels) s.there = false;
   for (const char* strategy : {"constant", "pdf"})
     for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.area, 0) << strategy;

@@ -1,0 +1,29 @@
+// Strategies `pdf` and `constant`: the share of the eye paths that find a surface, from one diffuse bounce at each of the
+// first screen points, the same ones as long as nothing moves. Counting this frame's candidates instead would make a still
+// picture tremble.
+#include "common/scene.glsl"
+#include "common/fovea.glsl"
+#include "common/paraboloid.glsl"
+#include "weights/weights.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0) uniform samplerBuffer screen;
+layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
+
+layout(push_constant) uniform Constants { uint escapePoints; };
+
+const uint kEscapeStream = 0x65736361u;
+
+void main() {
+  uint point = gl_GlobalInvocationID.x;
+  if (point >= escapePoints) return;
+  vec4 from = texelFetch(screen, int(3u * point));
+  if (!(from.w > 0.0)) return;
+  vec3 normal = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
+  vec2 u = streamPoint(randomStream(0u, 0u, kEscapeStream, point), 0u);
+  float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+  vec3 direction = toWorld(orthonormalFrame(normal), vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x)));
+  direction -= 2.0 * min(dot(direction, face), 0.0) * face;  // as pass candidates: not below the surface
+  if (traceVoxels(voxelsGrid(), from.xyz, direction, face).side != kNoSide) atomicAdd(totals.value.found, 1u);
+}
