@@ -79,7 +79,8 @@ std::vector<VkBufferImageCopy> packedMips(const Image& image, uint64_t bytes) {
     VkBufferImageCopy copy = firstMip(image);
     copy.bufferOffset = offset;
     copy.imageSubresource.mipLevel = mip;
-    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip), std::max(1u, d.depth >> mip)};
+    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip),
+                        std::max(1u, d.depth >> mip)};
     offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
               formatInfo(d.format).bytesPerTexel;
     copies.push_back(copy);

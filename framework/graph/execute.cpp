@@ -1,4 +1,5 @@
-// The frame loop: barriers of the plan, commands of the passes, timestamps, staging for host passes, readback.
+// The frame loop: barriers of the plan, commands of the passes, timestamps, staging for host passes,
+// readback.
 #include "framework/graph/execute.h"
 
 #include <algorithm>
@@ -66,13 +67,13 @@ struct Slot {
   std::vector<VkCommandBuffer> commands;  // one a segment: host passes with GPU inputs split the frame
   VkFence fence = VK_NULL_HANDLE;
   VkQueryPool queries = VK_NULL_HANDLE;
-  gpu::Buffer counters;                                 // readback
+  gpu::Buffer counters;                                      // readback
   std::vector<std::pair<std::string, gpu::Buffer>> outputs;  // readback
   bool busy = false, readOutputs = false;
   uint64_t frame = 0;
   double cpuMs = 0;
   Clock::time_point submitted;
-  std::vector<double> passCpuMs;                 // in execution order
+  std::vector<double> passCpuMs;                   // in execution order
   std::vector<std::vector<double>> counterValues;  // per pass, as set by the CPU
   std::vector<std::vector<bool>> counterSet;
 };
@@ -155,10 +156,11 @@ void Executor::Impl::buildPasses(const Registry& registry) {
     pass->counterOffset = counterBytes;
     counterBytes += (pass->counterValues.size() * sizeof(uint32_t) + alignment - 1) / alignment * alignment;
   }
-  state.counters = gpu::Buffer(device, {"counters", std::max<uint64_t>(counterBytes, 16),
-                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                        gpu::MemoryKind::Device});
+  state.counters =
+      gpu::Buffer(device, {"counters", std::max<uint64_t>(counterBytes, 16),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                               VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           gpu::MemoryKind::Device});
   for (uint32_t index : order) {
     if (passes[index]->bound->declaration->kind == PassKind::Host) buildStaging(*passes[index]);
     PrepareContext context(*passes[index]);
@@ -200,27 +202,31 @@ void Executor::Impl::buildSlot(Slot& slot) {
   for (uint32_t index : order) {
     const BoundPass& pass = *passes[index]->bound;
     if (pass.declaration->kind != PassKind::Host) continue;
-    segments += std::any_of(pass.accesses.begin(), pass.accesses.end(), [](const Access& a) { return a.reads; });
+    segments +=
+        std::any_of(pass.accesses.begin(), pass.accesses.end(), [](const Access& a) { return a.reads; });
   }
   slot.commands.resize(segments);
   VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   allocate.commandPool = slot.pool;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = segments;
-  gpu::check(vkAllocateCommandBuffers(device.handle(), &allocate, slot.commands.data()), "allocating command buffers");
+  gpu::check(vkAllocateCommandBuffers(device.handle(), &allocate, slot.commands.data()),
+             "allocating command buffers");
   VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   gpu::check(vkCreateFence(device.handle(), &fence, nullptr, &slot.fence), "creating a fence");
   VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
   queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
   queries.queryCount = queryCount();
-  gpu::check(vkCreateQueryPool(device.handle(), &queries, nullptr, &slot.queries), "creating timestamp queries");
-  slot.counters = gpu::Buffer(device, {"counters readback", state.counters.bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                       gpu::MemoryKind::Readback});
+  gpu::check(vkCreateQueryPool(device.handle(), &queries, nullptr, &slot.queries),
+             "creating timestamp queries");
+  slot.counters = gpu::Buffer(device, {"counters readback", state.counters.bytes(),
+                                       VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback});
   for (const std::string& name : options.readback) {
     const BoundResource& resource = plan->graph->resources[outputResource(name)];
     slot.outputs.emplace_back(
-        name, gpu::Buffer(device, {"readback of output " + name, std::max<uint64_t>(16, resourceBytes(resource.desc)),
-                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback}));
+        name, gpu::Buffer(device,
+                          {"readback of output " + name, std::max<uint64_t>(16, resourceBytes(resource.desc)),
+                           VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback}));
   }
   slot.counterValues.resize(order.size());
   slot.counterSet.resize(order.size());
@@ -234,9 +240,10 @@ void Executor::Impl::bindViews(const scene::Frame& frame) {
     const auto view = std::find_if(frame.views.begin(), frame.views.end(),
                                    [&](const scene::View& v) { return v.name == name; });
     if (view == frame.views.end())
-      throw Error(ExitCode::BadInput, "pass `" + pass.bound->name + "` looks through view `" + name +
-                                          "`, which this frame does not have",
-                  "give the frame a view of that name, or change `view` in the graph file");
+      throw Error(
+          ExitCode::BadInput,
+          "pass `" + pass.bound->name + "` looks through view `" + name + "`, which this frame does not have",
+          "give the frame a view of that name, or change `view` in the graph file");
     pass.viewIndex = static_cast<uint32_t>(view - frame.views.begin());
     pass.viewOffset = gpuScene.viewOffset(pass.viewIndex);
   }
@@ -258,7 +265,8 @@ void Executor::Impl::submitSegment(Slot& slot, bool last) {
   submit.pCommandBufferInfos = &command;
   gpu::check(vkQueueSubmit2(device.queue(), 1, &submit, slot.fence), "submitting a frame");
   if (last) return;
-  gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a host pass's inputs");
+  gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX),
+             "waiting for a host pass's inputs");
   gpu::check(vkResetFences(device.handle(), 1, &slot.fence), "resetting a fence");
   ++segment;
   beginSegment(slot);
@@ -280,8 +288,8 @@ void Executor::Impl::emitBarriers(const BarrierBatch& batch) {
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
     barrier.srcStageMask = b.srcStage;
     barrier.srcAccessMask = b.srcAccess;
-    // What the memory's last occupant wrote may have been flushed levels ago. Naming it again costs nothing and lets
-    // validation follow, which takes an overlap for one resource.
+    // What the memory's last occupant wrote may have been flushed levels ago. Naming it again costs nothing
+    // and lets validation follow, which takes an overlap for one resource.
     if (b.oldLayout == VK_IMAGE_LAYOUT_UNDEFINED) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
     barrier.dstStageMask = b.dstStage;
     barrier.dstAccessMask = b.dstAccess;
@@ -310,8 +318,8 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
     waits = true;
   }
   if (waits) {
-    memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                  VK_ACCESS_2_HOST_READ_BIT);
+    memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
     submitSegment(slot, false);
   }
   HostContext context(pass, frame, frameCount);
@@ -329,8 +337,8 @@ void Executor::Impl::runPass(Slot& slot, PassInstance& pass, const scene::Frame&
   std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
   device.beginLabel(cmd, pass.bound->name.c_str());
   vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 1 + 2 * position);
-  // Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty barrier is one)
-  // a pass of dispatches alone would start after its own work.
+  // Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an
+  // empty barrier is one) a pass of dispatches alone would start after its own work.
   if (device.isCpu()) {
     const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     vkCmdPipelineBarrier2(cmd, &nothing);
@@ -350,20 +358,20 @@ void Executor::Impl::runPass(Slot& slot, PassInstance& pass, const scene::Frame&
 }
 
 void Executor::Impl::recordReadback(Slot& slot) {
-  memoryBarrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
-                VK_ACCESS_2_TRANSFER_READ_BIT);
+  memoryBarrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const VkBufferCopy all{0, 0, state.counters.bytes()};
   vkCmdCopyBuffer(cmd, state.counters.handle(), slot.counters.handle(), 1, &all);
   if (slot.readOutputs) {
     for (auto& [name, buffer] : slot.outputs) {
       const uint32_t resource = outputResource(name);
       const BoundResource& r = plan->graph->resources[resource];
-      copyToStaging(cmd, state.resources[resource], r.history ? state.parity : 0, plan->endLayout[resource], buffer,
-                    resourceBytes(r.desc));
+      copyToStaging(cmd, state.resources[resource], r.history ? state.parity : 0, plan->endLayout[resource],
+                    buffer, resourceBytes(r.desc));
     }
   }
-  memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                VK_ACCESS_2_HOST_READ_BIT);
+  memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
 bool Executor::Impl::isFinished(uint32_t slotIndex) const {
@@ -376,8 +384,9 @@ void Executor::Impl::finish(uint32_t slotIndex) {
   gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a frame");
   const auto now = Clock::now();
   std::vector<uint64_t> ticks(queryCount());
-  gpu::check(vkGetQueryPoolResults(device.handle(), slot.queries, 0, queryCount(), ticks.size() * sizeof(uint64_t),
-                                   ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  gpu::check(vkGetQueryPoolResults(device.handle(), slot.queries, 0, queryCount(),
+                                   ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                                   VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
              "reading timestamps");
   const double toMs = device.timestampPeriodNs() * 1e-6;
   FrameResult result;
@@ -427,8 +436,9 @@ void Executor::setInput(const std::string& name, std::span<const std::byte> byte
     if (!resource.external || resource.name != name) continue;
     if (!impl_->plan->resourceLive[i]) return;
     if (bytes.size() != resourceBytes(resource.desc))
-      throw Error(ExitCode::BadInput, "input `" + name + "` wants " + std::to_string(resourceBytes(resource.desc)) +
-                                          " bytes, got " + std::to_string(bytes.size()));
+      throw Error(ExitCode::BadInput, "input `" + name + "` wants " +
+                                          std::to_string(resourceBytes(resource.desc)) + " bytes, got " +
+                                          std::to_string(bytes.size()));
     impl_->device.waitIdle();
     if (resource.desc.kind == ResourceKind::Image)
       gpu::upload(impl_->device, impl_->state.resources[i].images[0], bytes, impl_->plan->startLayout[i][0]);
@@ -465,12 +475,14 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   e.beginSegment(slot);
   vkCmdResetQueryPool(e.cmd, slot.queries, 0, e.queryCount());
   vkCmdWriteTimestamp2(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 0);
-  memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+                VK_ACCESS_2_TRANSFER_WRITE_BIT);
   vkCmdFillBuffer(e.cmd, e.state.counters.handle(), 0, VK_WHOLE_SIZE, 0);
   e.gpuScene.recordMoves(e.cmd, slotIndex);
   memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+                VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
   if (e.state.viewReset) zeroKeptResources(e.state, e.cmd, e.state.sceneReset);
   uint32_t position = 0;
   for (const Level& level : e.plan->levels) {

@@ -1,4 +1,5 @@
-// Replays a plan on a device, frame after frame, without allocating, compiling, waiting or reading back inside the loop.
+// Replays a plan on a device, frame after frame, without allocating, compiling, waiting or reading back
+// inside the loop.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +33,8 @@ struct ExecutorOptions {
   std::vector<std::string> readback;  // graph outputs that frames may ask to have read back
 };
 
-// Milliseconds. gpu: between the timestamps around the pass; cpu: recording it, or executing it if it is a host pass.
+// Milliseconds. gpu: between the timestamps around the pass; cpu: recording it, or executing it if it is a
+// host pass.
 struct PassTiming {
   uint32_t pass = 0;  // index into BoundGraph::passes
   double gpuMs = 0, cpuMs = 0;
@@ -44,13 +46,13 @@ struct OutputData {
 };
 
 struct FrameResult {
-  uint64_t frame = 0;     // Frame::index
-  double gpuMs = 0;       // first to last timestamp
-  double cpuMs = 0;       // recording and host passes
-  double wallMs = 0;      // since the previous frame was finished; the first frame: since it was submitted
-  std::vector<PassTiming> passes;                                    // in order of execution
-  std::vector<std::pair<std::string, double>> counters;              // "deferred.pairs"
-  std::map<std::string, OutputData> outputs;                         // only when asked for
+  uint64_t frame = 0;  // Frame::index
+  double gpuMs = 0;    // first to last timestamp
+  double cpuMs = 0;    // recording and host passes
+  double wallMs = 0;   // since the previous frame was finished; the first frame: since it was submitted
+  std::vector<PassTiming> passes;                        // in order of execution
+  std::vector<std::pair<std::string, double>> counters;  // "deferred.pairs"
+  std::map<std::string, OutputData> outputs;             // only when asked for
 };
 
 // Memory that a bound resource needs on the device; feeds the aliasing phase.
@@ -62,23 +64,25 @@ CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const B
 // The views that scene::makeFrame gives every frame.
 std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
 
-// What a graph is bound to: views, the device's limits (device may be null: unknown) and the scene's quantities.
-Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,
+// What a graph is bound to: views, the device's limits (device may be null: unknown) and the scene's
+// quantities.
+Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
+                             const scene::Geometry& geometry,
                              std::vector<std::pair<std::string, VkExtent2D>> views);
 
 class Executor {
  public:
-  // Allocates all memory and prepares all passes (compiles their shaders). Throws Error(OutOfMemory) naming the resource
-  // and its size, Error(BadInput) for shaders that do not compile or bind.
-  Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry, scene::GpuScene& scene,
-           const ExecutorOptions& options = {});
+  // Allocates all memory and prepares all passes (compiles their shaders). Throws Error(OutOfMemory) naming
+  // the resource and its size, Error(BadInput) for shaders that do not compile or bind.
+  Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,
+           scene::GpuScene& scene, const ExecutorOptions& options = {});
   ~Executor();
 
   // Contents of an input of the whole graph ("radiance", "gbuffer.position"); kept until set again. Waits.
   void setInput(const std::string& name, std::span<const std::byte> bytes);
 
-  // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that reads
-  // what this frame's GPU passes wrote.
+  // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass
+  // that reads what this frame's GPU passes wrote.
   void submit(const scene::Frame& frame, bool readOutputs = false);
 
   // The oldest frame that has finished and was not returned yet; nullopt if there is none. Never blocks.

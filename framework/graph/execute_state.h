@@ -17,7 +17,8 @@
 
 namespace fovea::graph {
 
-// The memory behind one BoundResource. History has two copies that change places every frame; others use [0] only.
+// The memory behind one BoundResource. History has two copies that change places every frame; others use [0]
+// only.
 struct PhysicalResource {
   std::array<gpu::Image, 2> images;
   std::array<gpu::Buffer, 2> buffers;
@@ -41,8 +42,8 @@ struct ExecutorState {
   const Plan* plan = nullptr;
   VkDescriptorSetLayout sharedLayout = VK_NULL_HANDLE;
   std::vector<PhysicalResource> resources;
-  gpu::Buffer counters;      // uint32 counters of all passes, zeroed every frame
-  gpu::Buffer dummyBuffer;   // stands in for optional inputs that are not wired
+  gpu::Buffer counters;     // uint32 counters of all passes, zeroed every frame
+  gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
   std::vector<VkDeviceMemory> heaps;
 
   // This frame.
@@ -95,16 +96,16 @@ struct PassInstance {
   const BoundPass* bound = nullptr;
   uint32_t index = 0;  // in BoundGraph::passes
   std::unique_ptr<Pass> pass;
-  NameMap<uint32_t> accessByPath;   // "radiance", "gbuffer.position"
+  NameMap<uint32_t> accessByPath;    // "radiance", "gbuffer.position"
   NameMap<uint32_t> accessByShader;  // "radiance", "gbufferPosition"
   NameMap<uint32_t> counterByName;
-  std::deque<KernelState> kernels;     // stable addresses
-  std::vector<double> counterValues;   // set by the CPU
+  std::deque<KernelState> kernels;    // stable addresses
+  std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;
-  uint64_t counterOffset = 0;          // bytes into ExecutorState::counters
-  std::vector<HostStaging> staging;    // host passes: one an access
-  uint32_t viewIndex = 0;              // into Frame::views, this frame
-  uint32_t viewOffset = 0;             // of that view in the shared set's dynamic uniform buffer
+  uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
+  std::vector<HostStaging> staging;  // host passes: one an access
+  uint32_t viewIndex = 0;            // into Frame::views, this frame
+  uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
 
   PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation);
   const Access& access(std::string_view path) const;  // throws Error(Internal) with the nearest port
@@ -119,8 +120,8 @@ gpu::ImageDesc imageDesc(const BoundResource& resource);
 void allocateResources(ExecutorState& state);
 void freeResources(ExecutorState& state);
 uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, all layers
-// Zeroes kept and history resources whose lifetime is at least `view` (all of them when `scene`), leaving images in the
-// layout the plan expects at the start of a frame.
+// Zeroes kept and history resources whose lifetime is at least `view` (all of them when `scene`), leaving
+// images in the layout the plan expects at the start of a frame.
 void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene);
 VkImageSubresourceRange wholeImage(const gpu::Image& image);
 // Copies between an image (all mips, all layers) and a tightly packed buffer.

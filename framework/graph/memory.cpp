@@ -92,7 +92,8 @@ std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image) {
     VkBufferImageCopy copy{};
     copy.bufferOffset = offset;
     copy.imageSubresource = {image.aspect(), mip, 0, d.layers};
-    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip), std::max(1u, d.depth >> mip)};
+    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip),
+                        std::max(1u, d.depth >> mip)};
     offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
               gpu::formatInfo(d.format).bytesPerTexel;
     copies.push_back(copy);
@@ -104,7 +105,8 @@ uint64_t resourceBytes(const ResourceDesc& d) {
   if (d.kind == ResourceKind::Buffer) return uint64_t(d.stride) * d.count;
   uint64_t texels = 0;
   for (uint32_t mip = 0; mip < d.mips; ++mip)
-    texels += uint64_t(std::max(1u, d.width >> mip)) * std::max(1u, d.height >> mip) * std::max(1u, d.depth >> mip);
+    texels +=
+        uint64_t(std::max(1u, d.width >> mip)) * std::max(1u, d.height >> mip) * std::max(1u, d.depth >> mip);
   return texels * d.layers * gpu::formatInfo(d.format).bytesPerTexel;
 }
 
@@ -155,7 +157,9 @@ MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource) {
 CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph) {
   CompileOptions options;
   options.granularity = device.limits().bufferImageGranularity;
-  options.memory = [&device, graph](uint32_t resource) { return deviceMemory(device, graph->resources[resource]); };
+  options.memory = [&device, graph](uint32_t resource) {
+    return deviceMemory(device, graph->resources[resource]);
+  };
   return options;
 }
 
@@ -165,12 +169,14 @@ std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
   return views;
 }
 
-Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene, const scene::Geometry& geometry,
+Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
+                             const scene::Geometry& geometry,
                              std::vector<std::pair<std::string, VkExtent2D>> views) {
   Environment environment;
   environment.views = std::move(views);
   int64_t shadowLayers = 0;
-  for (const scene::Light& light : scene.lights) shadowLayers += light.type == scene::LightType::Point ? 6 : 1;
+  for (const scene::Light& light : scene.lights)
+    shadowLayers += light.type == scene::LightType::Point ? 6 : 1;
   auto add = [&](const char* name, int64_t value) {
     environment.quantities.emplace_back(name, std::max<int64_t>(1, value));
   };
@@ -208,7 +214,8 @@ void allocateResources(ExecutorState& state) {
 
 void freeResources(ExecutorState& state) {
   state.resources.clear();
-  for (size_t i = 0; i < state.heaps.size(); ++i) state.device->release(state.heaps[i], state.plan->heaps[i].bytes);
+  for (size_t i = 0; i < state.heaps.size(); ++i)
+    state.device->release(state.heaps[i], state.plan->heaps[i].bytes);
   state.heaps.clear();
 }
 

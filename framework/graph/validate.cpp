@@ -169,9 +169,11 @@ class Validator {
         const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
                                     [&](const ParameterSpec& s) { return s.name == term.name; });
         using Type = ParameterSpec::Type;
-        if (p == d_.parameters.end() || (p->type != Type::Int && p->type != Type::Choice && p->type != Type::Bool))
-          wrong(fmt::format("port `{}`: size `{}` is over `{}`, which is no whole-number parameter, choice or flag",
-                            path, size.print(), term.name));
+        if (p == d_.parameters.end() ||
+            (p->type != Type::Int && p->type != Type::Choice && p->type != Type::Bool))
+          wrong(fmt::format(
+              "port `{}`: size `{}` is over `{}`, which is no whole-number parameter, choice or flag", path,
+              size.print(), term.name));
       } else if (term.op >= Op::PortWidth && term.op <= Op::PortCount) {
         checkSizePort(size, term, path);
       }

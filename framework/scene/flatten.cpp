@@ -26,8 +26,8 @@ std::vector<bool> dynamicNodes(const Scene& scene) {
   return dynamic;
 }
 
-// The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det, and it exists
-// for flattened (singular) transforms too.
+// The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det,
+// and it exists for flattened (singular) transforms too.
 glm::mat3 normalMatrix(const glm::mat4& m) {
   const glm::mat3 a(m);
   const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;

@@ -1,4 +1,5 @@
-// The fovea on the image plane, on the CPU: the same formulas as shaders/common/fovea.glsl, where they are explained.
+// The fovea on the image plane, on the CPU: the same formulas as shaders/common/fovea.glsl, where they are
+// explained.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,8 @@ inline glm::vec2 streamPoint(uint32_t stream, uint32_t draw) {
   return {uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u))};
 }
 
-// A pixel: uniform over the disc's part inside the image, or over the whole image (also when the disc lies outside).
+// A pixel: uniform over the disc's part inside the image, or over the whole image (also when the disc lies
+// outside).
 inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 imageSize, uint32_t stream) {
   const glm::vec2 low(0.0f), high(imageSize);
   const glm::vec2 off = glm::max(glm::max(-fovea.centre, fovea.centre - high), glm::vec2(0.0f));
@@ -43,9 +45,11 @@ inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 i
   const glm::vec2 across(off.y, off.x);
   const glm::vec2 reach = glm::sqrt(glm::max(radius2 - across * across, glm::vec2(0.0f)));
   if (region == kRegionFovea && glm::dot(off, off) < radius2) {
-    const glm::vec2 boxLow = glm::max(low, fovea.centre - reach), boxHigh = glm::min(high, fovea.centre + reach);
+    const glm::vec2 boxLow = glm::max(low, fovea.centre - reach),
+                    boxHigh = glm::min(high, fovea.centre + reach);
     for (uint32_t i = 0; i < kRegionTries; ++i) {
-      const glm::vec2 position = glm::mix(boxLow, boxHigh, streamPoint(stream, 2u * i)), d = position - fovea.centre;
+      const glm::vec2 position = glm::mix(boxLow, boxHigh, streamPoint(stream, 2u * i)),
+                      d = position - fovea.centre;
       if (glm::dot(d, d) <= radius2) return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
     }
   }

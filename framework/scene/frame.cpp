@@ -75,13 +75,15 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
   const double before = index > 0 ? double(index - 1) / framesPerSecond : f.time;
   const Camera camera = cameraAt(scene, f.time), previousCamera = cameraAt(scene, before);
   const GazeSample gaze = gazeAt(scene.gaze, f.time);
-  const glm::vec2 gazes[] = {gaze.position, gaze.left.value_or(gaze.position), gaze.right.value_or(gaze.position)};
+  const glm::vec2 gazes[] = {gaze.position, gaze.left.value_or(gaze.position),
+                             gaze.right.value_or(gaze.position)};
   const float sides[] = {0, -1, 1};
   for (size_t i = 0; i < std::size(kViewNames); ++i) {
     View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i]);
     view.name = kViewNames[i];
     if (index > 0)
-      view.previousWorldToClip = makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry).worldToClip;
+      view.previousWorldToClip =
+          makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry).worldToClip;
     f.views.push_back(std::move(view));
   }
   f.objects = objectsAt(scene, geometry, f.time, before);

@@ -16,7 +16,8 @@ namespace fovea::scene {
 
 namespace {
 
-// ---- The blocks of shaders/common/scene.glsl, std140 ---------------------------------------------------------------
+// ---- The blocks of shaders/common/scene.glsl, std140
+// ---------------------------------------------------------------
 
 struct FrameBlock {
   uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
@@ -65,7 +66,8 @@ glm::vec2 octEncode(glm::vec3 n) {
   return {(1 - std::abs(n.y)) * (n.x >= 0 ? 1.0f : -1.0f), (1 - std::abs(n.x)) * (n.y >= 0 ? 1.0f : -1.0f)};
 }
 
-constexpr VkBufferUsageFlags kTexelUsage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr VkBufferUsageFlags kTexelUsage =
+    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
 // A buffer with at least one (zero) element: empty ones do not exist in Vulkan.
 template <class T>
@@ -107,7 +109,8 @@ void checkCount(const char* what, size_t count, size_t limit) {
 
 ObjectTexels objectEntry(const ObjectTransform& o) {
   ObjectTexels texels;
-  const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld), glm::transpose(o.toObject)};
+  const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld),
+                            glm::transpose(o.toObject)};
   for (int i = 0; i < 3; ++i)
     texels.toWorld[i] = rows[0][i], texels.previous[i] = rows[1][i], texels.toObject[i] = rows[2][i];
   texels.flags = glm::vec4(o.visible, o.previousVisible, 0, 0);
@@ -123,11 +126,13 @@ LightBlock::Light lightEntry(const Light& light, uint32_t firstShadowLayer) {
 
 ViewBlock viewEntry(const View& v) {
   const glm::vec2 size = glm::max(glm::vec2(v.size), glm::vec2(1));
-  return {v.worldToView, v.viewToClip, v.worldToClip, v.clipToWorld, v.previousWorldToClip, glm::vec4(v.eye, 1),
-          glm::vec4(v.gaze, 0, 0), glm::vec4(size, 1.0f / size)};
+  return {v.worldToView,         v.viewToClip,        v.worldToClip,           v.clipToWorld,
+          v.previousWorldToClip, glm::vec4(v.eye, 1), glm::vec4(v.gaze, 0, 0), glm::vec4(size, 1.0f / size)};
 }
 
-uint64_t alignUp(uint64_t value, uint64_t alignment) { return (value + alignment - 1) / alignment * alignment; }
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
 
 }  // namespace
 
@@ -139,7 +144,8 @@ struct GpuScene::Impl {
   gpu::Buffer indices, triangles, positions, attributes, materials, srgb, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;  // one a slot
-  std::vector<gpu::Buffer> moves;    // one a slot: positions, then attributes, of the vertices past the static ones
+  std::vector<gpu::Buffer>
+      moves;  // one a slot: positions, then attributes, of the vertices past the static ones
   GpuTextures textures;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -148,9 +154,14 @@ struct GpuScene::Impl {
   std::vector<DrawRun> runs;
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
-      : device(d), triangleCount(uint32_t(g.triangles.size())), staticTriangles(g.staticTriangles),
-        vertexCount(uint32_t(g.positions.size())), environment(scene.environment),
-        staticVertices(g.staticVertices()), objectCount(std::max(1u, uint32_t(g.objects.size()))), textures(d, scene),
+      : device(d),
+        triangleCount(uint32_t(g.triangles.size())),
+        staticTriangles(g.staticTriangles),
+        vertexCount(uint32_t(g.positions.size())),
+        environment(scene.environment),
+        staticVertices(g.staticVertices()),
+        objectCount(std::max(1u, uint32_t(g.objects.size()))),
+        textures(d, scene),
         runs(fovea::scene::drawRuns(scene, g)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
@@ -221,12 +232,14 @@ void GpuScene::Impl::makeUniforms(uint32_t slots) {
 
 void GpuScene::Impl::makeMoves(uint32_t slots) {
   for (uint32_t slot = 0; slot < slots; ++slot) {
-    objects.emplace_back(device, gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
-                                                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
+    objects.emplace_back(device,
+                         gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
+                                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
     storeObjects({}, slot);
     if (movedVertices() > 0)
-      moves.emplace_back(device, gpu::BufferDesc{"vertices that move", movedVertices() * 2 * sizeof(glm::vec4),
-                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
+      moves.emplace_back(device,
+                         gpu::BufferDesc{"vertices that move", movedVertices() * 2 * sizeof(glm::vec4),
+                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
   }
 }
 
@@ -261,11 +274,13 @@ constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
 void GpuScene::Impl::makeLayout() {
   VkDescriptorSetLayoutBinding bindings[kBindingCount]{};
-  for (uint32_t i = 0; i < kBindingCount; ++i) bindings[i] = {i, kBindings[i], 1, VK_SHADER_STAGE_ALL, nullptr};
+  for (uint32_t i = 0; i < kBindingCount; ++i)
+    bindings[i] = {i, kBindings[i], 1, VK_SHADER_STAGE_ALL, nullptr};
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = kBindingCount;
   info.pBindings = bindings;
-  gpu::check(vkCreateDescriptorSetLayout(device.handle(), &info, nullptr, &layout), "the layout of the scene's set");
+  gpu::check(vkCreateDescriptorSetLayout(device.handle(), &info, nullptr, &layout),
+             "the layout of the scene's set");
 }
 
 void GpuScene::Impl::makeSets(uint32_t slots) {
@@ -277,14 +292,16 @@ void GpuScene::Impl::makeSets(uint32_t slots) {
   poolInfo.maxSets = slots;
   poolInfo.poolSizeCount = uint32_t(std::size(sizes));
   poolInfo.pPoolSizes = sizes;
-  gpu::check(vkCreateDescriptorPool(device.handle(), &poolInfo, nullptr, &pool), "the descriptor pool of the scene");
+  gpu::check(vkCreateDescriptorPool(device.handle(), &poolInfo, nullptr, &pool),
+             "the descriptor pool of the scene");
   const std::vector<VkDescriptorSetLayout> layouts(slots, layout);
   sets.resize(slots);
   VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
   info.descriptorPool = pool;
   info.descriptorSetCount = slots;
   info.pSetLayouts = layouts.data();
-  gpu::check(vkAllocateDescriptorSets(device.handle(), &info, sets.data()), "the descriptor sets of the scene");
+  gpu::check(vkAllocateDescriptorSets(device.handle(), &info, sets.data()),
+             "the descriptor sets of the scene");
   for (uint32_t slot = 0; slot < slots; ++slot) writeSet(slot);
 }
 
@@ -300,7 +317,8 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
                                   srgb.texelView(VK_FORMAT_R32_SFLOAT),
                                   objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
-  const VkDescriptorImageInfo image{nearest, textures.image().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  const VkDescriptorImageInfo image{nearest, textures.image().view(),
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   VkWriteDescriptorSet writes[kBindingCount]{};
   for (uint32_t i = 0; i < kBindingCount; ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -308,9 +326,12 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
     writes[i].descriptorType = kBindings[i];
-    if (i < 3) writes[i].pBufferInfo = &blocks[i];
-    else if (i == 7) writes[i].pImageInfo = &image;
-    else writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
+    if (i < 3)
+      writes[i].pBufferInfo = &blocks[i];
+    else if (i == 7)
+      writes[i].pImageInfo = &image;
+    else
+      writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
   }
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }
@@ -329,11 +350,20 @@ GpuScene::~GpuScene() = default;
 void GpuScene::update(const Frame& frame, uint32_t slot) {
   checkCount("lights", frame.lights.size(), kMaxLights);
   checkCount("views", frame.views.size(), kMaxViews);
-  if (slot >= impl_->sets.size()) throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
+  if (slot >= impl_->sets.size())
+    throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
   const Impl& s = *impl_;
-  const FrameBlock block{uint32_t(frame.index), frame.seed, uint32_t(frame.lights.size()), s.triangleCount,
-                         s.staticTriangles, s.vertexCount, float(frame.time), frame.exposure,
-                         glm::vec4(s.boundsMin, 0), glm::vec4(s.boundsMax, 0), glm::vec4(s.environment, 0)};
+  const FrameBlock block{uint32_t(frame.index),
+                         frame.seed,
+                         uint32_t(frame.lights.size()),
+                         s.triangleCount,
+                         s.staticTriangles,
+                         s.vertexCount,
+                         float(frame.time),
+                         frame.exposure,
+                         glm::vec4(s.boundsMin, 0),
+                         glm::vec4(s.boundsMax, 0),
+                         glm::vec4(s.environment, 0)};
   impl_->store(slot, 0, block);
   uint32_t layer = 0;
   for (size_t i = 0; i < frame.lights.size(); ++i) {

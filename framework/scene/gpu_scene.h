@@ -22,16 +22,18 @@ inline constexpr uint32_t kMaxViews = 8;
 // Works for a scene without triangles, lights or textures too.
 class GpuScene {
  public:
-  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more than
-  // kMaxLights or a texture larger than the device takes.
+  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more
+  // than kMaxLights or a texture larger than the device takes.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
   ~GpuScene();
 
-  // Writes this frame's uniforms (frame, views, lights, objects) and the vertices that moved (of Frame::geometry) into the
-  // slot of the frame in flight; no GPU wait, no allocation. Throws Error(BadInput) on more than kMaxViews or kMaxLights.
+  // Writes this frame's uniforms (frame, views, lights, objects) and the vertices that moved (of
+  // Frame::geometry) into the slot of the frame in flight; no GPU wait, no allocation. Throws Error(BadInput)
+  // on more than kMaxViews or kMaxLights.
   void update(const Frame& frame, uint32_t slot);
-  // Copies those vertices to positions() and attributes(). The caller's barriers keep the copy (transfer stage) behind all
-  // earlier readers and before all later ones. Records nothing for a scene in which nothing moves.
+  // Copies those vertices to positions() and attributes(). The caller's barriers keep the copy (transfer
+  // stage) behind all earlier readers and before all later ones. Records nothing for a scene in which nothing
+  // moves.
   void recordMoves(VkCommandBuffer cmd, uint32_t slot) const;
 
   VkDescriptorSetLayout setLayout() const;
@@ -39,8 +41,9 @@ class GpuScene {
   VkDescriptorSet set(uint32_t slot) const;
   uint32_t viewOffset(uint32_t view) const;
 
-  gpu::Buffer& indices() const;     // uint32, 3 a triangle, for indexed draws
-  // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the device.
+  gpu::Buffer& indices() const;  // uint32, 3 a triangle, for indexed draws
+  // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the
+  // device.
   gpu::Buffer& triangles() const;   // uvec4: 3 vertices, material | object << 16
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv

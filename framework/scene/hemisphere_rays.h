@@ -1,5 +1,5 @@
-// Six fixed directions over a hemisphere, on the CPU: the same as shaders/common/hemisphere_rays.glsl, where they are
-// explained.
+// Six fixed directions over a hemisphere, on the CPU: the same as shaders/common/hemisphere_rays.glsl, where
+// they are explained.
 #pragma once
 
 #include <array>

@@ -45,8 +45,8 @@ Span spanAt(const std::vector<Key>& keys, float time) {
   return s;
 }
 
-// Catmull-Rom that never leaves the interval between two keys (Fritsch and Carlson 1980): where a path rests or turns, it
-// does so in the keys, so that nothing sinks into the floor on which it stands.
+// Catmull-Rom that never leaves the interval between two keys (Fritsch and Carlson 1980): where a path rests
+// or turns, it does so in the keys, so that nothing sinks into the floor on which it stands.
 float monotone(float p0, float p1, float p2, float p3, const Span& s) {
   const auto tangent = [](float before, float after, float mean) {
     if (before * after <= 0) return 0.0f;
@@ -72,16 +72,17 @@ glm::vec3 between(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2, glm::vec3 p3, const 
 }
 
 // The same spline on the sphere of rotations (then normalised): no jump of the turning speed at a key.
-glm::quat turn(const glm::quat& k0, const glm::quat& q1, const glm::quat& k2, const glm::quat& k3, const Span& s) {
+glm::quat turn(const glm::quat& k0, const glm::quat& q1, const glm::quat& k2, const glm::quat& k3,
+               const Span& s) {
   const glm::quat q2 = sameSide(k2, q1);
-  return glm::normalize(
-      hermite(sameSide(k0, q1), q1, q2, sameSide(k3, q2), s.t0, s.t1, s.t2, s.t3, s.u));
+  return glm::normalize(hermite(sameSide(k0, q1), q1, q2, sameSide(k3, q2), s.t0, s.t1, s.t2, s.t3, s.u));
 }
 
 Camera cameraOnPath(const std::vector<CameraKey>& path, float time) {
   const Span s = spanAt(path, time);
   if (s.holds()) return path[s.i1].camera;
-  const Camera &k0 = path[s.i0].camera, &k1 = path[s.i1].camera, &k2 = path[s.i2].camera, &k3 = path[s.i3].camera;
+  const Camera &k0 = path[s.i0].camera, &k1 = path[s.i1].camera, &k2 = path[s.i2].camera,
+               &k3 = path[s.i3].camera;
   Camera c = k1;
   c.position = hermite(k0.position, k1.position, k2.position, k3.position, s.t0, s.t1, s.t2, s.t3, s.u);
   c.orientation = turn(k0.orientation, k1.orientation, k2.orientation, k3.orientation, s);
@@ -146,8 +147,9 @@ MotionKey poseAt(const Mover& mover, double time) {
   if (s.holds()) return pose;
   const MotionKey &k0 = keys[s.i0], &k1 = keys[s.i1], &k2 = keys[s.i2], &k3 = keys[s.i3];
   pose.translation = between(k0.translation, k1.translation, k2.translation, k3.translation, s, mover.smooth);
-  pose.rotation = mover.smooth ? turn(k0.rotation, k1.rotation, k2.rotation, k3.rotation, s)
-                               : glm::normalize(glm::slerp(k1.rotation, sameSide(k2.rotation, k1.rotation), s.u));
+  pose.rotation = mover.smooth
+                      ? turn(k0.rotation, k1.rotation, k2.rotation, k3.rotation, s)
+                      : glm::normalize(glm::slerp(k1.rotation, sameSide(k2.rotation, k1.rotation), s.u));
   return pose;
 }
 
@@ -184,7 +186,8 @@ NodePoses::Pose NodePoses::at(uint32_t node, double time) const {
   return pose;
 }
 
-std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geometry, double time, double before) {
+std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geometry, double time,
+                                       double before) {
   std::vector<ObjectTransform> list(geometry.objects.size());
   const NodePoses poses(scene);
   for (size_t i = 0; i < list.size(); ++i) {
@@ -192,8 +195,9 @@ std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geome
     const NodePoses::Pose now = poses.at(geometry.objects[i].node, time);
     const NodePoses::Pose last = time == before ? now : poses.at(geometry.objects[i].node, before);
     const bool invertible = std::abs(glm::determinant(glm::dmat3(now.toWorld))) > 1e-30;
-    list[i] = {now.toWorld, last.toWorld, invertible ? glm::mat4(glm::inverse(glm::dmat4(now.toWorld))) : glm::mat4(0),
-               now.visible, last.visible};
+    list[i] = {now.toWorld, last.toWorld,
+               invertible ? glm::mat4(glm::inverse(glm::dmat4(now.toWorld))) : glm::mat4(0), now.visible,
+               last.visible};
   }
   return list;
 }
@@ -212,7 +216,8 @@ Bounds sweptBounds(const NodePoses& poses, uint32_t node, const Mover& mover, co
       // Between samples the path bulges by about an eighth of its second difference; a quarter is safe.
       if (known >= 2) {
         const glm::vec3 bulge = 0.25f * glm::abs(p - 2.0f * last[c] + beforeLast[c]);
-        for (const glm::vec3& q : {beforeLast[c], last[c], p}) swept.include(q - bulge), swept.include(q + bulge);
+        for (const glm::vec3& q : {beforeLast[c], last[c], p})
+          swept.include(q - bulge), swept.include(q + bulge);
       }
       beforeLast[c] = last[c];
       last[c] = p;

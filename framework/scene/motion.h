@@ -1,4 +1,5 @@
-// Everything of a scene that changes with time, as a pure function of time: camera, gaze, lights, moving nodes.
+// Everything of a scene that changes with time, as a pure function of time: camera, gaze, lights, moving
+// nodes.
 #pragma once
 
 #include <vector>
@@ -10,8 +11,8 @@ namespace fovea::scene {
 
 Camera cameraAt(const Scene& scene, double time);
 
-// The sample in force at `time`: the last one at or before it that is valid. Linear between two valid neighbours would
-// smear a saccade over the sampling interval, so samples hold.
+// The sample in force at `time`: the last one at or before it that is valid. Linear between two valid
+// neighbours would smear a saccade over the sampling interval, so samples hold.
 GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time);
 
 std::vector<Light> lightsAt(const Scene& scene, double time);
@@ -35,7 +36,8 @@ class NodePoses {
 };
 
 // Of all objects of `geometry`, now and at the time `before`.
-std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geometry, double time, double before);
+std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geometry, double time,
+                                       double before);
 
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};

@@ -60,8 +60,9 @@ XXH64_hash_t stillKey(const Scene& scene, const Geometry& geometry) {
     const Material& m = scene.materials[i];
     if (!m.masked) continue;
     const TextureUse& use = m.baseColorTexture;
-    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x, use.transform[0].y,
-                                  use.transform[1].x, use.transform[1].y, use.transform[2].x, use.transform[2].y});
+    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x,
+                                  use.transform[0].y, use.transform[1].x, use.transform[1].y,
+                                  use.transform[2].x, use.transform[2].y});
     hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
     if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
   }
@@ -75,7 +76,8 @@ XXH64_hash_t movingKey(const Geometry& geometry) {
   return hash.digest();
 }
 
-std::unique_ptr<RayTracer> makeTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range) {
+std::unique_ptr<RayTracer> makeTracer(const Geometry& geometry, RayTracer::Accepts accepts,
+                                      TriangleRange range) {
 #ifdef FOVEA_EMBREE
   return makeEmbreeTracer(geometry, std::move(accepts), range);
 #else
@@ -100,7 +102,8 @@ double areaOf(const Geometry& geometry, uint32_t first, uint32_t end) {
 struct RayScene::Still {
   std::unique_ptr<RayTracer> tracer;
   // Masked triangles only: three uvs each, found through the triangle's index.
-  std::vector<uint32_t> maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing is masked
+  std::vector<uint32_t>
+      maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing is masked
   std::vector<std::array<glm::vec2, 3>> uvs;
   std::vector<Mask> masks;
   double area = 0;
@@ -157,7 +160,8 @@ struct RayScene::Impl {
 RayScene::RayScene(const Scene& scene, const Geometry& geometry)
     : RayScene(std::make_shared<const Still>(scene, geometry), geometry) {}
 
-RayScene::RayScene(std::shared_ptr<const Still> still, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(std::shared_ptr<const Still> still, const Geometry& geometry)
+    : impl_(std::make_unique<Impl>()) {
   Impl& i = *impl_;
   i.still = std::move(still);
   i.area = i.still->area;
@@ -201,7 +205,8 @@ std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geome
   if (is(entries[0])) return entries[0].rays;
   for (const Entry& e : entries)
     if (e.rays && e.still == still) {
-      entries[0] = {still, moving, std::shared_ptr<const RayScene>(new RayScene(e.rays->impl_->still, geometry))};
+      entries[0] = {still, moving,
+                    std::shared_ptr<const RayScene>(new RayScene(e.rays->impl_->still, geometry))};
       return entries[0].rays;
     }
   entries[0] = {still, moving, std::make_shared<RayScene>(scene, geometry)};
@@ -211,7 +216,8 @@ std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geome
 SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit) {
   const Triangle& t = geometry.triangles[hit.triangle];
   const float w = 1.0f - hit.u - hit.v;
-  const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]], &c = geometry.positions[t.v[2]];
+  const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]],
+                  &c = geometry.positions[t.v[2]];
   SurfaceHit s;
   s.position = a * w + b * hit.u + c * hit.v;
   const glm::vec3 n = glm::cross(b - a, c - a);

@@ -1,4 +1,5 @@
-// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath, in portable bundles a small tracer of our own).
+// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath,
+// in portable bundles a small tracer of our own).
 #pragma once
 
 #include <cstdint>
@@ -32,8 +33,8 @@ struct SurfaceHit {
   uint32_t material = 0, object = 0;
 };
 
-// Immutable after construction; look-ups may run on many threads at once. Copies what it needs of the masked materials:
-// neither scene nor geometry has to outlive it.
+// Immutable after construction; look-ups may run on many threads at once. Copies what it needs of the masked
+// materials: neither scene nor geometry has to outlive it.
 class RayScene {
  public:
   RayScene(const Scene& scene, const Geometry& geometry);
@@ -44,13 +45,14 @@ class RayScene {
   RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
   bool occluded(const Ray& ray) const;
 
-  // The smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
+  // The smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's
+  // diagonal.
   float epsilon() const;
   double surfaceArea() const;  // of all triangles, one side, m^2
 
-  // The acceleration structure of `geometry`, built when its content (or the masks of `scene`) differs from what was asked
-  // for last; the two most recent ones are kept. Where only dynamic objects have moved only their part is built anew.
-  // Thread-safe.
+  // The acceleration structure of `geometry`, built when its content (or the masks of `scene`) differs from
+  // what was asked for last; the two most recent ones are kept. Where only dynamic objects have moved only
+  // their part is built anew. Thread-safe.
   static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry);
 
  private:

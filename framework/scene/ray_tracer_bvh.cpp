@@ -1,5 +1,5 @@
-// A bounding volume hierarchy built by the binned surface area heuristic (Wald 2007), with the watertight ray/triangle test
-// of Woop, Benthin and Wald (JCGT 2013). About ten times slower than Embree.
+// A bounding volume hierarchy built by the binned surface area heuristic (Wald 2007), with the watertight
+// ray/triangle test of Woop, Benthin and Wald (JCGT 2013). About ten times slower than Embree.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,8 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kBins = 16, kLeafSize = 4;
-constexpr uint32_t kMaxHeuristicDepth = 40;  // then halves: 40 + log2(2^26 triangles) bounds the traversal stack
+constexpr uint32_t kMaxHeuristicDepth =
+    40;  // then halves: 40 + log2(2^26 triangles) bounds the traversal stack
 constexpr uint32_t kStackSize = 72;
 
 struct Box {
@@ -79,7 +80,8 @@ class Builder {
       if (middle != first && middle != last) return uint32_t(middle - order.begin());
     }
     const auto middle = first + (end - begin) / 2;
-    std::nth_element(first, middle, last, [&](uint32_t a, uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
+    std::nth_element(first, middle, last,
+                     [&](uint32_t a, uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
     return uint32_t(middle - order.begin());
   }
 
@@ -120,9 +122,10 @@ class Builder {
 struct PreparedRay {
   glm::vec3 origin, inverse;
   float near, far;
-  int kx, ky, kz;       // kz: the axis along which the ray is longest
-  float sx, sy, sz;     // shear that maps the direction to +z
-  explicit PreparedRay(const Ray& r) : origin(r.origin), inverse(1.0f / r.direction), near(r.near), far(r.far) {
+  int kx, ky, kz;    // kz: the axis along which the ray is longest
+  float sx, sy, sz;  // shear that maps the direction to +z
+  explicit PreparedRay(const Ray& r)
+      : origin(r.origin), inverse(1.0f / r.direction), near(r.near), far(r.far) {
     const glm::vec3 a = glm::abs(r.direction);
     kz = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     kx = (kz + 1) % 3;
@@ -133,8 +136,8 @@ struct PreparedRay {
     sz = 1.0f / r.direction[kz];
   }
 
-  // Entry distance, or infinity. Comparisons are written so that NaN (a ray within a face of the box) counts as inside; the
-  // far side is widened by the rounding error of the products (Ize, JCGT 2013).
+  // Entry distance, or infinity. Comparisons are written so that NaN (a ray within a face of the box) counts
+  // as inside; the far side is widened by the rounding error of the products (Ize, JCGT 2013).
   float enter(const Box& box) const {
     float t0 = near, t1 = far;
     for (int k = 0; k < 3; ++k) {
@@ -156,7 +159,8 @@ RayHit hitTriangle(const PreparedRay& r, const std::array<glm::vec3, 3>& triangl
   const float bx = b[r.kx] - r.sx * b[r.kz], by = b[r.ky] - r.sy * b[r.kz];
   const float cx = c[r.kx] - r.sx * c[r.kz], cy = c[r.ky] - r.sy * c[r.kz];
   float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-  if (u == 0 || v == 0 || w == 0) {  // on an edge in single precision: decide in double, the same for both neighbours
+  if (u == 0 || v == 0 ||
+      w == 0) {  // on an edge in single precision: decide in double, the same for both neighbours
     u = float(double(cx) * by - double(cy) * bx);
     v = float(double(ax) * cy - double(ay) * cx);
     w = float(double(bx) * ay - double(by) * ax);
@@ -177,7 +181,8 @@ class BvhTracer : public RayTracer {
     triangles.reserve(end - range.first);
     for (uint32_t i = range.first; i < end; ++i) {
       const Triangle& t = geometry.triangles[i];
-      triangles.push_back({geometry.positions[t.v[0]], geometry.positions[t.v[1]], geometry.positions[t.v[2]]});
+      triangles.push_back(
+          {geometry.positions[t.v[0]], geometry.positions[t.v[1]], geometry.positions[t.v[2]]});
     }
     Builder builder(triangles);
     nodes_ = std::move(builder.nodes);
@@ -241,7 +246,8 @@ class BvhTracer : public RayTracer {
 
 }  // namespace
 
-std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range) {
+std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts,
+                                         TriangleRange range) {
   return std::make_unique<BvhTracer>(geometry, std::move(accepts), range);
 }
 

@@ -87,10 +87,10 @@ class EmbreeTracer : public RayTracer {
     for (uint32_t t = first_; t < end; ++t)
       for (const uint32_t v : geometry.triangles[t].v) low = std::min(low, v), high = std::max(high, v);
     RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                  3 * sizeof(float), size_t(high - low) + 1));
-    auto* indices = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - first_));
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), size_t(high - low) + 1));
+    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - first_));
     if (positions == nullptr || indices == nullptr) {
       rtcReleaseGeometry(mesh);
       fail(rtcGetDeviceError(device_.get()), "a buffer for " + std::to_string(end - first_) + " triangles");
@@ -116,7 +116,8 @@ class EmbreeTracer : public RayTracer {
 
 }  // namespace
 
-std::unique_ptr<RayTracer> makeEmbreeTracer(const Geometry& geometry, RayTracer::Accepts accepts, TriangleRange range) {
+std::unique_ptr<RayTracer> makeEmbreeTracer(const Geometry& geometry, RayTracer::Accepts accepts,
+                                            TriangleRange range) {
   return std::make_unique<EmbreeTracer>(geometry, std::move(accepts), range);
 }
 

@@ -89,8 +89,9 @@ void hashMotion(Hasher& h, const Scene& scene) {
   for (const Mover& m : scene.movers) {
     hashPath(h, m.node, m);
     for (const MotionKey& k : m.keys) {
-      const float values[] = {k.time,       k.translation.x, k.translation.y, k.translation.z,        k.rotation.w,
-                              k.rotation.x, k.rotation.y,    k.rotation.z,    k.visible ? 1.0f : 0.0f};
+      const float values[] = {k.time,          k.translation.x, k.translation.y,
+                              k.translation.z, k.rotation.w,    k.rotation.x,
+                              k.rotation.y,    k.rotation.z,    k.visible ? 1.0f : 0.0f};
       h.floats(values, 9);
     }
   }

@@ -80,7 +80,7 @@ struct Light {
   float intensity = 1;
   float range = 0;  // 0: unlimited
   float innerConeAngle = 0, outerConeAngle = 0.78539816f;
-  glm::vec3 position{0};         // world space, metres
+  glm::vec3 position{0};          // world space, metres
   glm::vec3 direction{0, 0, -1};  // world space, unit, the way the light travels
 };
 
@@ -101,7 +101,7 @@ struct CameraKey {
 struct GazeSample {
   float time = 0;
   glm::vec2 position{0.5f};
-  bool valid = true;  // an invalid sample (blink) holds the last valid one
+  bool valid = true;                     // an invalid sample (blink) holds the last valid one
   std::optional<glm::vec2> left, right;  // of one eye, where a tracker tells them apart; else `position`
 };
 
@@ -111,8 +111,8 @@ enum class Repeat : uint8_t {
   PingPong,  // runs back and forth
 };
 
-// Where a node is at a time, relative to the node above it; takes the place of the node's own translation and rotation
-// (its scale stays), as an animation of glTF does.
+// Where a node is at a time, relative to the node above it; takes the place of the node's own translation and
+// rotation (its scale stays), as an animation of glTF does.
 struct MotionKey {
   float time = 0;
   glm::vec3 translation{0};
@@ -123,7 +123,8 @@ struct MotionKey {
 // A node that moves rigidly along keys, with everything below it.
 struct Mover {
   uint32_t node = kNoIndex;  // not above or below the node of another mover
-  bool smooth = true;        // through the keys without a jump in speed and without overshooting them; false: straight
+  bool smooth =
+      true;  // through the keys without a jump in speed and without overshooting them; false: straight
   Repeat repeat = Repeat::Once;
   std::vector<MotionKey> keys;  // at least one, times increase
 };
@@ -147,20 +148,20 @@ struct Scene {
   std::vector<Material> materials;  // at least one
   std::vector<Mesh> meshes;
   std::vector<Node> nodes;
-  std::vector<Light> lights;    // world space
-  std::vector<Camera> cameras;  // world space; [0] is the one to use
+  std::vector<Light> lights;          // world space
+  std::vector<Camera> cameras;        // world space; [0] is the one to use
   std::vector<CameraKey> cameraPath;  // empty: a still camera
   std::vector<GazeSample> gaze;
-  std::vector<Mover> movers;         // their nodes are dynamic
+  std::vector<Mover> movers;  // their nodes are dynamic
   std::vector<LightMotion> lightMotions;
-  float ipd = 0.064f;           // distance between the eyes (the views "left" and "right"), m
-  float exposure = 1;           // display = sRGB(exposure * radiance)
-  glm::vec3 environment{0};     // radiance where nothing is hit
-  uint64_t hash = 0;            // of all content, for caches and reports
+  float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), m
+  float exposure = 1;        // display = sRGB(exposure * radiance)
+  glm::vec3 environment{0};  // radiance where nothing is hit
+  uint64_t hash = 0;         // of all content, for caches and reports
 };
 
-// World-space triangles of the whole scene at one time: static objects first. What is invisible at that time is there with
-// triangles of no area.
+// World-space triangles of the whole scene at one time: static objects first. What is invisible at that time
+// is there with triangles of no area.
 struct Object {
   std::string name;
   uint32_t firstTriangle = 0, triangleCount = 0;
@@ -195,9 +196,9 @@ uint64_t contentHash(const Scene& scene);
 
 glm::mat4 localTransform(const Node& node);
 std::vector<glm::mat4> worldTransforms(const Scene& scene);
-// Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0. The bounds hold
-// the whole paths of the movers, so that they are the same in every frame.
-// Throws Error(BadInput) past 65535 materials or objects.
+// Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0.
+// The bounds hold the whole paths of the movers, so that they are the same in every frame. Throws
+// Error(BadInput) past 65535 materials or objects.
 Geometry flatten(const Scene& scene);
 
 // Bilinear LOD-0 look-up exactly as shaders/common/scene.glsl does it; linear RGBA. uv before the transform.

@@ -56,7 +56,10 @@ class Parser {
     Scene out = std::move(scene_);
     if (gazeFile_) out.gaze = readGazeCsv(findFile(*gazeFile_, folder));
     for (const ModelEntry& m : models_) {
-      Scene model = m.builtin.empty() ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings) : builtin(m.builtin);
+      Scene model =
+          m.builtin.empty()
+              ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings)
+              : builtin(m.builtin);
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;
@@ -132,7 +135,7 @@ class Parser {
     if (base.zFar != 0 && base.zFar <= base.zNear) mistake(r, "far", "`far` must be larger than `near`");
     if (r.has("path")) {
       eachItem(r, "path",
-           [&](const Value& key, const std::string& path) { cameraKey(key, path, base, up, fov); });
+               [&](const Value& key, const std::string& path) { cameraKey(key, path, base, up, fov); });
       if (const Value* list = r.value().find("path"); list->isArray() && list->items.empty())
         mistake(r, "path", "a camera path needs at least one key");
       if (!scene_.cameraPath.empty()) scene_.cameras.push_back(scene_.cameraPath.front().camera);

@@ -81,21 +81,22 @@ class CsvReader {
       }
     }
     for (const char* name : {"t", "x", "y"})
-      if (!seen.count(name)) mistakeAt(1, std::string("the column `") + name + "` is missing", "begin with t,x,y,valid");
+      if (!seen.count(name))
+        mistakeAt(1, std::string("the column `") + name + "` is missing", "begin with t,x,y,valid");
     errors_.throwIfErrors();
   }
 
   // A number of a row; an empty cell is missing.
-  std::optional<double> number(const std::map<std::string, std::string>& row, const std::string& name, double min,
-                               double max) {
+  std::optional<double> number(const std::map<std::string, std::string>& row, const std::string& name,
+                               double min, double max) {
     const auto it = row.find(name);
     if (it == row.end() || it->second.empty()) return std::nullopt;
     double value = 0;
     const char *begin = it->second.data(), *end = begin + it->second.size();
     const auto [rest, error] = std::from_chars(begin, end, value);
     if (error == std::errc() && rest == end && value >= min && value <= max) return value;
-    mistakeAt(1, "`" + name + "` is `" + it->second + "`: expected a number from " + std::to_string(int(min)) + " to " +
-                     std::to_string(int(max)));
+    mistakeAt(1, "`" + name + "` is `" + it->second + "`: expected a number from " +
+                     std::to_string(int(min)) + " to " + std::to_string(int(max)));
     return std::nullopt;
   }
 
@@ -109,7 +110,8 @@ class CsvReader {
   void row(const std::string& text) {
     const std::vector<std::string> values = cells(text);
     if (values.size() != columns_.size())
-      return mistakeAt(1, std::to_string(values.size()) + " values in " + std::to_string(columns_.size()) + " columns");
+      return mistakeAt(
+          1, std::to_string(values.size()) + " values in " + std::to_string(columns_.size()) + " columns");
     std::map<std::string, std::string> row;
     for (size_t i = 0; i < values.size(); ++i) row[columns_[i]] = values[i];
     const size_t before = errors_.list().size();

@@ -82,7 +82,9 @@ template <class Entry>
 void MotionReader::how(ObjectReader& r, Entry& entry) {
   entry.smooth = r.choice("interpolation", "smooth", {"smooth", "linear"}) != "linear";
   const std::string repeat = r.choice("repeat", "once", {"once", "loop", "back_and_forth"});
-  entry.repeat = repeat == "loop" ? Repeat::Loop : repeat == "back_and_forth" ? Repeat::PingPong : Repeat::Once;
+  entry.repeat = repeat == "loop"             ? Repeat::Loop
+                 : repeat == "back_and_forth" ? Repeat::PingPong
+                                              : Repeat::Once;
   r.require("keys");
   eachItem(r, "keys", [&](const Value& v, const std::string& path) {
     if constexpr (std::is_same_v<Entry, MoverEntry>)
@@ -105,7 +107,8 @@ void MotionReader::mover(const Value& v, const std::string& path) {
   if (hasShape) m.shape = r.choice("shape", "box", {"box", "paper_plane"});
   if (v.isObject() && int(!m.node.empty()) + int(!m.file.empty()) + int(hasShape) != 1)
     errors_.error(m.where, path, "what moves is named by one of `node`, `file` and `shape`");
-  if (m.node.empty()) m.name = r.text("name", m.file.empty() ? m.shape : std::filesystem::path(m.file).stem().string());
+  if (m.node.empty())
+    m.name = r.text("name", m.file.empty() ? m.shape : std::filesystem::path(m.file).stem().string());
   if (!m.file.empty()) {
     m.get = r.text("get");
     m.scale = readScale(r, "scale", glm::vec3(1));
@@ -113,7 +116,8 @@ void MotionReader::mover(const Value& v, const std::string& path) {
   if (hasShape) {
     m.scale = readScale(r, "size", glm::vec3(1));
     m.color = readColor(r, "color", glm::vec3(0.8f));
-    if (m.color.x > 1 || m.color.y > 1 || m.color.z > 1) mistake(r, "color", "no surface reflects more than 1");
+    if (m.color.x > 1 || m.color.y > 1 || m.color.z > 1)
+      mistake(r, "color", "no surface reflects more than 1");
     m.emission = readColor(r, "emission", glm::vec3(0));
   }
   how(r, m);
@@ -129,7 +133,8 @@ void MotionReader::moverKey(const Value& v, const std::string& path, MoverEntry&
   if (!m.keys.empty() && r.has("t") && key.time <= m.keys.back().time)
     mistake(r, "t", "the times of a path must increase");
   if (r.has("translation")) key.translation = readVector(r, "translation", glm::vec3(0));
-  if (r.has("rotation_deg")) key.rotation = glm::quat(glm::radians(readVector(r, "rotation_deg", glm::vec3(0))));
+  if (r.has("rotation_deg"))
+    key.rotation = glm::quat(glm::radians(readVector(r, "rotation_deg", glm::vec3(0))));
   if (const auto q = r.numbers("quaternion", 4)) {
     const auto part = [&](size_t i) { return float((*q)[i]); };
     const glm::quat rotation = glm::quat(part(3), part(0), part(1), part(2));
@@ -138,7 +143,8 @@ void MotionReader::moverKey(const Value& v, const std::string& path, MoverEntry&
       mistake(r, "quaternion", "a quaternion (x, y, z, w) cannot be zero");
     else
       key.rotation = rotation / length;
-    if (r.has("rotation_deg")) mistake(r, "quaternion", "a rotation is given either in degrees or as a quaternion");
+    if (r.has("rotation_deg"))
+      mistake(r, "quaternion", "a rotation is given either in degrees or as a quaternion");
   }
   key.visible = r.boolean("visible", true);
   r.finish();
@@ -174,7 +180,8 @@ void MotionReader::lightKey(const Value& v, const std::string& path, LightEntry&
 
 void MotionReader::apply(Scene& scene, const std::filesystem::path& folder, Diagnostics& warnings) {
   for (const MoverEntry& m : movers_)
-    if (const uint32_t node = nodeOf(m, scene, folder, warnings); node != kNoIndex) applyMover(m, node, scene);
+    if (const uint32_t node = nodeOf(m, scene, folder, warnings); node != kNoIndex)
+      applyMover(m, node, scene);
   checkNested(scene);
   for (const LightEntry& l : lights_) applyLight(l, scene);
   errors_.throwIfErrors();
@@ -232,11 +239,13 @@ uint32_t MotionReader::nodeOf(const MoverEntry& m, Scene& scene, const std::file
 void MotionReader::applyMover(const MoverEntry& m, uint32_t index, Scene& scene) {
   Node& node = scene.nodes[index];
   if (!decompose(node))
-    return errors_.error(m.where, m.path, "the matrix of node `" + node.name + "` shears or flattens it; it cannot move");
+    return errors_.error(m.where, m.path,
+                         "the matrix of node `" + node.name + "` shears or flattens it; it cannot move");
   node.dynamic = true;
   Mover mover{index, m.smooth, m.repeat, {}};
   for (const PoseKey& k : m.keys)
-    mover.keys.push_back({k.time, k.translation.value_or(node.translation), k.rotation.value_or(node.rotation), k.visible});
+    mover.keys.push_back(
+        {k.time, k.translation.value_or(node.translation), k.rotation.value_or(node.rotation), k.visible});
   scene.movers.push_back(std::move(mover));
 }
 
@@ -245,7 +254,8 @@ void MotionReader::checkNested(const Scene& scene) {
   for (uint32_t m = 0; m < scene.movers.size(); ++m) {
     uint32_t& entry = moverOf[scene.movers[m].node];
     if (entry != kNoIndex)
-      errors_.error(movers_[m].where, movers_[m].path, "node `" + scene.nodes[scene.movers[m].node].name + "` moves twice",
+      errors_.error(movers_[m].where, movers_[m].path,
+                    "node `" + scene.nodes[scene.movers[m].node].name + "` moves twice",
                     "join the two paths");
     entry = m;
   }
@@ -253,8 +263,8 @@ void MotionReader::checkNested(const Scene& scene) {
     for (uint32_t n = scene.nodes[scene.movers[m].node].parent; n != kNoIndex; n = scene.nodes[n].parent)
       if (moverOf[n] != kNoIndex)
         errors_.error(movers_[m].where, movers_[m].path,
-                      "node `" + scene.nodes[scene.movers[m].node].name + "` hangs on `" + scene.nodes[n].name +
-                          "`, which moves already",
+                      "node `" + scene.nodes[scene.movers[m].node].name + "` hangs on `" +
+                          scene.nodes[n].name + "`, which moves already",
                       "move only one of them");
 }
 
@@ -269,13 +279,15 @@ void MotionReader::applyLight(const LightEntry& l, Scene& scene) {
   }
   if (count != 1) {
     const std::string nearest = nearestName(l.light, names);
-    return errors_.error(l.where, l.path + ".light",
-                         count == 0 ? "there is no light `" + l.light + "`"
-                                    : std::to_string(count) + " lights are called `" + l.light + "`: which one moves?",
-                         count == 0 && !nearest.empty() ? "did you mean `" + nearest + "`?" : "give it a `name` of its own");
+    return errors_.error(
+        l.where, l.path + ".light",
+        count == 0 ? "there is no light `" + l.light + "`"
+                   : std::to_string(count) + " lights are called `" + l.light + "`: which one moves?",
+        count == 0 && !nearest.empty() ? "did you mean `" + nearest + "`?" : "give it a `name` of its own");
   }
   for (const LightMotion& m : scene.lightMotions)
-    if (m.light == found) return errors_.error(l.where, l.path, "light `" + l.light + "` moves twice", "join the two paths");
+    if (m.light == found)
+      return errors_.error(l.where, l.path, "light `" + l.light + "` moves twice", "join the two paths");
   const Light& light = scene.lights[found];
   LightMotion motion{found, l.smooth, l.repeat, {}};
   for (const LightKeyEntry& k : l.keys)

@@ -15,7 +15,9 @@
 
 namespace fovea::scene {
 
-inline std::string itemPath(const std::string& path, size_t i) { return path + "[" + std::to_string(i) + "]"; }
+inline std::string itemPath(const std::string& path, size_t i) {
+  return path + "[" + std::to_string(i) + "]";
+}
 
 inline void mistake(json::ObjectReader& r, std::string_view key, const std::string& message,
                     const std::string& remedy = {}) {
@@ -76,7 +78,8 @@ class MotionReader {
  public:
   explicit MotionReader(Diagnostics& errors) : errors_(errors) {}
   void read(json::ObjectReader& scene);
-  // Appends what the movers bring along and finds the nodes and lights that they name. Throws Error(BadInput).
+  // Appends what the movers bring along and finds the nodes and lights that they name. Throws
+  // Error(BadInput).
   void apply(Scene& scene, const std::filesystem::path& folder, Diagnostics& warnings);
 
  private:
@@ -112,7 +115,8 @@ class MotionReader {
   void lightKey(const json::Value& v, const std::string& path, LightEntry& l);
   template <class Entry>
   void how(json::ObjectReader& r, Entry& entry);
-  uint32_t nodeOf(const MoverEntry& m, Scene& scene, const std::filesystem::path& folder, Diagnostics& warnings);
+  uint32_t nodeOf(const MoverEntry& m, Scene& scene, const std::filesystem::path& folder,
+                  Diagnostics& warnings);
   void applyMover(const MoverEntry& m, uint32_t node, Scene& scene);
   void applyLight(const LightEntry& l, Scene& scene);
   void checkNested(const Scene& scene);

@@ -8,7 +8,8 @@
 
 namespace fovea::scene {
 
-// Cubic cells, `resolution` of them along the longest axis of the scene's bounds; the volume is a cube of cells.
+// Cubic cells, `resolution` of them along the longest axis of the scene's bounds; the volume is a cube of
+// cells.
 struct VoxelGrid {
   glm::vec3 origin{0};  // world space, corner of cell (0, 0, 0)
   float cell = 1;       // edge, m

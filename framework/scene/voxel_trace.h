@@ -1,4 +1,5 @@
-// Rays through the voxels, on the CPU: the same formulas as shaders/common/voxel_trace.glsl, where they are explained.
+// Rays through the voxels, on the CPU: the same formulas as shaders/common/voxel_trace.glsl, where they are
+// explained.
 #pragma once
 
 #include <algorithm>
@@ -41,8 +42,8 @@ inline constexpr float kSideRadii = 1.5f;    // of a disc of the side's area
 
 enum class Meeting { None, Passed, Met };
 
-inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal,
-                         float exit, float& facing, float& distance) {
+inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, glm::vec3 direction,
+                         glm::vec3 normal, float exit, float& facing, float& distance) {
   const VoxelSide& s = voxels.surface[side];
   const float cell = voxels.grid.cell;
   const glm::vec3 to = s.position - origin;
@@ -91,13 +92,15 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
     if (voxel != 0u) {
       const uint32_t side = 2u * (voxel - 1u);
       float facing[2], distance[2];
-      const Meeting met0 = meetsSide(voxels, side, origin, direction, normal, next * grid.cell, facing[0], distance[0]);
+      const Meeting met0 =
+          meetsSide(voxels, side, origin, direction, normal, next * grid.cell, facing[0], distance[0]);
       const Meeting met1 =
           meetsSide(voxels, side + 1u, origin, direction, normal, next * grid.cell, facing[1], distance[1]);
       const Meeting met = std::max(met0, met1);
       if (met != Meeting::None) {
         const uint32_t second = met1 > met0 || (met1 == met0 && facing[1] < facing[0]) ? 1u : 0u;
-        const VoxelHit hit{side + second, glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
+        const VoxelHit hit{side + second,
+                           glm::clamp(distance[second], t * grid.cell, std::max(t, next) * grid.cell)};
         if (met == Meeting::Met) return hit;
         passed = hit;
       }

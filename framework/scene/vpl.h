@@ -7,16 +7,18 @@
 namespace fovea::scene {
 
 struct Vpl {
-  glm::vec3 position{0};   // world space, m
-  float area = 0;          // surface area it stands for, m^2 (the disc kernel's size)
-  glm::vec3 normal{0};     // unit, the side it shines to
+  glm::vec3 position{0};  // world space, m
+  float area = 0;         // surface area it stands for, m^2 (the disc kernel's size)
+  glm::vec3 normal{0};    // unit, the side it shines to
   float unused0 = 0;
-  glm::vec3 intensity{0};  // radiant intensity along the normal, W/sr = reflected flux / pi; all 0: an empty slot
+  glm::vec3 intensity{
+      0};  // radiant intensity along the normal, W/sr = reflected flux / pi; all 0: an empty slot
   float unused1 = 0;
 };
 static_assert(sizeof(Vpl) == 48);
 
-// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. All zeros: an empty slot.
+// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. All zeros: an
+// empty slot.
 struct VplState {
   glm::vec3 position{0};  // world space, this frame
   float importance = 0;   // I of this frame, in [0, 1]
@@ -38,7 +40,7 @@ struct Candidate {
   glm::vec3 normal{0};    // unit, world space
   float object = 0;
   glm::vec3 reflectance{0};
-  float luminance = 0;  // of the side's radiance, W/(sr m^2)
+  float luminance = 0;         // of the side's radiance, W/(sr m^2)
   glm::vec3 localPosition{0};  // in the space of its object
   float unused = 0;
 };

@@ -31,7 +31,8 @@ class Candidates : public Pass {
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "radiance of each voxel side; without it the candidates' luminance is 0")
         .makeOptional();
-    d.output("candidates", buffer("Candidate", sizeof(scene::Candidate), parameter("count")), Usage::StorageWrite,
+    d.output("candidates", buffer("Candidate", sizeof(scene::Candidate), parameter("count")),
+             Usage::StorageWrite,
              "one an attempt; those that met nothing have no side and are zero otherwise");
     d.parameter("count", integer(1000, 1, 65536), "attempts: one pixel and one ray each");
     d.parameter("region", choice("fovea", {"fovea", "image"}), "pixels to start from");

@@ -1,4 +1,5 @@
-// Deferred shading with VPLs: interleaved sampling and a geometry-aware filter on the irradiance (METHOD Eq. 2).
+// Deferred shading with VPLs: interleaved sampling and a geometry-aware filter on the irradiance (METHOD Eq.
+// 2).
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,8 +14,10 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTileWidth = 16, kTileHeight = 16;  // pixels that a work group works on (in shade.comp: of one subset)
-static_assert(kTileWidth * kTileHeight == 256);         // as pass reproject counts the groups of the indirect dispatch
+constexpr uint32_t kTileWidth = 16,
+                   kTileHeight = 16;  // pixels that a work group works on (in shade.comp: of one subset)
+static_assert(kTileWidth * kTileHeight ==
+              256);  // as pass reproject counts the groups of the indirect dispatch
 
 // A subset with fewer VPLs than this is no estimate of anything; fewer subsets cost little then.
 constexpr uint64_t kSmallestSubset = 4;
@@ -28,7 +31,8 @@ uint32_t subsetsPerSide(int64_t wanted, uint64_t vplCount) {
 class Deferred : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("deferred", "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered");
+    PassDeclaration d("deferred",
+                      "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
@@ -36,22 +40,28 @@ class Deferred : public Pass {
              member("face", image2D(), Usage::Sampled),
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
             "surfaces seen by the eye");
-    d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform, "light sources; empty slots have no intensity");
-    d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
-            "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
+    d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
+            "light sources; empty slots have no intensity");
+    d.input(
+         "atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
+         "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
         .makeOptional();
     d.input("direct", image2D(), Usage::Sampled, "rgb: radiance to add the indirect light to").makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageWrite,
-             "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is `indirect`; background 0");
-    d.output("indirect", color, Usage::StorageWrite, "rgb: indirect radiance rho E / pi towards the eye; background 0");
+             "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is "
+             "`indirect`; background 0");
+    d.output("indirect", color, Usage::StorageWrite,
+             "rgb: indirect radiance rho E / pi towards the eye; background 0");
     d.output("radiance", color, Usage::StorageWrite, "rgb: `direct` (if wired) plus `indirect`");
-    d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite, "every pixel's estimate from its own subset");
+    d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
+              "every pixel's estimate from its own subset");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
-    d.counter("vpls_per_pixel", "VPLs that shade one pixel, on average: times `shaded_pixels` the number of pixel-VPL pairs");
+    d.counter("vpls_per_pixel",
+              "VPLs that shade one pixel, on average: times `shaded_pixels` the number of pixel-VPL pairs");
     d.counter("shaded_pixels", "pixels that VPLs shade: `pixels`, or those of the blocks of `shade`");
     return d;
   }
@@ -60,7 +70,8 @@ class Deferred : public Pass {
     const Parameters& p = ctx.parameters();
     const int64_t interleave = p.integer("interleave");
     if ((interleave & (interleave - 1)) != 0)
-      throw Error(ExitCode::BadInput, "pass `deferred`: interleave " + std::to_string(interleave) + " is not a power of two",
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: interleave " + std::to_string(interleave) + " is not a power of two",
                   "use 1, 2, 4 or 8");
     count_ = uint32_t(ctx.count("vpls"));
     side_ = subsetsPerSide(interleave, count_);
@@ -103,7 +114,8 @@ class Deferred : public Pass {
       resolve.dispatchIndirect("shade.dispatch");
       ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
     } else {
-      resolve.dispatch((size.width + kTileWidth - 1) / kTileWidth, (size.height + kTileHeight - 1) / kTileHeight);
+      resolve.dispatch((size.width + kTileWidth - 1) / kTileWidth,
+                       (size.height + kTileHeight - 1) / kTileHeight);
     }
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
@@ -115,38 +127,51 @@ class Deferred : public Pass {
         .makeOptional();
     d.input("shade", "shade-mask",
             {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::Sampled, "1: in a listed block"),
-             member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead, "x | y << 16, in blocks of `interleave` pixels"),
-             member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect, "groups; w: blocks listed")},
+             member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead,
+                    "x | y << 16, in blocks of `interleave` pixels"),
+             member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect,
+                    "groups; w: blocks listed")},
             "only these blocks of pixels are shaded; without it all are")
         .makeOptional();
   }
 
   static void addParameters(PassDeclaration& d) {
-    d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
-                "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
-                "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
+    d.parameter(
+        "kernel", choice("clamp", {"clamp", "disc"}),
+        "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
+        "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
     d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "for kernel `clamp`; 0: no clamp");
     d.parameter("interleave", integer(4, 1, 8),
-                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset would have under 4");
-    d.parameter("shadow_bias", real(1, 0, 100),
-                "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
-    d.parameter("filter_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
+                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset "
+                "would have under 4");
+    d.parameter(
+        "shadow_bias", real(1, 0, 100),
+        "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
+    d.parameter("filter_angle", real(25, 1, 90, "degrees"),
+                "normals that differ by more belong to different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),
-                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that belongs to its surface");
+                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that "
+                "belongs to its surface");
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {
     if (!ctx.has("base"))
-      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` leaves pixels out, but nothing is wired to `base`",
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: `shade` leaves pixels out, but nothing is wired to `base`",
                   "wire reproject.irradiance to base");
-    const VkExtent3D size = ctx.extent("gbuffer.position"), mask = ctx.extent("shade.mask"), base = ctx.extent("base");
-    const uint64_t blocks = uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);
-    if (mask.width != size.width || mask.height != size.height || base.width != size.width || base.height != size.height)
-      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` and `base` are of another size than the image",
+    const VkExtent3D size = ctx.extent("gbuffer.position"), mask = ctx.extent("shade.mask"),
+                     base = ctx.extent("base");
+    const uint64_t blocks =
+        uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);
+    if (mask.width != size.width || mask.height != size.height || base.width != size.width ||
+        base.height != size.height)
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: `shade` and `base` are of another size than the image",
                   "make them from the same G-buffer");
     if (ctx.count("shade.blocks") != blocks)
-      throw Error(ExitCode::BadInput, "pass `deferred`: `shade` lists blocks of another size than " + std::to_string(interleave) +
-                                          " x " + std::to_string(interleave) + " pixels",
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: `shade` lists blocks of another size than " + std::to_string(interleave) +
+                      " x " + std::to_string(interleave) + " pixels",
                   "give both passes the same `interleave`");
   }
 
@@ -157,17 +182,20 @@ class Deferred : public Pass {
       const VkExtent3D maps = ctx.extent("atlas");
       const uint64_t perLayer = std::max(maps.width / std::max(maps.height, 1u), 1u);
       if (perLayer * ctx.layers("atlas") < count_)
-        throw Error(ExitCode::BadInput, "pass `deferred`: the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) +
-                                            " maps for " + std::to_string(count_) + " VPLs",
+        throw Error(ExitCode::BadInput,
+                    "pass `deferred`: the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) +
+                        " maps for " + std::to_string(count_) + " VPLs",
                     "wire the same VPLs to the atlas and to the shading");
       defines["TILED"] = std::to_string(int(perLayer > 1));
     }
-    // Kernels by the number of VPLs in a page, a constant in the shader: a full first page, full further ones, the rest.
+    // Kernels by the number of VPLs in a page, a constant in the shader: a full first page, full further
+    // ones, the rest.
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
       defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
       defines["ACCUMULATE"] = std::to_string(int(first > 0));
-      pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage ? pages_.back()
-                                                                             : ctx.compute("deferred/shade.comp", defines));
+      pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage
+                           ? pages_.back()
+                           : ctx.compute("deferred/shade.comp", defines));
     }
   }
 

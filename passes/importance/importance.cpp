@@ -26,16 +26,19 @@ class Importance : public Pass {
 };
 
 PassDeclaration Importance::declaration() {
-  PassDeclaration d("importance", "foveated importance of VPLs: mean weight of what six directions over each see");
+  PassDeclaration d("importance",
+                    "foveated importance of VPLs: mean weight of what six directions over each see");
   d.input("voxels", "voxels",
           {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
           "grid that the VPLs look at");
   d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "foveated weight of each side, in [0, 1]");
-  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead, "VPLs that could be");
+  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
+          "VPLs that could be");
   d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
           "VPLs of the frame before, at their places of this frame");
-  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; w: luminance; for `luminance`")
+  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+          "of each side; w: luminance; for `luminance`")
       .makeOptional();
   d.input("mips", "voxel-mips",
           {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled),
@@ -46,11 +49,13 @@ PassDeclaration Importance::declaration() {
            "I of each candidate, in [0, 1]; 0: an attempt that hit nothing");
   d.output("vpl_importance", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
            "I of each VPL, in [0, 1]; 0: an empty slot");
-  d.parameter("method", choice("rays", {"rays", "cones"}),
-              "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the mean weight "
-              "in a cone around it");
-  d.parameter("luminance", flag(false),
-              "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
+  d.parameter(
+      "method", choice("rays", {"rays", "cones"}),
+      "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the mean weight "
+      "in a cone around it");
+  d.parameter(
+      "luminance", flag(false),
+      "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
   d.counter("rays", "rays or cones traced");
   return d;
 }

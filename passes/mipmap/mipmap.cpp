@@ -17,7 +17,8 @@ class Mipmap : public Pass {
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
             "surfaces in the voxels");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "outgoing radiance of every voxel side");
+    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+            "outgoing radiance of every voxel side");
     d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
             "foveated weight of every voxel side; without it the weights are 0")
         .makeOptional();
@@ -26,14 +27,16 @@ class Mipmap : public Pass {
     d.output("mips", "voxel-mips",
              {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, kAllMips),
                      Usage::StorageRead | Usage::StorageWrite,
-                     "rgb: radiance times a; a: surface area by that of a cell's face, over 1 where a cell holds several surfaces"),
+                     "rgb: radiance times a; a: surface area by that of a cell's face, over 1 where a cell "
+                     "holds several surfaces"),
               member("weight", image3D(VK_FORMAT_R16_SFLOAT, width, size, size, kAllMips),
                      Usage::StorageRead | Usage::StorageWrite, "foveated weight times a of `color`")},
              "level 0 has cells of 2x2x2 voxels; levels that are not half of the one before are 0 "
              "(shaders/common/cone.glsl)")
         .keep(Lifetime::Scene);  // so that cells which are and stay empty need no store
     d.parameter("directional", flag(true),
-                "six volumes side by side, +x -x +y -y +z -z, each of what looks that way: a thin wall does not show the light of its back");
+                "six volumes side by side, +x -x +y -y +z -z, each of what looks that way: a thin wall does "
+                "not show the light of its back");
     return d;
   }
 
@@ -50,7 +53,10 @@ class Mipmap : public Pass {
     gpu::Image& color = ctx.image("mips.color");
     gpu::Image& weight = ctx.image("mips.weight");
     uint32_t size = ctx.extent("mips.color").height;
-    ctx.use(base_).bind("mipsColor", color.mipView(0)).bind("mipsWeight", weight.mipView(0)).dispatchThreads(size, size, size);
+    ctx.use(base_)
+        .bind("mipsColor", color.mipView(0))
+        .bind("mipsWeight", weight.mipView(0))
+        .dispatchThreads(size, size, size);
     for (uint32_t level = 1; level < color.desc().mips && size % 2 == 0; ++level) {
       size /= 2;
       ctx.barrier();

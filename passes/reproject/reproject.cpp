@@ -1,5 +1,5 @@
-// The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that the second eye
-// sees, and the blocks of pixels that have no source and are shaded anew (METHOD, reproject).
+// The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that
+// the second eye sees, and the blocks of pixels that have no source and are shaded anew (METHOD, reproject).
 #include <cmath>
 #include <glm/glm.hpp>
 #include <string>
@@ -13,12 +13,15 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTile = 16;  // pixels a side that a work group of warp.comp works on: whole blocks of any size allowed
+constexpr uint32_t kTile =
+    16;  // pixels a side that a work group of warp.comp works on: whole blocks of any size allowed
 
 class Reproject : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("reproject", "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
+    PassDeclaration d(
+        "reproject",
+        "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
@@ -32,18 +35,23 @@ class Reproject : public Pass {
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled,
             "rgb: what is warped, of the first eye: `irradiance` of pass deferred");
     d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
-             "rgb: the source's, warped; a: 1 where it is known, 0 where there is no source, and in the background");
-    const SizeExpr blocks = ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
-    d.output("shade", "shade-mask",
-             {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height), Usage::StorageRead | Usage::StorageWrite,
-                     "1: the pixel is in a block to shade"),
-              member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
-                     "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
-              member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
-                     "groups of an indirect dispatch, a column for 256 blocks and a row for a pixel of a block; w: blocks")},
-             "what the second eye has to shade");
+             "rgb: the source's, warped; a: 1 where it is known, 0 where there is no source, and in the "
+             "background");
+    const SizeExpr blocks =
+        ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
+    d.output(
+        "shade", "shade-mask",
+        {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height), Usage::StorageRead | Usage::StorageWrite,
+                "1: the pixel is in a block to shade"),
+         member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
+                "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
+         member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
+                "groups of an indirect dispatch, a column for 256 blocks and a row for a pixel of a block; "
+                "w: blocks")},
+        "what the second eye has to shade");
     d.scratch("tile_blocks", buffer("uint", 4, ceilDiv(width, kTile) * ceilDiv(height, kTile)),
-              Usage::StorageRead | Usage::StorageWrite, "blocks to shade in each tile of 16 x 16 pixels, then in those before it");
+              Usage::StorageRead | Usage::StorageWrite,
+              "blocks to shade in each tile of 16 x 16 pixels, then in those before it");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("new_pixels", "of these, pixels without a source");
@@ -54,7 +62,8 @@ class Reproject : public Pass {
   void prepare(PrepareContext& ctx) override {
     const int64_t n = ctx.parameters().integer("interleave");
     if ((n & (n - 1)) != 0)
-      throw Error(ExitCode::BadInput, "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
+      throw Error(ExitCode::BadInput,
+                  "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
                   "use 1, 2, 4 or 8, the same as for the shading");
     const gpu::Defines defines{{"INTERLEAVE", std::to_string(n)}};
     warp_ = ctx.compute("reproject/warp.comp", defines);
@@ -79,11 +88,14 @@ class Reproject : public Pass {
   static void addParameters(PassDeclaration& d) {
     d.parameter("source_view", text("left"), "view that the source was rendered through");
     d.parameter("interleave", integer(4, 1, 8),
-                "pixels without a source make the whole block of n x n pixels be shaded: 1, 2, 4 or 8, as for the shading");
+                "pixels without a source make the whole block of n x n pixels be shaded: 1, 2, 4 or 8, as "
+                "for the shading");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
-                "distance of a source from the tangent plane of a pixel, in parts of the pixel's distance to the eye, that "
+                "distance of a source from the tangent plane of a pixel, in parts of the pixel's distance to "
+                "the eye, that "
                 "belongs to its surface");
-    d.parameter("normal_angle", real(25, 1, 90, "degrees"), "normals that differ by more belong to different surfaces");
+    d.parameter("normal_angle", real(25, 1, 90, "degrees"),
+                "normals that differ by more belong to different surfaces");
     d.parameter("least_weight", real(0.1, 1e-3, 1),
                 "of the bilinear weights of the four texels around, what must lie on the pixel's surface");
   }
@@ -93,7 +105,8 @@ class Reproject : public Pass {
     if (const scene::View* view = ctx.frame().findView(name)) return *view;
     std::string known;
     for (const scene::View& view : ctx.frame().views) known += (known.empty() ? "" : ", ") + view.name;
-    throw Error(ExitCode::BadInput, "pass `reproject`: source_view `" + name + "` is no view of the frame", "there is: " + known);
+    throw Error(ExitCode::BadInput, "pass `reproject`: source_view `" + name + "` is no view of the frame",
+                "there is: " + known);
   }
 
   Kernel warp_, scan_, compact_;

@@ -114,10 +114,12 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
               "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and "
               "blocks nothing");
-  d.parameter("refresh", choice("top", {"all", "top", "split"}),
-              "maps of kept VPLs that are drawn again (needs `state`): all; the most important ones; or half of "
-              "the same number for those and half for the longest unchanged, first where something moves");
-  d.parameter("refresh_share", real(0.05, 0, 1), "how many of the kept VPLs' maps `top` and `split` draw again");
+  d.parameter(
+      "refresh", choice("top", {"all", "top", "split"}),
+      "maps of kept VPLs that are drawn again (needs `state`): all; the most important ones; or half of "
+      "the same number for those and half for the longest unchanged, first where something moves");
+  d.parameter("refresh_share", real(0.05, 0, 1),
+              "how many of the kept VPLs' maps `top` and `split` draw again");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
@@ -231,7 +233,8 @@ glm::vec4 moversOf(const scene::Geometry& geometry) {
       low = glm::min(low, geometry.positions[object.firstVertex + v]);
       high = glm::max(high, geometry.positions[object.firstVertex + v]);
     }
-  return low.x > high.x ? glm::vec4(0, 0, 0, -1) : glm::vec4(0.5f * (low + high), 0.5f * glm::length(high - low));
+  return low.x > high.x ? glm::vec4(0, 0, 0, -1)
+                        : glm::vec4(0.5f * (low + high), 0.5f * glm::length(high - low));
 }
 
 void ShadowAtlas::chooseSlots(RecordContext& ctx) {
@@ -241,8 +244,9 @@ void ShadowAtlas::chooseSlots(RecordContext& ctx) {
   if (hasState_) choose.constant("movers", moversOf(*ctx.frame().geometry));
   choose.dispatch(1);
   ctx.barrier();
-  ctx.use(clear_).constant("slots", slots).dispatch(std::min(slots, kGroupsPerRow),
-                                                    (slots + kGroupsPerRow - 1) / kGroupsPerRow);
+  ctx.use(clear_)
+      .constant("slots", slots)
+      .dispatch(std::min(slots, kGroupsPerRow), (slots + kGroupsPerRow - 1) / kGroupsPerRow);
 }
 
 void ShadowAtlas::record(RecordContext& ctx) {

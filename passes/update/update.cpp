@@ -13,18 +13,21 @@ using namespace graph;
 class Update : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("update",
-                      "last frame's VPLs moved with their objects; those whose surface is gone or turned are dropped");
-    d.input("previous", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead, "VPLs of the frame before");
+    PassDeclaration d(
+        "update",
+        "last frame's VPLs moved with their objects; those whose surface is gone or turned are dropped");
+    d.input("previous", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
+            "VPLs of the frame before");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surfaces of this frame");
-    d.output(
-        "vpls", buffer("VplState", sizeof(scene::VplState), countOf("previous")), Usage::StorageWrite,
-        "in their slots, one frame older, their importance still that of the frame before; dropped ones: empty slots");
-    d.parameter("max_turn", real(30, 0, 180, "degrees"),
-                "between a VPL's normal as found (moved with its object) and its voxel's; more: it is dropped");
+    d.output("vpls", buffer("VplState", sizeof(scene::VplState), countOf("previous")), Usage::StorageWrite,
+             "in their slots, one frame older, their importance still that of the frame before; dropped "
+             "ones: empty slots");
+    d.parameter(
+        "max_turn", real(30, 0, 180, "degrees"),
+        "between a VPL's normal as found (moved with its object) and its voxel's; more: it is dropped");
     d.counter("alive", "VPLs that stay");
     d.counter("deleted", "VPLs dropped");
     return d;

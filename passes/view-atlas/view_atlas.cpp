@@ -16,16 +16,18 @@ class ViewAtlas : public Pass {
     d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
             "distances seen from each VPL (paraboloid maps, both layouts)");
     const SizeExpr maps = ceilDiv(widthOf("atlas"), heightOf("atlas")) * layersOf("atlas");
-    d.output("image",
-             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
-                     ceilDiv(maps, parameter("columns")) * parameter("tile")),
-             Usage::StorageWrite,
-             "grey: bright is near, for the pass `tonemap` at the scene's exposure; blue: nothing is hit; a: 1");
+    d.output(
+        "image",
+        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
+                ceilDiv(maps, parameter("columns")) * parameter("tile")),
+        Usage::StorageWrite,
+        "grey: bright is near, for the pass `tonemap` at the scene's exposure; blue: nothing is hit; a: 1");
     d.parameter("columns", integer(32, 1, 256), "maps in a row");
     ParameterSpec tile = integer(32, 4, 1024);
     tile.unit = "px";
     d.parameter("tile", tile, "width and height of a map in the picture (the nearest texel)");
-    d.parameter("range", real(0, 0, 1e9, "m"), "distance at which grey has halved; 0: an eighth of the scene's diagonal");
+    d.parameter("range", real(0, 0, 1e9, "m"),
+                "distance at which grey has halved; 0: an eighth of the scene's diagonal");
     return d;
   }
 
@@ -35,7 +37,9 @@ class ViewAtlas : public Pass {
     const scene::Geometry& g = *ctx.frame().geometry;
     const float range = float(ctx.parameters().real("range")),
                 diagonal = g.empty() ? 0.0f : glm::length(g.boundsMax - g.boundsMin);
-    ctx.use(kernel_).constant("range", range > 0 ? range : std::max(0.125f * diagonal, 1e-6f)).dispatchOver("image");
+    ctx.use(kernel_)
+        .constant("range", range > 0 ? range : std::max(0.125f * diagonal, 1e-6f))
+        .dispatchOver("image");
   }
 
  private:

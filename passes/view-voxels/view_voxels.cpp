@@ -17,12 +17,15 @@ class ViewVoxels : public Pass {
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surface voxels");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`").makeOptional();
-    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "of each side; for show `weight`").makeOptional();
+    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`")
+        .makeOptional();
+    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "of each side; for show `weight`")
+        .makeOptional();
     d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
              "rgb: for the pass `tonemap` at the scene's exposure; a: 1");
-    d.parameter("show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
-                "reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or normal (0.5 + 0.5 n)");
+    d.parameter(
+        "show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
+        "reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or normal (0.5 + 0.5 n)");
     return d;
   }
 
@@ -30,7 +33,8 @@ class ViewVoxels : public Pass {
     const std::string& show = ctx.parameters().text("show");
     const char* wanted = show == "radiance" ? "radiance" : show == "weight" ? "weights" : nullptr;
     if (wanted && !ctx.has(wanted))
-      throw Error(ExitCode::BadInput, "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
+      throw Error(ExitCode::BadInput,
+                  "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
                   std::string("wire `") + wanted + "` or show something else");
     const gpu::Defines defines = show == "radiance" ? gpu::Defines{{"RADIANCE", "1"}}
                                  : show == "weight" ? gpu::Defines{{"WEIGHT", "1"}}

@@ -1,7 +1,8 @@
-// Surface voxels of the scene. Triangles are clipped to the cells that a conservative test says they overlap; area, position,
-// normal, reflectance and emission add up in fixed point, so that no order of atomics shows. Cells are marked first and
-// numbered by a prefix sum, since sums for every cell of the grid would not fit. Static triangles are voxelised once; those of
-// dynamic objects every frame, as voxels of their own that hide the static voxel of their cell (METHOD: overlaid, not averaged).
+// Surface voxels of the scene. Triangles are clipped to the cells that a conservative test says they overlap;
+// area, position, normal, reflectance and emission add up in fixed point, so that no order of atomics shows.
+// Cells are marked first and numbered by a prefix sum, since sums for every cell of the grid would not fit.
+// Static triangles are voxelised once; those of dynamic objects every frame, as voxels of their own that hide
+// the static voxel of their cell (METHOD: overlaid, not averaged).
 #include <algorithm>
 
 #include "framework/graph/registry.h"
@@ -46,12 +47,14 @@ class Voxelize : public Pass {
   void recordPhase(RecordContext& ctx, Phase phase, Triangles triangles);
 
   Visit mark_, accumulate_;
-  Kernel chunkBlocks_, chunkTops_, chunkOffsets_, markBlocks_, markTops_, assign_, clear_, resolve_, restore_, count_;
+  Kernel chunkBlocks_, chunkTops_, chunkOffsets_, markBlocks_, markTops_, assign_, clear_, resolve_, restore_,
+      count_;
   bool voxelized_ = false;  // the static scene
 };
 
 PassDeclaration Voxelize::declaration() {
-  PassDeclaration d("voxelize", "surface voxels of the scene: averages of both sides of every cell that holds surface");
+  PassDeclaration d("voxelize",
+                    "surface voxels of the scene: averages of both sides of every cell that holds surface");
   const SizeExpr r = parameter("resolution");
   const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
   d.output("voxels", "voxels",
@@ -59,25 +62,31 @@ PassDeclaration Voxelize::declaration() {
                    "0 empty, else 1 + number of the cell's voxel"),
             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
                    "two sides a voxel, see shaders/common/voxel.glsl; area 0: an empty side"),
-            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::StorageRead | Usage::StorageWrite,
-                   "numbers of voxels")},
+            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
+                   Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")},
            "voxels of static surfaces, then those of dynamic objects")
       .keep(Lifetime::Scene);
   const SizeExpr words = ceilDiv(r * r * r, 32), triangles = environment("scene.triangles");
   const Usage both = Usage::StorageRead | Usage::StorageWrite;
-  d.scratch("marks", buffer("uint", 4, words), both | Usage::TransferWrite, "a bit a cell: holds surface").keep(Lifetime::Scene);
-  d.scratch("cells", buffer("VoxelCell", 8, room), both, "of each voxel: its linear cell index, and the index that it hides")
+  d.scratch("marks", buffer("uint", 4, words), both | Usage::TransferWrite, "a bit a cell: holds surface")
       .keep(Lifetime::Scene);
-  d.scratch("state", buffer("VoxelizeState", kStateBytes), both | Usage::Indirect, "numbers of both phases, and dispatches")
+  d.scratch("cells", buffer("VoxelCell", 8, room), both,
+            "of each voxel: its linear cell index, and the index that it hides")
       .keep(Lifetime::Scene);
-  d.scratch("chunks", buffer("uint", 4, triangles), both, "of each triangle: chunks, then those of the triangles before it");
-  d.scratch("blocks", buffer("uint", 4, max(ceilDiv(words, kScanBlock), ceilDiv(triangles, kScanBlock))), both,
-            "prefix sum of the sums of blocks");
-  d.scratch("sums", buffer("uint", 4, min(room, kBatch) * (2 * kSumWords)), both, "sums of both sides of a batch of voxels");
+  d.scratch("state", buffer("VoxelizeState", kStateBytes), both | Usage::Indirect,
+            "numbers of both phases, and dispatches")
+      .keep(Lifetime::Scene);
+  d.scratch("chunks", buffer("uint", 4, triangles), both,
+            "of each triangle: chunks, then those of the triangles before it");
+  d.scratch("blocks", buffer("uint", 4, max(ceilDiv(words, kScanBlock), ceilDiv(triangles, kScanBlock))),
+            both, "prefix sum of the sums of blocks");
+  d.scratch("sums", buffer("uint", 4, min(room, kBatch) * (2 * kSumWords)), both,
+            "sums of both sides of a batch of voxels");
 
   d.parameter("resolution", integer(128, 8, 512), "cells along the longest axis of the scene's bounds");
   d.parameter("capacity", integer(16, 1, 512),
-              "voxels that find room, in squares of the resolution, 1,048,576 at most; the others are counted as overflow and "
+              "voxels that find room, in squares of the resolution, 1,048,576 at most; the others are "
+              "counted as overflow and "
               "left out, the last ones in linear order first");
   d.counter("voxels", "voxels in the list");
   d.counter("static_voxels", "of static surfaces");
@@ -88,7 +97,8 @@ PassDeclaration Voxelize::declaration() {
 void Voxelize::prepare(PrepareContext& ctx) {
   const gpu::Defines accumulate{{"ACCUMULATE", "1"}}, marks{{"MARKS", "1"}};
   mark_ = {ctx.compute("voxelize/small.comp"), ctx.compute("voxelize/large.comp")};
-  accumulate_ = {ctx.compute("voxelize/small.comp", accumulate), ctx.compute("voxelize/large.comp", accumulate)};
+  accumulate_ = {ctx.compute("voxelize/small.comp", accumulate),
+                 ctx.compute("voxelize/large.comp", accumulate)};
   chunkBlocks_ = ctx.compute("voxelize/scan_blocks.comp");
   chunkTops_ = ctx.compute("voxelize/scan_tops.comp");
   chunkOffsets_ = ctx.compute("voxelize/scan_chunks.comp");
@@ -139,8 +149,11 @@ void Voxelize::recordAssignment(RecordContext& ctx, Phase phase) {
       .constant("room", uint32_t(ctx.count("cells")))
       .dispatch(1);
   ctx.barrier();
-  dispatchGroups(
-      ctx.use(assign_).constant("count", words).constant("blockCount", blocks).constant("phase", uint32_t(phase)), blocks);
+  dispatchGroups(ctx.use(assign_)
+                     .constant("count", words)
+                     .constant("blockCount", blocks)
+                     .constant("phase", uint32_t(phase)),
+                 blocks);
   ctx.barrier();
 }
 

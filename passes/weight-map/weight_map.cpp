@@ -8,7 +8,8 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kBlock = 4, kGroup = 8;  // pixels a thread and threads a work group, per side (scatter.comp)
+constexpr uint32_t kBlock = 4,
+                   kGroup = 8;  // pixels a thread and threads a work group, per side (scatter.comp)
 
 class WeightMap : public Pass {
  public:
@@ -26,12 +27,14 @@ class WeightMap : public Pass {
     d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "float a side: the largest foveated weight among the pixels that show it, 0: unseen");
-    d.parameter("region", choice("fovea", {"fovea", "image"}),
-                "what counts fully: the disc around the gaze, with weights that fall outside it, or the whole image");
+    d.parameter(
+        "region", choice("fovea", {"fovea", "image"}),
+        "what counts fully: the disc around the gaze, with weights that fall outside it, or the whole image");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
                 "radius r_f of the fovea: weight 1 inside, r_f / r at the distance r from the gaze");
     d.counter("visible", "sides with a weight above 0");
-    d.counter("unassigned", "pixels that show a surface of which the grid has no side that faces the eye there");
+    d.counter("unassigned",
+              "pixels that show a surface of which the grid has no side that faces the eye there");
     return d;
   }
 

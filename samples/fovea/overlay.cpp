@@ -9,7 +9,9 @@ namespace {
 constexpr float kLine = 1.5f;  // px
 
 // How much of a line that passes a pixel's centre at `distance` covers the pixel.
-float coverage(float distance, float width) { return std::clamp(0.5f * width + 0.5f - std::abs(distance), 0.0f, 1.0f); }
+float coverage(float distance, float width) {
+  return std::clamp(0.5f * width + 0.5f - std::abs(distance), 0.0f, 1.0f);
+}
 
 // A white line on a wider black one is seen on any picture.
 void blend(image::Image& picture, uint32_t x, uint32_t y, float white, float black) {

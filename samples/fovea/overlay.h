@@ -7,8 +7,8 @@
 
 namespace fovea::cli {
 
-// The foveal circle and a cross where the eye looks. gaze: normalised, origin top-left, may lie outside the picture;
-// radius: image widths.
+// The foveal circle and a cross where the eye looks. gaze: normalised, origin top-left, may lie outside the
+// picture; radius: image widths.
 void drawFovea(image::Image& picture, glm::vec2 gaze, float radius);
 
 }  // namespace fovea::cli

@@ -128,7 +128,8 @@ void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
   // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
-  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})), early);
+  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})),
+              early);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
   geometry_ = scene::flatten(scene_);
@@ -149,7 +150,9 @@ void Render::buildPlan() {
                             size_.y, limit),
                 "render a smaller picture");
   auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
-      description_, graph::sceneEnvironment(device_.get(), scene_, geometry_, graph::frameViews({size_.x, size_.y})), messages_));
+      description_,
+      graph::sceneEnvironment(device_.get(), scene_, geometry_, graph::frameViews({size_.x, size_.y})),
+      messages_));
   readback_ = outputs_->outputsOf(*bound, size_);
   plan_ = std::make_shared<const graph::Plan>(
       graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
@@ -202,7 +205,8 @@ void Render::showFovea() {
   for (const graph::BoundOutput& output : graph.outputs)
     for (const graph::BoundPass& pass : graph.passes)
       for (const graph::Access& access : pass.accesses)
-        if (output.name == "image" && access.writes && access.resource == output.resource) eye = graph.views[pass.view];
+        if (output.name == "image" && access.writes && access.resource == output.resource)
+          eye = graph.views[pass.view];
   outputs_->setOverlay([this, radius, eye](image::Image& picture, uint64_t index) {
     const scene::Frame shown = frame(index);
     drawFovea(picture, shown.findView(eye)->gaze, radius);
@@ -320,8 +324,9 @@ void addOutputOptions(CLI::App& command, RenderOptions& options) {
           "writes every frame. Default: GRAPH-SCENE.png, none with --timings or --trace")
       ->type_name("FILE");
   command
-      .add_option("--timings", options.timings,
-                  "Times and counters: .json (median, min, p95, and every frame) or .csv (every\nframe and pass)")
+      .add_option(
+          "--timings", options.timings,
+          "Times and counters: .json (median, min, p95, and every frame) or .csv (every\nframe and pass)")
       ->type_name("FILE");
   command.add_option("--trace", options.trace, "Trace of passes and frames for ui.perfetto.dev")
       ->type_name("FILE.json");

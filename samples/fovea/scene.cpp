@@ -35,7 +35,9 @@ std::string formatLight(const scene::Light& light) {
 
 template <class Motion>
 std::string formatPath(const std::string& name, const Motion& m) {
-  const char* after = m.repeat == scene::Repeat::Loop ? ", again and again" : m.repeat == scene::Repeat::PingPong ? ", back and forth" : "";
+  const char* after = m.repeat == scene::Repeat::Loop       ? ", again and again"
+                      : m.repeat == scene::Repeat::PingPong ? ", back and forth"
+                                                            : "";
   return fmt::format("{}, {} keys over {:.3g} s{}", name, m.keys.size(), m.keys.back().time, after);
 }
 
@@ -75,7 +77,8 @@ ExitCode info(const std::string& name) {
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
   for (const scene::Mover& m : s.movers) line("moves", formatPath(s.nodes[m.node].name, m));
-  for (const scene::LightMotion& m : s.lightMotions) line("moves", "light " + formatPath(s.lights[m.light].name, m));
+  for (const scene::LightMotion& m : s.lightMotions)
+    line("moves", "light " + formatPath(s.lights[m.light].name, m));
   if (s.gaze.size() == 1)
     line("gaze", fmt::format("at {:.3g}, {:.3g}", s.gaze[0].position.x, s.gaze[0].position.y));
   if (s.gaze.size() > 1)

@@ -160,7 +160,10 @@ std::string Timings::json(const RunInfo& run) const {
   for (const auto& [name, value] : counters()) counted[name] = value;
   Json frames = Json::array();
   for (const graph::FrameResult& f : frames_) {
-    Json one = {{"frame", f.frame}, {"wall_ms", rounded(f.wallMs)}, {"gpu_ms", rounded(f.gpuMs)}, {"cpu_ms", rounded(f.cpuMs)}};
+    Json one = {{"frame", f.frame},
+                {"wall_ms", rounded(f.wallMs)},
+                {"gpu_ms", rounded(f.gpuMs)},
+                {"cpu_ms", rounded(f.cpuMs)}};
     one["counters"] = Json::object();
     for (const auto& [name, value] : f.counters) one["counters"][name] = value;
     frames.push_back(std::move(one));

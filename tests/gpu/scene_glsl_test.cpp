@@ -106,8 +106,8 @@ Scene texturedScene() {
   return scene;
 }
 
-// A coordinate of n texels has steps of n 2^-23, which the slope between two texels turns into an error of the
-// result.
+// A coordinate of n texels has steps of n 2^-23, which the slope between two texels turns into an error of
+// the result.
 double coordinateError(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
   if (!use) return 0;
   const Texture& t = scene.textures[use.texture];
@@ -141,8 +141,8 @@ TEST(SceneGlsl, MaterialsAndTextures) {
   for (size_t i = 0; i + 1 < queries.size(); ++i) {
     const Material& m = scene.materials[size_t(queries[i].x)];
     const glm::vec2 uv(queries[i].y, queries[i].z);
-    const double tolerance = 1e-5 + coordinateError(scene, m.baseColorTexture, uv) +
-                             coordinateError(scene, m.emissionTexture, uv);
+    const double tolerance =
+        1e-5 + coordinateError(scene, m.baseColorTexture, uv) + coordinateError(scene, m.emissionTexture, uv);
     const glm::vec4 color = reflectance(scene, m, uv);
     const glm::vec3 light = emission(scene, m, uv);
     for (int c = 0; c < 4; ++c) {
@@ -304,7 +304,8 @@ TEST(SceneGlsl, ObjectsEqualTheFrames) {
     ObjectTransform o;
     const auto transform = [&](uint32_t seed) {
       const glm::vec3 axis(random(seed, k), random(seed + 1, k), 0.1f);
-      glm::mat4 m = glm::translate(glm::mat4(1), 10.0f * glm::vec3(random(seed + 2, k), -1, random(seed + 3, k)));
+      glm::mat4 m =
+          glm::translate(glm::mat4(1), 10.0f * glm::vec3(random(seed + 2, k), -1, random(seed + 3, k)));
       m = glm::rotate(m, 6.0f * random(seed + 4, k), glm::normalize(axis));
       return glm::scale(m, glm::vec3(0.5f + random(seed + 5, k), 2, k % 3 == 0 ? -1.0f : 1.5f));
     };

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std::string> set, uint32_t side, uint32_t frames) {
+GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std::string> set, uint32_t side,
+               uint32_t frames) {
   GraphRunOptions options;
   options.size = {side, side};
   options.frames = frames;
@@ -23,8 +24,8 @@ GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std:
   return runGraph(graph, s, options);
 }
 
-// Inside a closed diffuse sphere every point sees every other with the same form factor: the light I / R^2 from its centre
-// comes back as I / R^2 (rho + rho^2 + ...), evenly, whatever the VPLs.
+// Inside a closed diffuse sphere every point sees every other with the same form factor: the light I / R^2
+// from its centre comes back as I / R^2 (rho + rho^2 + ...), evenly, whatever the VPLs.
 TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
   constexpr float kRadius = 20, kRho = 0.5f;
   scene::Scene s;
@@ -36,8 +37,8 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
   s.cameras[0].verticalFov = 1.5f;
   for (const int bounces : {1, 2, 4}) {
     // Enough paths for their mean number of bounces to be within 1% or so.
-    const GraphRun run = runIr("ir_accumulated", s,
-                               {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
+    const GraphRun run = runIr(
+        "ir_accumulated", s, {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
     double series = 0;
     for (int k = 1; k <= bounces; ++k) series += std::pow(double(kRho), k);
     const double expected = kRho / kPi * 100 / (kRadius * kRadius) * series;
@@ -45,7 +46,8 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
     double mean = 0;
     for (size_t i = 0; i < indirect.size(); i += 4) {
       mean += indirect[i] / double(indirect.size() / 4);
-      ASSERT_NEAR(indirect[i], expected, 0.08 * expected) << "pixel " << i / 4 << ", " << bounces << " bounces";
+      ASSERT_NEAR(indirect[i], expected, 0.08 * expected)
+          << "pixel " << i / 4 << ", " << bounces << " bounces";
     }
     EXPECT_NEAR(mean, expected, 0.03 * expected) << bounces << " bounces";
     const auto direct = toFloats(run.outputs.at("direct")), radiance = toFloats(run.outputs.at("radiance"));
@@ -81,16 +83,19 @@ Comparison compare(const std::vector<float>& image, const scene::Scene& s, uint3
   return result;
 }
 
-// 6 frames of 1000 VPLs without clamp: the mean brightness within 3%, and every region close to the traced paths.
-// (The disc kernel loses light where VPLs stand for large areas: 8% of it with 250 VPLs here, 2.5% with 1000.)
+// 6 frames of 1000 VPLs without clamp: the mean brightness within 3%, and every region close to the traced
+// paths. (The disc kernel loses light where VPLs stand for large areas: 8% of it with 250 VPLs here, 2.5%
+// with 1000.)
 TEST(InstantRadiosity, AccumulatedFramesApproachTracedPaths) {
   scene::Scene s = scene::builtin("cornellbox");
   // Off the axis: on it, pixel centres fall exactly on the seams of the room, where no ray can start.
   s.cameras[0].position += glm::vec3(0.037f, 0.021f, 0);
-  const GraphRun run = runIr("ir_accumulated", s,
-                             {"vpl_count=1000", "kernel=clamp", "clamp_distance=0", "interleave=1", "shadow_map_size=512"}, 48, 6);
+  const GraphRun run = runIr(
+      "ir_accumulated", s,
+      {"vpl_count=1000", "kernel=clamp", "clamp_distance=0", "interleave=1", "shadow_map_size=512"}, 48, 6);
   const Comparison c = compare(toFloats(run.outputs.at("indirect")), s, 48, 400);
-  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(c.meanRatio[channel], 1, 0.03) << "channel " << channel;
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(c.meanRatio[channel], 1, 0.03) << "channel " << channel;
   EXPECT_LT(c.relativeError, 0.05);  // 0.028: the spikes of 1 / d^2 where two walls meet
 }
 

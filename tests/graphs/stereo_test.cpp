@@ -1,4 +1,5 @@
-// Both eyes from end to end: the right eye made from the left one's light against the right eye rendered on its own.
+// Both eyes from end to end: the right eye made from the left one's light against the right eye rendered on
+// its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +16,11 @@ namespace {
 constexpr uint32_t kSide = 256;
 
 // Pages of the same VPLs in every frame and run: light paths do not depend on the eye.
-const std::vector<std::string> kSettings = {"vpl_count=320", "map_size=32", "shadow_map_size=512", "per_frame=false"};
+const std::vector<std::string> kSettings = {"vpl_count=320", "map_size=32", "shadow_map_size=512",
+                                            "per_frame=false"};
 
-GraphRun run(const std::string& graph, const scene::Scene& s, const std::string& view, int interleave = 4, uint32_t frames = 1) {
+GraphRun run(const std::string& graph, const scene::Scene& s, const std::string& view, int interleave = 4,
+             uint32_t frames = 1) {
   GraphRunOptions options;
   options.size = {kSide, kSide};
   options.frames = frames;
@@ -49,7 +52,8 @@ struct Errors {
 };
 
 // Over the pixels with mask != 0 (`in`) or == 0.
-Errors compare(const std::vector<float>& image, const std::vector<float>& want, const std::vector<float>& mask, bool in) {
+Errors compare(const std::vector<float>& image, const std::vector<float>& want,
+               const std::vector<float>& mask, bool in) {
   double brightness = 0;
   for (size_t i = 0; i < mask.size(); ++i) brightness += luminance(want, i) / double(mask.size());
   std::vector<double> errors;
@@ -72,23 +76,27 @@ Errors compare(const std::vector<float>& image, const std::vector<float>& want, 
 
 class Interleave : public testing::TestWithParam<int> {};
 
-// Without interleaving only the warp itself is left: bilinear between pixels, shadows of VPLs a pixel off. With it both pictures
-// have their own noise from subsets.
+// Without interleaving only the warp itself is left: bilinear between pixels, shadows of VPLs a pixel off.
+// With it both pictures have their own noise from subsets.
 TEST_P(Interleave, RightEyeEqualsTheOneRenderedOnItsOwn) {
   const int n = GetParam();
   const scene::Scene s = scene::builtin("cornellbox");
-  const GraphRun both = run("ir_stereo", s, "", n), own = run("ir_1000", s, "right", n), left = run("ir_1000", s, "left", n);
+  const GraphRun both = run("ir_stereo", s, "", n), own = run("ir_1000", s, "right", n),
+                 left = run("ir_1000", s, "left", n);
   // The first eye does not notice the second; direct light is never warped.
   EXPECT_EQ(both.outputs.at("radiance").bytes, left.outputs.at("radiance").bytes);
   EXPECT_EQ(both.outputs.at("direct_right").bytes, own.outputs.at("direct").bytes);
 
   const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(own.outputs.at("indirect"));
   const auto mask = toFloats(both.outputs.at("mask"));
-  const double pixels = counter(both, "right/reproject.pixels"), fresh = counter(both, "right/reproject.new_pixels") / pixels,
+  const double pixels = counter(both, "right/reproject.pixels"),
+               fresh = counter(both, "right/reproject.new_pixels") / pixels,
                shaded = counter(both, "right/reproject.shaded_pixels") / pixels;
   const Errors warped = compare(image, want, mask, false), again = compare(image, want, mask, true);
-  std::printf("new %.2f%%, shaded %.2f%%; warped: mean %.4f p95 %.4f bias %.4f; shaded: mean %.4f p95 %.4f bias %.4f\n", 100 * fresh,
-              100 * shaded, warped.mean, warped.p95, warped.bias, again.mean, again.p95, again.bias);
+  std::printf(
+      "new %.2f%%, shaded %.2f%%; warped: mean %.4f p95 %.4f bias %.4f; shaded: mean %.4f p95 %.4f bias "
+      "%.4f\n",
+      100 * fresh, 100 * shaded, warped.mean, warped.p95, warped.bias, again.mean, again.p95, again.bias);
   EXPECT_EQ(counter(both, "right/deferred.shaded_pixels"), shaded * pixels);
   EXPECT_GT(fresh, 0.005);
   EXPECT_LT(fresh, 0.03);

@@ -49,15 +49,17 @@ struct SeenImage {
       normal.push_back(0);
       glm::vec3 n = p.face / (std::abs(p.face.x) + std::abs(p.face.y) + std::abs(p.face.z));
       glm::vec2 oct(n);
-      if (n.z < 0) oct = (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
+      if (n.z < 0)
+        oct = (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
       for (int k = 0; k < 2; ++k) {
         face.push_back(int16_t(std::lround(oct[k] * 32767)));
         oct[k] = float(face.back()) / 32767.0f;
       }
       n = glm::vec3(oct, 1 - std::abs(oct.x) - std::abs(oct.y));
       if (n.z < 0)
-        n = glm::vec3((1.0f - glm::abs(glm::vec2(oct.y, oct.x))) * glm::vec2(oct.x < 0 ? -1 : 1, oct.y < 0 ? -1 : 1),
-                      n.z);
+        n = glm::vec3(
+            (1.0f - glm::abs(glm::vec2(oct.y, oct.x))) * glm::vec2(oct.x < 0 ? -1 : 1, oct.y < 0 ? -1 : 1),
+            n.z);
       p.face = glm::normalize(n);
     }
     const auto w = uint32_t(size.x), h = uint32_t(size.y);

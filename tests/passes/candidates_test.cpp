@@ -1,4 +1,5 @@
-// Candidates: every one against the CPU with the same random numbers; pixels and bounces against their distributions.
+// Candidates: every one against the CPU with the same random numbers; pixels and bounces against their
+// distributions.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -26,7 +27,8 @@ scene::Scene makeRoom(bool moving = false) {
   scene::Scene s;
   s.materials.clear();
   uint32_t m[6];
-  for (uint32_t i = 0; i < 6; ++i) m[i] = addMaterial(s, {0.1f + 0.1f * float(i), 0.5f, 0.9f - 0.1f * float(i)});
+  for (uint32_t i = 0; i < 6; ++i)
+    m[i] = addMaterial(s, {0.1f + 0.1f * float(i), 0.5f, 0.9f - 0.1f * float(i)});
   addRoom(s, m, 1);
   s.nodes.pop_back();  // +z is open
   const glm::vec3 low(-0.4f, -1, -0.5f), x(0.5f, 0, 0.2f), z(-0.2f, 0, 0.5f), y(0, 0.7f, 0);
@@ -46,7 +48,8 @@ scene::Scene makeRoom(bool moving = false) {
 }
 
 // What a camera sees of a scene, by rays; normals lean by up to 50 degrees, as shading normals may.
-SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Camera& camera, glm::ivec2 size) {
+SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Camera& camera,
+               glm::ivec2 size) {
   const scene::View view = scene::makeView(camera, glm::uvec2(size), g);
   SeenImage image(size);
   for (int y = 0; y < size.y; ++y)
@@ -62,7 +65,8 @@ SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Cam
           glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
       if (glm::dot(p.face, glm::vec3(ray)) > 0) p.face = -p.face;
       const uint32_t i = uint32_t(y * size.x + x);
-      p.normal = glm::normalize(p.face + 0.7f * (2.0f * glm::vec3(random(0, i), random(1, i), random(2, i)) - 1.0f));
+      p.normal =
+          glm::normalize(p.face + 0.7f * (2.0f * glm::vec3(random(0, i), random(1, i), random(2, i)) - 1.0f));
     }
   return image;
 }
@@ -82,8 +86,8 @@ void expectCounters(const PassTest& test, const Counts& want, double count) {
 // ---- Against the replay
 // ----------------------------------------------------------------------------------------------
 
-void expectReplay(const CandidateReference& reference, const PassTest& test, const std::vector<glm::vec4>& radiance,
-                  Counts& counts) {
+void expectReplay(const CandidateReference& reference, const PassTest& test,
+                  const std::vector<glm::vec4>& radiance, Counts& counts) {
   const auto list = test.values<Candidate>("candidates");
   int rounded = 0;
   for (uint32_t i = 0; i < list.size(); ++i) {
@@ -115,16 +119,19 @@ void expectReplay(const CandidateReference& reference, const PassTest& test, con
     ASSERT_EQ(c.object, side.object);
     ASSERT_EQ(c.luminance, radiance.empty() ? 0 : radiance[c.side].w);
     const scene::ObjectTransform& object = test.lastFrame().objects.at(size_t(c.object));
-    ASSERT_LT(glm::distance(c.localPosition, object.intoObject(side.position)), c.object > 0 ? 1e-6f : 1e-30f);
+    ASSERT_LT(glm::distance(c.localPosition, object.intoObject(side.position)),
+              c.object > 0 ? 1e-6f : 1e-30f);
     counts.moving += c.object > 0;
     ASSERT_EQ(c.unused, 0);
   }
   EXPECT_LE(rounded, int(list.size() / 500) + 1) << "bounces that rounding sent elsewhere";
 }
 
-// Rays through voxels against rays through the triangles: share of the bounces that end within two cells of each other,
-// or that both escape. Backs of single-sided triangles hide nothing from a voxel ray, so the rays pass them, too.
-double agreement(const CandidateReference& reference, const scene::Scene& s, const scene::Geometry& g, uint32_t count) {
+// Rays through voxels against rays through the triangles: share of the bounces that end within two cells of
+// each other, or that both escape. Backs of single-sided triangles hide nothing from a voxel ray, so the rays
+// pass them, too.
+double agreement(const CandidateReference& reference, const scene::Scene& s, const scene::Geometry& g,
+                 uint32_t count) {
   double bounces = 0, same = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const auto a = reference.attempt(i);
@@ -137,7 +144,8 @@ double agreement(const CandidateReference& reference, const scene::Scene& s, con
       continue;
     }
     const glm::dvec3 met(reference.voxels.surface[a.side].position);
-    same += glm::distance(met, origin + hit.t * glm::dvec3(a.direction)) < 2 * double(reference.voxels.grid.cell);
+    same +=
+        glm::distance(met, origin + hit.t * glm::dvec3(a.direction)) < 2 * double(reference.voxels.grid.cell);
   }
   return same / bounces;
 }
@@ -171,8 +179,11 @@ TEST_P(Replay, EveryCandidateIsTheCpus) {
   for (uint32_t frame = 0; frame < 2; ++frame) {
     test.run();
     Counts counts;
-    const CandidateReference reference{
-        .image = image, .voxels = voxels, .fovea = scene::makeFovea(gaze, image.size, 0.3f), .seed = 9, .frame = frame};
+    const CandidateReference reference{.image = image,
+                                       .voxels = voxels,
+                                       .fovea = scene::makeFovea(gaze, image.size, 0.3f),
+                                       .seed = 9,
+                                       .frame = frame};
     expectReplay(reference, test, radiance, counts);
     expectCounters(test, counts, kCount);
     EXPECT_GT(agreement(reference, s, g, kCount), 0.9);
@@ -184,7 +195,8 @@ TEST_P(Replay, EveryCandidateIsTheCpus) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, Replay,
-                         testing::Values(Where::InFront, Where::InsideTheBox, Where::Outside, Where::InFrontOfMovers),
+                         testing::Values(Where::InFront, Where::InsideTheBox, Where::Outside,
+                                         Where::InFrontOfMovers),
                          [](const auto& info) { return kCameras[int(info.param)]; });
 
 TEST(Candidates, PerFrameOrAlwaysTheSame) {
@@ -231,7 +243,9 @@ struct Chambers {
         for (int x = 0; x <= 2 * kSize.x; ++x) {
           const bool wallX = x % 2 == 0, wallZ = z % 2 == 0;
           if (y == 1 && wallX == wallZ) continue;  // a chamber, or where four walls meet
-          const glm::vec3 normal = y == 2 ? glm::vec3(0, 1, 0) : wallX ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+          const glm::vec3 normal = y == 2  ? glm::vec3(0, 1, 0)
+                                   : wallX ? glm::vec3(1, 0, 0)
+                                           : glm::vec3(0, 0, 1);
           scene::VoxelSide side;
           side.area = 1;
           for (const float sign : {1.0f, -1.0f}) {
@@ -323,7 +337,8 @@ TEST_P(Pixels, AreUniformOverTheRegion) {
 INSTANTIATE_TEST_SUITE_P(Regions, Pixels,
                          testing::Values(PixelCase{"Disc", "fovea", {0.5f, 0.5f}, 0.25, false},
                                          PixelCase{"AtTheCorner", "fovea", {0.97f, 0.05f}, 0.25, false},
-                                         PixelCase{"OutsideButReachingIn", "fovea", {1.1f, 0.4f}, 0.25, false},
+                                         PixelCase{
+                                             "OutsideButReachingIn", "fovea", {1.1f, 0.4f}, 0.25, false},
                                          PixelCase{"Outside", "fovea", {-2, 0.4f}, 0.25, true},
                                          PixelCase{"CoveringAll", "fovea", {0.4f, 0.6f}, 2, true},
                                          PixelCase{"Image", "image", {0.4f, 0.6f}, 0.1, true}),
@@ -347,7 +362,8 @@ TEST(Candidates, TwoEyesTakeTurns) {
   const auto list = test.values<Candidate>("candidates");
   for (size_t i = 0; i < list.size(); ++i) {
     const glm::vec2 p = glm::vec2(chambers.pixelOf(list[i])) + 0.5f;
-    ASSERT_LT(glm::distance(p, gazes[i % 2] * glm::vec2(kSize)), 0.1f * float(kSize.x) + 0.71f) << "attempt " << i;
+    ASSERT_LT(glm::distance(p, gazes[i % 2] * glm::vec2(kSize)), 0.1f * float(kSize.x) + 0.71f)
+        << "attempt " << i;
   }
 }
 
@@ -395,7 +411,8 @@ TEST(Candidates, BouncesAreCosineDistributed) {
     ASSERT_GT(d.z, -0.02f);
     // A cosine density is uniform in sin^2 of the angle to the normal, and around it.
     const int ring = std::min(int((1 - d.z * d.z) * kRings), kRings - 1);
-    const int sector = std::min(int((std::atan2(d.y, d.x) / glm::two_pi<float>() + 0.5f) * kSectors), kSectors - 1);
+    const int sector =
+        std::min(int((std::atan2(d.y, d.x) / glm::two_pi<float>() + 0.5f) * kSectors), kSectors - 1);
     counted[size_t(ring * kSectors + sector)] += 1;
   }
   EXPECT_LT(test.counter("escaped"), 0.01 * kCount);  // along the plane they start from

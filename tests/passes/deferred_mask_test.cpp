@@ -1,4 +1,5 @@
-// Shading of listed blocks only, with known irradiance elsewhere: the same light as without a mask, no seams, cost by blocks.
+// Shading of listed blocks only, with known irradiance elsewhere: the same light as without a mask, no seams,
+// cost by blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +31,8 @@ std::vector<Vpl> randomVpls(uint32_t count) {
 GBuffer makeFloor(int width, int height, float step) {
   return GBuffer(width, height, [&](int x, int y) {
     SurfacePixel p;
-    p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0, (float(y) - 0.5f * float(height - 1)) * step};
+    p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
+                  (float(y) - 0.5f * float(height - 1)) * step};
     p.distance = 5;
     return p;
   });
@@ -42,7 +44,8 @@ GBuffer makePatches(int width, int height) {
     const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
     SurfacePixel p;
     p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
-    p.position = {0.02f * float(x) - 0.5f, 0.5f * random(32, patch) + 0.004f * random(33, pixel), 0.02f * float(y) - 0.4f};
+    p.position = {0.02f * float(x) - 0.5f, 0.5f * random(32, patch) + 0.004f * random(33, pixel),
+                  0.02f * float(y) - 0.4f};
     p.normal = glm::normalize(glm::vec3(random(34, patch) - 0.5f, 1, random(35, patch) - 0.5f));
     return p;
   });
@@ -56,7 +59,9 @@ struct Mask {
   uint32_t count = 0;
 
   Mask(const GBuffer& g, int size, const std::function<bool(int, int)>& listed)
-      : n(size), pixels(g.pixels.size()), blocks(size_t((g.width + n - 1) / n * ((g.height + n - 1) / n)), ~0u) {
+      : n(size),
+        pixels(g.pixels.size()),
+        blocks(size_t((g.width + n - 1) / n * ((g.height + n - 1) / n)), ~0u) {
     for (int y = 0; y < (g.height + n - 1) / n; ++y)
       for (int x = 0; x < (g.width + n - 1) / n; ++x)
         if (listed(x, y)) blocks[count++] = uint32_t(x | y << 16);
@@ -72,7 +77,8 @@ struct Mask {
     };
     test.image("shade.mask", VK_FORMAT_R8_UNORM, uint32_t(g.width), uint32_t(g.height), 1, unorm);
     test.buffer("shade.blocks", blocks, "ShadeBlock");
-    test.buffer("shade.dispatch", std::vector<Dispatch>{{{(count + 255) / 256, uint32_t(n * n), 1}, count}}, "ShadeDispatch");
+    test.buffer("shade.dispatch", std::vector<Dispatch>{{{(count + 255) / 256, uint32_t(n * n), 1}, count}},
+                "ShadeDispatch");
   }
 };
 
@@ -89,8 +95,8 @@ std::vector<glm::vec3> colors(const std::vector<float>& rgba) {
   return result;
 }
 
-std::vector<float> run(PassTest& test, const GBuffer& g, const std::vector<Vpl>& vpls, int interleave, const Mask* mask = nullptr,
-                       const std::vector<glm::vec3>& base = {}) {
+std::vector<float> run(PassTest& test, const GBuffer& g, const std::vector<Vpl>& vpls, int interleave,
+                       const Mask* mask = nullptr, const std::vector<glm::vec3>& base = {}) {
   g.wire(test);
   if (mask) mask->wire(test, g);
   if (mask) wireBase(test, g, base);
@@ -99,7 +105,8 @@ std::vector<float> run(PassTest& test, const GBuffer& g, const std::vector<Vpl>&
   return test.floats("irradiance");
 }
 
-// Every block listed: bit for bit what the pass gives without a mask, whatever the base; several pages, an odd size.
+// Every block listed: bit for bit what the pass gives without a mask, whatever the base; several pages, an
+// odd size.
 TEST(DeferredMask, FullMaskEqualsNoMask) {
   const GBuffer g = makePatches(53, 41);
   const auto vpls = randomVpls(1100);
@@ -123,7 +130,8 @@ TEST(DeferredMask, FewVplsShadeWholeBlocksToo) {
   for (const uint32_t count : {1u, 3u, 20u}) {
     const Mask mask(g, 4, [](int, int) { return true; });
     PassTest all("deferred"), masked("deferred");
-    EXPECT_EQ(run(all, g, randomVpls(count), 4), run(masked, g, randomVpls(count), 4, &mask, base)) << count << " VPLs";
+    EXPECT_EQ(run(all, g, randomVpls(count), 4), run(masked, g, randomVpls(count), 4, &mask, base))
+        << count << " VPLs";
   }
 }
 
@@ -138,7 +146,8 @@ TEST(DeferredMask, PatchEqualsNoMaskAndTheRestIsTheBase) {
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {
       const size_t i = 4 * size_t(y * g.width + x);
-      const bool interior = x >= 12 + 2 && x < 32 - 1 && y >= 8 + 2 && y < 28 - 1;  // the window reaches from -2 to +1
+      const bool interior =
+          x >= 12 + 2 && x < 32 - 1 && y >= 8 + 2 && y < 28 - 1;  // the window reaches from -2 to +1
       if (interior) {
         for (size_t c = 0; c < 3; ++c) ASSERT_EQ(image[i + c], expected[i + c]) << x << "," << y;
       }
@@ -166,14 +175,16 @@ TEST(DeferredMask, EmptyListTakesTheBaseEverywhere) {
   EXPECT_EQ(test.counter("shaded_pixels"), 0);
 }
 
-// Lone blocks, rows and patches of them on a wall with the right light around: nobody can tell where they are, although each
-// pixel of theirs saw only one VPL of sixteen.
+// Lone blocks, rows and patches of them on a wall with the right light around: nobody can tell where they
+// are, although each pixel of theirs saw only one VPL of sixteen.
 TEST(DeferredMask, ShadedBlocksHaveNoSeams) {
   const GBuffer g = makeFloor(96, 96, 0.005f);
   const auto vpls = randomVpls(320);
   PassTest all("deferred"), masked("deferred"), plain("deferred");
   const auto truth = colors(run(all, g, vpls, 1)), filtered = colors(run(plain, g, vpls, 4));
-  const Mask mask(g, 4, [](int x, int y) { return random(60, uint32_t(x + 32 * y)) < 0.2f || y == 12 || (x > 17 && y > 19); });
+  const Mask mask(g, 4, [](int x, int y) {
+    return random(60, uint32_t(x + 32 * y)) < 0.2f || y == 12 || (x > 17 && y > 19);
+  });
   const auto image = colors(run(masked, g, vpls, 4, &mask, filtered));
   double worst = 0, worstPlain = 0;
   for (size_t i = 0; i < image.size(); ++i) {
@@ -189,7 +200,8 @@ TEST(DeferredMask, RandomMasksEqualTheReference) {
   const GBuffer g = makePatches(50, 38);
   const auto vpls = randomVpls(300);
   std::vector<glm::vec3> base;
-  for (uint32_t i = 0; i < g.pixels.size(); ++i) base.emplace_back(halfRound(glm::vec3(random(70, i), random(71, i), random(72, i))));
+  for (uint32_t i = 0; i < g.pixels.size(); ++i)
+    base.emplace_back(halfRound(glm::vec3(random(70, i), random(71, i), random(72, i))));
   for (const int n : {1, 2, 4, 8}) {
     const Mask mask(g, n, [n](int x, int y) { return random(73, uint32_t(n * 4096 + x + 64 * y)) < 0.4f; });
     DeferredReference reference;
@@ -228,7 +240,8 @@ TEST(DeferredMask, WrongWiringIsRefused) {
   const std::vector<glm::vec3> base(g.pixels.size());
   const auto everything = [](int, int) { return true; };
   expectRefused([&](PassTest& t) { Mask(g, 4, everything).wire(t, g); }, "nothing is wired to `base`");
-  expectRefused([&](PassTest& t) { Mask(g, 2, everything).wire(t, g), wireBase(t, g, base); }, "blocks of another size than 4 x 4");
+  expectRefused([&](PassTest& t) { Mask(g, 2, everything).wire(t, g), wireBase(t, g, base); },
+                "blocks of another size than 4 x 4");
 }
 
 }  // namespace

@@ -77,9 +77,9 @@ struct DeferredReference {
   double filterPlane = 0.005, filterAngle = 25;
   const std::vector<uint32_t>* atlas = nullptr;  // `size` x `size` x VPLs, the bits of floats
   int size = 0;
-  const std::vector<uint8_t>* mask = nullptr;     // which pixels are shaded; all without it
-  const std::vector<glm::vec3>* base = nullptr;   // irradiance / pi of the others
-  int nearTies = 0;  // shadow comparisons too close to call in single precision
+  const std::vector<uint8_t>* mask = nullptr;    // which pixels are shaded; all without it
+  const std::vector<glm::vec3>* base = nullptr;  // irradiance / pi of the others
+  int nearTies = 0;                              // shadow comparisons too close to call in single precision
 
   // E / pi at a surface from the VPLs first, first + step, ...
   glm::dvec3 shade(const SurfacePixel& p, const std::vector<scene::Vpl>& vpls, size_t first, size_t step) {
@@ -131,7 +131,9 @@ struct DeferredReference {
       for (int x = 0; x < g.width; ++x)
         if (g.at(x, y).distance > 0) {
           const size_t i = size_t(y * g.width + x);
-          result[i] = mask && !(*mask)[i] ? glm::dvec3((*base)[i]) : n == 1 ? partial[i] : filter(g, partial, x, y);
+          result[i] = mask && !(*mask)[i] ? glm::dvec3((*base)[i])
+                      : n == 1            ? partial[i]
+                                          : filter(g, partial, x, y);
         }
     return result;
   }
@@ -148,16 +150,18 @@ struct DeferredReference {
     bool sameSurface(int qx, int qy) const {
       if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return false;
       const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
-      return std::abs(glm::dot(q.position - p.position, p.normal)) <= plane && glm::dot(q.normal, p.normal) >= least;
+      return std::abs(glm::dot(q.position - p.position, p.normal)) <= plane &&
+             glm::dot(q.normal, p.normal) >= least;
     }
     glm::dvec3 value(int qx, int qy) const { return partial[size_t(qy * g.width + qx)]; }
 
-    // A subset's sample from the other side of the pixel or else from the wide window, nearer ones weighing more; a: whether
-    // there is one.
+    // A subset's sample from the other side of the pixel or else from the wide window, nearer ones weighing
+    // more; a: whether there is one.
     glm::dvec4 wide(int ax, int ay, int n) const {
       glm::dvec4 s(0);
       const auto add = [&](int dx, int dy) {
-        if (sameSurface(x + dx, y + dy) && shaded(x + dx, y + dy)) s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
+        if (sameSurface(x + dx, y + dy) && shaded(x + dx, y + dy))
+          s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
       };
       const int inX = ax < n - n / 2 ? ax : ax - n, inY = ay < n - n / 2 ? ay : ay - n;
       const int acrossX = inX < 0 ? inX + n : inX - n, acrossY = inY < 0 ? inY + n : inY - n;
@@ -173,14 +177,17 @@ struct DeferredReference {
 
   glm::dvec3 filter(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y) const {
     const int n = interleave;
-    const Search strict{g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle)), mask};
+    const Search strict{
+        g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle)), mask};
     glm::dvec4 sum(0), outside(0);  // outside: the base where the window leaves the mask
     std::vector<glm::ivec2> missing;
     for (int dy = -n / 2; dy < n / 2; ++dy)
       for (int dx = -n / 2; dx < n / 2; ++dx) {
         const bool same = strict.sameSurface(x + dx, y + dy);
-        if (same && strict.shaded(x + dx, y + dy)) sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
-        else missing.push_back({(dx + n) % n, (dy + n) % n});
+        if (same && strict.shaded(x + dx, y + dy))
+          sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
+        else
+          missing.push_back({(dx + n) % n, (dy + n) % n});
         if (same && !strict.shaded(x + dx, y + dy))
           outside += glm::dvec4(glm::dvec3((*base)[size_t((y + dy) * g.width + x + dx)]), 1);
       }
@@ -188,8 +195,10 @@ struct DeferredReference {
       std::vector<glm::ivec2> still;
       for (const glm::ivec2& m : missing) {
         const glm::dvec4 v = how.wide(m.x, m.y, n);
-        if (v.w > 0) sum += v;
-        else still.push_back(m);
+        if (v.w > 0)
+          sum += v;
+        else
+          still.push_back(m);
       }
       missing = still;
     };
@@ -197,7 +206,8 @@ struct DeferredReference {
     if (outside.w > 0) {  // what the window lacks, from the block of the pixel
       for (int qy = y / n * n; qy < y / n * n + n; ++qy)
         for (int qx = x / n * n; qx < x / n * n + n; ++qx) {
-          const auto at = std::find(missing.begin(), missing.end(), glm::ivec2((qx - x + n) % n, (qy - y + n) % n));
+          const auto at =
+              std::find(missing.begin(), missing.end(), glm::ivec2((qx - x + n) % n, (qy - y + n) % n));
           if (at == missing.end() || !strict.sameSurface(qx, qy)) continue;
           sum += glm::dvec4(strict.value(qx, qy), 1);
           missing.erase(at);

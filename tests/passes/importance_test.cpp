@@ -40,7 +40,8 @@ scene::Scene closedRoom() {
 scene::Scene clutteredRoom() {
   scene::Scene s = closedRoom();
   for (uint32_t i = 0; i < 8; ++i) {
-    const glm::vec3 corner = 0.6f * randomVec3(0, i), u = 0.5f * randomVec3(3, i), v = 0.5f * randomVec3(6, i);
+    const glm::vec3 corner = 0.6f * randomVec3(0, i), u = 0.5f * randomVec3(3, i),
+                    v = 0.5f * randomVec3(6, i);
     addQuad(s, 0, corner, u, v);
     addQuad(s, 0, corner, v, u);
   }
@@ -127,7 +128,8 @@ struct Reference {
   }
 };
 
-// ---- Against the CPU ---------------------------------------------------------------------------------------------------
+// ---- Against the CPU
+// ---------------------------------------------------------------------------------------------------
 
 class AgainstTheCpu : public testing::TestWithParam<bool> {};
 
@@ -177,9 +179,11 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, AgainstTheCpu, testing::Values(false, true));
 
-// ---- Scenes whose importance is known ----------------------------------------------------------------------------------
+// ---- Scenes whose importance is known
+// ----------------------------------------------------------------------------------
 
-// Above the middle of a floor: a ceiling of weight 1 is seen by every ray but those that a lid of weight 0 takes.
+// Above the middle of a floor: a ceiling of weight 1 is seen by every ray but those that a lid of weight 0
+// takes.
 TEST(Importance, OccludersBlock) {
   for (const bool lid : {false, true}) {
     scene::Scene s;
@@ -201,21 +205,24 @@ TEST(Importance, OccludersBlock) {
   }
 }
 
-// Where every ray hits something of weight 1, importance is 1. (In an edge of the room two walls share a side, whose normal
-// lies between theirs and whose position is so near to both that it may count as the own surface of its neighbours.)
+// Where every ray hits something of weight 1, importance is 1. (In an edge of the room two walls share a
+// side, whose normal lies between theirs and whose position is so near to both that it may count as the own
+// surface of its neighbours.)
 TEST(Importance, IsOneWhereEverythingCounts) {
   const scene::Scene s = closedRoom();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
   const auto candidates = randomCandidates(300, voxels);
   PassTest test("importance");
-  wire(test.scene(s), voxels, std::vector<float>(voxels.surface.size(), 1.0f), candidates, makeVpls(candidates));
+  wire(test.scene(s), voxels, std::vector<float>(voxels.surface.size(), 1.0f), candidates,
+       makeVpls(candidates));
   test.run();
   const auto importance = test.values<float>("candidate_importance");
   int compared = 0;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const glm::vec3 fromWall = 16.0f - glm::abs(voxels.grid.worldToVoxel(candidates[i].position) - 16.0f);
     const int walls = int(fromWall.x < 2) + int(fromWall.y < 2) + int(fromWall.z < 2);
-    if (candidates[i].side == scene::kNoSide || walls > 1 || i % 5 == 2) continue;  // a turned one sees its own wall
+    if (candidates[i].side == scene::kNoSide || walls > 1 || i % 5 == 2)
+      continue;  // a turned one sees its own wall
     EXPECT_NEAR(importance[i], 1, 1e-6) << i;
     ++compared;
   }
@@ -249,8 +256,8 @@ TEST(Importance, EmptyListsAndScenes) {
     for (const uint32_t count : {1u, 17u}) {
       Candidate failed;
       PassTest test("importance");
-      wire(test.scene(s), voxels, std::vector<float>(voxels.surface.size(), 1.0f), std::vector<Candidate>(count, failed),
-           std::vector<VplState>(count + 3));
+      wire(test.scene(s), voxels, std::vector<float>(voxels.surface.size(), 1.0f),
+           std::vector<Candidate>(count, failed), std::vector<VplState>(count + 3));
       test.run();
       EXPECT_EQ(test.values<float>("candidate_importance"), std::vector<float>(count, 0.0f));
       EXPECT_EQ(test.values<float>("vpl_importance"), std::vector<float>(count + 3, 0.0f));
@@ -266,10 +273,12 @@ TEST(Importance, EmptyListsAndScenes) {
   EXPECT_EQ(test.values<float>("candidate_importance")[0], 0);
 }
 
-// ---- Cones -------------------------------------------------------------------------------------------------------------
+// ---- Cones
+// -------------------------------------------------------------------------------------------------------------
 
 // The bundle "voxel-mips" of these weights, made by its own pass.
-void wireMips(PassTest& test, const scene::Scene& s, const VoxelArrays& voxels, const std::vector<float>& weights) {
+void wireMips(PassTest& test, const scene::Scene& s, const VoxelArrays& voxels,
+              const std::vector<float>& weights) {
   PassTest mipmap("mipmap");
   setVoxels(mipmap.scene(s), voxels);
   mipmap.buffer("weights", weights, "VoxelWeight");
@@ -364,8 +373,10 @@ TEST(Importance, SaysWhichInputIsMissing) {
     }
     return "no error";
   };
-  EXPECT_THAT(message([](PassTest& t) { t.param("luminance", true); }), testing::HasSubstr("needs the input `radiance`"));
-  EXPECT_THAT(message([](PassTest& t) { t.param("method", "cones"); }), testing::HasSubstr("needs the input `mips`"));
+  EXPECT_THAT(message([](PassTest& t) { t.param("luminance", true); }),
+              testing::HasSubstr("needs the input `radiance`"));
+  EXPECT_THAT(message([](PassTest& t) { t.param("method", "cones"); }),
+              testing::HasSubstr("needs the input `mips`"));
 }
 
 }  // namespace

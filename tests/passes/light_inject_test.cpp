@@ -17,12 +17,14 @@ namespace {
 const glm::vec3 kRho(0.5f, 0.25f, 0.75f);
 
 // The point set of a side, as light_inject.comp describes it.
-std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelSide& side, uint32_t number, int taps) {
+std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelSide& side, uint32_t number,
+                               int taps) {
   const glm::vec3 at = grid.worldToVoxel(side.position);
   const glm::vec3 low = grid.voxelToWorld(glm::floor(at)), n = side.normal, a = glm::abs(n);
   const glm::vec3 reach = glm::max(glm::min(side.position - low, low + grid.cell - side.position), 0.0f);
   const int w = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2, u = (w + 1) % 3, v = (w + 2) % 3;
-  const float shrink = std::min(1.0f, std::sqrt(side.area / std::max(4 * reach[u] * reach[v] / a[w], 1e-30f)));
+  const float shrink =
+      std::min(1.0f, std::sqrt(side.area / std::max(4 * reach[u] * reach[v] / a[w], 1e-30f)));
   const glm::uvec3 cell(glm::max(at, glm::vec3(0)));
   const uint32_t bits = randomStream(0x11c7, cell.x, cell.y, 2 * cell.z + (number & 1));
   std::vector<glm::dvec3> points;
@@ -73,7 +75,8 @@ TEST(LightInject, EveryLightEqualsTheReference) {
       }
       glm::dvec3 want(0);
       for (const glm::dvec3 p : tapsOf(s.voxels.grid, side, i, taps))
-        for (const scene::Light& light : model.lights) want += irradiance(light, p, side.normal) / double(taps);
+        for (const scene::Light& light : model.lights)
+          want += irradiance(light, p, side.normal) / double(taps);
       want = glm::dvec3(side.reflectance) * want / glm::pi<double>() + glm::dvec3(side.emission);
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(got[i][c], want[c], 2e-3 * want[c] + 1e-5) << "side " << i;
       ASSERT_NEAR(got[i].w, luminance(got[i]), 1e-5f + 1e-5f * got[i].w);
@@ -97,7 +100,8 @@ TEST(LightInject, PlaneReceivesTheLightOfTheClosedForm) {
     constexpr int kFine = 1000;
     for (int y = 0; y < kFine; ++y)
       for (int x = 0; x < kFine; ++x)
-        want += glm::dvec3(kRho) * irradiance(light, {2 * (x + 0.5) / kFine - 1, -0.5, 2 * (y + 0.5) / kFine - 1}, {0, 1, 0}) *
+        want += glm::dvec3(kRho) *
+                irradiance(light, {2 * (x + 0.5) / kFine - 1, -0.5, 2 * (y + 0.5) / kFine - 1}, {0, 1, 0}) *
                 (4.0 / kFine / kFine);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], want[c], 3e-3 * want[c]) << int(light.type) << ' ' << c;
   }
@@ -109,7 +113,8 @@ std::vector<double> tracedIrradiance(const VoxelScene& s) {
   std::vector<double> sum(s.sides().size()), points(s.sides().size());
   uint32_t stream = 0;
   for (const scene::Triangle& t : s.geometry.triangles) {
-    const glm::vec3 a = s.geometry.positions[t.v[0]], b = s.geometry.positions[t.v[1]], c = s.geometry.positions[t.v[2]];
+    const glm::vec3 a = s.geometry.positions[t.v[0]], b = s.geometry.positions[t.v[1]],
+                    c = s.geometry.positions[t.v[2]];
     const glm::vec3 cross = glm::cross(b - a, c - a);
     const float area = 0.5f * glm::length(cross), cell = s.voxels.grid.cell;
     if (area <= 0) continue;
@@ -130,7 +135,8 @@ std::vector<double> tracedIrradiance(const VoxelScene& s) {
         const float cosine = glm::dot(normal, l.direction);
         if (cosine <= 0 || l.irradiance.g <= 0) continue;
         const float far = std::min(l.distance, 1e4f) * 0.9999f;
-        if (!rays.occluded({p + normal * rays.epsilon() * 4.0f, l.direction, 0, far})) sum[side] += weight * cosine * l.irradiance.g;
+        if (!rays.occluded({p + normal * rays.epsilon() * 4.0f, l.direction, 0, far}))
+          sum[side] += weight * cosine * l.irradiance.g;
       }
     }
   }
@@ -161,16 +167,16 @@ Balance balance(const VoxelScene& s, const std::vector<double>& traced, const In
   return b;
 }
 
-// The Cornell box with maps against rays. A quarter of a cell above the plane costs nothing and gains what shadows of
-// the own surface would take.
+// The Cornell box with maps against rays. A quarter of a cell above the plane costs nothing and gains what
+// shadows of the own surface would take.
 TEST(LightInject, CornellBoxReceivesWhatRaysSay) {
   const VoxelScene s(scene::builtin("cornellbox"), 64);
   const std::vector<double> traced = tracedIrradiance(s);
   std::map<double, Balance> by;
   for (const double offset : {0.0, 0.25, 0.5, 1.0}) {
     by[offset] = balance(s, traced, {.offset = offset, .shadows = true});
-    std::printf("offset %.2f cells: %.4f of the traced light, %.4f lost, %.4f leaked\n", offset, by[offset].total,
-                by[offset].lost, by[offset].leaked);
+    std::printf("offset %.2f cells: %.4f of the traced light, %.4f lost, %.4f leaked\n", offset,
+                by[offset].total, by[offset].lost, by[offset].leaked);
   }
   EXPECT_NEAR(by[0.25].total, 1, 0.01);
   EXPECT_LT(by[0.25].lost, 0.03);
@@ -182,7 +188,8 @@ TEST(LightInject, SunOnCurvedAndThinSurfaces) {
   model.lights = {sun({0.3f, -1, 0.2f}, {3, 2, 1})};
   const VoxelScene s(model, 48);
   const Balance b = balance(s, tracedIrradiance(s), {.shadows = true});
-  std::printf("sun, curved and thin surfaces: %.4f of the traced light, %.4f lost, %.4f leaked\n", b.total, b.lost, b.leaked);
+  std::printf("sun, curved and thin surfaces: %.4f of the traced light, %.4f lost, %.4f leaked\n", b.total,
+              b.lost, b.leaked);
   EXPECT_NEAR(b.total, 1, 0.03);
   EXPECT_LT(b.lost, 0.06);
   EXPECT_LT(b.leaked, 0.06);

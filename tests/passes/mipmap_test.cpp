@@ -28,7 +28,8 @@ struct Level {
   int size = 0;
   std::vector<Cell> cells;  // face after face
   Cell& at(int face, glm::ivec3 p) {
-    return cells[size_t(p.x) + size_t(size) * (size_t(p.y) + size_t(size) * (size_t(p.z) + size_t(size) * size_t(face)))];
+    return cells[size_t(p.x) +
+                 size_t(size) * (size_t(p.y) + size_t(size) * (size_t(p.z) + size_t(size) * size_t(face)))];
   }
 };
 
@@ -38,15 +39,17 @@ glm::dvec3 faceNormal(int face) {
   return n;
 }
 
-Cell voxelTowards(const VoxelScene& s, const std::vector<glm::vec4>& radiance, const std::vector<float>& weights,
-                  glm::ivec3 cell, int face, bool directional) {
+Cell voxelTowards(const VoxelScene& s, const std::vector<glm::vec4>& radiance,
+                  const std::vector<float>& weights, glm::ivec3 cell, int face, bool directional) {
   Cell sum;
   if (glm::any(glm::greaterThanEqual(cell, glm::ivec3(s.voxels.resolution)))) return sum;
   const uint32_t voxel = s.voxels.voxelAt(cell);
   for (uint32_t side = 2 * voxel - 2; voxel && side < 2 * voxel; ++side) {
     double coverage = double(s.sides()[side].area) / (double(s.voxels.grid.cell) * s.voxels.grid.cell);
-    if (directional) coverage *= std::max(0.0, glm::dot(glm::dvec3(s.sides()[side].normal), faceNormal(face)));
-    sum = sum + coverage * Cell{glm::dvec4(glm::dvec3(radiance[side]), 1), weights.empty() ? 0.0 : double(weights[side])};
+    if (directional)
+      coverage *= std::max(0.0, glm::dot(glm::dvec3(s.sides()[side].normal), faceNormal(face)));
+    sum = sum + coverage * Cell{glm::dvec4(glm::dvec3(radiance[side]), 1),
+                                weights.empty() ? 0.0 : double(weights[side])};
   }
   return sum;
 }
@@ -77,7 +80,8 @@ Level halve(int size, int faces, bool directional, F child) {
 
 void expectReference(const VoxelScene& s, bool directional, bool weighted) {
   std::vector<float> weights;
-  const auto radiance = radianceOf(s, [](const scene::VoxelSide& v) { return 0.5f + glm::abs(v.position) * 3.0f; });
+  const auto radiance =
+      radianceOf(s, [](const scene::VoxelSide& v) { return 0.5f + glm::abs(v.position) * 3.0f; });
   for (size_t i = 0; weighted && i < sideCount(s); ++i) weights.push_back(uniformFloat(hashPcg(uint32_t(i))));
   const Mips got = runMips(s, radiance, directional, weights).mips;
   const int faces = directional ? 6 : 1;
@@ -88,9 +92,9 @@ void expectReference(const VoxelScene& s, bool directional, bool weighted) {
   });
   double occupied = 0;
   for (uint32_t l = 0; l < got.halvings(); ++l) {
-    if (l > 0) level = halve(level.size / 2, faces, directional, [&, finer = level](int face, glm::ivec3 p) mutable {
-      return finer.at(face, p);
-    });
+    if (l > 0)
+      level = halve(level.size / 2, faces, directional,
+                    [&, finer = level](int face, glm::ivec3 p) mutable { return finer.at(face, p); });
     // Every level is rounded to half floats, up or down.
     const double relative = (l + 1) * 0x1p-10;
     for (int face = 0; face < faces; ++face)
@@ -99,7 +103,8 @@ void expectReference(const VoxelScene& s, bool directional, bool weighted) {
         const Cell& want = level.at(face, p);
         const uint32_t x = uint32_t(p.x + face * level.size), y = uint32_t(p.y), z = uint32_t(p.z);
         const glm::vec4 color = got.at(l, x, y, z);
-        for (int c = 0; c < 4; ++c) ASSERT_NEAR(color[c], want.color[c], relative * want.color[c] + 1e-6) << l << ' ' << i;
+        for (int c = 0; c < 4; ++c)
+          ASSERT_NEAR(color[c], want.color[c], relative * want.color[c] + 1e-6) << l << ' ' << i;
         ASSERT_NEAR(got.weight[got.texel(l, x, y, z)], want.weight, relative * want.weight + 1e-6);
         occupied += color.a > 0;
       }
@@ -108,7 +113,8 @@ void expectReference(const VoxelScene& s, bool directional, bool weighted) {
   // What is no half of the level before is 0.
   for (uint32_t l = got.halvings(); l < got.levels; ++l)
     for (uint32_t i = 0; i < got.widthAt(l) * got.sizeAt(l) * got.sizeAt(l); ++i)
-      ASSERT_EQ(got.at(l, i % got.widthAt(l), i / got.widthAt(l) % got.sizeAt(l), i / got.widthAt(l) / got.sizeAt(l)),
+      ASSERT_EQ(got.at(l, i % got.widthAt(l), i / got.widthAt(l) % got.sizeAt(l),
+                       i / got.widthAt(l) / got.sizeAt(l)),
                 glm::vec4(0));
 }
 
@@ -130,13 +136,15 @@ TEST(Mipmap, OtherSizesThanPowersOfTwo) {
   for (const int resolution : {24, 13, 2, 1}) {
     SCOPED_TRACE(resolution);
     const VoxelScene s(mixedScene(), resolution);
-    if (resolution > 10) expectReference(s, true, true), expectReference(s, false, true);
-    else EXPECT_EQ(runMips(s, radianceOf(s, [](auto&) { return glm::vec3(1); }), true).mips.size, 1u);
+    if (resolution > 10)
+      expectReference(s, true, true), expectReference(s, false, true);
+    else
+      EXPECT_EQ(runMips(s, radianceOf(s, [](auto&) { return glm::vec3(1); }), true).mips.size, 1u);
   }
 }
 
-// A wall of one voxel, white on its left, black on its right: from every distance the left sees white, the right black,
-// and nobody sees through.
+// A wall of one voxel, white on its left, black on its right: from every distance the left sees white, the
+// right black, and nobody sees through.
 TEST(Mipmap, ThinWallsStayOpaqueAndTwoSided) {
   scene::Scene model;
   const uint32_t grey = addMaterial(model, glm::vec3(0.5f));
@@ -146,7 +154,8 @@ TEST(Mipmap, ThinWallsStayOpaqueAndTwoSided) {
   model.materials[thin].doubleSided = true;
   addQuad(model, thin, {0.02f, -1, -1}, {0, 2, 0}, {0, 0, 2});
   const VoxelScene s(model, 32);
-  const auto radiance = radianceOf(s, [](const scene::VoxelSide& v) { return glm::vec3(v.normal.x < -0.5f ? 1.0f : 0.0f); });
+  const auto radiance =
+      radianceOf(s, [](const scene::VoxelSide& v) { return glm::vec3(v.normal.x < -0.5f ? 1.0f : 0.0f); });
   const Mips m = runMips(s, radiance, true).mips;
   for (uint32_t l = 0; l + 2 < m.levels && m.sizeAt(l) >= 4; ++l) {
     const uint32_t n = m.sizeAt(l), y = n / 2 + (n > 4), z = n / 2 - 1;

@@ -37,7 +37,9 @@ scene::Scene movingScene() {
   s.nodes.push_back(root);
   addBox(s, 1, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f});
   for (size_t i = 3; i < s.nodes.size(); ++i) s.nodes[i].parent = 2;
-  s.movers = {{2, true, scene::Repeat::Once,
+  s.movers = {{2,
+               true,
+               scene::Repeat::Once,
                {key(0, {-1.5f, 0, 0}, 0), key(1.5f, {-1.5f, 0, 0}, 0), key(11.5f, {1, 0.5f, 0.5f}, 70, false),
                 key(12.5f, {1, 0.5f, 0.5f}, 70), key(20, {1.5f, 0, -1}, 120)}}};
   s.cameras.emplace_back();
@@ -51,7 +53,8 @@ scene::Scene movingScene() {
   lamp.direction = {0, -1, 0};
   lamp.intensity = 50;
   s.lights = {sun, lamp};
-  s.lightMotions = {{1, true, scene::Repeat::Once, {{0, {0, 4, 1}, {0, -1, 0}}, {0.5f, {1, 4, 0}, {0.2f, -1, 0}}}}};
+  s.lightMotions = {
+      {1, true, scene::Repeat::Once, {{0, {0, 4, 1}, {0, -1, 0}}, {0.5f, {1, 4, 0}, {0.2f, -1, 0}}}}};
   return s;
 }
 

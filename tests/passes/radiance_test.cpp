@@ -35,8 +35,9 @@ std::vector<scene::VplState> vplsOn(const VoxelScene& s, uint32_t stride) {
   return vpls;
 }
 
-std::vector<glm::vec4> radiosity(const VoxelScene& s, const std::vector<glm::vec4>& radiance, const MipRun& mips,
-                                 const std::vector<scene::VplState>& vpls, const char* terms) {
+std::vector<glm::vec4> radiosity(const VoxelScene& s, const std::vector<glm::vec4>& radiance,
+                                 const MipRun& mips, const std::vector<scene::VplState>& vpls,
+                                 const char* terms) {
   PassTest test("radiance");
   test.scene(s.scene).param("terms", terms).seed(3);
   setVoxels(test, s.voxels);
@@ -94,8 +95,8 @@ void expectFurnace(const scene::Scene& model, bool directional) {
     mean += ratio / double(got.size());
     dim += ratio < 0.98;
   }
-  std::printf("furnace, %s: mean %.4f, %zu of %zu VPLs below 0.98\n", directional ? "faces" : "one volume", mean, dim,
-              got.size());
+  std::printf("furnace, %s: mean %.4f, %zu of %zu VPLs below 0.98\n", directional ? "faces" : "one volume",
+              mean, dim, got.size());
   EXPECT_NEAR(mean, 1, 0.01);
   // Where walls meet, a voxel has the average of their normals, and some cones miss them all.
   EXPECT_LT(double(dim), 0.03 * double(got.size()));
@@ -117,7 +118,8 @@ TEST(Radiance, ConesEqualTheReference) {
     double error = 0, total = 0;
     size_t off = 0;
     for (size_t i = 0; i < vpls.size(); ++i) {
-      const glm::vec3 e = referenceGather(s, mips.mips, radiance, vpls[i].position, vpls[i].normal, turnOf(uint32_t(i)));
+      const glm::vec3 e =
+          referenceGather(s, mips.mips, radiance, vpls[i].position, vpls[i].normal, turnOf(uint32_t(i)));
       const glm::vec3 want = vpls[i].reflectance * e;
       const double d = glm::length(glm::vec3(got[i]) - want);
       // A level or a voxel may turn out differently by rounding.
@@ -136,7 +138,8 @@ TEST(Radiance, TermsAddUp) {
   const auto radiance = radianceOf(s, uneven);
   const MipRun mips = runMips(s, radiance, true);
   const std::vector<scene::VplState> vpls = vplsOn(s, 11);
-  const auto both = radiosity(s, radiance, mips, vpls, "both"), direct = radiosity(s, radiance, mips, vpls, "direct"),
+  const auto both = radiosity(s, radiance, mips, vpls, "both"),
+             direct = radiosity(s, radiance, mips, vpls, "direct"),
              cones = radiosity(s, radiance, mips, vpls, "cones");
   for (size_t i = 0; i < vpls.size(); ++i) {
     const glm::vec3 want = glm::pi<float>() * glm::vec3(radiance[vpls[i].side]);
@@ -171,7 +174,8 @@ TEST(Radiance, NothingThere) {
     EXPECT_EQ(b, glm::vec4(0));
 }
 
-// A board of no thickness between a lit and a dark half of a room, and how much of the light the dark side gets.
+// A board of no thickness between a lit and a dark half of a room, and how much of the light the dark side
+// gets.
 double leak(bool directional, float wall) {
   scene::Scene model = room();
   const uint32_t thin = addMaterial(model, kRho);
@@ -197,7 +201,8 @@ double leak(bool directional, float wall) {
 TEST(Radiance, ThinWallsDoNotLeak) {
   for (const float wall : {0.0f, 0.02f, 0.3f}) {
     const double faces = leak(true, wall), one = leak(false, wall);
-    std::printf("leak through a thin wall at %.2f: faces %.4f, one volume %.4f of the lit side\n", wall, faces, one);
+    std::printf("leak through a thin wall at %.2f: faces %.4f, one volume %.4f of the lit side\n", wall,
+                faces, one);
     EXPECT_LT(faces, 0.06);  // the cells of the cones reach past the wall's edge
     EXPECT_LT(one, 0.16);    // besides, half of what the wall shows is its other side
   }
@@ -216,9 +221,12 @@ TEST(Radiance, ConesAgreeWithManyRays) {
       double e = 0;
       constexpr int kRays = 512;
       for (int k = 0; k < kRays; ++k) {
-        const float u = (float(k) + 0.5f) / kRays, phi = glm::two_pi<float>() * glm::fract(0.618034f * float(k));
-        const glm::vec3 d = frame * glm::vec3(std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u));
-        const scene::VoxelHit hit = traceVoxels(s.trace(), vpls[i].position, glm::normalize(d), vpls[i].normal);
+        const float u = (float(k) + 0.5f) / kRays,
+                    phi = glm::two_pi<float>() * glm::fract(0.618034f * float(k));
+        const glm::vec3 d =
+            frame * glm::vec3(std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u));
+        const scene::VoxelHit hit =
+            traceVoxels(s.trace(), vpls[i].position, glm::normalize(d), vpls[i].normal);
         if (hit.side != scene::kNoSide) e += glm::pi<double>() * radiance[hit.side].g / kRays;
       }
       const double b = vpls[i].reflectance.g * e;
@@ -226,8 +234,8 @@ TEST(Radiance, ConesAgreeWithManyRays) {
       wanted += b;
       off += std::abs(got[i].g - b);
     }
-    std::printf("six cones against 512 rays, %s: total %.3f, mean error %.3f\n", directional ? "faces" : "one volume",
-                total / wanted, off / wanted);
+    std::printf("six cones against 512 rays, %s: total %.3f, mean error %.3f\n",
+                directional ? "faces" : "one volume", total / wanted, off / wanted);
     EXPECT_NEAR(total / wanted, 1, directional ? 0.05 : 0.15);
     EXPECT_LT(off / wanted, directional ? 0.12 : 0.25);
   }
@@ -266,7 +274,8 @@ double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, cons
   double e = 0;
   for (int k = 0; k < kRays; ++k) {
     const float u = (float(k) + 0.5f) / kRays, phi = glm::two_pi<float>() * glm::fract(0.618034f * float(k));
-    const glm::vec3 d = frame * glm::vec3(std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u));
+    const glm::vec3 d =
+        frame * glm::vec3(std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u));
     const float gap = 4 * rays.epsilon();
     const scene::RayHit hit = rays.intersect({vpl.position + gap * vpl.normal, d});
     if (!hit) continue;
@@ -278,10 +287,13 @@ double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, cons
       const scene::LightSample l = scene::sampleLight(light, at.position);
       const float cosine = glm::dot(at.geometricNormal, l.direction);
       if (cosine <= 0 || l.irradiance.g <= 0) continue;
-      const scene::Ray shadow{at.position + gap * at.geometricNormal, l.direction, 0, std::min(l.distance, 1e4f) * 0.9999f};
+      const scene::Ray shadow{at.position + gap * at.geometricNormal, l.direction, 0,
+                              std::min(l.distance, 1e4f) * 0.9999f};
       if (!rays.occluded(shadow)) arriving += l.irradiance.g * cosine;
     }
-    e += (reflectance(s.scene, material, at.uv).g * arriving + glm::pi<double>() * emission(s.scene, material, at.uv).g) / kRays;
+    e += (reflectance(s.scene, material, at.uv).g * arriving +
+          glm::pi<double>() * emission(s.scene, material, at.uv).g) /
+         kRays;
   }
   return e;
 }
@@ -300,7 +312,8 @@ TEST(Radiance, SecondBounceInTheCornellBoxAgreesWithRays) {
     wanted += want;
     off += std::abs(got[i].g - want);
   }
-  std::printf("second bounce in the Cornell box: %.3f of what rays find, mean error %.3f\n", total / wanted, off / wanted);
+  std::printf("second bounce in the Cornell box: %.3f of what rays find, mean error %.3f\n", total / wanted,
+              off / wanted);
   EXPECT_NEAR(total / wanted, 1, 0.12);
   EXPECT_LT(off / wanted, 0.35);  // the light is a pool on the floor: six directions are few
 }

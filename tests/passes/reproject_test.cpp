@@ -23,7 +23,8 @@ struct Eye {
   Eye(const scene::Scene& s, const scene::Geometry& geometry, glm::vec3 position, glm::uvec2 size)
       : view(makeViewAt(geometry, position, size)), seen(int(size.x), int(size.y), [&](int x, int y) {
           SurfacePixel p;
-          const glm::dvec3 ray = glm::normalize(glm::dvec3(view.rayDirection({float(x) + 0.5f, float(y) + 0.5f})));
+          const glm::dvec3 ray =
+              glm::normalize(glm::dvec3(view.rayDirection({float(x) + 0.5f, float(y) + 0.5f})));
           const RayHit hit = castRay(s, geometry, glm::dvec3(position), ray, {});
           if (!hit) return p;
           p.position = glm::vec3(glm::dvec3(position) + hit.t * ray);
@@ -52,7 +53,8 @@ using Field = std::function<glm::vec3(glm::vec3)>;  // irradiance by place
 
 std::vector<glm::vec3> sample(const GBuffer& g, const Field& field) {
   std::vector<glm::vec3> image;
-  for (const SurfacePixel& p : g.pixels) image.push_back(p.distance > 0 ? halfRound(field(p.position)) : glm::vec3(0));
+  for (const SurfacePixel& p : g.pixels)
+    image.push_back(p.distance > 0 ? halfRound(field(p.position)) : glm::vec3(0));
   return image;
 }
 
@@ -61,7 +63,8 @@ void wire(PassTest& test, const Eye& first, const GBuffer& second, const std::ve
   for (const glm::vec3& v : irradiance)
     for (const float x : {v.r, v.g, v.b, 1.0f}) half.push_back(glm::packHalf1x16(x));
   first.seen.wire(test, "source_gbuffer", 2);
-  test.image("source_irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(first.seen.width), uint32_t(first.seen.height), 1, half);
+  test.image("source_irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(first.seen.width),
+             uint32_t(first.seen.height), 1, half);
   second.wire(test, "gbuffer", 3);
   test.param("source_view", "first");
   test.beforeFrame([view = first.view](PassTest&, scene::Frame& frame) {
@@ -89,7 +92,8 @@ Warped warp(const Eye& first, const std::vector<glm::vec3>& irradiance, const Su
       const double weight = (1 - std::abs(at.x - x)) * (1 - std::abs(at.y - y));
       const SurfacePixel& q = first.seen.at(x, y);
       if (q.distance <= 0) continue;
-      const double plane = std::abs(glm::dot(glm::dvec3(q.position) - glm::dvec3(p.position), glm::normalize(glm::dvec3(p.normal))));
+      const double plane = std::abs(
+          glm::dot(glm::dvec3(q.position) - glm::dvec3(p.position), glm::normalize(glm::dvec3(p.normal))));
       const double cosine = glm::dot(glm::dvec3(q.normal), glm::dvec3(p.normal));
       const double tolerance = 0.005 * p.distance, least = std::cos(glm::radians(25.0));
       w.close |= std::abs(plane - tolerance) < 0.05 * tolerance || std::abs(cosine - least) < 1e-3;
@@ -132,12 +136,16 @@ struct Result {
     blocks.resize(std::min<size_t>(blocks.size(), dispatch[3]));
   }
   bool known(size_t i) const { return irradiance[4 * i + 3] == 1; }
-  glm::vec3 color(size_t i) const { return {irradiance[4 * i], irradiance[4 * i + 1], irradiance[4 * i + 2]}; }
+  glm::vec3 color(size_t i) const {
+    return {irradiance[4 * i], irradiance[4 * i + 1], irradiance[4 * i + 2]};
+  }
 };
 
-// ---- Planes ------------------------------------------------------------------------------------------------------------
+// ---- Planes
+// ------------------------------------------------------------------------------------------------------------
 
-// A wall seen by both eyes: even light exactly, uneven light to what is bilinear about it. Without a source: the border only.
+// A wall seen by both eyes: even light exactly, uneven light to what is bilinear about it. Without a source:
+// the border only.
 TEST(Reproject, WallsKeepTheirLight) {
   scene::Scene s;
   s.materials.emplace_back();
@@ -145,7 +153,9 @@ TEST(Reproject, WallsKeepTheirLight) {
   const scene::Geometry geometry = flatten(s);
   const Eye first(s, geometry, {-0.032f, 0.01f, 4}, kSize), second(s, geometry, {0.032f, 0, 4}, kSize);
   const Field even = [](glm::vec3) { return glm::vec3(0.25f, 3, 41); };
-  const Field uneven = [](glm::vec3 p) { return glm::vec3(2 + std::sin(p.x), 2 + std::cos(2 * p.y), 1 + p.x * p.x); };
+  const Field uneven = [](glm::vec3 p) {
+    return glm::vec3(2 + std::sin(p.x), 2 + std::cos(2 * p.y), 1 + p.x * p.x);
+  };
   for (const bool isEven : {true, false}) {
     const Field& field = isEven ? even : uneven;
     PassTest test("reproject");
@@ -190,10 +200,11 @@ TEST(Reproject, TheSameEyeSeesTheSame) {
   EXPECT_TRUE(result.blocks.empty());
 }
 
-// ---- Holes -------------------------------------------------------------------------------------------------------------
+// ---- Holes
+// -------------------------------------------------------------------------------------------------------------
 
-// A pixel's point is without a source if something hides it from the first eye or it lies outside its image. Within a texel of
-// a silhouette both are right: the rays around tell.
+// A pixel's point is without a source if something hides it from the first eye or it lies outside its image.
+// Within a texel of a silhouette both are right: the rays around tell.
 TEST(Reproject, HolesAreWhatTheFirstEyeDoesNotSee) {
   const Pillar scene;
   for (const float apart : {0.064f, -0.3f}) {
@@ -201,16 +212,17 @@ TEST(Reproject, HolesAreWhatTheFirstEyeDoesNotSee) {
     PassTest test("reproject");
     wire(test, first, second.seen, sample(first.seen, [](glm::vec3 p) { return p; }));
     const Result result(test);
-    const auto visible = [&](glm::vec3 p, glm::dvec2 offset) {  // whether the ray of an image place reaches the point's plane
-      glm::dvec2 at;
-      if (!first.project(p, at)) return false;
-      at += offset;
-      if (at.x < 0 || at.y < 0 || at.x > kSize.x || at.y > kSize.y) return false;
-      const glm::dvec3 ray = glm::normalize(glm::dvec3(first.view.rayDirection(glm::vec2(at))));
-      const RayHit hit = castRay(scene.s, scene.geometry, glm::dvec3(first.view.eye), ray, {});
-      const glm::dvec3 there = glm::dvec3(first.view.eye) + hit.t * ray;
-      return hit && glm::length(there - glm::dvec3(p)) < 0.3;  // a pixel of the floor is up to 0.2 m deep
-    };
+    const auto visible =
+        [&](glm::vec3 p, glm::dvec2 offset) {  // whether the ray of an image place reaches the point's plane
+          glm::dvec2 at;
+          if (!first.project(p, at)) return false;
+          at += offset;
+          if (at.x < 0 || at.y < 0 || at.x > kSize.x || at.y > kSize.y) return false;
+          const glm::dvec3 ray = glm::normalize(glm::dvec3(first.view.rayDirection(glm::vec2(at))));
+          const RayHit hit = castRay(scene.s, scene.geometry, glm::dvec3(first.view.eye), ray, {});
+          const glm::dvec3 there = glm::dvec3(first.view.eye) + hit.t * ray;
+          return hit && glm::length(there - glm::dvec3(p)) < 0.3;  // a pixel of the floor is up to 0.2 m deep
+        };
     size_t holes = 0, borderline = 0, unexplained = 0;
     for (size_t i = 0; i < second.seen.pixels.size(); ++i) {
       const SurfacePixel& p = second.seen.pixels[i];
@@ -236,7 +248,8 @@ TEST(Reproject, SilhouettesKeepTheirOwnLight) {
   const Eye first = scene.eye(0), second = scene.eye(-0.25f);
   const auto onPillar = [](glm::vec3 p) { return p.z > -5 && p.y > -0.99f; };
   PassTest test("reproject");
-  wire(test, first, second.seen, sample(first.seen, [&](glm::vec3 p) { return onPillar(p) ? glm::vec3(8) : glm::vec3(1); }));
+  wire(test, first, second.seen,
+       sample(first.seen, [&](glm::vec3 p) { return onPillar(p) ? glm::vec3(8) : glm::vec3(1); }));
   const Result result(test);
   for (size_t i = 0; i < second.seen.pixels.size(); ++i)
     if (result.known(i)) {
@@ -277,7 +290,8 @@ TEST(Reproject, BackgroundIsNoHole) {
   for (const char* name : {"pixels", "new_pixels", "shaded_pixels"}) EXPECT_EQ(test.counter(name), 0);
 }
 
-// ---- Against the plain reference; blocks ---------------------------------------------------------------------------------
+// ---- Against the plain reference; blocks
+// ---------------------------------------------------------------------------------
 
 // Surfaces shifted and turned at random against what the first eye saw.
 GBuffer shaken(const GBuffer& g) {
@@ -285,7 +299,8 @@ GBuffer shaken(const GBuffer& g) {
     SurfacePixel p = g.at(x, y);
     const auto i = uint32_t(y * g.width + x), patch = uint32_t(x / 7 + 64 * (y / 5));
     if (random(0, patch) < 0.15f) p.position += p.normal * (0.012f * p.distance * (random(1, i) - 0.5f));
-    if (random(2, patch) < 0.15f) p.normal = glm::normalize(p.normal + glm::vec3(random(3, i), random(4, i), random(5, i)) - 0.5f);
+    if (random(2, patch) < 0.15f)
+      p.normal = glm::normalize(p.normal + glm::vec3(random(3, i), random(4, i), random(5, i)) - 0.5f);
     if (random(6, patch) < 0.1f) p.distance = 0;
     return p;
   });
@@ -297,7 +312,8 @@ TEST_P(Blocks, AndIrradianceEqualTheReference) {
   const int n = GetParam();
   const Pillar scene;
   const glm::uvec2 size(93, 71);
-  const Eye first(scene.s, scene.geometry, {0, 0, 1.5f}, size), other(scene.s, scene.geometry, {0.1f, 0, 1.5f}, size);
+  const Eye first(scene.s, scene.geometry, {0, 0, 1.5f}, size),
+      other(scene.s, scene.geometry, {0.1f, 0, 1.5f}, size);
   const GBuffer second = shaken(other.seen);
   const auto source = sample(first.seen, [](glm::vec3 p) { return glm::vec3(2) + glm::sin(3.0f * p); });
   PassTest test("reproject");
@@ -363,7 +379,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Blocks, testing::Values(1, 2, 4, 8));
 // An eye that sees more pixels than the other.
 TEST(Reproject, EyesMayDifferInResolution) {
   const Pillar scene;
-  const Eye first(scene.s, scene.geometry, {0, 0, 1.5f}, {50, 40}), second(scene.s, scene.geometry, {0.05f, 0, 1.5f}, {96, 77});
+  const Eye first(scene.s, scene.geometry, {0, 0, 1.5f}, {50, 40}),
+      second(scene.s, scene.geometry, {0.05f, 0, 1.5f}, {96, 77});
   const auto source = sample(first.seen, [](glm::vec3 p) { return glm::vec3(2) + 0.1f * p; });
   PassTest test("reproject");
   wire(test, first, second.seen, source);

@@ -396,15 +396,18 @@ scene::VplState stateOf(const Vpl& v, float life, float importance) {
 struct RefreshReference {
   std::vector<uint32_t> drawnIn;  // frame + 1, 0: no map
 
-  std::vector<bool> frame(const std::vector<Vpl>& vpls, const std::vector<scene::VplState>& state, uint32_t frame,
-                          double share, bool split) {
+  std::vector<bool> frame(const std::vector<Vpl>& vpls, const std::vector<scene::VplState>& state,
+                          uint32_t frame, double share, bool split) {
     drawnIn.resize(vpls.size());
     std::vector<bool> draw(vpls.size());
     std::vector<uint32_t> kept;
     for (uint32_t i = 0; i < vpls.size(); ++i) {
-      if (vpls[i].intensity == glm::vec3(0)) drawnIn[i] = 0;
-      else if (state[i].life <= 1 || drawnIn[i] == 0) draw[i] = true;
-      else kept.push_back(i);
+      if (vpls[i].intensity == glm::vec3(0))
+        drawnIn[i] = 0;
+      else if (state[i].life <= 1 || drawnIn[i] == 0)
+        draw[i] = true;
+      else
+        kept.push_back(i);
     }
     const size_t budget = std::min(kept.size(), size_t(std::ceil(float(share) * float(kept.size()))));
     const size_t first = split ? (budget + 1) / 2 : budget;
@@ -441,9 +444,11 @@ void checkRefresh(const char* policy, double share) {
     for (uint32_t i = 0; i < kSlots; ++i) {
       const uint32_t what = random() % 10;
       const bool empty = what == 0, isNew = what == 1 || frame == 0 || state[i].life == 0;
-      vpls[i] = vpl({0.01f * float(i % 17) + 0.1f * float(frame), 0.2f, 0.002f * float(i)}, {0.3f, 1, float(i % 5)});
+      vpls[i] = vpl({0.01f * float(i % 17) + 0.1f * float(frame), 0.2f, 0.002f * float(i)},
+                    {0.3f, 1, float(i % 5)});
       if (empty || what == 2) vpls[i].intensity = glm::vec3(0);  // gone, or alive in the dark
-      state[i] = empty ? scene::VplState{} : stateOf(vpls[i], isNew ? 1 : state[i].life + 1, float(random() % 12) / 11);
+      state[i] = empty ? scene::VplState{}
+                       : stateOf(vpls[i], isNew ? 1 : state[i].life + 1, float(random() % 12) / 11);
     }
     const std::vector<uint32_t> before = [&] {
       auto copy = reference.drawnIn;
@@ -452,7 +457,8 @@ void checkRefresh(const char* policy, double share) {
     }();
     const std::vector<bool> draw = reference.frame(vpls, state, frame, share, std::string(policy) == "split");
     for (uint32_t i = 0; i < kSlots; ++i) fresh += draw[i] && (state[i].life <= 1 || before[i] == 0);
-    if (frame == 0) test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+    if (frame == 0)
+      test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
     else {
       test.set("vpls", vpls);
       test.set("state", state);
@@ -468,8 +474,10 @@ void checkRefresh(const char* policy, double share) {
     for (uint32_t i = 0; i < kSlots; ++i) {
       drawn += draw[i];
       for (uint32_t t = 64 * i; t < 64 * (i + 1); ++t)
-        if (draw[i]) expected[t] = all[t];
-        else if (vpls[i].intensity == glm::vec3(0)) expected[t] = kInfinity;
+        if (draw[i])
+          expected[t] = all[t];
+        else if (vpls[i].intensity == glm::vec3(0))
+          expected[t] = kInfinity;
     }
     ASSERT_EQ(got, expected) << "frame " << frame;
     EXPECT_EQ(test.counter("maps"), drawn);

@@ -145,7 +145,8 @@ TEST(Update, TakesTheSideThatMatchesBetter) {
 TEST(Update, DropsWhatAnotherObjectHides) {
   Floor floor;
   floor.top(kPlace).object = 2;
-  const auto now = update(floor, {makeVpl(kPlace, kUp, 0), makeVpl(kPlace, kUp, 1), makeVpl({1, 0, 1}, kUp, 0)});
+  const auto now =
+      update(floor, {makeVpl(kPlace, kUp, 0), makeVpl(kPlace, kUp, 1), makeVpl({1, 0, 1}, kUp, 0)});
   EXPECT_TRUE(isEmpty(now[0]));
   EXPECT_TRUE(isEmpty(now[1]));
   EXPECT_FALSE(isEmpty(now[2]));
@@ -311,7 +312,8 @@ TEST(Update, FollowsAnObjectThatMovesAndTurns) {
     if (old.object == 0) {
       const uint32_t voxel = after.voxels.voxelAt(glm::ivec3(after.voxels.grid.worldToVoxel(old.position)));
       const bool hidden =
-          voxel == 0 || after.voxels.surface[2 * voxel - 2].object + after.voxels.surface[2 * voxel - 1].object > 0;
+          voxel == 0 ||
+          after.voxels.surface[2 * voxel - 2].object + after.voxels.surface[2 * voxel - 1].object > 0;
       covered += hidden;
       EXPECT_EQ(isEmpty(vpl), hidden) << "slot " << i;
       continue;
@@ -340,7 +342,8 @@ TEST(Update, DropsWhatAnObjectLeftBehind) {
   const auto previous = before.vpls();
   after.cube = before.cube;
   const auto now = after.update(previous);
-  for (size_t i = 0; i < previous.size(); ++i) EXPECT_TRUE(previous[i].object == 0 || isEmpty(now[i])) << "slot " << i;
+  for (size_t i = 0; i < previous.size(); ++i)
+    EXPECT_TRUE(previous[i].object == 0 || isEmpty(now[i])) << "slot " << i;
 }
 
 }  // namespace

@@ -28,14 +28,16 @@ vec3 pixel(const PassTest& test, uint32_t x, uint32_t y, uint32_t width = kSize)
   return {p[0], p[1], p[2]};
 }
 
-// ---- view-voxels ---------------------------------------------------------------------------------------------------
+// ---- view-voxels
+// ---------------------------------------------------------------------------------------------------
 
 struct VoxelView {
   scene::Scene scene = scene::cornellBox();
   VoxelArrays voxels = voxelizeReference(scene, scene::flatten(scene), 32);
 };
 
-// The side that the CPU's ray meets, at every pixel of a coarse raster; `color` says what is to be seen of it.
+// The side that the CPU's ray meets, at every pixel of a coarse raster; `color` says what is to be seen of
+// it.
 template <class Color>
 void expectView(const VoxelView& v, const PassTest& test, vec3 background, Color color) {
   const scene::View view = *test.lastFrame().findView("main");
@@ -95,8 +97,9 @@ TEST(ViewVoxels, RadianceAndWeights) {
   weighed.buffer("weights", weights, "VoxelWeight").run();
   const float exposure = weighed.lastFrame().exposure;
   const vec3 first(0.267f, 0.005f, 0.329f), last(0.993f, 0.906f, 0.144f);
-  expectView(v, weighed, vec3(0),
-             [&](uint32_t side) { return glm::pow(weights[side] > 0 ? last : first, vec3(2.2f)) / exposure; });
+  expectView(v, weighed, vec3(0), [&](uint32_t side) {
+    return glm::pow(weights[side] > 0 ? last : first, vec3(2.2f)) / exposure;
+  });
 }
 
 TEST(ViewVoxels, NoVoxelsAndMissingInputs) {
@@ -113,7 +116,8 @@ TEST(ViewVoxels, NoVoxelsAndMissingInputs) {
   EXPECT_THROW(missing.run(), Error);
 }
 
-// ---- view-vpls -----------------------------------------------------------------------------------------------------
+// ---- view-vpls
+// -----------------------------------------------------------------------------------------------------
 
 // The camera at (0, 0, 5) looks along -z.
 scene::VplState vplAt(vec3 position, float importance, float life) {
@@ -126,8 +130,8 @@ scene::VplState vplAt(vec3 position, float importance, float life) {
 }
 
 TEST(ViewVpls, DiscsCoverThePictureNearestFirst) {
-  const std::vector<scene::VplState> states{vplAt({0, 0, -1}, 0, 1), vplAt({0, 0, 0}, 1, 1), vplAt({0, 0, -2}, 0, 1),
-                                            scene::VplState{}};
+  const std::vector<scene::VplState> states{vplAt({0, 0, -1}, 0, 1), vplAt({0, 0, 0}, 1, 1),
+                                            vplAt({0, 0, -2}, 0, 1), scene::VplState{}};
   std::vector<float> picture;
   for (uint32_t i = 0; i < kSize * kSize; ++i) picture.insert(picture.end(), {0.25f, 0.5f, 0.75f, 1});
   PassTest test("view-vpls");
@@ -140,7 +144,8 @@ TEST(ViewVpls, DiscsCoverThePictureNearestFirst) {
       const glm::vec2 d = glm::vec2(x, y) + 0.5f - 0.5f * float(kSize);
       const bool disc = glm::dot(d, d) <= 16.0f;
       covered += disc;
-      ASSERT_LT(glm::length(pixel(test, x, y) - (disc ? last : vec3(0.25f, 0.5f, 0.75f))), 0.01f) << x << ' ' << y;
+      ASSERT_LT(glm::length(pixel(test, x, y) - (disc ? last : vec3(0.25f, 0.5f, 0.75f))), 0.01f)
+          << x << ' ' << y;
     }
   EXPECT_NEAR(covered, 3.14159 * 16, 5);
 }
@@ -178,13 +183,17 @@ TEST(ViewVpls, LuminanceNeedsVpls) {
   scene::Vpl vpl;
   vpl.intensity = vec3(2);
   PassTest lit("view-vpls");
-  lit.viewSize(kSize, kSize).param("show", "luminance").param("range", 4.0).buffer("state", states, "VplState");
+  lit.viewSize(kSize, kSize)
+      .param("show", "luminance")
+      .param("range", 4.0)
+      .buffer("state", states, "VplState");
   lit.buffer("vpls", std::vector<scene::Vpl>{vpl}, "Vpl").run();
   const vec3 middle = glm::pow(vec3(0.127f, 0.567f, 0.551f), vec3(2.2f)) / lit.lastFrame().exposure;
   EXPECT_LT(glm::length(pixel(lit, kSize / 2, kSize / 2) - middle), 0.01f);
 }
 
-// ---- view-atlas ----------------------------------------------------------------------------------------------------
+// ---- view-atlas
+// ----------------------------------------------------------------------------------------------------
 
 TEST(ViewAtlas, MapsLieSideBySide) {
   // Three maps of 8 x 8 texels at distances 1, 2 and none, two a row.
@@ -204,7 +213,8 @@ TEST(ViewAtlas, MapsLieSideBySide) {
   auto grey = [&](float g) { return vec3(std::pow(g, 2.2f) / exposure); };
   EXPECT_LT(glm::length(pixel(test, 8, 8, 32) - grey(0.5f)), 2e-3f);
   EXPECT_LT(glm::length(pixel(test, 24, 8, 32) - grey(0.25f)), 2e-3f);
-  EXPECT_LT(glm::length(pixel(test, 8, 24, 32) - glm::pow(vec3(0.05f, 0.05f, 0.3f), vec3(2.2f)) / exposure), 2e-3f);
+  EXPECT_LT(glm::length(pixel(test, 8, 24, 32) - glm::pow(vec3(0.05f, 0.05f, 0.3f), vec3(2.2f)) / exposure),
+            2e-3f);
   EXPECT_EQ(pixel(test, 24, 24, 32), vec3(0));  // no fourth map
   EXPECT_EQ(pixel(test, 0, 0, 32), vec3(0));    // corners of a map are unused
 }

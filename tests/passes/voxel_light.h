@@ -1,4 +1,5 @@
-// Light on voxels for the tests of the passes that make and read it: chains of passes, and the cone gather on the CPU.
+// Light on voxels for the tests of the passes that make and read it: chains of passes, and the cone gather on
+// the CPU.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +25,9 @@ struct VoxelScene {
   VoxelArrays voxels;
 
   VoxelScene(scene::Scene s, int resolution)
-      : scene(std::move(s)), geometry(scene::flatten(scene)), voxels(voxelizeReference(scene, geometry, resolution)) {}
+      : scene(std::move(s)),
+        geometry(scene::flatten(scene)),
+        voxels(voxelizeReference(scene, geometry, resolution)) {}
   const std::vector<scene::VoxelSide>& sides() const { return voxels.surface; }
   scene::Voxels trace() const { return {voxels.grid, voxels.index, voxels.surface}; }
 };
@@ -52,7 +55,10 @@ struct Inject {
 
 inline std::vector<glm::vec4> inject(const VoxelScene& s, const Inject& options = {}, uint32_t frames = 1) {
   PassTest test("light-inject");
-  test.scene(s.scene).param("taps", options.taps).param("offset", options.offset).param("filter", options.filter);
+  test.scene(s.scene)
+      .param("taps", options.taps)
+      .param("offset", options.offset)
+      .param("filter", options.filter);
   setVoxels(test, s.voxels);
   if (options.shadows) {
     PassTest maps("shadow-map");
@@ -111,10 +117,12 @@ inline MipRun runMips(const VoxelScene& s, const std::vector<glm::vec4>& radianc
 
 inline void setMips(PassTest& test, const MipRun& run) {
   const Mips& m = run.mips;
-  test.volume("mips.color", VK_FORMAT_R16G16B16A16_SFLOAT, m.width, m.size, m.size, run.colorHalves, m.levels);
+  test.volume("mips.color", VK_FORMAT_R16G16B16A16_SFLOAT, m.width, m.size, m.size, run.colorHalves,
+              m.levels);
 }
 
-// ---- The gather of shaders/common/cone.glsl, with its own filter -----------------------------------------------------
+// ---- The gather of shaders/common/cone.glsl, with its own filter
+// -----------------------------------------------------
 
 inline glm::vec4 filterMips(const Mips& m, glm::vec3 p, int face, uint32_t level) {
   const float size = float(m.sizeAt(level)), cell = float(1u << level);
@@ -125,7 +133,8 @@ inline glm::vec4 filterMips(const Mips& m, glm::vec3 p, int face, uint32_t level
     const glm::ivec3 corner(i & 1, i >> 1 & 1, i >> 2);
     const glm::ivec3 t = glm::min(glm::ivec3(base) + corner, glm::ivec3(int(size) - 1));
     const glm::vec3 w = glm::mix(1.0f - f, f, glm::vec3(corner));
-    sum += w.x * w.y * w.z * m.at(level, uint32_t(t.x) + uint32_t(face) * m.sizeAt(level), uint32_t(t.y), uint32_t(t.z));
+    sum += w.x * w.y * w.z *
+           m.at(level, uint32_t(t.x) + uint32_t(face) * m.sizeAt(level), uint32_t(t.y), uint32_t(t.z));
   }
   return sum;
 }
@@ -138,7 +147,8 @@ inline glm::vec4 filterMips(const Mips& m, glm::vec3 p, int face, float level) {
   return glm::mix(filterMips(m, at, face, low), filterMips(m, at, face, high), level - float(low));
 }
 
-inline glm::vec4 referenceCone(const Mips& m, glm::vec3 origin, glm::vec3 direction, float start, float growth) {
+inline glm::vec4 referenceCone(const Mips& m, glm::vec3 origin, glm::vec3 direction, float start,
+                               float growth) {
   glm::vec4 sum(0);
   const int last = int(m.halvings()) - 1;
   for (float t = start; sum.a < 0.999f;) {
@@ -168,14 +178,15 @@ inline glm::vec3 referenceGather(const VoxelScene& s, const Mips& m, const std::
   const glm::mat3 frame = scene::orthonormalFrame(normal);
   glm::vec3 sum(0);
   for (const glm::vec3& ray : scene::kHemisphereRay) {
-    const glm::vec3 local(std::cos(turn) * ray.x - std::sin(turn) * ray.y, std::sin(turn) * ray.x + std::cos(turn) * ray.y,
-                          ray.z);
+    const glm::vec3 local(std::cos(turn) * ray.x - std::sin(turn) * ray.y,
+                          std::sin(turn) * ray.x + std::cos(turn) * ray.y, ray.z);
     const glm::vec3 direction = glm::normalize(frame * local);
     const float start = 1.5f / ray.z;
     const scene::VoxelHit hit = traceVoxels(s.trace(), position, direction, normal, (start + 3) * cell);
-    sum += ray.z * (hit.side != scene::kNoSide
-                        ? glm::vec3(radiance[hit.side])
-                        : glm::vec3(referenceCone(m, (position - grid.origin) / cell, direction, start, ray.z / 3)));
+    sum += ray.z *
+           (hit.side != scene::kNoSide
+                ? glm::vec3(radiance[hit.side])
+                : glm::vec3(referenceCone(m, (position - grid.origin) / cell, direction, start, ray.z / 3)));
   }
   return glm::pi<float>() * sum / 3.5f;
 }

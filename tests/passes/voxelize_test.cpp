@@ -1,5 +1,5 @@
-// The voxeliser against plain loops on the CPU: the same voxels and sides, sums as good as their fixed point; and against
-// geometry that can be worked out by hand.
+// The voxeliser against plain loops on the CPU: the same voxels and sides, sums as good as their fixed point;
+// and against geometry that can be worked out by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,7 +79,8 @@ void expectClose(const VoxelSide& a, const VoxelSide& b, const VoxelArrays& v, s
   ASSERT_NEAR(a.area, b.area, 1e-6f * b.area + 1e-9f * cell * cell) << side;
   // Pieces of few units of fixed point have rough averages.
   const float rough = 1.0f + 1e-3f * cell * cell / b.area;
-  ASSERT_LT(glm::length(a.position - b.position), 2e-6f * rough * cell * float(v.resolution)) << side << " area " << b.area;
+  ASSERT_LT(glm::length(a.position - b.position), 2e-6f * rough * cell * float(v.resolution))
+      << side << " area " << b.area;
   ASSERT_LT(glm::length(a.normal - b.normal), 1e-5f * rough) << side << " area " << b.area;
   ASSERT_LT(glm::length(a.reflectance - b.reflectance), 1e-5f * rough) << side;
   ASSERT_LT(glm::length(a.emission - b.emission), 1e-5f * rough * (1 + glm::length(b.emission))) << side;
@@ -94,7 +95,8 @@ void expectEqual(const VoxelArrays& got, const VoxelArrays& want) {
   ASSERT_EQ(got.index, want.index);
   ASSERT_GE(got.surface.size(), want.surface.size());
   for (size_t i = 0; i < want.surface.size(); ++i) {
-    ASSERT_EQ(got.surface[i].area > 0, want.surface[i].area > 0) << "side " << i << ": " << want.surface[i].area;
+    ASSERT_EQ(got.surface[i].area > 0, want.surface[i].area > 0)
+        << "side " << i << ": " << want.surface[i].area;
     if (want.surface[i].area > 0) {
       ASSERT_NO_FATAL_FAILURE(expectClose(got.surface[i], want.surface[i], want, i));
     }
@@ -143,7 +145,8 @@ TEST(Voxelize, EqualsTheReferenceInTheCornellBox) {
   EXPECT_NEAR(voxelArea(v) / meshArea(g), 1, 1e-3);
 }
 
-// Every cell that a triangle of the soup passes through by more than a hair is there: dense samples of the triangles.
+// Every cell that a triangle of the soup passes through by more than a hair is there: dense samples of the
+// triangles.
 TEST(Voxelize, IsConservative) {
   Scene s = emptyScene();
   addMaterial(s, vec3(0.5f));
@@ -203,7 +206,8 @@ TEST(Voxelize, DegenerateTrianglesHaveNoVoxels) {
   Scene s = emptyScene();
   addMaterial(s, vec3(0.5f));
   const vec3 a(0), b(1, 2, 3);
-  addPrimitive(s, trianglePrimitive({a, a, a, a, b, b, a, b, 2.0f * b, a, vec3(1e-20f, 0, 0), vec3(0, 1e-20f, 0)}, 0));
+  addPrimitive(
+      s, trianglePrimitive({a, a, a, a, b, b, a, b, 2.0f * b, a, vec3(1e-20f, 0, 0), vec3(0, 1e-20f, 0)}, 0));
   const VoxelArrays v = expectAsReference(s, 32);
   EXPECT_EQ(v.info.voxels, 0u);
 }
@@ -222,7 +226,8 @@ TEST(Voxelize, HugeAndTinyTriangles) {
   EXPECT_NEAR(voxelArea(v) / meshArea(scene::flatten(s)), 1, 1e-4);
 }
 
-// The faces of a wall thinner than a cell are two sides, and so is a sheet that is double-sided; a single-sided sheet is one.
+// The faces of a wall thinner than a cell are two sides, and so is a sheet that is double-sided; a
+// single-sided sheet is one.
 TEST(Voxelize, ThinWallsKeepBothSides) {
   Scene s = emptyScene();
   const uint32_t red = addMaterial(s, vec3(0.8f, 0.1f, 0.1f)), blue = addMaterial(s, vec3(0.1f, 0.1f, 0.8f)),
@@ -254,7 +259,8 @@ TEST(Voxelize, TexturesAndAlphaMasks) {
   texture.width = 8, texture.height = 8;
   for (int i = 0; i < 64; ++i) {
     const bool hole = i % 8 < 4;
-    for (const int c : {10 + 3 * i, 255 - 2 * i, hole ? 255 : 40, hole ? 0 : 255}) texture.rgba.push_back(uint8_t(c));
+    for (const int c : {10 + 3 * i, 255 - 2 * i, hole ? 255 : 40, hole ? 0 : 255})
+      texture.rgba.push_back(uint8_t(c));
   }
   s.textures.push_back(texture);
   const uint32_t plain = addMaterial(s, vec3(0.9f)), masked = addMaterial(s, vec3(0.7f));
@@ -295,10 +301,12 @@ TEST(Voxelize, OverflowIsCountedAndLeftOut) {
   ASSERT_EQ(got.surface.size(), 2048u);
   for (size_t i = 0; i < want.index.size(); ++i)
     ASSERT_EQ(got.index[i], want.index[i] <= 1024 ? want.index[i] : 0u);
-  for (size_t i = 0; i < 2048; ++i) ASSERT_NO_FATAL_FAILURE(expectClose(got.surface[i], want.surface[i], want, i));
+  for (size_t i = 0; i < 2048; ++i)
+    ASSERT_NO_FATAL_FAILURE(expectClose(got.surface[i], want.surface[i], want, i));
 }
 
-// A soup that moves by keys of one frame each: into the static geometry, out of the grid's other corner, away, and back.
+// A soup that moves by keys of one frame each: into the static geometry, out of the grid's other corner,
+// away, and back.
 Scene movingScene(uint32_t objects) {
   Scene s = emptyScene();
   const uint32_t grey = addMaterial(s, vec3(0.5f)), red = addMaterial(s, vec3(0.9f, 0.1f, 0.1f));
@@ -312,7 +320,8 @@ Scene movingScene(uint32_t objects) {
     mover.node = uint32_t(s.nodes.size() - 1);
     mover.smooth = false;
     s.nodes[mover.node].dynamic = true;
-    const vec3 places[] = {{0, 0, 0}, {-1, -1, -1}, {1.5f, 1.5f, 1.5f}, {0, 0, 0}, {0, 0, 0}, {-1.5f, -0.9f, 0}};
+    const vec3 places[] = {{0, 0, 0}, {-1, -1, -1}, {1.5f, 1.5f, 1.5f},
+                           {0, 0, 0}, {0, 0, 0},    {-1.5f, -0.9f, 0}};
     for (int k = 0; k < 6; ++k) {
       scene::MotionKey key;
       key.time = float(k) / 42.0f - 1e-4f;
@@ -341,7 +350,8 @@ TEST(Voxelize, DynamicObjectsMoveAppearAndDisappear) {
       if (i > 0 && i <= got.info.staticVoxels) shown[i - 1] = true;
     for (const bool b : shown) hidden += !b;
     gone += got.info.voxels == got.info.staticVoxels;
-    for (size_t i = 2 * size_t(got.info.voxels); i < got.surface.size(); ++i) ASSERT_EQ(got.surface[i].area, 0);
+    for (size_t i = 2 * size_t(got.info.voxels); i < got.surface.size(); ++i)
+      ASSERT_EQ(got.surface[i].area, 0);
   }
   EXPECT_GT(hidden, 10u);  // dynamic voxels in cells of static ones
   EXPECT_EQ(gone, 1u);     // the frame without any object
@@ -387,7 +397,8 @@ TEST(Voxelize, DynamicOverflow) {
 TEST(Voxelize, SumsInBatches) {
   Scene s = emptyScene();
   const uint32_t material = addMaterial(s, vec3(0.2f, 0.4f, 0.6f));
-  for (int i = 0; i < 15; ++i) addQuad(s, material, vec3(0, 0, 0.0637f * float(i)), vec3(1, 0, 0), vec3(0, 1, 0));
+  for (int i = 0; i < 15; ++i)
+    addQuad(s, material, vec3(0, 0, 0.0637f * float(i)), vec3(1, 0, 0), vec3(0, 1, 0));
   PassTest test("voxelize");
   test.scene(s).param("resolution", 192).param("capacity", 512).run();
   const VoxelArrays v = readBack(test, 192);

@@ -1,4 +1,5 @@
-// Weights of what the eye sees: closed forms on a wall, and random G-buffers against a plain loop over the pixels.
+// Weights of what the eye sees: closed forms on a wall, and random G-buffers against a plain loop over the
+// pixels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,19 +48,22 @@ struct Picture {
 
   std::vector<float> positions() const {
     std::vector<float> list;
-    for (const Pixel& p : pixels) list.insert(list.end(), {p.position.x, p.position.y, p.position.z, p.distance});
+    for (const Pixel& p : pixels)
+      list.insert(list.end(), {p.position.x, p.position.y, p.position.z, p.distance});
     return list;
   }
   void wire(PassTest& test) const {
     std::vector<float> face;
     for (const Pixel& p : pixels) {
       const glm::vec3 n = p.face / (std::abs(p.face.x) + std::abs(p.face.y) + std::abs(p.face.z));
-      const glm::vec2 folded = (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
+      const glm::vec2 folded =
+          (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
       const glm::vec2 oct = n.z >= 0 ? glm::vec2(n) : folded;
       face.insert(face.end(), {oct.x, oct.y});
     }
     test.viewSize(uint32_t(width), uint32_t(height));
-    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, uint32_t(width), uint32_t(height), 1, positions());
+    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, uint32_t(width), uint32_t(height), 1,
+               positions());
     test.image("gbuffer.face", VK_FORMAT_R32G32_SFLOAT, uint32_t(width), uint32_t(height), 1, face);
   }
 };
@@ -70,7 +74,8 @@ struct Expected {
 };
 
 // METHOD importance step 1, one pixel after the other.
-Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze, float radius) {
+Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze,
+                   float radius) {
   Expected e;
   e.weights.resize(voxels.surface.size());
   const scene::Fovea fovea = scene::makeFovea(gaze, {picture.width, picture.height}, radius);
@@ -103,7 +108,8 @@ Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 
 void expectEqual(const PassTest& test, const Expected& expected) {
   const std::vector<float> weights = test.values<float>("weights");
   ASSERT_EQ(weights.size(), expected.weights.size());
-  for (size_t i = 0; i < weights.size(); ++i) ASSERT_NEAR(weights[i], expected.weights[i], 2e-7f) << "side " << i;
+  for (size_t i = 0; i < weights.size(); ++i)
+    ASSERT_NEAR(weights[i], expected.weights[i], 2e-7f) << "side " << i;
   EXPECT_EQ(test.counter("visible"), expected.visible);
   EXPECT_EQ(test.counter("unassigned"), expected.unassigned);
 }
@@ -119,8 +125,8 @@ std::vector<glm::ivec3> surfaceCells(const VoxelArrays& voxels) {
   return cells;
 }
 
-// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a face that
-// the cell has no side for.
+// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a
+// face that the cell has no side for.
 Picture randomPicture(int width, int height, const VoxelArrays& voxels) {
   const std::vector<glm::ivec3> cells = surfaceCells(voxels);
   Picture picture(width, height);
@@ -157,7 +163,7 @@ TEST(WeightMap, EqualsTheReference) {
     const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f);
     expectEqual(test, expected);
     if (size.x < 50) continue;
-    EXPECT_GT(expected.visible, 200);     // the test tests something
+    EXPECT_GT(expected.visible, 200);  // the test tests something
     EXPECT_GT(expected.unassigned, 100);
   }
 }
@@ -175,7 +181,8 @@ Picture wallPicture(int size) {
   return picture;
 }
 
-std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::vec2 gaze, const Picture& picture) {
+std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::vec2 gaze,
+                               const Picture& picture) {
   setVoxels(test, voxels);
   picture.wire(test);
   test.beforeFrame([gaze](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
@@ -183,7 +190,8 @@ std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::v
   return test.values<float>("weights");
 }
 
-// Inside the disc exactly 1, r_f / r at the nearest pixel outside: continuous across its edge, and wherever the gaze is.
+// Inside the disc exactly 1, r_f / r at the nearest pixel outside: continuous across its edge, and wherever
+// the gaze is.
 TEST(WeightMap, FallsOutsideTheDisc) {
   const scene::Scene s = room();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
@@ -197,7 +205,8 @@ TEST(WeightMap, FallsOutsideTheDisc) {
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) {
         const glm::ivec3 cell(glm::floor(voxels.grid.worldToVoxel(picture.at(x, y).position)));
-        const uint32_t side = 2 * (voxels.index[size_t(cell.x + kResolution * (cell.y + kResolution * cell.z))] - 1);
+        const uint32_t side =
+            2 * (voxels.index[size_t(cell.x + kResolution * (cell.y + kResolution * cell.z))] - 1);
         const double r = glm::distance(glm::dvec2(x + 0.5, y + 0.5), glm::dvec2(gaze) * double(size));
         nearest[side] = nearest.contains(side) ? std::min(nearest[side], r) : r;
       }

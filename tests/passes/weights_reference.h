@@ -57,7 +57,8 @@ inline Room lookInto(scene::Scene scene, int resolution, glm::ivec2 size, float 
 }
 
 // A closed room of 4 m with, if wanted, a block in it. The camera stands in the middle and looks along -z.
-inline Room closedRoom(bool block, int resolution = 24, glm::ivec2 size = glm::ivec2(64), float verticalFov = 0.8f) {
+inline Room closedRoom(bool block, int resolution = 24, glm::ivec2 size = glm::ivec2(64),
+                       float verticalFov = 0.8f) {
   scene::Scene s;
   const uint32_t material = addMaterial(s, glm::vec3(0.5f)), walls[6] = {};
   addRoom(s, walls, 2);
@@ -81,25 +82,29 @@ struct WeightSettings {
 inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& settings) {
   const glm::vec2 high(room.size);
   const scene::Fovea fovea = scene::makeFovea(settings.gaze, high, settings.foveaRadius);
-  const glm::vec2 low = glm::max(glm::vec2(0), fovea.centre - fovea.radius), up = glm::min(high, fovea.centre + fovea.radius);
+  const glm::vec2 low = glm::max(glm::vec2(0), fovea.centre - fovea.radius),
+                  up = glm::min(high, fovea.centre + fovea.radius);
   std::vector<Seen> points;
   for (uint32_t i = 0; i < settings.points; ++i) {
     glm::ivec2 pixel(-1);
     if (settings.region == scene::kRegionImage) pixel = glm::ivec2(high * sequencePoint(i));
     for (uint32_t k = 0; pixel.x < 0 && k < scene::kRegionTries; ++k) {
       const glm::vec2 p = glm::mix(low, up, sequencePoint(i + k * settings.points));
-      const bool inside = glm::all(glm::greaterThanEqual(up, low)) && glm::distance(p, fovea.centre) <= fovea.radius;
+      const bool inside =
+          glm::all(glm::greaterThanEqual(up, low)) && glm::distance(p, fovea.centre) <= fovea.radius;
       if (inside) pixel = glm::ivec2(p);
     }
-    if (pixel.x < 0) pixel = scene::regionSample(settings.region, fovea, room.size, randomStream(0, 0, 0x77656967u, i));
+    if (pixel.x < 0)
+      pixel = scene::regionSample(settings.region, fovea, room.size, randomStream(0, 0, 0x77656967u, i));
     pixel = glm::clamp(pixel, glm::ivec2(0), room.size - 1);
     points.push_back(room.pixels[size_t(pixel.y) * room.size.x + pixel.x]);
   }
   return points;
 }
 
-// Whether no side of a voxel along the way blocks: one that faces the ray, in front of the start's tangent plane, neither
-// within 1.5 cells of the VPL nor within one of its tangent plane and turned the same way. Every cell is looked at.
+// Whether no side of a voxel along the way blocks: one that faces the ray, in front of the start's tangent
+// plane, neither within 1.5 cells of the VPL nor within one of its tangent plane and turned the same way.
+// Every cell is looked at.
 inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::VplState& vpl) {
   const glm::vec3 to = vpl.position - from.position, p = voxels.grid.worldToVoxel(from.position);
   const float d = glm::length(to), cell = voxels.grid.cell;
@@ -107,7 +112,8 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
   auto blocks = [&](const scene::VoxelSide& side) {
     const glm::vec3 off = side.position - vpl.position;
     return side.area > 0 && glm::dot(side.normal, direction) < 0 &&
-           glm::dot(side.position - from.position, from.normal) > scene::kOwnSurface * cell && glm::length(off) >= 1.5f * cell &&
+           glm::dot(side.position - from.position, from.normal) > scene::kOwnSurface * cell &&
+           glm::length(off) >= 1.5f * cell &&
            !(glm::dot(side.normal, vpl.normal) > 0.5f && std::abs(glm::dot(off, vpl.normal)) < cell);
   };
   float t = 0;
@@ -115,7 +121,8 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
     const glm::ivec3 at = glm::ivec3(glm::floor(p + (t + 1e-3f) * direction));
     if (!voxels.inside(at)) break;
     const uint32_t voxel = voxels.at(at);
-    if (voxel != 0 && (blocks(voxels.surface[2 * voxel - 2]) || blocks(voxels.surface[2 * voxel - 1]))) return false;
+    if (voxel != 0 && (blocks(voxels.surface[2 * voxel - 2]) || blocks(voxels.surface[2 * voxel - 1])))
+      return false;
     float next = 1e30f;
     for (int k = 0; k < 3; ++k)
       if (std::abs(direction[k]) > 1e-7f)
@@ -125,7 +132,8 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
   return true;
 }
 
-// p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion to the terms.
+// p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion
+// to the terms.
 inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
                                      const std::vector<Seen>& points) {
   const scene::Voxels voxels = room.view();
@@ -136,7 +144,8 @@ inline std::vector<double> densities(const Room& room, const std::vector<scene::
     const auto landing = [&](const Seen& s) {
       const glm::vec3 to = vpl.position - s.position;
       const float d2 = glm::dot(to, to);
-      const float cosines = std::max(glm::dot(s.normal, to), 0.0f) * std::max(-glm::dot(vpl.normal, to), 0.0f);
+      const float cosines =
+          std::max(glm::dot(s.normal, to), 0.0f) * std::max(-glm::dot(vpl.normal, to), 0.0f);
       const bool counts = vpl.life > 0 && s.there && cosines > 1e-12f * d2 && d2 > 1e-12f;
       return counts ? cosines / (d2 * (glm::pi<float>() * d2 + cell * cell)) : 0.0f;
     };
@@ -169,14 +178,15 @@ inline double escaping(const Room& room, const std::vector<Seen>& points) {
     const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
     const glm::vec3 local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x));
     const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(points[i].normal), local);
-    found += scene::traceVoxels(room.view(), points[i].position, direction, points[i].normal).side != scene::kNoSide;
+    found += scene::traceVoxels(room.view(), points[i].position, direction, points[i].normal).side !=
+             scene::kNoSide;
   }
   return found > 0 ? double(tried) / found : 1;
 }
 
 // escaping: attempts for each that finds a surface.
-inline std::vector<double> pdfAreas(const std::vector<scene::VplState>& vpls, const std::vector<double>& p, double areaCap,
-                                    double escaping) {
+inline std::vector<double> pdfAreas(const std::vector<scene::VplState>& vpls, const std::vector<double>& p,
+                                    double areaCap, double escaping) {
   std::vector<double> seen, areas;
   double alive = 0;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -198,10 +208,11 @@ inline double normalLambda(const Room& room, double normalWeight) {
   return normalWeight * path * path;
 }
 
-// Area of the sides nearest to each VPL, by trying every one. `doubtful`: area of the sides that two VPLs are equally near to.
+// Area of the sides nearest to each VPL, by trying every one. `doubtful`: area of the sides that two VPLs are
+// equally near to.
 inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scene::VplState>& vpls,
-                                        const std::vector<glm::vec4>& radiance, const WeightSettings& settings,
-                                        double* doubtful) {
+                                        const std::vector<glm::vec4>& radiance,
+                                        const WeightSettings& settings, double* doubtful) {
   std::vector<double> areas(vpls.size(), 0.0);
   const double lambda = normalLambda(room, settings.normalWeight);
   *doubtful = 0;
@@ -213,7 +224,8 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
     for (size_t i = 0; i < vpls.size(); ++i) {
       if (!(vpls[i].life > 0) || (settings.litOnly && !(radiance[vpls[i].side].w > 0))) continue;
       const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
-      const double cost = glm::dot(d, d) + lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
+      const double cost =
+          glm::dot(d, d) + lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
       second = std::min(second, std::max(cost, best));
       if (cost < best) {
         best = cost;

@@ -22,7 +22,8 @@ scene::VplState vplAt(const Room& room, uint32_t side) {
 }
 
 glm::vec3 cosineDirection(glm::vec3 n, float u, float v) {
-  const glm::vec3 t = glm::normalize(glm::cross(std::abs(n.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), n));
+  const glm::vec3 t =
+      glm::normalize(glm::cross(std::abs(n.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), n));
   const float phi = glm::two_pi<float>() * v, r = std::sqrt(u);
   return glm::normalize(r * std::cos(phi) * t + r * std::sin(phi) * glm::cross(n, t) + std::sqrt(1 - u) * n);
 }
@@ -38,7 +39,8 @@ std::vector<scene::Candidate> candidatesOf(const Room& room, uint32_t count, con
     const Seen& seen = room.pixels[size_t(pixel.y) * room.size.x + pixel.x];
     scene::VoxelHit hit;
     if (seen.there)
-      hit = scene::traceVoxels(room.view(), seen.position, cosineDirection(seen.normal, sobol(i, 0, 3), sobol(i, 1, 3)), seen.normal);
+      hit = scene::traceVoxels(room.view(), seen.position,
+                               cosineDirection(seen.normal, sobol(i, 0, 3), sobol(i, 1, 3)), seen.normal);
     candidate.side = hit.side;
     if (hit.side != scene::kNoSide) {
       candidate.position = room.voxels.surface[hit.side].position;
@@ -85,7 +87,8 @@ void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSe
     for (const float x : {oct.x, oct.y}) face.push_back(int16_t(std::lround(32767 * x)));
   }
   const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
-  test.param("strategy", strategy).param("region", settings.region == scene::kRegionImage ? "image" : "fovea");
+  test.param("strategy", strategy)
+      .param("region", settings.region == scene::kRegionImage ? "image" : "fovea");
   test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
   test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
   test.param("sides", settings.litOnly ? "lit" : "all").param("offset", settings.offset);
@@ -114,7 +117,8 @@ double sumOfAreas(const std::vector<scene::Vpl>& list) {
 }
 
 // Slots whose area is off by more than `tolerance`, relative; what is not area must be right in all of them.
-int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::vector<double>& want, double tolerance) {
+int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::vector<double>& want,
+               double tolerance) {
   EXPECT_EQ(got.size(), want.size());
   int wrong = 0;
   for (size_t i = 0; i < want.size(); ++i) {
@@ -127,7 +131,8 @@ int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::
     EXPECT_EQ(got[i].position, in.vpls[i].position);
     EXPECT_EQ(got[i].normal, in.vpls[i].normal);
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(got[i].intensity[c], in.radiosity[i][c] * got[i].area / glm::pi<float>(), 1e-6f * got[i].intensity[c]);
+      EXPECT_NEAR(got[i].intensity[c], in.radiosity[i][c] * got[i].area / glm::pi<float>(),
+                  1e-6f * got[i].intensity[c]);
   }
   return wrong;
 }
@@ -138,7 +143,8 @@ double irradiance(const std::vector<scene::Vpl>& list, const Seen& s) {
   for (const scene::Vpl& v : list) {
     const glm::dvec3 to = glm::dvec3(v.position) - glm::dvec3(s.position);
     const double d2 = std::max(glm::dot(to, to), 1e-12);
-    const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) * std::max(-glm::dot(glm::dvec3(v.normal), to), 0.0);
+    const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) *
+                           std::max(-glm::dot(glm::dvec3(v.normal), to), 0.0);
     e += v.intensity.x * cosines / d2 / (d2 + v.area / glm::pi<double>());
   }
   return e;
@@ -150,7 +156,8 @@ TEST(Weights, PdfEqualsTheReference) {
     WeightSettings settings;
     settings.region = region;
     settings.points = region == scene::kRegionFovea ? 1024 : 100;
-    settings.gaze = region == scene::kRegionFovea ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.5f);  // a clipped disc
+    settings.gaze =
+        region == scene::kRegionFovea ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.5f);  // a clipped disc
     const auto candidates = candidatesOf(room, 400, settings);
     Inputs in = inputs(room, vplsOf(room, candidates));
     ASSERT_GT(in.vpls.size(), 300u);
@@ -207,7 +214,8 @@ TEST(Weights, FurnaceOfDensities) {
   EXPECT_NEAR(mean, 1, 0.04);
 }
 
-// Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine elsewhere.
+// Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine
+// elsewhere.
 TEST(Weights, FurnaceOfAreas) {
   const Room room = closedRoom(false, 32, glm::ivec2(64), 2.2f);
   WeightSettings settings;
@@ -231,7 +239,8 @@ TEST(Weights, AreasEqualASearchOfAllVpls) {
     Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 1500, settings)));
     for (size_t i = 0; i < in.vpls.size(); i += 5) in.vpls[i] = {};
     for (uint32_t i = 0; i < in.vpls.size(); ++i)  // off the lattice, where many are equally near
-      if (in.vpls[i].life > 0) in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+      if (in.vpls[i].life > 0)
+        in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
     double lit = 0;
     for (size_t s = 0; s < in.radiance.size(); ++s) {
       if (room.voxels.surface[s].position.x > 0.3f) in.radiance[s] = glm::vec4(0);
@@ -254,7 +263,8 @@ TEST(Weights, AConstantStaysWhatTheFirstFrameMadeIt) {
   WeightSettings settings;
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
   for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = glm::vec4(float(i % 7));
-  const auto areas = pdfAreas(in.vpls, densities(room, in.vpls, screenPoints(room, settings)), 4, escaping(room, screenPoints(room, settings)));
+  const auto areas = pdfAreas(in.vpls, densities(room, in.vpls, screenPoints(room, settings)), 4,
+                              escaping(room, screenPoints(room, settings)));
   double flux = 0, sum = 0;
   for (size_t i = 0; i < areas.size(); ++i) {
     flux += in.radiosity[i].w * areas[i];
@@ -266,7 +276,8 @@ TEST(Weights, AConstantStaysWhatTheFirstFrameMadeIt) {
   wire(test, in, "constant", settings);
   uint32_t frame = 0;
   test.beforeFrame([&](PassTest& t, scene::Frame&) {
-    if (frame == 0) t.set("radiosity", std::vector<glm::vec4>(in.radiosity.size(), glm::vec4(0)));  // no flux: waits
+    if (frame == 0)
+      t.set("radiosity", std::vector<glm::vec4>(in.radiosity.size(), glm::vec4(0)));  // no flux: waits
     if (frame == 1) t.set("radiosity", in.radiosity);
     if (frame == 2) {  // others, and half of them: the total is divided among those
       for (size_t i = 0; i < in.vpls.size(); ++i) in.vpls[i] = i % 2 ? in.vpls[0] : scene::VplState{};
@@ -345,7 +356,9 @@ TEST(Weights, FoveaOutsideAndBackground) {
   settings.gaze = {3, -2};
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 100, settings)));
   const auto p = densities(room, in.vpls, screenPoints(room, settings));
-  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, escaping(room, screenPoints(room, settings))), 3e-4), 4);
+  EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in,
+                       pdfAreas(in.vpls, p, 4, escaping(room, screenPoints(room, settings))), 3e-4),
+            4);
   for (Seen& s : room.pixels) s.there = false;
   for (const char* strategy : {"constant", "pdf"})
     for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.area, 0) << strategy;
@@ -386,7 +399,9 @@ TEST(Weights, OutputsAreFinite) {
     for (size_t i = 0; i < list.size(); ++i) {
       const scene::Vpl& v = list[i];
       for (int c = 0; c < 3; ++c) {
-        EXPECT_TRUE(std::isfinite(v.position[c]) && std::isfinite(v.normal[c]) && std::isfinite(v.intensity[c])) << i;
+        EXPECT_TRUE(std::isfinite(v.position[c]) && std::isfinite(v.normal[c]) &&
+                    std::isfinite(v.intensity[c]))
+            << i;
         EXPECT_GE(v.intensity[c], 0) << i;
         EXPECT_LE(v.intensity[c], 1e18f) << i;
       }
@@ -414,7 +429,9 @@ TEST(Weights, OffsetMovesAlongTheNormal) {
   settings.offset = 0.5;
   const auto list = weigh(in, "pdf", settings);
   for (size_t i = 0; i < list.size(); ++i)
-    EXPECT_LT(glm::distance(list[i].position, in.vpls[i].position + 0.5f * room.voxels.grid.cell * in.vpls[i].normal), 1e-5f);
+    EXPECT_LT(glm::distance(list[i].position,
+                            in.vpls[i].position + 0.5f * room.voxels.grid.cell * in.vpls[i].normal),
+              1e-5f);
 }
 
 }  // namespace

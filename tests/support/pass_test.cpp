@@ -71,7 +71,8 @@ struct Setup {
     options.readback = std::move(readback);
     if (options.readback.empty())
       for (const auto& output : bound->outputs) options.readback.push_back(output.name);
-    executor = std::make_unique<graph::Executor>(testDevice(), plan, graph::Registry::global(), *gpuScene, options);
+    executor =
+        std::make_unique<graph::Executor>(testDevice(), plan, graph::Registry::global(), *gpuScene, options);
   }
 
   scene::Frame frame(glm::uvec2 size, uint64_t index, uint32_t seed) const {
@@ -115,17 +116,18 @@ std::string PassTest::Impl::graphText() const {
         append(members, plain ? describe(it->second) : quoted(m.name) + ": " + describe(it->second));
       }
       if (members.empty()) continue;
-      append(inputText, quoted(port.name) + ": " +
-                            (plain ? members
-                                   : "{\"bundle\": " + quoted(port.bundle) + ", \"members\": {" + members + "}}"));
+      append(inputText,
+             quoted(port.name) + ": " +
+                 (plain ? members
+                        : "{\"bundle\": " + quoted(port.bundle) + ", \"members\": {" + members + "}}"));
       append(wires, quoted(port.name) + ": " + quoted("inputs." + port.name));
     }
     if (port.direction == graph::Direction::Output || port.direction == graph::Direction::InOut)
       append(outputs, quoted(port.name) + ": " + quoted("test." + port.name));
   }
   for (const auto& [name, value] : params) append(paramText, quoted(name) + ": " + value);
-  return "{\"inputs\": {" + inputText + "}, \"passes\": {\"test\": {\"type\": " + quoted(type) + ", \"inputs\": {" +
-         wires + "}, \"params\": {" + paramText + "}}}, \"outputs\": {" + outputs + "}}";
+  return "{\"inputs\": {" + inputText + "}, \"passes\": {\"test\": {\"type\": " + quoted(type) +
+         ", \"inputs\": {" + wires + "}, \"params\": {" + paramText + "}}}, \"outputs\": {" + outputs + "}}";
 }
 
 void PassTest::Impl::build() {
@@ -207,8 +209,8 @@ PassTest& PassTest::imageBytes(const std::string& port, VkFormat format, uint32_
   return *this;
 }
 
-PassTest& PassTest::bufferBytes(const std::string& port, const std::string& element, uint32_t stride, uint64_t count,
-                                std::vector<std::byte> raw) {
+PassTest& PassTest::bufferBytes(const std::string& port, const std::string& element, uint32_t stride,
+                                uint64_t count, std::vector<std::byte> raw) {
   InputData input;
   input.desc.kind = graph::ResourceKind::Buffer;
   input.desc.stride = stride;
@@ -255,7 +257,9 @@ const std::vector<std::byte>& PassTest::bytes(const std::string& port) const {
 const graph::ResourceDesc& PassTest::desc(const std::string& port) const {
   return outputOf(impl_->result, port).desc;
 }
-std::vector<float> PassTest::floats(const std::string& port) const { return toFloats(outputOf(impl_->result, port)); }
+std::vector<float> PassTest::floats(const std::string& port) const {
+  return toFloats(outputOf(impl_->result, port));
+}
 
 double PassTest::counter(const std::string& name) const {
   for (const auto& [n, value] : impl_->result.counters)

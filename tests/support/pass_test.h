@@ -1,5 +1,5 @@
-// Runs one pass alone: inputs uploaded from arrays, the pass executed through the real compiler and executor, outputs
-// read back. Validation layers are on; a message fails the test (tests/support/device_main.cpp).
+// Runs one pass alone: inputs uploaded from arrays, the pass executed through the real compiler and executor,
+// outputs read back. Validation layers are on; a message fails the test (tests/support/device_main.cpp).
 #pragma once
 
 #include <cstddef>
@@ -28,11 +28,12 @@ class PassTest {
   PassTest& viewSize(uint32_t width, uint32_t height);
   PassTest& scene(scene::Scene scene);  // default: empty, with a default camera
   PassTest& seed(uint32_t seed);
-  // Called before every frame: to move things, cut the camera, or change an input with setImage()/setBuffer().
+  // Called before every frame: to move things, cut the camera, or change an input with
+  // setImage()/setBuffer().
   PassTest& beforeFrame(std::function<void(PassTest&, scene::Frame&)> hook);
 
-  // `port` is "radiance", or "gbuffer.position" for a member of a bundle. Texels tightly packed, layer after layer
-  // (or slice after slice).
+  // `port` is "radiance", or "gbuffer.position" for a member of a bundle. Texels tightly packed, layer after
+  // layer (or slice after slice).
   template <class T>
   PassTest& image(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t layers,
                   const std::vector<T>& texels) {
@@ -49,7 +50,9 @@ class PassTest {
   }
   // Another content of the same size, from the next frame on.
   template <class T>
-  void set(const std::string& port, const std::vector<T>& values) { setBytes(port, toBytes(values)); }
+  void set(const std::string& port, const std::vector<T>& values) {
+    setBytes(port, toBytes(values));
+  }
 
   // Builds the graph on first use, runs `frames` frames and reads all outputs of the last one.
   void run(uint32_t frames = 1);
@@ -78,8 +81,8 @@ class PassTest {
     std::memcpy(raw.data(), values.data(), raw.size());
     return raw;
   }
-  PassTest& imageBytes(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t layers,
-                       bool volume, std::vector<std::byte> raw, uint32_t mips = 1);
+  PassTest& imageBytes(const std::string& port, VkFormat format, uint32_t width, uint32_t height,
+                       uint32_t layers, bool volume, std::vector<std::byte> raw, uint32_t mips = 1);
   PassTest& bufferBytes(const std::string& port, const std::string& element, uint32_t stride, uint64_t count,
                         std::vector<std::byte> raw);
   void setBytes(const std::string& port, std::vector<std::byte> raw);
@@ -95,12 +98,13 @@ struct GraphRun {
 struct GraphRunOptions {
   glm::uvec2 size{128, 128};
   uint32_t frames = 1, seed = 1;
-  std::vector<std::string> set;  // "vpl_count=100"
+  std::vector<std::string> set;      // "vpl_count=100"
   std::vector<std::string> outputs;  // names to read back; empty: all images
   bool everyFrame = false;           // read back after every frame: GraphRun::frames[i].outputs
   std::function<void(scene::Frame&)> beforeFrame;
 };
-GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, const GraphRunOptions& options = {});
+GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene,
+                  const GraphRunOptions& options = {});
 
 std::vector<float> toFloats(const graph::OutputData& data);
 

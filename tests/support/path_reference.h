@@ -63,7 +63,8 @@ class PathReference {
       const float cosine = glm::dot(at.shadingNormal, l.direction);
       if (cosine <= 0 || glm::dot(at.geometricNormal, l.direction) <= 0) continue;
       const glm::vec3 from = at.position + at.geometricNormal * rays_.epsilon();
-      if (!rays_.occluded({from, l.direction, 0, l.distance * 0.9999f})) e += double(cosine) * glm::dvec3(l.irradiance);
+      if (!rays_.occluded({from, l.direction, 0, l.distance * 0.9999f}))
+        e += double(cosine) * glm::dvec3(l.irradiance);
     }
     return e;
   }
@@ -71,7 +72,8 @@ class PathReference {
     const float u = uniformFloat(randomStream(77, pixel, 2 * bounce, sample));
     const float v = uniformFloat(randomStream(77, pixel, 2 * bounce + 1, sample));
     const float r = std::sqrt(u), phi = glm::two_pi<float>() * v;
-    return scene::toWorld(scene::orthonormalFrame(n), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
+    return scene::toWorld(scene::orthonormalFrame(n),
+                          {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
   }
   const scene::Scene& scene_;
   const scene::Geometry& geometry_;
@@ -80,14 +82,16 @@ class PathReference {
 };
 
 // Indirect radiance of every pixel, 4 floats each, as graphs put it out.
-inline std::vector<float> tracedIndirect(const scene::Scene& s, glm::uvec2 size, uint32_t bounces, int samples) {
+inline std::vector<float> tracedIndirect(const scene::Scene& s, glm::uvec2 size, uint32_t bounces,
+                                         int samples) {
   const scene::Geometry g = flatten(s);
   const scene::Frame frame = makeFrame(s, g, size, 0, 1);
   const PathReference reference(s, g, bounces);
   std::vector<float> image;
   for (uint32_t y = 0; y < size.y; ++y)
     for (uint32_t x = 0; x < size.x; ++x) {
-      const glm::vec3 direction = glm::normalize(frame.views[0].rayDirection({float(x) + 0.5f, float(y) + 0.5f}));
+      const glm::vec3 direction =
+          glm::normalize(frame.views[0].rayDirection({float(x) + 0.5f, float(y) + 0.5f}));
       const glm::dvec3 l = reference.indirect(frame.views[0].eye, direction, y * size.x + x, samples);
       image.insert(image.end(), {float(l.r), float(l.g), float(l.b), 1.0f});
     }

@@ -26,21 +26,23 @@ using Cells = std::map<uint32_t, std::array<Sums, 2>>;  // by linear cell index
 // A triangle in units of cells, the axes turned so that z is the one of the largest component of n.
 struct Triangle {
   vec3 a{0}, b{0}, c{0}, n{0};
-  vec3 normal{0};           // unit, axes not turned
-  vec2 slope{0};            // of z over x and y
-  float areaScale = 0;      // area per doubled area seen along z
-  int axis = 0;             // that z is
-  ivec3 lo{0}, hi{-1};      // cells of its box
+  vec3 normal{0};       // unit, axes not turned
+  vec2 slope{0};        // of z over x and y
+  float areaScale = 0;  // area per doubled area seen along z
+  int axis = 0;         // that z is
+  ivec3 lo{0}, hi{-1};  // cells of its box
 };
 
 vec3 turn(vec3 v, int axis) { return axis == 0 ? vec3(v.y, v.z, v.x) : axis == 1 ? vec3(v.z, v.x, v.y) : v; }
-vec3 turnBack(vec3 v, int axis) { return axis == 0 ? vec3(v.z, v.x, v.y) : axis == 1 ? vec3(v.y, v.z, v.x) : v; }
+vec3 turnBack(vec3 v, int axis) {
+  return axis == 0 ? vec3(v.z, v.x, v.y) : axis == 1 ? vec3(v.y, v.z, v.x) : v;
+}
 
 Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   Triangle t;
   const float inverse = 1.0f / grid.cell;
-  // Edges from the positions as given: differences of coordinates that were rounded to the grid's would ruin the areas of
-  // small triangles.
+  // Edges from the positions as given: differences of coordinates that were rounded to the grid's would ruin
+  // the areas of small triangles.
   const vec3 e1 = (b - a) * inverse, e2 = (c - a) * inverse;
   t.a = (a - grid.origin) * inverse;
   t.b = t.a + e1;
@@ -53,7 +55,8 @@ Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   t.normal = t.n * (1.0f / length);
   t.areaScale = 0.5f * length * (1.0f / m[t.axis]);
   const vec3 least = glm::floor(glm::min(glm::min(t.a, t.b), t.c)), most = glm::max(glm::max(t.a, t.b), t.c);
-  const vec3 last = glm::max(least, glm::ceil(most) - 1.0f);  // half-open: what lies on a border belongs to the upper cell
+  const vec3 last =
+      glm::max(least, glm::ceil(most) - 1.0f);  // half-open: what lies on a border belongs to the upper cell
   const float r = float(grid.resolution);
   t.lo = ivec3(turn(glm::min(glm::max(least, vec3(0.0f)), vec3(r)), t.axis));
   t.hi = ivec3(turn(glm::max(glm::min(last, vec3(r - 1.0f)), vec3(-1.0f)), t.axis));
@@ -74,8 +77,9 @@ bool edgeMeetsCell(vec3 p, vec3 q, int u, int v, float sign) {
   return reach + kSlack * (std::abs(nu) + std::abs(nv)) >= nu * p[u] + nv * p[v];
 }
 
-// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001, as 2D edge tests
-// as in Schwarz and Seidel 2010); the box's own axes are the loop's. With slack: what it lets through is clipped.
+// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001,
+// as 2D edge tests as in Schwarz and Seidel 2010); the box's own axes are the loop's. With slack: what it
+// lets through is clipped.
 bool overlapsCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   const vec3 n = t.n;
   const float d = (n.x * a.x + n.y * a.y) + n.z * a.z;
@@ -86,7 +90,9 @@ bool overlapsCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   for (int w = 0; w < 3; ++w) {
     const int u = (w + 1) % 3, v = (w + 2) % 3;
     const float sign = n[w] < 0.0f ? -1.0f : 1.0f;
-    if (!edgeMeetsCell(a, b, u, v, sign) || !edgeMeetsCell(b, c, u, v, sign) || !edgeMeetsCell(c, a, u, v, sign)) return false;
+    if (!edgeMeetsCell(a, b, u, v, sign) || !edgeMeetsCell(b, c, u, v, sign) ||
+        !edgeMeetsCell(c, a, u, v, sign))
+      return false;
   }
   return true;
 }
@@ -146,7 +152,8 @@ bool crossesCell(const Triangle& t, vec3 a, vec3 b, vec3 c, Piece& piece) {
   const float least = (z + std::min(t.slope.x, 0.0f)) + std::min(t.slope.y, 0.0f);
   const float most = (z + std::max(t.slope.x, 0.0f)) + std::max(t.slope.y, 0.0f);
   piece = {2.0f * t.areaScale, vec3(0.5f, 0.5f, z + 0.5f * (t.slope.x + t.slope.y))};
-  return least >= 0.0f && most < 1.0f && edgeHoldsCell(a, b, side) && edgeHoldsCell(b, c, side) && edgeHoldsCell(c, a, side);
+  return least >= 0.0f && most < 1.0f && edgeHoldsCell(a, b, side) && edgeHoldsCell(b, c, side) &&
+         edgeHoldsCell(c, a, side);
 }
 
 vec2 uvAt(const scene::Geometry& g, const scene::Triangle& indices, const Triangle& t, vec3 a, vec3 p) {
@@ -170,7 +177,8 @@ void add(Sums& sums, const Piece& piece, vec3 normal, vec3 reflectance, vec3 emi
 
 void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scene::VoxelGrid& grid,
                  const scene::Triangle& indices, Cells& cells) {
-  const Triangle t = makeTriangle(grid, g.positions[indices.v[0]], g.positions[indices.v[1]], g.positions[indices.v[2]]);
+  const Triangle t =
+      makeTriangle(grid, g.positions[indices.v[0]], g.positions[indices.v[1]], g.positions[indices.v[2]]);
   const scene::Material& material = scene.materials[indices.material()];
   const uint32_t side = scene::voxelSideOf(t.normal);
   for (int z = t.lo.z; z <= t.hi.z; ++z)
@@ -187,9 +195,11 @@ void addTriangle(const scene::Scene& scene, const scene::Geometry& g, const scen
         if (material.masked && color.a < material.alphaCutoff) continue;
         const vec3 emission = scene::emission(scene, material, uv);
         const glm::uvec3 place(turnBack(cell, t.axis));
-        auto& sides = cells[place.x + uint32_t(grid.resolution) * (place.y + uint32_t(grid.resolution) * place.z)];
+        auto& sides =
+            cells[place.x + uint32_t(grid.resolution) * (place.y + uint32_t(grid.resolution) * place.z)];
         add(sides[side], piece, t.normal, vec3(color), emission, indices.object());
-        if (material.doubleSided) add(sides[1 - side], piece, -t.normal, vec3(color), emission, indices.object());
+        if (material.doubleSided)
+          add(sides[1 - side], piece, -t.normal, vec3(color), emission, indices.object());
       }
 }
 
@@ -216,7 +226,8 @@ scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint
 
 void append(const Cells& cells, VoxelArrays& out) {
   for (const auto& [linear, sides] : cells) {
-    for (uint32_t side = 0; side < 2; ++side) out.surface.push_back(resolveSide(out.grid, linear, side, sides[side]));
+    for (uint32_t side = 0; side < 2; ++side)
+      out.surface.push_back(resolveSide(out.grid, linear, side, sides[side]));
     out.index[linear] = ++out.info.voxels;
   }
 }
@@ -226,13 +237,15 @@ void append(const Cells& cells, VoxelArrays& out) {
 VoxelArrays voxelizeReference(const scene::Scene& scene, const scene::Geometry& geometry, int resolution) {
   VoxelArrays out;
   const bool empty = geometry.empty();
-  out.grid = scene::voxelGrid(empty ? vec3(0.0f) : geometry.boundsMin, empty ? vec3(0.0f) : geometry.boundsMax, resolution);
+  out.grid = scene::voxelGrid(empty ? vec3(0.0f) : geometry.boundsMin,
+                              empty ? vec3(0.0f) : geometry.boundsMax, resolution);
   out.resolution = resolution;
   out.info.resolution = uint32_t(resolution);
   out.index.resize(size_t(resolution) * size_t(resolution) * size_t(resolution));
   Cells fixed, moving;
   for (uint32_t i = 0; i < geometry.triangles.size(); ++i)
-    addTriangle(scene, geometry, out.grid, geometry.triangles[i], i < geometry.staticTriangles ? fixed : moving);
+    addTriangle(scene, geometry, out.grid, geometry.triangles[i],
+                i < geometry.staticTriangles ? fixed : moving);
   append(fixed, out);
   out.info.staticVoxels = out.info.voxels;
   append(moving, out);

@@ -1,4 +1,5 @@
-// The voxeliser on the CPU, plain loops: what pass `voxelize` must produce, and voxels for the tests of passes that read them.
+// The voxeliser on the CPU, plain loops: what pass `voxelize` must produce, and voxels for the tests of
+// passes that read them.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,14 @@ struct VoxelArrays {
   scene::VoxelInfo info;
 
   uint32_t voxelAt(glm::ivec3 cell) const {  // 0 empty, else 1 + voxel
-    return index[size_t(cell.x) + size_t(resolution) * (size_t(cell.y) + size_t(resolution) * size_t(cell.z))];
+    return index[size_t(cell.x) +
+                 size_t(resolution) * (size_t(cell.y) + size_t(resolution) * size_t(cell.z))];
   }
 };
 
-// Static triangles, then those of dynamic objects, which hide the static voxel of their cell. The same float operations in
-// the same order as shaders/voxelize, so that the set of voxels and sides is equal, not merely close.
+// Static triangles, then those of dynamic objects, which hide the static voxel of their cell. The same float
+// operations in the same order as shaders/voxelize, so that the set of voxels and sides is equal, not merely
+// close.
 VoxelArrays voxelizeReference(const scene::Scene& scene, const scene::Geometry& geometry, int resolution);
 
 // Uploads the members of `voxels` that the pass reads.

@@ -24,8 +24,8 @@ std::vector<double> coverage(const Fovea& fovea, glm::ivec2 size) {
   return part;
 }
 
-// Chi-square of the drawn pixels against `part`; pixels that expect less than 8 draws are thrown together. In standard
-// deviations from its mean.
+// Chi-square of the drawn pixels against `part`; pixels that expect less than 8 draws are thrown together. In
+// standard deviations from its mean.
 double deviation(uint32_t region, const Fovea& fovea, glm::ivec2 size, const std::vector<double>& part,
                  uint32_t draws) {
   std::vector<uint32_t> count(part.size());
@@ -80,7 +80,8 @@ TEST(RegionSample, DiscIsUniform) {
   for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.43f, 0.55f), glm::vec2(0), glm::vec2(1, 0.4f),
                                glm::vec2(0.7f, 1.1f), glm::vec2(-0.12f, -0.2f)}) {
     const Fovea f = makeFovea(gaze, kSize, 0.25f);
-    EXPECT_LT(std::abs(deviation(kRegionFovea, f, kSize, coverage(f, kSize), 40000)), 5) << gaze.x << ", " << gaze.y;
+    EXPECT_LT(std::abs(deviation(kRegionFovea, f, kSize, coverage(f, kSize), 40000)), 5)
+        << gaze.x << ", " << gaze.y;
   }
 }
 

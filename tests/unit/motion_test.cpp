@@ -33,7 +33,10 @@ Scene movingScene() {
   s.nodes[2].scale = {1, 3, 1};
   s.nodes[2].dynamic = true;
   s.cameras.emplace_back();
-  s.movers = {{2, true, Repeat::Once, {key(0, {0, 0, 0}), key(1, {1, 0, 0}, 90), key(2, {1, 0, 0}, 90), key(3, {4, 1, 0}, 0)}}};
+  s.movers = {{2,
+               true,
+               Repeat::Once,
+               {key(0, {0, 0, 0}), key(1, {1, 0, 0}, 90), key(2, {1, 0, 0}, 90), key(3, {4, 1, 0}, 0)}}};
   return s;
 }
 
@@ -86,7 +89,8 @@ TEST(Motion, ObjectsFollowTheirNodes) {
     glm::mat4 expected = glm::translate(glm::mat4(1), pose.translation) * glm::mat4_cast(pose.rotation);
     expected = localTransform(s.nodes[1]) * glm::scale(expected, {1, 3, 1});
     for (int c = 0; c < 4; ++c) EXPECT_LT(glm::distance(o.toWorld[c], expected[c]), 1e-5f);
-    const glm::mat4 before = index ? makeFrame(s, g, {8, 8}, index - 1, 0, 10.0).objects[1].toWorld : o.toWorld;
+    const glm::mat4 before =
+        index ? makeFrame(s, g, {8, 8}, index - 1, 0, 10.0).objects[1].toWorld : o.toWorld;
     EXPECT_EQ(o.previousToWorld, before);
     moveObjects(f, g);
     for (uint32_t v = 0; v < g.positions.size(); ++v) {
@@ -101,7 +105,8 @@ TEST(Motion, ObjectsFollowTheirNodes) {
       EXPECT_LT(glm::distance(o.normalIntoObject(g.normals[v]), glm::vec3(0, 0, 1)), 1e-5f);
     }
     const Triangle& t = g.triangles[g.staticTriangles];
-    const glm::vec3 face = glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]);
+    const glm::vec3 face =
+        glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]);
     EXPECT_GT(glm::dot(face, g.normals[t.v[0]]), 0);
   }
 }
@@ -137,7 +142,8 @@ TEST(Motion, WhatIsInvisibleHasNoArea) {
     double sum = 0;
     for (uint32_t i = g.staticTriangles; i < g.triangles.size(); ++i) {
       const Triangle& t = g.triangles[i];
-      sum += glm::length(glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
+      sum += glm::length(
+          glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
     }
     return sum;
   };
@@ -161,7 +167,9 @@ TEST(Motion, Lights) {
   Scene s;
   s.lights = {test::sun({0, -1, 0}, glm::vec3(1)), test::pointLight({0, 1, 0}, {1, 2, 3})};
   LightMotion m{1, true, Repeat::Loop, {}};
-  m.keys = {{0, {0, 1, 0}, {0, -1, 0}, {1, 2, 3}, 1}, {1, {2, 1, 0}, {1, 0, 0}, {0, 0, 0}, 5}, {2, {2, 3, 0}, {1, 0, 0}, {1, 1, 1}, 0}};
+  m.keys = {{0, {0, 1, 0}, {0, -1, 0}, {1, 2, 3}, 1},
+            {1, {2, 1, 0}, {1, 0, 0}, {0, 0, 0}, 5},
+            {2, {2, 3, 0}, {1, 0, 0}, {1, 1, 1}, 0}};
   s.lightMotions = {m};
   EXPECT_EQ(lightsAt(s, 0)[1].color, glm::vec3(1, 2, 3));
   EXPECT_EQ(lightsAt(s, 1)[1].position, glm::vec3(2, 1, 0));

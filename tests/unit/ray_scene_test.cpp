@@ -95,7 +95,8 @@ TEST(RayScene, MaskedHolesLetRaysThrough) {
   s.materials.push_back(masked);
   Texture t;
   t.width = t.height = 2;
-  for (int i = 0; i < 4; ++i) t.rgba.insert(t.rgba.end(), {255, 255, 255, uint8_t(i == 0 || i == 3 ? 255 : 0)});
+  for (int i = 0; i < 4; ++i)
+    t.rgba.insert(t.rgba.end(), {255, 255, 255, uint8_t(i == 0 || i == 3 ? 255 : 0)});
   s.textures.push_back(t);
   addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
   addQuad(s, 1, {0, 1, 0}, {1, 0, 0}, {0, 0, -1});

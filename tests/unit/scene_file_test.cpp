@@ -148,10 +148,11 @@ TEST(SceneFile, MoversAndMovingLights) {
   EXPECT_FALSE(s.gaze[0].right.has_value());
   // At t = 0 the picture is that of the still scene.
   const Geometry still = flatten(box);
-  EXPECT_EQ(g.positions[g.objects[1].firstVertex], still.positions[box.meshes[0].primitives[0].positions.size() +
-                                                                   box.meshes[0].primitives[1].positions.size() +
-                                                                   box.meshes[0].primitives[2].positions.size() +
-                                                                   box.meshes[0].primitives[3].positions.size()]);
+  EXPECT_EQ(g.positions[g.objects[1].firstVertex],
+            still.positions[box.meshes[0].primitives[0].positions.size() +
+                            box.meshes[0].primitives[1].positions.size() +
+                            box.meshes[0].primitives[2].positions.size() +
+                            box.meshes[0].primitives[3].positions.size()]);
 }
 
 TEST(SceneFile, MistakesOfMovers) {
@@ -165,16 +166,18 @@ TEST(SceneFile, MistakesOfMovers) {
     ],
     "moving_lights": [{"keys": [{"t": 0, "intensity": -1, "direction": [0, 0, 0]}]}]})");
   for (const char* expected :
-       {"scene.json:3:", "one of `node`, `file` and `shape`", "movers[1].keys", "at least one key", "scene.json:5:",
-        "`keys` is missing", "expected one of box, paper_plane", "movers[3].size", "movers[3].keys[0].quaternion", "times of a path",
-        "`t` is missing", "movers[3].keys[2].translation", "movers[4].color", "movers[4].repeat", "did you mean `visible`",
-        "`light` is missing", "moving_lights[0].keys[0].intensity", "direction cannot be zero"})
+       {"scene.json:3:", "one of `node`, `file` and `shape`", "movers[1].keys", "at least one key",
+        "scene.json:5:", "`keys` is missing", "expected one of box, paper_plane", "movers[3].size",
+        "movers[3].keys[0].quaternion", "times of a path", "`t` is missing", "movers[3].keys[2].translation",
+        "movers[4].color", "movers[4].repeat", "did you mean `visible`", "`light` is missing",
+        "moving_lights[0].keys[0].intensity", "direction cannot be zero"})
     EXPECT_THAT(message, HasSubstr(expected));
   const auto mover = [](const std::string& movers, const std::string& more = "") {
     return errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "movers": [)" + movers + "]" + more + "}");
   };
-  EXPECT_THAT(mover(R"({"node": "yelow cube", "keys": [{"t": 0}]})"),
-              AllOf(HasSubstr("movers[0].node"), HasSubstr("no node `yelow cube`"), HasSubstr("`yellow cube`")));
+  EXPECT_THAT(
+      mover(R"({"node": "yelow cube", "keys": [{"t": 0}]})"),
+      AllOf(HasSubstr("movers[0].node"), HasSubstr("no node `yelow cube`"), HasSubstr("`yellow cube`")));
   EXPECT_THAT(mover(R"({"node": "vase", "keys": [{"t": 0}]}, {"node": "vase", "keys": [{"t": 0}]})"),
               AllOf(HasSubstr("movers[1]"), HasSubstr("moves twice")));
   EXPECT_THAT(mover(R"({"node": "vase", "keys": [{"t": 0}]}, {"node": "cornellbox", "keys": [{"t": 0}]})"),
@@ -187,9 +190,12 @@ TEST(SceneFile, MistakesOfMovers) {
 
 TEST(SceneFile, GazeFromATable) {
   TemporaryFolder folder;
-  folder.write("gaze.csv", "# a trace\r\nt, x, y, valid, left_x, left_y\r\n0,0.25,0.5,1,0.2,0.5\n0.5,,,0,,\n\n1,0.75,0.5,1,,\n");
+  folder.write(
+      "gaze.csv",
+      "# a trace\r\nt, x, y, valid, left_x, left_y\r\n0,0.25,0.5,1,0.2,0.5\n0.5,,,0,,\n\n1,0.75,0.5,1,,\n");
   Diagnostics warnings;
-  const Scene s = loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings);
+  const Scene s =
+      loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings);
   ASSERT_EQ(s.gaze.size(), 3u);
   EXPECT_EQ(s.gaze[0].position, glm::vec2(0.25f, 0.5f));
   ASSERT_TRUE(s.gaze[0].left.has_value());
@@ -199,12 +205,14 @@ TEST(SceneFile, GazeFromATable) {
   EXPECT_FALSE(s.gaze[2].left.has_value());
   const auto error = [&](const std::string& table) {
     folder.write("gaze.csv", table);
-    return errorOf([&] { loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings); });
+    return errorOf([&] {
+      loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "gaze": "gaze.csv"})", warnings);
+    });
   };
   EXPECT_THAT(error("t,x,y\n0,0.5,2\n1,a,0.5\n2,0.5\n3,,0.5\n2.5,0.5,0.5\n4,0.1,0.1\n3.9,0.1,0.1\n"),
-              AllOf(HasSubstr("gaze.csv:2:"), HasSubstr("`y` is `2`"), HasSubstr("gaze.csv:3:"), HasSubstr("`x` is `a`"),
-                    HasSubstr("gaze.csv:4:"), HasSubstr("2 values in 3 columns"), HasSubstr("gaze.csv:5:"),
-                    HasSubstr("gaze.csv:8:"), HasSubstr("must increase")));
+              AllOf(HasSubstr("gaze.csv:2:"), HasSubstr("`y` is `2`"), HasSubstr("gaze.csv:3:"),
+                    HasSubstr("`x` is `a`"), HasSubstr("gaze.csv:4:"), HasSubstr("2 values in 3 columns"),
+                    HasSubstr("gaze.csv:5:"), HasSubstr("gaze.csv:8:"), HasSubstr("must increase")));
   EXPECT_THAT(error("t,x,y,vlid\n"), AllOf(HasSubstr("gaze.csv:1:"), HasSubstr("did you mean `valid`")));
   EXPECT_THAT(error("t,x,x\n"), AllOf(HasSubstr("`y` is missing"), HasSubstr("twice")));
   EXPECT_THAT(error(""), HasSubstr("no header"));
@@ -335,7 +343,9 @@ TEST(Load, NamesAndFiles) {
 
 TEST(Load, MovingScenesKeepTheBoundsOfTheirStillOnes) {
   const bool sponza = !test::sharedScenes().empty();
-  for (const auto& [name, still] : {std::pair("cornellbox_moving", "cornellbox"), {"cornellbox_path", "cornellbox"}, {"sponza_plane", "sponza"}}) {
+  for (const auto& [name, still] : {std::pair("cornellbox_moving", "cornellbox"),
+                                    {"cornellbox_path", "cornellbox"},
+                                    {"sponza_plane", "sponza"}}) {
     if (std::string(still) == "sponza" && !sponza) continue;
     Diagnostics warnings;
     const Scene s = load(name, warnings);

@@ -85,8 +85,8 @@ struct Side {
 };
 
 // The side of a voxel that a ray which leaves it at `out` meets, or else passes.
-Side sideOf(const Volume& v, uint32_t voxel, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal, double out,
-            bool& unclear) {
+Side sideOf(const Volume& v, uint32_t voxel, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal,
+            double out, bool& unclear) {
   const double cell = double(v.grid.cell);
   Side best;
   double facing = 0;
@@ -119,10 +119,12 @@ BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, 
   for (int i = 0; i < r * r * r; ++i) {
     const uint32_t voxel = v.index[size_t(i)];
     if (voxel == 0) continue;
-    const glm::dvec3 low = glm::dvec3(v.grid.origin) + double(v.grid.cell) * glm::dvec3(i % r, i / r % r, i / r / r);
+    const glm::dvec3 low =
+        glm::dvec3(v.grid.origin) + double(v.grid.cell) * glm::dvec3(i % r, i / r % r, i / r / r);
     double in = 0, out = 1e30;
     for (int k = 0; k < 3; ++k) {
-      double a = (low[k] - origin[k]) / direction[k], b = (low[k] + double(v.grid.cell) - origin[k]) / direction[k];
+      double a = (low[k] - origin[k]) / direction[k],
+             b = (low[k] + double(v.grid.cell) - origin[k]) / direction[k];
       if (direction[k] == 0) {
         const bool inside = origin[k] >= low[k] && origin[k] < low[k] + double(v.grid.cell);
         a = inside ? -1e30 : 1e30;
@@ -139,7 +141,8 @@ BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, 
       continue;
     }
     // The first that is met; when there is none, the last that is passed.
-    if (best.side != kNoSide && (met != side.met ? met : met ? in >= best.cellIn : in <= best.cellIn)) continue;
+    if (best.side != kNoSide && (met != side.met ? met : met ? in >= best.cellIn : in <= best.cellIn))
+      continue;
     met = side.met;
     best.side = side.side;
     best.cellIn = in;
@@ -161,7 +164,8 @@ void expectRay(const Volume& v, glm::vec3 origin, glm::vec3 direction, glm::vec3
   }
   if (hit.side != want.side) {
     ++counts.touched;
-    EXPECT_NE(std::find(want.alsoPossible.begin(), want.alsoPossible.end(), hit.side), want.alsoPossible.end())
+    EXPECT_NE(std::find(want.alsoPossible.begin(), want.alsoPossible.end(), hit.side),
+              want.alsoPossible.end())
         << "side " << hit.side << " instead of " << want.side;
     return;
   }
@@ -181,7 +185,8 @@ TEST(VoxelTrace, EqualsTheSearchThroughAllCells) {
     const float edge = v.grid.cell * float(v.grid.resolution);
     for (int ray = 0; ray < 2000; ++ray) {
       // Half of them start inside, the others around the grid.
-      const glm::vec3 origin = v.grid.origin + edge * (ray % 2 ? random.point() : 3.0f * random.point() - 1.0f);
+      const glm::vec3 origin =
+          v.grid.origin + edge * (ray % 2 ? random.point() : 3.0f * random.point() - 1.0f);
       const glm::vec3 direction =
           ray % 4 < 2 ? random.direction() : glm::normalize(v.grid.origin + edge * random.point() - origin);
       expectRay(v, origin, direction, ray % 3 ? direction : random.direction(), counts);
@@ -210,7 +215,8 @@ TEST(VoxelTrace, DirectionsWithZeroComponents) {
   EXPECT_LT(counts.touched, 10);
 }
 
-// Origins on the walls between cells, on the edges, in the corners: the walk ends, and hits what lies straight ahead.
+// Origins on the walls between cells, on the edges, in the corners: the walk ends, and hits what lies
+// straight ahead.
 TEST(VoxelTrace, OriginsOnWalls) {
   Volume v(8, {glm::vec3(-4), 1, 8});
   for (int y = 0; y < 8; ++y)
@@ -233,7 +239,8 @@ TEST(VoxelTrace, SkipsTheOwnSurfaceAndBacks) {
   const glm::vec3 up(0, 1, 0), down(0, -1, 0);
   for (int x = 0; x < 8; ++x)
     for (int z = 0; z < 8; ++z) {
-      v.add({x, 2, z}, makeSide({x + 0.5f, 2.5f, z + 0.5f}, up), makeSide({x + 0.5f, 2.3f, z + 0.5f}, down));  // thin
+      v.add({x, 2, z}, makeSide({x + 0.5f, 2.5f, z + 0.5f}, up),
+            makeSide({x + 0.5f, 2.3f, z + 0.5f}, down));  // thin
       v.add({x, 6, z}, makeSide({x + 0.5f, 6.5f, z + 0.5f}, up), {});
     }
   const glm::vec3 origin(1.2f, 2.5f, 3.3f), flat = glm::normalize(glm::vec3(1, 0.02f, 0.3f));
@@ -261,7 +268,8 @@ TEST(VoxelTrace, TheSideThatFacesMoreIsHit) {
   EXPECT_EQ(traceVoxels(v.voxels(), {1.5f, 3.5f, 2.5f}, both, both).side, 0u);
 }
 
-// Along a floor just under its voxels' tops the plane is met where it is, not where the first voxel is entered.
+// Along a floor just under its voxels' tops the plane is met where it is, not where the first voxel is
+// entered.
 TEST(VoxelTrace, GrazingRaysReachThePlane) {
   Volume v(16, {glm::vec3(0), 1, 16});
   for (int x = 0; x < 16; ++x)
@@ -269,7 +277,8 @@ TEST(VoxelTrace, GrazingRaysReachThePlane) {
   const glm::vec3 origin(0.5f, 3.5f, 8.5f), direction = glm::normalize(glm::vec3(1, -0.1f, 0));
   const VoxelHit hit = traceVoxels(v.voxels(), origin, direction, direction);
   ASSERT_NE(hit.side, kNoSide);
-  EXPECT_FLOAT_EQ(v.surface[hit.side].position.x, 13.5f) << "at x = 13.5 it is 0.1 cells above the plane or less";
+  EXPECT_FLOAT_EQ(v.surface[hit.side].position.x, 13.5f)
+      << "at x = 13.5 it is 0.1 cells above the plane or less";
 }
 
 // Too small a piece of surface to be met: hit only where nothing is behind it.
@@ -312,7 +321,8 @@ TEST(VoxelTrace, NothingForWhatIsNoNumber) {
 
 TEST(VoxelTrace, EmptyGrid) {
   const Volume v(5);
-  EXPECT_EQ(traceVoxels(v.voxels(), v.grid.voxelToWorld(glm::vec3(2.5f)), {0, 0, 1}, {0, 0, 1}).side, kNoSide);
+  EXPECT_EQ(traceVoxels(v.voxels(), v.grid.voxelToWorld(glm::vec3(2.5f)), {0, 0, 1}, {0, 0, 1}).side,
+            kNoSide);
 }
 
 }  // namespace

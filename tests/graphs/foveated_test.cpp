@@ -1,0 +1,320 @@
+// The foveated methods from end to end: energy against light tracing, history, repeatability, and input at
+// its limits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "framework/base/paths.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/load.h"
+#include "tests/support/pass_test.h"
+#include "tests/support/path_reference.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::test {
+namespace {
+
+using Set = std::vector<std::string>;
+
+GraphRunOptions small(Set set, uint32_t frames = 1) {
+  GraphRunOptions options;
+  options.size = {64, 64};
+  options.frames = frames;
+  options.set = {"vpl_count=64", "attempts=128", "voxels=32", "map_size=16", "shadow_map_size=256"};
+  options.set.insert(options.set.end(), set.begin(), set.end());
+  return options;
+}
+
+Set operator+(Set a, const Set& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+void expectFinite(const GraphRun& run) {
+  for (const auto& [name, data] : run.outputs)
+    for (const float v : toFloats(data)) ASSERT_TRUE(std::isfinite(v) && v >= 0) << name;
+}
+
+double counterOf(const graph::FrameResult& frame, const std::string& name) {
+  for (const auto& [key, value] : frame.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+// Mean over the pixels inside (or outside) of the foveal disc of f(pixel).
+template <class F>
+double meanOver(glm::uvec2 size, glm::vec2 gaze, float radius, bool inside, F f) {
+  double sum = 0, count = 0;
+  for (uint32_t y = 0; y < size.y; ++y)
+    for (uint32_t x = 0; x < size.x; ++x) {
+      const glm::vec2 d = glm::vec2(float(x) + 0.5f, float(y) + 0.5f) - gaze * glm::vec2(size);
+      if ((glm::length(d) <= radius * float(size.x)) != inside) continue;
+      sum += f(4 * size_t(y * size.x + x));
+      count += 1;
+    }
+  return sum / std::max(count, 1.0);
+}
+
+double meanOf(const std::vector<float>& image, glm::uvec2 size, glm::vec2 gaze, float radius, bool inside) {
+  return meanOver(size, gaze, radius, inside,
+                  [&](size_t i) { return (image[i] + image[i + 1] + image[i + 2]) / 3.0; });
+}
+
+std::vector<std::string> foveatedGraphs() {
+  return {"ours", "ours_r", "ours_cosine", "ours_unclamped", "ir_v"};
+}
+
+// ---- Frames
+// ------------------------------------------------------------------------------------------------------
+
+TEST(Foveated, StillSceneConvergesToAStillImage) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  for (const char* graph : {"ours", "ours_cosine"}) {
+    GraphRunOptions options = small({}, 12);
+    options.everyFrame = true;
+    const GraphRun run = runGraph(graph, s, options);
+    const auto& frames = run.frames;
+    EXPECT_EQ(frames[10].outputs.at("radiance").bytes, frames[11].outputs.at("radiance").bytes) << graph;
+    EXPECT_GT(counterOf(frames[0], "manage.added"), 32) << graph;
+    EXPECT_EQ(counterOf(frames[11], "manage.added"), 0) << graph;
+    EXPECT_EQ(counterOf(frames[11], "manage.deleted"), 0) << graph;
+  }
+}
+
+TEST(Foveated, EveryGraphRepeatsBitForBit) {
+  scene::Scene s = scene::builtin("cornellbox");
+  for (const std::string& graph : foveatedGraphs()) {
+    const auto options = small({}, 4);
+    const GraphRun a = runGraph(graph, s, options), b = runGraph(graph, s, options);
+    EXPECT_EQ(a.outputs.at("radiance").bytes, b.outputs.at("radiance").bytes) << graph;
+    expectFinite(a);
+  }
+}
+
+TEST(Foveated, CameraCutForgetsTheList) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  GraphRunOptions options = small({}, 6);
+  options.beforeFrame = [](scene::Frame& frame) { frame.cameraCut = frame.index == 4; };
+  const GraphRun run = runGraph("ours", s, options);
+  EXPECT_GT(counterOf(run.frames[3], "manage.kept"), 16);
+  EXPECT_EQ(counterOf(run.frames[4], "manage.kept"), 0);
+  EXPECT_EQ(counterOf(run.frames[4], "shadow-atlas.new_maps"), counterOf(run.frames[4], "shadow-atlas.maps"));
+  EXPECT_GT(counterOf(run.frames[5], "manage.kept"), 16);
+}
+
+TEST(Foveated, GazeThatJumpsTakesTheListAlong) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  GraphRunOptions options = small({"fovea_radius=0.15"}, 16);
+  options.beforeFrame = [](scene::Frame& frame) {
+    for (scene::View& v : frame.views)
+      v.gaze = frame.index < 8 ? glm::vec2(0.2f, 0.8f) : glm::vec2(0.8f, 0.3f);
+  };
+  const GraphRun run = runGraph("ours", s, options);
+  EXPECT_EQ(counterOf(run.frames[7], "manage.added"), 0);
+  EXPECT_GT(counterOf(run.frames[8], "manage.added"), 2);
+}
+
+// ---- Input at its limits
+// -----------------------------------------------------------------------------------------
+
+TEST(Foveated, DegenerateInput) {
+  const scene::Scene box = scene::builtin("cornellbox");
+  scene::Scene empty;
+  empty.materials.emplace_back();
+  empty.cameras.emplace_back();
+  scene::Scene dark = box;
+  dark.lights.clear();
+  for (scene::Material& m : dark.materials) m.emission = glm::vec3(0);
+  scene::Scene inWall = box;
+  inWall.cameras[0].position = glm::vec3(0);
+  scene::Scene dot;  // one small triangle
+  addMaterial(dot, glm::vec3(0.5f));
+  addQuad(dot, 0, {0, 0, -3}, {1e-3f, 0, 0}, {0, 1e-3f, 0});
+  dot.cameras.emplace_back();
+  dot.lights = {};
+  struct Case {
+    const char* name;
+    const scene::Scene* scene;
+    Set set;
+    glm::vec2 gaze;
+    bool blackIndirect;
+  };
+  const Case cases[] = {
+      {"empty scene", &empty, {}, {0.5f, 0.5f}, true},
+      {"no light", &dark, {}, {0.5f, 0.5f}, true},
+      {"fovea outside", &box, {}, {3.0f, -2.0f}, false},
+      {"fovea over all", &box, {"fovea_radius=2"}, {0.5f, 0.5f}, false},
+      {"fewer voxels than VPLs", &dot, {"vpl_count=256", "attempts=512"}, {0.5f, 0.5f}, true},
+      {"coarsest voxels", &box, {"voxels=8"}, {0.5f, 0.5f}, false},
+      {"one VPL", &box, {"vpl_count=1", "attempts=64"}, {0.5f, 0.5f}, false},
+      {"one attempt", &box, {"vpl_count=1", "attempts=1"}, {0.5f, 0.5f}, false},
+      {"camera in a wall", &inWall, {}, {0.5f, 0.5f}, false},
+  };
+  for (const Case& c : cases)
+    for (const char* graph : {"ours", "ir_v"})
+      for (const char* weights : {"weights=pdf", "weights=area", "weights=constant"}) {
+        SCOPED_TRACE(std::string(c.name) + ", " + graph + ", " + weights);
+        GraphRunOptions options = small(c.set + Set{weights}, 3);
+        options.size = {32, 32};
+        options.beforeFrame = [&](scene::Frame& frame) {
+          for (scene::View& v : frame.views) v.gaze = c.gaze;
+        };
+        const GraphRun run = runGraph(graph, *c.scene, options);
+        expectFinite(run);
+        if (c.blackIndirect)
+          for (const float v : toFloats(run.outputs.at("indirect"))) ASSERT_TRUE(v == 0 || v == 1) << v;
+      }
+}
+
+// ---- Energy
+// ------------------------------------------------------------------------------------------------------
+
+struct EnergyScene {
+  std::string name;
+  scene::Scene scene;
+};
+
+std::vector<EnergyScene> energyScenes() {
+  std::vector<EnergyScene> list{{"cornellbox", scene::builtin("cornellbox")}};
+  Diagnostics messages;
+  try {
+    list.push_back({"sponza", scene::load("sponza", messages)});
+  } catch (const Error&) {
+    std::printf("[   NOTE   ] the Sponza model is not here: the Cornell box alone is tested\n");
+  }
+  return list;
+}
+
+constexpr glm::uvec2 kEnergySize{96, 96};
+
+std::vector<float> indirectOf(const std::string& graph, const scene::Scene& s, Set set, uint32_t frames,
+                              uint32_t seed = 1) {
+  GraphRunOptions options;
+  options.size = kEnergySize;
+  options.frames = frames;
+  options.seed = seed;
+  options.set = Set{"map_size=128", "shadow_map_size=1024"} + set;
+  return toFloats(runGraph(graph, s, options).outputs.at("indirect"));
+}
+
+glm::vec2 gazeOf(const scene::Scene& s) { return s.gaze.empty() ? glm::vec2(0.5f) : s.gaze[0].position; }
+
+// One indirect bounce, found by eye paths over the whole image and weighed by their density, against traced
+// paths. Without a clamp to speak of, so that the kernel loses nothing.
+TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
+  for (const EnergyScene& e : energyScenes()) {
+    const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
+    const auto found = indirectOf("ir_v_accumulated", e.scene,
+                                  {"terms=direct", "weights=pdf", "kernel=clamp", "clamp_distance=0.1"}, 16);
+    const double want = meanOf(traced, kEnergySize, {0.5f, 0.5f}, 4, true);
+    const double got = meanOf(found, kEnergySize, {0.5f, 0.5f}, 4, true);
+    std::printf("[ MEASURED ] %s: mean indirect radiance of ir_v / traced paths %.3f\n", e.name.c_str(),
+                got / want);
+    EXPECT_NEAR(got / want, 1, 0.05) << e.name;
+  }
+}
+
+// What management does to the light, for each weight and number of VPLs: printed. The default, pdf, has the
+// least bias in the fovea, and in the Cornell box its bias falls with the number of VPLs. It is not small:
+// the list holds what importance has picked, and a density of eye paths knows nothing of that. In Sponza
+// `area` gives the VPLs hidden sunlit walls.
+TEST(Foveated, BiasOfOursByWeight) {
+  for (const EnergyScene& e : energyScenes()) {
+    const bool large = e.name != "cornellbox";
+    const uint32_t seeds = large ? 1 : 2;
+    const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
+    const glm::vec2 gaze = gazeOf(e.scene);
+    const double inside = meanOf(traced, kEnergySize, gaze, 0.25f, true),
+                 outside = meanOf(traced, kEnergySize, gaze, 0.25f, false);
+    std::map<std::string, double> worst;
+    for (const char* weights : {"pdf", "area", "constant"}) {
+      std::vector<double> biases;
+      for (const int n : {250, 1000, 4000}) {
+        if (large && n > 1000) break;  // long
+        double fovea = 0, rest = 0;
+        for (uint32_t seed = 1; seed <= seeds; ++seed) {
+          const auto image =
+              indirectOf("ours", e.scene,
+                         {"terms=direct", "kernel=clamp", "clamp_distance=0.1",
+                          std::string("weights=") + weights, "vpl_count=" + std::to_string(n),
+                          "attempts=" + std::to_string(2 * n), "atlas_layout=tiled", "map_size=32"},
+                         2, seed);
+          fovea += (meanOf(image, kEnergySize, gaze, 0.25f, true) / inside - 1) / seeds;
+          rest += (meanOf(image, kEnergySize, gaze, 0.25f, false) / outside - 1) / seeds;
+        }
+        std::printf("[ MEASURED ] %s, ours, weights %-8s N %4d: bias in the fovea %+.3f, outside %+.3f\n",
+                    e.name.c_str(), weights, n, fovea, rest);
+        worst[weights] = std::max(worst[weights], std::abs(fovea));
+        biases.push_back(std::abs(fovea));
+      }
+      if (std::string(weights) == "pdf" && !large) {
+        EXPECT_LE(biases[2], biases[0]);
+        EXPECT_LE(biases[2], 0.2);
+      }
+    }
+    EXPECT_LE(worst["pdf"], std::min(worst["area"], worst["constant"])) << e.name;
+  }
+}
+
+// ---- Error in the fovea
+// ------------------------------------------------------------------------------------------
+
+double foveaError(const std::vector<float>& a, const std::vector<float>& g, glm::uvec2 size, glm::vec2 gaze) {
+  return meanOver(size, gaze, 0.25f, true, [&](size_t i) {
+    double e = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      const double d = (a[i + c] - g[i + c]) / (g[i + c] + 0.01);
+      e += d * d / 3;
+    }
+    return e;
+  });
+}
+
+// Linear relative error of the indirect light in the fovea (METHOD section 4) where a camera arrives after
+// some frames, over five seeds; reference: traced paths. The paper finds Ours below Ours_r and below IR_1000.
+// Here Ours is not below IR_1000, with its clamp or (the ablation) without: light paths lie where the light
+// is, while where eye paths end does not depend on the light there, and the Cornell box has no hidden rooms
+// in which light paths would be wasted. What is tested is that reuse by importance is no worse than reuse at
+// random.
+TEST(Foveated, FovealErrorByMethod) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  const glm::vec2 gaze = gazeOf(s);
+  constexpr uint32_t kFrames = 5, kSeeds = 5;
+  constexpr glm::uvec2 kSize{64, 64};
+  const auto reference = tracedIndirect(s, kSize, 2, 256);
+  std::map<std::string, double> mean;
+  for (const char* kernel : {"clamp", "disc"})
+    for (const char* graph : {"ours", "ours_r", "ir_1000"}) {
+      double& sum = mean[std::string(graph) + " " + kernel];
+      for (uint32_t seed = 1; seed <= kSeeds; ++seed) {
+        GraphRunOptions options;
+        options.size = kSize;
+        options.frames = kFrames;
+        options.seed = seed;
+        options.set = {"map_size=64", "shadow_map_size=1024", std::string("kernel=") + kernel};
+        options.beforeFrame = [&](scene::Frame& frame) {
+          scene::Camera camera = s.cameras[0];
+          camera.position.x += 0.05f * (float(frame.index) - float(kFrames - 1));
+          for (scene::View& v : frame.views) {
+            const std::string name = v.name;
+            v = scene::makeView(camera, options.size, *frame.geometry, gaze);
+            v.name = name;
+          }
+        };
+        sum +=
+            foveaError(toFloats(runGraph(graph, s, options).outputs.at("indirect")), reference, kSize, gaze) /
+            kSeeds;
+      }
+      std::printf("[ MEASURED ] %-8s %-6s relMSE of the indirect light in the fovea %.4f\n", graph, kernel,
+                  sum);
+    }
+  EXPECT_LT(mean["ours clamp"], 1.1 * mean["ours_r clamp"]);
+  EXPECT_LT(mean["ours disc"], 1.1 * mean["ours_r disc"]);
+}
+
+}  // namespace
+}  // namespace fovea::test
