@@ -246,8 +246,10 @@ class Lists(CliTest):
 
     def test_check(self):
         for path in sorted((SOURCE / "graphs").glob("*.json")):
-            if path.name.endswith(".schema.json") or "base" in path.name:
+            if path.name.endswith(".schema.json") or path.name == "vpl-base.json":
                 continue
+            if "inputs" in json.loads(path.read_text()):
+                continue  # a part: checked with the graphs that use it
             with self.subTest(graph=path.name):
                 self.assertIn(path.stem, self.succeeds("check", path.stem).stdout)
 

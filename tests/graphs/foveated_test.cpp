@@ -118,6 +118,32 @@ TEST(Foveated, GazeThatJumpsTakesTheListAlong) {
   EXPECT_GT(counterOf(run.frames[8], "manage.added"), 2);
 }
 
+// Every method and debug view over things that move, for the validation layers to watch.
+TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
+  Diagnostics messages;
+  const scene::Scene s = scene::load("cornellbox_moving", messages);
+  const std::vector<std::string> parts = {"vpl-base", "second-eye", "fovea-graph.schema"};
+  int graphs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FOVEA_SOURCE_DIR "/graphs")) {
+    const std::string name = entry.path().stem().string();
+    if (std::find(parts.begin(), parts.end(), name) != parts.end()) continue;
+    SCOPED_TRACE(name);
+    GraphRunOptions options;
+    options.size = {40, 40};
+    options.frames = 30;
+    options.set = {"shadow_map_size=128"};
+    if (name != "direct") {
+      options.set.push_back("vpl_count=48");
+      options.set.push_back("map_size=16");
+    }
+    const bool foveated = name.rfind("ir_", 0) != 0 || name.rfind("ir_v", 0) == 0;
+    if (foveated && name != "direct") options.set.push_back("voxels=24");
+    expectFinite(runGraph(entry.path().string(), s, options));
+    ++graphs;
+  }
+  EXPECT_GE(graphs, 15);
+}
+
 // ---- Input at its limits
 // -----------------------------------------------------------------------------------------
 
