@@ -14,7 +14,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHARED = ("gbuffer", "shadow-map", "direct", "deferred", "tonemap")  # what both methods do alike
-SECOND_EYE = "right."                                                # prefix of its passes in graphs/stereo.json
+SECOND_EYE = "right/"                                                # prefix of its passes in graphs/stereo.json
 
 
 def render(program, graph, scene, frames, warmup):
@@ -61,7 +61,7 @@ def measure(program, scene, frames):
         "second_eye_ms": second,
         "first_eye_ms": first,
         "second_eye_ratio": second / first,
-        "new_pixels_share": counter(stereo, "right.reproject.new_pixels") / max(counter(stereo, "right.reproject.pixels"), 1),
+        "new_pixels_share": counter(stereo, "right/reproject.new_pixels") / max(counter(stereo, "right/reproject.pixels"), 1),
         "passes": {"ir_1000": ir_passes, "ours": our_passes, "stereo": stereo_passes},
     }
 
