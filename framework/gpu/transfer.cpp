@@ -6,6 +6,7 @@
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
+#include "framework/gpu/packed_mips.h"
 #include "framework/gpu/resources.h"
 
 namespace fovea::gpu {
@@ -70,25 +71,6 @@ VkBufferImageCopy firstMip(const Image& image) {
   return copy;
 }
 
-// As many mips, one after the other, as make up `bytes`; none when no number of them does.
-std::vector<VkBufferImageCopy> packedMips(const Image& image, uint64_t bytes) {
-  const ImageDesc& d = image.desc();
-  std::vector<VkBufferImageCopy> copies;
-  uint64_t offset = 0;
-  for (uint32_t mip = 0; mip < d.mips && offset < bytes; ++mip) {
-    VkBufferImageCopy copy = firstMip(image);
-    copy.bufferOffset = offset;
-    copy.imageSubresource.mipLevel = mip;
-    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip),
-                        std::max(1u, d.depth >> mip)};
-    offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
-              formatInfo(d.format).bytesPerTexel;
-    copies.push_back(copy);
-  }
-  if (offset != bytes) copies.clear();
-  return copies;
-}
-
 }  // namespace
 
 void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uint64_t offset) {
@@ -117,8 +99,9 @@ void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uin
 }
 
 void upload(Device& device, Image& image, std::span<const std::byte> texels, VkImageLayout layout) {
-  const std::vector<VkBufferImageCopy> copies = packedMips(image, texels.size());
-  if (copies.empty()) {
+  uint64_t bytes = texels.size();
+  const std::vector<VkBufferImageCopy> copies = packedMips(image, bytes);
+  if (copies.empty() || bytes != texels.size()) {
     throw Error(ExitCode::Internal, "upload of " + std::to_string(texels.size()) + " bytes to image `" +
                                         image.name() + "`, whose first mip level has " +
                                         std::to_string(firstMipBytes(image)));

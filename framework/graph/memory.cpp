@@ -3,6 +3,7 @@
 
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/format.h"
+#include "framework/gpu/packed_mips.h"
 #include "framework/graph/execute.h"
 #include "framework/graph/execute_state.h"
 #include "framework/scene/frame.h"
@@ -85,20 +86,8 @@ VkImageSubresourceRange wholeImage(const gpu::Image& image) {
 }
 
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image) {
-  const gpu::ImageDesc& d = image.desc();
-  std::vector<VkBufferImageCopy> copies;
-  uint64_t offset = 0;
-  for (uint32_t mip = 0; mip < d.mips; ++mip) {
-    VkBufferImageCopy copy{};
-    copy.bufferOffset = offset;
-    copy.imageSubresource = {image.aspect(), mip, 0, d.layers};
-    copy.imageExtent = {std::max(1u, d.width >> mip), std::max(1u, d.height >> mip),
-                        std::max(1u, d.depth >> mip)};
-    offset += uint64_t(copy.imageExtent.width) * copy.imageExtent.height * copy.imageExtent.depth * d.layers *
-              gpu::formatInfo(d.format).bytesPerTexel;
-    copies.push_back(copy);
-  }
-  return copies;
+  uint64_t all = UINT64_MAX;
+  return gpu::packedMips(image, all);
 }
 
 uint64_t resourceBytes(const ResourceDesc& d) {

@@ -4,6 +4,8 @@
 // One attempt an invocation: a pixel of the region, the surface it shows, one diffuse bounce from there; the side of a
 // voxel that the bounce meets becomes a candidate. It need not be visible to the eye.
 #include "common/scene.glsl"
+#include "common/paraboloid.glsl"
+#include "common/diffuse_bounce.glsl"
 #include "common/random.glsl"
 #include "common/fovea.glsl"
 #include "common/voxel_trace.glsl"
@@ -48,17 +50,6 @@ Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uin
   return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
 }
 
-// Cosine-weighted around `normal`. What would go below the surface itself (a shading normal leans) is mirrored up; as both
-// normals point to the eye's side, that also stays above the shading normal.
-vec3 bounce(vec3 normal, vec3 face, vec2 u) {
-  float s = normal.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + normal.z), b = normal.x * normal.y * a;
-  vec3 tangent = vec3(1.0 + s * normal.x * normal.x * a, s * b, -s * normal.x);
-  vec3 bitangent = vec3(b, s + normal.y * normal.y * a, -normal.y);
-  float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-  vec3 d = normalize(r * cos(phi) * tangent + r * sin(phi) * bitangent + sqrt(1.0 - u.x) * normal);
-  return d - 2.0 * min(dot(d, face), 0.0) * face;
-}
-
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
@@ -78,7 +69,7 @@ void main() {
     candidates[i] = candidate;
     return;
   }
-  vec3 direction = bounce(normalize(seen.normal), seen.face, streamPoint(stream, kRegionDraws));
+  vec3 direction = diffuseBounce(normalize(seen.normal), seen.face, streamPoint(stream, kRegionDraws));
   VoxelHit hit = traceVoxels(voxelsGrid(), seen.position, direction, seen.face);
   atomicAdd(counters[kRays], 1u);
   if (hit.side == kNoSide) {

@@ -4,6 +4,7 @@
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/paraboloid.glsl"
+#include "common/diffuse_bounce.glsl"
 #include "weights/weights.glsl"
 
 layout(local_size_x = 64) in;
@@ -22,8 +23,6 @@ void main() {
   if (!(from.w > 0.0)) return;
   vec3 normal = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
   vec2 u = streamPoint(randomStream(0u, 0u, kEscapeStream, point), 0u);
-  float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
-  vec3 direction = toWorld(orthonormalFrame(normal), vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x)));
-  direction -= 2.0 * min(dot(direction, face), 0.0) * face;  // as pass candidates: not below the surface
+  vec3 direction = diffuseBounce(normal, face, u);  // as pass candidates
   if (traceVoxels(voxelsGrid(), from.xyz, direction, face).side != kNoSide) atomicAdd(totals.value.found, 1u);
 }
