@@ -38,6 +38,8 @@ struct ObjectTransform {
   glm::mat4 toWorld{1}, previousToWorld{1};  // this frame's and the last one's; affine
   glm::mat4 toObject{1};                     // inverse of toWorld; zeros where there is none
   bool visible = true, previousVisible = true;
+  // Its vertices move one by one (Object::deforms): a point of it keeps its place in a triangle instead.
+  bool deforms = false;
 
   // The same as in shaders/common/scene.glsl.
   glm::vec3 fromObject(glm::vec3 position) const { return glm::vec3(toWorld * glm::vec4(position, 1)); }
@@ -59,6 +61,10 @@ struct Frame {
   std::vector<View> views;
   std::vector<Light> lights;
   std::vector<ObjectTransform> objects;  // as Geometry::objects
+  // Of the objects that deform, this frame's and the last one's: the joints' world transforms times their
+  // inverse bind matrices (Object::firstJoint), and the weights of morph targets (Object::firstWeight).
+  std::vector<glm::mat4> joints, previousJoints;
+  std::vector<float> weights, previousWeights;
   const Scene* scene = nullptr;
   const Geometry* geometry = nullptr;  // world space, this frame
   GpuScene* gpu = nullptr;

@@ -84,6 +84,46 @@ void hashPath(Hasher& h, uint32_t what, const Motion& m) {
   h.value(uint64_t(m.keys.size()));
 }
 
+void hash(Hasher& h, const Primitive& p) {
+  if (p.targets.empty() && p.joints.empty()) return;
+  for (const MorphTarget& t : p.targets) {
+    h.array(t.positions);
+    h.array(t.normals);
+  }
+  h.array(p.joints);
+  h.array(p.weights);
+}
+
+// What deforms, and how.
+void hashAnimation(Hasher& h, const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& p : mesh.primitives) hash(h, p);
+    if (!mesh.weights.empty()) h.array(mesh.weights);
+  }
+  for (size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& n = scene.nodes[i];
+    if (n.skin == kNoIndex && n.weights.empty()) continue;
+    h.value(uint64_t(i));
+    h.value(n.skin);
+    h.array(n.weights);
+  }
+  for (const Skin& s : scene.skins) {
+    h.array(s.joints);
+    h.array(s.inverseBind);
+  }
+  for (const Animation& a : scene.animations) {
+    if (!a.plays) continue;
+    h.value(a.speed);
+    h.value(uint32_t(a.repeat));
+    for (const AnimationChannel& c : a.channels) {
+      h.value(c.node);
+      h.value(uint32_t(c.path) | uint32_t(c.interpolation) << 8);
+      h.array(c.times);
+      h.array(c.values);
+    }
+  }
+}
+
 // Adds nothing for a scene that has none of it: such scenes keep the hash they had before scenes could move.
 void hashMotion(Hasher& h, const Scene& scene) {
   for (const Mover& m : scene.movers) {
@@ -176,6 +216,7 @@ uint64_t contentHash(const Scene& scene) {
   h.value(scene.exposure);
   h.floats(&scene.environment[0], 3);
   hashMotion(h, scene);
+  hashAnimation(h, scene);
   return h.digest();
 }
 

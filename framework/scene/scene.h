@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,11 @@ struct Material {
   bool doubleSided = false;
 };
 
+// A shape that a mesh can take in part: displacements, one a vertex, in the space of the mesh.
+struct MorphTarget {
+  std::vector<glm::vec3> positions, normals;  // either may be empty: none
+};
+
 // Triangles of one material. Positions, normals, uvs have one entry a vertex, in the space of the mesh.
 struct Primitive {
   std::vector<glm::vec3> positions;
@@ -52,11 +58,28 @@ struct Primitive {
   std::vector<glm::vec2> uvs;      // zeros where the model has none
   std::vector<uint32_t> indices;   // 3 a triangle
   uint32_t material = 0;
+  // Of a mesh that deforms. Morph targets come first, then the joints of Node::skin move the result.
+  std::vector<MorphTarget> targets{};  // as many in every primitive of a mesh
+  std::vector<glm::u16vec4> joints{};  // four a vertex: indices into Skin::joints; empty: not skinned
+  std::vector<glm::vec4> weights{};    // of the four joints, sum 1; as many as `joints`
 };
+
+struct SubdivisionCage;  // framework/scene/subdivision.h
 
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  std::vector<float> weights{};  // of the morph targets, where neither the node nor an animation says
+  // A mesh with a cage has no primitives: they are refined from it.
+  std::shared_ptr<const SubdivisionCage> cage{};
+};
+
+// Joints that move a skinned mesh. A vertex goes to the sum over its joints of weight * world transform of
+// the joint * inverse bind matrix; the transform of the mesh's own node does not count (glTF 2.0, 3.7.3).
+struct Skin {
+  std::string name;
+  std::vector<uint32_t> joints;        // nodes
+  std::vector<glm::mat4> inverseBind;  // one a joint
 };
 
 struct Node {
@@ -67,7 +90,9 @@ struct Node {
   glm::vec3 scale{1};
   std::optional<glm::mat4> matrix;  // instead of the three above, when the file gives one
   uint32_t mesh = kNoIndex, camera = kNoIndex, light = kNoIndex;
-  bool dynamic = false;  // moves: its own object, drawn and voxelised anew every frame
+  bool dynamic = false;          // moves: its own object, drawn and voxelised anew every frame
+  uint32_t skin = kNoIndex;      // of its mesh
+  std::vector<float> weights{};  // of its mesh's morph targets; empty: those of the mesh
 };
 
 enum class LightType : uint32_t { Directional = 0, Point = 1, Spot = 2 };
@@ -129,6 +154,28 @@ struct Mover {
   std::vector<MotionKey> keys;  // at least one, times increase
 };
 
+// One property of one node along keys, as glTF 2.0 (3.11) has it.
+struct AnimationChannel {
+  enum class Path : uint8_t { Translation, Rotation, Scale, Weights };
+  enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
+  uint32_t node = kNoIndex;
+  Path path = Path::Translation;
+  Interpolation interpolation = Interpolation::Linear;
+  std::vector<float> times;  // at least one, s, increasing
+  // Of each key: 3, for a rotation 4 (x, y, z, w; unit), for weights one a morph target. Of a cubic spline
+  // three such groups: the tangent that comes in, the value, the tangent that goes out.
+  std::vector<float> values;
+};
+
+// Channels that play together. What no channel of a playing animation says of a node stays as it is.
+struct Animation {
+  std::string name;
+  std::vector<AnimationChannel> channels;
+  bool plays = false;
+  float speed = 1;               // seconds of the animation in a second
+  Repeat repeat = Repeat::Loop;  // from 0 to the last key of all channels
+};
+
 struct LightKey {
   float time = 0;
   glm::vec3 position{0}, direction{0, 0, -1}, color{1};
@@ -153,6 +200,8 @@ struct Scene {
   std::vector<CameraKey> cameraPath;  // empty: a still camera
   std::vector<GazeSample> gaze;
   std::vector<Mover> movers;  // their nodes are dynamic
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;  // their nodes, what hangs on them and what they bend is dynamic, too
   std::vector<LightMotion> lightMotions;
   float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), m
   float exposure = 1;        // display = sRGB(exposure * radiance)
@@ -168,6 +217,9 @@ struct Object {
   uint32_t firstVertex = 0, vertexCount = 0;
   uint32_t node = kNoIndex;  // its mesh's space is the object's own space; object 0: the world's
   bool dynamic = false;
+  bool deforms = false;                       // morph targets or joints move its vertices one by one
+  uint32_t firstJoint = 0, jointCount = 0;    // of Frame::joints; none: the node's transform places it
+  uint32_t firstWeight = 0, weightCount = 0;  // of Frame::weights
 };
 
 struct Triangle {
@@ -197,8 +249,9 @@ uint64_t contentHash(const Scene& scene);
 glm::mat4 localTransform(const Node& node);
 std::vector<glm::mat4> worldTransforms(const Scene& scene);
 // Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0.
-// The bounds hold the whole paths of the movers, so that they are the same in every frame. Throws
-// Error(BadInput) past 65535 materials or objects.
+// The bounds hold the whole paths of movers and the whole of animations (framework/scene/motion.h says how
+// finely they are looked at), so that they are the same in every frame. Throws Error(BadInput) past 65535
+// materials or objects.
 Geometry flatten(const Scene& scene);
 
 // Bilinear LOD-0 look-up exactly as shaders/common/scene.glsl does it; linear RGBA. uv before the transform.
