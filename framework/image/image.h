@@ -59,7 +59,4 @@ Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name);  // 
 float srgbEncode(float linear);
 float srgbDecode(float encoded);
 
-// Mean over pixels and RGB of (a - b)^2. Throws Error(BadInput) on different sizes or NaN/Inf.
-double meanSquaredError(const Image& a, const Image& b);
-
 }  // namespace fovea::image

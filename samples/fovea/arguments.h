@@ -13,6 +13,7 @@
 namespace fovea::cli {
 
 inline constexpr uint32_t kMaxSize = 16384;  // pixels a side: what Vulkan devices promise at most
+inline constexpr double kFoveaRadius = 0.25;  // image widths, where nothing says otherwise
 
 struct GraphOptions {
   std::string graph;

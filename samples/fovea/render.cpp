@@ -12,6 +12,8 @@
 #include "framework/graph/execute.h"
 #include "framework/graph/registry.h"
 #include "framework/graph/report.h"
+#include "framework/image/overlay.h"
+#include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
 #include "framework/scene/load.h"
@@ -20,7 +22,6 @@
 #include "samples/fovea/files.h"
 #include "samples/fovea/interrupt.h"
 #include "samples/fovea/outputs.h"
-#include "samples/fovea/overlay.h"
 #include "samples/fovea/progress.h"
 #include "samples/fovea/timings.h"
 #include "samples/fovea/trace.h"
@@ -71,6 +72,7 @@ class Render {
   void report() const;
   scene::Frame frame(uint64_t index) const;
   void submit(uint64_t index, bool readOutputs);
+  double parameterOr(const char* name, double otherwise) const;
   void showFovea();
   image::Metadata metadata(uint64_t index) const;
 
@@ -92,7 +94,7 @@ class Render {
   RunInfo info_;
   uint32_t inFlight_ = 2;
   uint64_t finished_ = 0;
-  double lastWallMs_ = 0;
+  double lastWallMs_ = 2 * kSlowFrameMs;  // of the first frame nothing is known
   std::optional<graph::FrameResult> picture_;  // the last frame that was read back
   std::vector<std::string> files_;             // written beside the pictures
 };
@@ -169,6 +171,10 @@ void Render::buildExecutor() {
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
+  executorOptions.hostProgress = [this](const std::string& pass, double share) {
+    progress_.pass(pass, share);
+    return !interrupted();
+  };
   executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_,
                                                 executorOptions);
   timings_ = std::make_unique<Timings>(plan_);
@@ -194,22 +200,29 @@ scene::Frame Render::frame(uint64_t index) const {
   return f;
 }
 
-// Radius as the graph's passes have it, gaze of the eye whose picture `image` is.
+// As the graph's passes have it; the last of them decides.
+double Render::parameterOr(const char* name, double otherwise) const {
+  double value = otherwise;
+  for (const graph::BoundPass& pass : plan_->graph->passes)
+    if (pass.parameters.find(name)) value = pass.parameters.real(name);
+  return value;
+}
+
+// Gaze of the eye whose picture `image` is.
 void Render::showFovea() {
   if (!options_.showFovea) return;
   const graph::BoundGraph& graph = *plan_->graph;
-  float radius = 0.25f;
-  for (const graph::BoundPass& pass : graph.passes)
-    if (pass.parameters.find("fovea_radius")) radius = float(pass.parameters.real("fovea_radius"));
   std::string eye = graph.views[0];
   for (const graph::BoundOutput& output : graph.outputs)
     for (const graph::BoundPass& pass : graph.passes)
       for (const graph::Access& access : pass.accesses)
         if (output.name == "image" && access.writes && access.resource == output.resource)
           eye = graph.views[pass.view];
-  outputs_->setOverlay([this, radius, eye](image::Image& picture, uint64_t index) {
+  outputs_->setOverlay([this, eye](image::Image& picture, uint64_t index) {
     const scene::Frame shown = frame(index);
-    drawFovea(picture, shown.findView(eye)->gaze, radius);
+    const scene::Fovea fovea = scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
+                                                float(parameterOr("fovea_radius", kFoveaRadius)));
+    image::drawFovea(picture, {fovea.centre.x, fovea.centre.y, fovea.radius});
   });
 }
 
@@ -232,6 +245,9 @@ image::Metadata Render::metadata(uint64_t index) const {
                           {"seed", std::to_string(info_.seed)},
                           {"size", fmt::format("{}x{}", size_.x, size_.y)}};
   data["gaze"] = fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y);
+  data["fovea_radius"] = fmt::format("{}", float(parameterOr("fovea_radius", kFoveaRadius)));
+  const float exposure = float(parameterOr("exposure", 0));  // of tonemap; 0: the scene's
+  data["exposure"] = fmt::format("{}", exposure > 0 ? exposure : shown.exposure);
   if (!set.empty()) data["set"] = set;
   return data;
 }

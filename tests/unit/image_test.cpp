@@ -268,7 +268,7 @@ TEST_F(ImageFiles, AnExistingFileSurvivesAFailedWrite) {
   EXPECT_EQ(filesInFolder(), 3u);
 }
 
-TEST(ImageMetrics, SrgbMatchesTheStandard) {
+TEST(Colors, SrgbMatchesTheStandard) {
   EXPECT_FLOAT_EQ(srgbEncode(0), 0);
   EXPECT_FLOAT_EQ(srgbEncode(1), 1);
   EXPECT_FLOAT_EQ(srgbEncode(0.002f), 0.02584f);
@@ -277,28 +277,6 @@ TEST(ImageMetrics, SrgbMatchesTheStandard) {
   EXPECT_EQ(srgbEncode(-3), 0);
   EXPECT_EQ(srgbDecode(7), 1);
   for (int i = 0; i < 256; ++i) EXPECT_NEAR(srgbEncode(srgbDecode(float(i) / 255)), float(i) / 255, 1e-6) << i;
-}
-
-TEST(ImageMetrics, MeanSquaredErrorIsTheMeanOverPixelsAndRgb) {
-  const Image a{2, 1, 3, {0, 0, 0, 1, 1, 1}};
-  const Image b{2, 1, 3, {0, 0, 0.6f, 1, 1, 0.2f}};
-  EXPECT_NEAR(meanSquaredError(a, b), (0.36 + 0.64) / 6, 1e-7);
-  EXPECT_EQ(meanSquaredError(a, a), 0);
-  const Image alpha{2, 1, 4, {0, 0, 0.6f, 9, 1, 1, 0.2f, 9}};  // alpha does not count
-  EXPECT_NEAR(meanSquaredError(a, alpha), 1.0 / 6, 1e-7);
-}
-
-TEST(ImageMetrics, MeanSquaredErrorRejectsWhatCannotBeCompared) {
-  const Image a{2, 1, 3, {0, 0, 0, 1, 1, 1}};
-  const Image tall{1, 2, 3, {0, 0, 0, 1, 1, 1}};
-  const Image grey{2, 1, 1, {0, 1}};
-  Image nan = a;
-  nan.at(1, 0, 2) = std::nanf("");
-  expectError(ExitCode::BadInput, {"2x1", "1x2"}, [&] { meanSquaredError(a, tall); });
-  expectError(ExitCode::BadInput, {"1 channels"}, [&] { meanSquaredError(a, grey); });
-  expectError(ExitCode::BadInput, {"NaN", "1, 0"}, [&] { meanSquaredError(a, nan); });
-  expectError(ExitCode::BadInput, {"NaN"}, [&] { meanSquaredError(nan, nan); });
-  expectError(ExitCode::BadInput, {"empty"}, [&] { meanSquaredError(Image{}, Image{}); });
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-#include "samples/fovea/overlay.h"
+#include "framework/image/overlay.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 
-namespace fovea::cli {
+namespace fovea::image {
 namespace {
 
 constexpr float kLine = 1.5f;  // px
@@ -14,7 +15,7 @@ float coverage(float distance, float width) {
 }
 
 // A white line on a wider black one is seen on any picture.
-void blend(image::Image& picture, uint32_t x, uint32_t y, float white, float black) {
+void blend(Image& picture, uint32_t x, uint32_t y, float white, float black) {
   for (uint32_t c = 0; c < std::min(picture.channels, 3u); ++c) {
     float& value = picture.at(x, y, c);
     value = value * (1 - 0.6f * black);
@@ -24,9 +25,9 @@ void blend(image::Image& picture, uint32_t x, uint32_t y, float white, float bla
 
 }  // namespace
 
-void drawFovea(image::Image& picture, glm::vec2 gaze, float radius) {
-  const glm::vec2 centre = gaze * glm::vec2(picture.width, picture.height);
-  const float circle = radius * float(picture.width), arm = std::max(4.0f, 0.012f * float(picture.width));
+void drawFovea(Image& picture, const Disc& fovea) {
+  const glm::vec2 centre(fovea.x, fovea.y);
+  const float circle = fovea.radius, arm = std::max(4.0f, 0.012f * float(picture.width));
   for (uint32_t y = 0; y < picture.height; ++y)
     for (uint32_t x = 0; x < picture.width; ++x) {
       const glm::vec2 d = glm::vec2(float(x) + 0.5f, float(y) + 0.5f) - centre, a = glm::abs(d);
@@ -37,4 +38,4 @@ void drawFovea(image::Image& picture, glm::vec2 gaze, float radius) {
     }
 }
 
-}  // namespace fovea::cli
+}  // namespace fovea::image

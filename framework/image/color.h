@@ -1,0 +1,24 @@
+// Colour spaces of the sRGB screen: linear RGB, CIE XYZ and CIELAB. White is D65, as sRGB has it. The
+// transfer function is in image.h.
+#pragma once
+
+#include <array>
+
+namespace fovea::image {
+
+using Color = std::array<double, 3>;
+
+Color xyzFromLinear(const Color& rgb);  // Y of white is 1
+Color linearFromXyz(const Color& xyz);
+const Color& whiteXyz();
+
+// CIE 1976: L* 0..100, a*, b*.
+Color labFromXyz(const Color& xyz);
+Color xyzFromLab(const Color& lab);
+
+// The linear space YCxCz, whose axes are those of the channels in which the eye's contrast sensitivity is
+// measured.
+Color ycxczFromXyz(const Color& xyz);
+Color xyzFromYcxcz(const Color& ycxcz);
+
+}  // namespace fovea::image
