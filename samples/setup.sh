@@ -13,8 +13,8 @@ packages=(
   glslang-dev glslang-tools libspirv-cross-c-shared-dev
   # maths, JSON, command line, text, hashes
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
-  # models, images, rays, mesh simplification
-  libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev
+  # models, images, rays, mesh simplification, subdivision surfaces
+  libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev libosd-dev
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks

@@ -49,8 +49,8 @@ struct SubdivisionCage {
   std::vector<glm::u16vec4> joints;
   std::vector<glm::vec4> weights;
 
-  static constexpr uint32_t kMaxLevel = 8, kMaxFaceSize = 64;
-  static constexpr uint64_t kMaxTriangles = uint64_t(1) << 24;  // after refinement
+  static constexpr uint32_t kMaxLevel = 8, kMaxFaceSize = 64, kMaxValence = 1024;
+  static constexpr uint64_t kMaxTriangles = uint64_t(1) << 22;  // after refinement
 };
 
 // What is wrong with a cage; `place` is inside it: "creases[3]".
