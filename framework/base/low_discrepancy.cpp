@@ -58,21 +58,49 @@ constexpr Directions makeDirections() {
 
 constexpr Directions kDirections = makeDirections();
 
+// Point from the four bytes of its index: kByteTables[d][b][x] combines the direction numbers of the bits set in byte b.
+using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, 4>;
+
+constexpr ByteTables makeByteTables() {
+  ByteTables tables{};
+  for (uint32_t d = 0; d < 4; ++d)
+    for (uint32_t byte = 0; byte < 4; ++byte)
+      for (uint32_t x = 1; x < 256; ++x) {
+        uint32_t low = 0;  // the lowest bit set; the table knows the rest
+        while (!((x >> low) & 1u)) ++low;
+        tables[d][byte][x] = tables[d][byte][x & (x - 1)] ^ kDirections[d][8 * byte + low];
+      }
+  return tables;
+}
+
+constexpr ByteTables kByteTables = makeByteTables();
+
+uint32_t unscrambledPoint(uint32_t bits, uint32_t within) {
+  const auto& t = kByteTables[within];
+  return t[0][bits & 255u] ^ t[1][bits >> 8 & 255u] ^ t[2][bits >> 16 & 255u] ^ t[3][bits >> 24];
+}
+
 }  // namespace
 
 uint32_t sobolBits(uint32_t index, uint32_t dimension, uint32_t seed) {
   const uint32_t group = dimension / 4, within = dimension % 4;
   // A nested scramble of the index permutes aligned blocks of every power-of-two length: nets stay nets, and the groups
   // become independent of one another.
-  uint32_t bits = nestedScramble(index, hashCombine(seed, group));
-  uint32_t x = 0;
-  for (uint32_t i = 0; bits != 0; ++i, bits >>= 1)
-    if (bits & 1u) x ^= kDirections[within][i];
-  return nestedScramble(x, hashCombine(hashCombine(seed, group), within + 1));
+  const uint32_t groupSeed = hashCombine(seed, group);
+  const uint32_t bits = nestedScramble(index, groupSeed);
+  return nestedScramble(unscrambledPoint(bits, within), hashCombine(groupSeed, within + 1));
 }
 
 float sobol(uint32_t index, uint32_t dimension, uint32_t seed) {
   return uniformFloat(sobolBits(index, dimension, seed));
+}
+
+std::array<float, 4> sobolGroup(uint32_t index, uint32_t group, uint32_t seed) {
+  const uint32_t groupSeed = hashCombine(seed, group), bits = nestedScramble(index, groupSeed);
+  std::array<float, 4> u;
+  for (uint32_t d = 0; d < 4; ++d)
+    u[d] = uniformFloat(nestedScramble(unscrambledPoint(bits, d), hashCombine(groupSeed, d + 1)));
+  return u;
 }
 
 }  // namespace fovea

@@ -203,4 +203,9 @@ std::span<const std::byte> HostContext::input(std::string_view port) const { ret
 std::span<std::byte> HostContext::output(std::string_view port) const { return stagingOf(pass_, port); }
 void HostContext::counter(std::string_view name, double value) { setCounter(pass_, name, value); }
 
+bool HostContext::progress(double share) const {
+  const HostProgress& report = pass_.state->hostProgress;
+  return !report || report(pass_.bound->name, share);
+}
+
 }  // namespace fovea::graph

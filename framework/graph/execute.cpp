@@ -135,6 +135,7 @@ void Executor::Impl::build(const Registry& registry) {
   residentAtStart = device.allocatedBytes();
   state.device = &device;
   state.plan = plan.get();
+  state.hostProgress = options.hostProgress;
   state.sharedLayout = gpuScene.setLayout();
   allocateResources(state);
   for (const Level& level : plan->levels) order.insert(order.end(), level.passes.begin(), level.passes.end());

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,9 +29,14 @@ namespace fovea::graph {
 
 class Registry;
 
+// What a host pass that takes long has to say: its name and the share of its work that is done; false asks it to end
+// soon, with what it has.
+using HostProgress = std::function<bool(const std::string& pass, double share)>;
+
 struct ExecutorOptions {
   uint32_t framesInFlight = 2;
   std::vector<std::string> readback;  // graph outputs that frames may ask to have read back
+  HostProgress hostProgress;          // called inside submit()
 };
 
 // Milliseconds. gpu: between the timestamps around the pass; cpu: recording it, or executing it if it is a

@@ -12,6 +12,7 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
+#include "framework/graph/execute.h"
 #include "framework/graph/pass.h"
 #include "framework/graph/plan.h"
 
@@ -45,6 +46,7 @@ struct ExecutorState {
   gpu::Buffer counters;     // uint32 counters of all passes, zeroed every frame
   gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
   std::vector<VkDeviceMemory> heaps;
+  HostProgress hostProgress;
 
   // This frame.
   VkDescriptorSet sharedSet = VK_NULL_HANDLE;

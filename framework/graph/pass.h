@@ -180,6 +180,9 @@ class HostContext {
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
   void counter(std::string_view name, double value);
+  // For passes that take long, now and then and on the thread of execute(): the share that is done, 0 to 1. False: nobody
+  // wants to wait any longer; end soon, with outputs as good as they are by then.
+  bool progress(double share) const;
 
  private:
   PassInstance& pass_;

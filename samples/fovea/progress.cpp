@@ -27,6 +27,22 @@ void Progress::frames(uint64_t done, uint64_t total) {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     line += fmt::format(", {} left", formatDuration(elapsed / double(done) * double(total - done)));
   }
+  framesLine_ = line;
+  pass_.clear();
+  show(line);
+}
+
+void Progress::pass(const std::string& name, double share) {
+  const auto now = std::chrono::steady_clock::now();
+  if (pass_ != name || share < passShare_) {
+    pass_ = name;
+    passStart_ = now;
+    passShare_ = share;
+  }
+  std::string line = fmt::format("{}: {} {:.0f}%", framesLine_, name, 100 * share);
+  const double elapsed = std::chrono::duration<double>(now - passStart_).count();
+  if (share > passShare_ && elapsed > 1)
+    line += fmt::format(", {} left", formatDuration(elapsed / (share - passShare_) * (1 - share)));
   show(line);
 }
 

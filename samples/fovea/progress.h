@@ -19,11 +19,15 @@ class Progress {
   void stage(const std::string& what);  // "loading sponza"
   // Frames done so far; the remaining time follows from those done.
   void frames(uint64_t done, uint64_t total);
+  // Share of its work that a pass of the frame under way has done.
+  void pass(const std::string& name, double share);
   void clear();
 
  private:
   bool enabled_ = false, shown_ = false;
-  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point start_, passStart_;
+  std::string framesLine_, pass_;  // what frames() said last; the pass that was heard last
+  double passShare_ = 0;
   void show(const std::string& line);
 };
 

@@ -1,0 +1,80 @@
+// The light of single paths: what METHOD section 1 calls a path tracer of depth 4, diffuse surfaces only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "framework/scene/frame.h"
+#include "framework/scene/ray_scene.h"
+#include "passes/path-trace/emitters.h"
+
+namespace fovea::passes {
+
+// Random numbers of one path, in groups of four.
+struct PathSampler {
+  bool independent = false;  // else Owen-scrambled Sobol' points
+  uint32_t stream = 0;       // independent: of the path; else: the scramble
+  uint32_t index = 0;        // of the point in its scramble
+  std::array<float, 4> group(uint32_t number) const;
+};
+
+// A surface as the path that reached it sees it.
+struct PathVertex {
+  glm::vec3 origin{0};           // of rays that leave it, just off the surface
+  glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the viewer's side
+  glm::vec3 reflectance{0};
+};
+
+struct EyePoint {
+  bool surface = false;
+  PathVertex vertex;
+  glm::vec3 direct{
+      0};  // what reaches the eye from the lights after one reflection, plus emission; or the environment
+};
+
+// A single-sided material has one face: the eye looks through its back, as in pass gbuffer. For light the
+// back is black: it stops rays (as in pass shadow-map), reflects nothing and does not shine.
+//
+// Bounces are cosine-weighted around the shading normal; directions below the surface itself carry nothing,
+// the same as light from there does in pass direct.
+class PathIntegrator {
+ public:
+  PathIntegrator(const scene::Frame& frame, const scene::View& view, const scene::RayScene& rays,
+                 uint32_t depth);
+
+  // What the eye sees at `pixel` (pixels, centres at +0.5), between the near and the far plane.
+  EyePoint look(glm::vec2 pixel, uint64_t& rays) const;
+  // One sample of the light that reaches the eye from there by all other ways of at most `depth` edges: at
+  // least two reflections from the scene's lights, at least one from emissive triangles.
+  glm::vec3 indirect(const PathVertex& first, const PathSampler& random, uint64_t& rays) const;
+
+  // For benchmarks: every ray of indirect() is noted here, the shadow rays with a finite end or infinity as
+  // they are.
+  struct TracedRay {
+    scene::Ray ray;
+    bool shadow = false;
+  };
+  void record(std::vector<TracedRay>* to) { record_ = to; }
+
+ private:
+  scene::RayHit intersect(const scene::Ray& ray, uint64_t& rays) const;
+  bool occluded(const scene::Ray& ray, uint64_t& rays) const;
+  PathVertex vertexAt(const scene::SurfaceHit& s, const scene::Material& material, bool front) const;
+  // Irradiance of one light on a vertex where nothing is in between.
+  glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
+  glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;          // irradiance
+  glm::vec3 oneLight(const PathVertex& v, float u, uint64_t& rays) const;  // the same on average
+  glm::vec3 emitterLight(const PathVertex& v, float choice, float u1, float u2,
+                         uint64_t& rays) const;  // / pi
+
+  const scene::Frame& frame_;
+  const scene::View& view_;
+  const scene::RayScene& rays_;
+  Emitters emitters_;
+  uint32_t depth_;
+  std::vector<TracedRay>* record_ = nullptr;
+};
+
+}  // namespace fovea::passes

@@ -1,0 +1,72 @@
+// Ground truth: what all other methods approximate.
+#include "framework/base/random.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "passes/path-trace/path_tracer.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class PathTrace : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("path-trace",
+                      "light along all diffuse paths of at most `depth` edges, unbiased (ground truth)",
+                      PassKind::Host);
+    d.view();
+    const ResourceSpec color = image2D(VK_FORMAT_R32G32B32A32_SFLOAT);
+    d.output("radiance", color, Usage::HostWrite, "rgb: `direct` plus `indirect`, W/(sr m^2)");
+    d.output("direct", color, Usage::HostWrite,
+             "rgb: emission plus light of the scene's lights reflected once, as pass direct; background: the "
+             "environment, "
+             "which lights nothing");
+    d.output("indirect", color, Usage::HostWrite,
+             "rgb: all other light; that of emissive triangles is here, as VPLs carry it");
+    d.output("variance", color, Usage::HostWrite, "rgb: estimated variance of the mean `radiance`");
+    d.output("half_a", color, Usage::HostWrite, "rgb: radiance from one half of the samples");
+    d.output("half_b", color, Usage::HostWrite, "rgb: radiance from the other half; the two are independent");
+    d.parameter("depth", integer(4, 1, 64),
+                "edges of the longest path: 1 emission, 2 direct light, each more one indirect bounce");
+    d.parameter("spp", integer(2000, 2, 1 << 24), "samples a pixel");
+    d.parameter(
+        "sampling", choice("low-discrepancy", {"low-discrepancy", "independent"}),
+        "`low-discrepancy`: Owen-scrambled Sobol' points, for pictures; `independent`: for statistics");
+    d.parameter("filter", choice("centre", {"centre", "box"}),
+                "rays through the pixel's centre, as pass gbuffer, or through all of its area");
+    d.parameter("per_frame", flag(true),
+                "new random numbers every frame; false: the same ones (noise that stands still)");
+    d.parameter("threads", integer(0, 0, 1024), "0: one a core; the picture does not depend on it");
+    d.counter("paths", "paths traced");
+    d.counter("rays", "rays traced");
+    d.counter("samples", "samples a pixel: `spp`, less when the run was stopped");
+    return d;
+  }
+
+  void execute(HostContext& ctx) override {
+    const scene::Frame& frame = ctx.frame();
+    const Parameters& p = ctx.parameters();
+    PathTraceSettings settings;
+    settings.depth = uint32_t(p.integer("depth"));
+    settings.samples = uint32_t(p.integer("spp"));
+    settings.threads = uint32_t(p.integer("threads"));
+    settings.independent = p.text("sampling") == "independent";
+    settings.box = p.text("filter") == "box";
+    settings.seed = hashCombine(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u);
+    settings.progress = [&](double share) { return ctx.progress(share); };
+    const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),
+                                 ctx.outputAs<glm::vec4>("indirect"), ctx.outputAs<glm::vec4>("variance"),
+                                 ctx.outputAs<glm::vec4>("half_a"),   ctx.outputAs<glm::vec4>("half_b")};
+    const PathTraceStatistics statistics = tracePaths(
+        frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry), settings, images);
+    ctx.counter("paths", double(statistics.paths));
+    ctx.counter("rays", double(statistics.rays));
+    ctx.counter("samples", statistics.samples);
+  }
+};
+
+FOVEA_PASS(PathTrace);
+
+}  // namespace
+}  // namespace fovea::passes
