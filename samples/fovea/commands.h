@@ -17,5 +17,8 @@ void addPasses(CLI::App& program, Action& action);
 void addSchema(CLI::App& program, Action& action);
 void addDevices(CLI::App& program, Action& action);
 void addScene(CLI::App& program, Action& action);
+void addCompare(CLI::App& program, Action& action);
+void addCompareSequence(CLI::App& program, Action& action);
+void addSceneExport(CLI::App& sceneCommand, Action& action);
 
 }  // namespace fovea::cli

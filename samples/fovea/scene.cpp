@@ -1,4 +1,4 @@
-// fovea scene info: what a scene holds, as loaded.
+// fovea scene info: what a scene holds, as loaded. `scene export` is in scene_export.cpp.
 #include <fmt/format.h>
 
 #include <memory>
@@ -92,13 +92,14 @@ ExitCode info(const std::string& name) {
 }  // namespace
 
 void addScene(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("scene", "Look into scenes")->require_subcommand(1);
+  CLI::App* command = program.add_subcommand("scene", "Look into scenes, export them")->require_subcommand(1);
   CLI::App* infoCommand = command->add_subcommand("info", "Print what a scene holds");
   auto name = std::make_shared<std::string>();
   infoCommand->add_option("SCENE", *name, "A .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("");
   infoCommand->callback([name, &action] { action = [name] { return info(*name); }; });
+  addSceneExport(*command, action);
 }
 
 }  // namespace fovea::cli

@@ -1,0 +1,24 @@
+// A scene as a glTF 2.0 model, for other programs and for reading back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "framework/base/diagnostic.h"
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+
+// Writes into `folder` (made where it is missing):
+//   NAME.gltf, NAME.bin, textures/*.png  the model: meshes, materials, nodes, lights (KHR_lights_punctual),
+//   cameras NAME.json                            a scene file that names it and holds what glTF has no place
+//   for: exposure,
+//                                        environment, gaze, distance of the eyes, camera path, movers, moving
+//                                        lights
+// NAME is the scene's name as safeFileName() has it. `load` of the scene file gives back the same picture;
+// node and light names that occur twice get a number. Returns the path of NAME.json. Throws
+// Error(CannotWrite).
+std::filesystem::path exportGltf(const Scene& scene, const std::filesystem::path& folder,
+                                 Diagnostics& warnings);
+
+}  // namespace fovea::scene

@@ -1,0 +1,118 @@
+#include "framework/scene/export_scene_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fovea::scene {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json vector(const glm::vec2& v) { return {v.x, v.y}; }
+
+const char* repeatName(Repeat repeat) {
+  return repeat == Repeat::Loop ? "loop" : repeat == Repeat::PingPong ? "back_and_forth" : "once";
+}
+
+template <class Motion>
+void describe(Json& out, const Motion& motion) {
+  out["interpolation"] = motion.smooth ? "smooth" : "linear";
+  out["repeat"] = repeatName(motion.repeat);
+  out["keys"] = Json::array();
+}
+
+Json moverJson(const Mover& mover, const std::string& node) {
+  Json out = {{"node", node}};
+  describe(out, mover);
+  for (const MotionKey& k : mover.keys) {
+    Json key = {{"t", k.time},
+                {"translation", vector(k.translation)},
+                {"quaternion", {k.rotation.x, k.rotation.y, k.rotation.z, k.rotation.w}}};
+    if (!k.visible) key["visible"] = false;
+    out["keys"].push_back(std::move(key));
+  }
+  return out;
+}
+
+Json lightMotionJson(const LightMotion& motion, const std::string& light) {
+  Json out = {{"light", light}};
+  describe(out, motion);
+  for (const LightKey& k : motion.keys)
+    out["keys"].push_back({{"t", k.time},
+                           {"position", vector(k.position)},
+                           {"direction", vector(k.direction)},
+                           {"color", vector(k.color)},
+                           {"intensity", k.intensity}});
+  return out;
+}
+
+Json cameraJson(const std::vector<CameraKey>& path) {
+  const Camera& first = path.front().camera;
+  Json out = {{"near", first.zNear}, {"far", first.zFar}, {"path", Json::array()}};
+  for (const CameraKey& k : path) {
+    const Camera& c = k.camera;
+    out["path"].push_back({{"t", k.time},
+                           {"eye", vector(c.position)},
+                           {"target", vector(c.position + c.orientation * glm::vec3(0, 0, -1))},
+                           {"up", vector(c.orientation * glm::vec3(0, 1, 0))},
+                           {"fov_deg", glm::degrees(c.verticalFov)}});
+  }
+  return out;
+}
+
+Json gazeJson(const std::vector<GazeSample>& gaze) {
+  Json list = Json::array();
+  for (const GazeSample& g : gaze) {
+    Json sample = {{"t", g.time}, {"x", g.position.x}, {"y", g.position.y}};
+    if (!g.valid) sample["valid"] = false;
+    if (g.left) sample["left"] = vector(*g.left);
+    if (g.right) sample["right"] = vector(*g.right);
+    list.push_back(std::move(sample));
+  }
+  return list;
+}
+
+// Of one that is an object of its own without ever moving: a path of one key, where it is.
+Mover resting(const Scene& scene, uint32_t node) {
+  return {node, true, Repeat::Once, {{0, scene.nodes[node].translation, scene.nodes[node].rotation, true}}};
+}
+
+Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
+  Json list = Json::array();
+  std::vector<bool> moved(scene.nodes.size());
+  for (const Mover& m : scene.movers) {
+    list.push_back(moverJson(m, names.nodes[m.node]));
+    moved[m.node] = true;
+  }
+  for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& n = scene.nodes[i];
+    bool below = false;
+    for (uint32_t p = n.parent; p != kNoIndex && !below; p = scene.nodes[p].parent) below = moved[p];
+    if (!n.dynamic || moved[i] || below || !scene.animations.empty()) continue;
+    if (n.matrix)
+      warnings.warning({scene.name, 0, 0}, "nodes",
+                       "node `" + n.name + "` is placed by a matrix: exported as part of what never moves");
+    else
+      list.push_back(moverJson(resting(scene, i), names.nodes[i]));
+    moved[i] = true;
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
+  Json root = {{"name", scene.name},
+               {"models", Json::array({Json{{"file", names.model}}})},
+               {"exposure", scene.exposure},
+               {"environment", vector(scene.environment)},
+               {"ipd", scene.ipd}};
+  if (!scene.cameraPath.empty()) root["camera"] = cameraJson(scene.cameraPath);
+  if (!scene.gaze.empty()) root["gaze"] = gazeJson(scene.gaze);
+  if (Json movers = moversJson(scene, names, warnings); !movers.empty()) root["movers"] = std::move(movers);
+  for (const LightMotion& m : scene.lightMotions)
+    root["moving_lights"].push_back(lightMotionJson(m, names.lights[m.light]));
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,69 @@
+// fovea scene export: a scene for other programs.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "framework/scene/export_gltf.h"
+#include "framework/scene/export_mitsuba.h"
+#include "framework/scene/load.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/commands.h"
+
+namespace fovea::cli {
+namespace {
+
+struct ExportOptions {
+  std::string scene, folder, format = "gltf", size = "512x512";
+  double time = 0;
+  uint32_t frame = 0, samples = 64, depth = 4;
+};
+
+ExitCode exportScene(const ExportOptions& o) {
+  scene::MitsubaOptions mitsuba;
+  mitsuba.size = parseSize(o.size);
+  mitsuba.samples = o.samples;
+  mitsuba.depth = o.depth;
+  mitsuba.time = o.frame > 0 ? o.frame / 42.0 : o.time;  // `render` shows frame N at that time
+  Diagnostics messages;
+  const scene::Scene s = scene::load(o.scene, messages);
+  const std::filesystem::path file = o.format == "mitsuba"
+                                         ? scene::exportMitsuba(s, o.folder, mitsuba, messages)
+                                         : scene::exportGltf(s, o.folder, messages);
+  printWarnings(messages);
+  fmt::print("{}\n", file.string());
+  return ExitCode::Ok;
+}
+
+}  // namespace
+
+void addSceneExport(CLI::App& sceneCommand, Action& action) {
+  CLI::App* command = sceneCommand.add_subcommand(
+      "export", "Write a scene as glTF (with a scene file beside it) or for the renderer Mitsuba 3");
+  auto o = std::make_shared<ExportOptions>();
+  command->add_option("SCENE", o->scene, "A .json, .gltf or .glb file, or a bare name (cornellbox)")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", o->folder, "Folder to write into; made where it is missing")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--format", o->format, "gltf (default) or mitsuba")
+      ->check(CLI::IsMember({"gltf", "mitsuba"}))
+      ->type_name("FORMAT");
+  auto* time = command->add_option("--time", o->time, "mitsuba: the moment to export, s; default 0")
+                   ->check(CLI::Range(0.0, 1e6))
+                   ->type_name("T");
+  command->add_option("--frame", o->frame, "mitsuba: the same as a frame of `fovea render`, 42 a second")
+      ->check(CLI::Range(0, 1 << 30))
+      ->excludes(time)
+      ->type_name("N");
+  command->add_option("--size", o->size, "mitsuba: size of the picture; default 512x512")->type_name("WxH");
+  command->add_option("--spp", o->samples, "mitsuba: samples a pixel; default 64")
+      ->check(CLI::Range(1, 1 << 24))
+      ->type_name("N");
+  command->add_option("--depth", o->depth, "mitsuba: longest path; 1 emission, 2 direct light; default 4")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  command->callback([o, &action] { action = [o] { return exportScene(*o); }; });
+}
+
+}  // namespace fovea::cli
