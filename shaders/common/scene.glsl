@@ -3,6 +3,8 @@
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
+#include "common/octahedral.glsl"
+
 const float kPi = 3.14159265358979;
 
 layout(set = 1, binding = 0) uniform FrameBlock {
@@ -53,20 +55,6 @@ layout(set = 1, binding = 8) uniform samplerBuffer sceneSrgb;           // linea
 layout(set = 1, binding = 9) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
-
-// Unit vectors as octahedra (Meyer et al. 2010): both components in [-1, 1].
-vec2 octEncode(vec3 n) {
-  n /= abs(n.x) + abs(n.y) + abs(n.z);
-  vec2 s = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-  return n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * s;
-}
-
-vec3 octDecode(vec2 e) {
-  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-  float t = max(-n.z, 0.0);
-  n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
-  return normalize(n);
-}
 
 uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }

@@ -1,0 +1,18 @@
+// Unit vectors as octahedra (Meyer et al. 2010): both components in [-1, 1].
+#ifndef FOVEA_OCTAHEDRAL_GLSL
+#define FOVEA_OCTAHEDRAL_GLSL
+
+vec2 octEncode(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z);
+  vec2 s = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+  return n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * s;
+}
+
+vec3 octDecode(vec2 e) {
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  float t = max(-n.z, 0.0);
+  n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
+  return normalize(n);
+}
+
+#endif
