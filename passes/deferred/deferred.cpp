@@ -35,8 +35,8 @@ class Deferred : public Pass {
                       "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
              member("face", image2D(), Usage::Sampled),
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
             "surfaces seen by the eye");
@@ -93,9 +93,7 @@ class Deferred : public Pass {
   void record(RecordContext& ctx) override {
     const Parameters& p = ctx.parameters();
     const VkExtent3D size = ctx.extent("partial");
-    const auto groups = [&](uint32_t pixels, uint32_t tile) {
-      return (pixels + tile * side_ - 1) / (tile * side_) * side_;
-    };
+    const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
     for (uint32_t page = 0; page < pages_.size(); ++page) {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
       if (page > 0) ctx.barrier();
@@ -105,7 +103,8 @@ class Deferred : public Pass {
       if (masked_)
         commands.dispatchIndirect("shade.dispatch");
       else
-        commands.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
+        commands.dispatch(groups(size.width, kTileWidth * side_), groups(size.height, kTileHeight * side_),
+                          side_ * side_);
     }
     ctx.barrier();
     Commands resolve = ctx.use(resolve_);
@@ -114,8 +113,7 @@ class Deferred : public Pass {
       resolve.dispatchIndirect("shade.dispatch");
       ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
     } else {
-      resolve.dispatch((size.width + kTileWidth - 1) / kTileWidth,
-                       (size.height + kTileHeight - 1) / kTileHeight);
+      resolve.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
     }
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }

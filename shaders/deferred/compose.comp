@@ -5,7 +5,7 @@
 
 layout(local_size_x = 16, local_size_y = 4) in;
 
-layout(set = 0) uniform texture2D gbufferPosition;
+layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0) uniform texture2D gbufferAlbedo;
 layout(set = 0) uniform texture2D base;
 layout(set = 0) uniform texture2D shadeMask;
@@ -20,7 +20,7 @@ layout(set = 0) uniform texture2D direct;
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(irradiance);
   bool inImage = all(lessThan(p, size));
-  bool surface = inImage && texelFetch(gbufferPosition, min(p, size - 1), 0).w > 0.0;
+  bool surface = inImage && imageLoad(gbufferPosition, min(p, size - 1)).w > 0.0;
   uint surfaces = subgroupBallotBitCount(subgroupBallot(surface));
   if (subgroupElect() && surfaces > 0u) atomicAdd(counters[0], surfaces);
   if (!inImage || texelFetch(shadeMask, p, 0).r > 0.5) return;

@@ -26,8 +26,9 @@ const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
 layout(local_size_x = 16, local_size_y = 4) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbufferPosition;
-layout(set = 0, binding = 1) uniform texture2D gbufferNormal;
+// Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
+layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
+layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
 layout(set = 0, binding = 2) uniform texture2D gbufferAlbedo;
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D partial;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
@@ -79,7 +80,7 @@ void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float pla
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
   if (!isShaded(q)) return;
-  if (!sameSurface(c, texelFetch(gbufferPosition, q, 0), texelFetch(gbufferNormal, q, 0).xyz, plane, least)) return;
+  if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, plane, least)) return;
   float w = 1.0 / float(d.x * d.x + d.y * d.y);
   sum += vec4(imageLoad(partial, q).rgb * w, w);
 }
@@ -116,11 +117,11 @@ void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) 
 
 Centre centreAt(ivec2 p, ivec2 size) {
   ivec2 inside = min(p, size - 1);
-  vec4 position = texelFetch(gbufferPosition, inside, 0);
+  vec4 position = imageLoad(gbufferPosition, inside);
   bool surface = p == inside && position.w > 0.0;
   Centre c;
   c.position = position.xyz;
-  c.normal = texelFetch(gbufferNormal, inside, 0).xyz;
+  c.normal = imageLoad(gbufferNormal, inside).xyz;
   c.sum = vec3(0.0);
   c.plane = surface ? filterPlane * position.w : -1.0;
   c.found = 0u;
@@ -137,9 +138,9 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
   for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
     for (int row = -kBefore; row < INTERLEAVE - kBefore + kPixels - 1; ++row) {
       ivec2 q = first + ivec2(dx, row), inside = clamp(q, ivec2(0), size - 1);
-      vec4 position = texelFetch(gbufferPosition, inside, 0);
+      vec4 position = imageLoad(gbufferPosition, inside);
       if (q != inside) position.w = 0.0;
-      vec3 normal = texelFetch(gbufferNormal, inside, 0).xyz;
+      vec3 normal = imageLoad(gbufferNormal, inside).xyz;
       vec3 value = imageLoad(partial, inside).rgb;
 #if MASKED
       bool shaded = isShaded(inside);
@@ -172,7 +173,7 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
     ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), inside = min(q, size - 1);
     uvec2 bit = subsetBit((q - p + BLOCK) % INTERLEAVE);
     bool wanted = q == inside && (c.missing & bit) != uvec2(0u);
-    if (wanted && sameSurface(c, texelFetch(gbufferPosition, inside, 0), texelFetch(gbufferNormal, inside, 0).xyz, c.plane, filterCos)) {
+    if (wanted && sameSurface(c, imageLoad(gbufferPosition, inside), imageLoad(gbufferNormal, inside).xyz, c.plane, filterCos)) {
       c.sum += imageLoad(partial, inside).rgb;
       ++c.found;
       c.missing &= ~bit;
@@ -235,7 +236,7 @@ void resolve(ivec2 first, ivec2 size, inout uvec2 counted) {
 }
 
 void main() {
-  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 size = imageSize(gbufferPosition);
   uvec2 counted = uvec2(0u);
 #if MASKED
   for (int k = 0; k < kListedPixels; ++k) resolve(listedPixel(k, size), size, counted);

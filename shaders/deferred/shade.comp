@@ -10,23 +10,25 @@
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
 
-// An invocation shades kPixels pixels below each other: a VPL and its frame are loaded once for all of them. On a CPU, where
-// loads from uniform buffers are the larger part of the work, this is worth a factor of two.
-const int kPixels = 4;
-
+// An invocation shades kPixels pixels below each other: a VPL and its frame are loaded once for all of them, and neighbours
+// read the same lines of a map. On a CPU, where loads from uniform buffers cost as much as the rest, this is worth a factor
+// of two.
+#if MASKED
+#include "deferred/blocks.glsl"
+const int kPixels = int(kListedPixels);
 layout(local_size_x = 16, local_size_y = 4) in;
+#else
+const int kPixels = 8;
+layout(local_size_x = 16, local_size_y = 2) in;
+#endif
 
-layout(set = 0, binding = 0) uniform texture2D gbufferPosition;
-layout(set = 0, binding = 1) uniform texture2D gbufferNormal;
+layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
+layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
 layout(set = 0, binding = 2, std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
 layout(set = 0, binding = 3, rgba16f) uniform image2D partial;
 #if SHADOWED
 layout(set = 0, binding = 4) uniform texture2D gbufferFace;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
-#endif
-
-#if MASKED
-#include "deferred/blocks.glsl"
 #endif
 
 layout(push_constant) uniform Constants {
@@ -41,13 +43,15 @@ struct Receiver {
   vec3 position, normal, face, sum;
 };
 
-float vplKernel(float d2, float d, float area) {
+// cos_s cos_l kernel, from the lengths along both normals. One division.
+float vplWeight(float alongReceiver, float alongNormal, float d2, float d, float area, float clampAt) {
 #if KERNEL_DISC
-  return 1.0 / (d2 + area * (1.0 / kPi));
+  float denominator = d2 * (d2 + area * (1.0 / kPi));
 #else
-  float nearest = max(d, clampDistance);  // in the denominator only
-  return 1.0 / (nearest * nearest);
+  float nearest = max(d, clampAt);  // in the denominator only
+  float denominator = d2 * (nearest * nearest);
 #endif
+  return max(-alongReceiver, 0.0) * max(alongNormal, 0.0) / denominator;
 }
 
 // All invocations of a work group share a subset, so that they read the same VPLs at the same time.
@@ -55,11 +59,12 @@ float vplKernel(float d2, float d, float area) {
 uvec2 subsetOfGroup() { return placeInBlock() % INTERLEAVE; }
 ivec2 pixelAt(int k, ivec2 size) { return listedPixel(k, size); }
 #else
-// A work group covers every INTERLEAVE-th pixel of a block.
-uvec2 subsetOfGroup() { return gl_WorkGroupID.xy % INTERLEAVE; }
+// A work group covers every INTERLEAVE-th pixel of a block. The subset is the slowest of the three dimensions: all that is
+// shaded at a time reads the same few maps.
+uvec2 subsetOfGroup() { return uvec2(gl_WorkGroupID.z % INTERLEAVE, gl_WorkGroupID.z / INTERLEAVE); }
 ivec2 pixelAt(int k, ivec2 size) {
-  uvec2 block = gl_WorkGroupID.xy / INTERLEAVE * (gl_WorkGroupSize.xy * uvec2(1, kPixels));
-  uvec2 place = block + gl_LocalInvocationID.xy + uvec2(0, k * gl_WorkGroupSize.y);
+  uvec2 block = gl_WorkGroupID.xy * (gl_WorkGroupSize.xy * uvec2(1, kPixels));
+  uvec2 place = block + gl_LocalInvocationID.xy * uvec2(1, kPixels) + uvec2(0, k);
   return ivec2(place * INTERLEAVE + subsetOfGroup());
 }
 #endif
@@ -71,9 +76,9 @@ void main() {
   bool any_ = false;
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = min(pixelAt(k, size), size - 1);
-    vec4 position = texelFetch(gbufferPosition, p, 0);
+    vec4 position = imageLoad(gbufferPosition, p);
     receivers[k].position = position.xyz;
-    receivers[k].normal = texelFetch(gbufferNormal, p, 0).xyz;
+    receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
 #if SHADOWED
     receivers[k].face = octDecode(texelFetch(gbufferFace, p, 0).xy);
 #endif
@@ -81,8 +86,11 @@ void main() {
     any_ = any_ || position.w > 0.0;
   }
   if (!any_) return;  // all background: never read by the filter
+  float clampAt = clampDistance;
 #if SHADOWED
   AtlasLayout maps = atlasLayout(imageSize(atlas));
+  uint first = firstSlot;
+  float bias = shadowBias;
 #endif
   for (uint i = subset2.y * INTERLEAVE + subset2.x; i < PAGE_VPLS; i += INTERLEAVE * INTERLEAVE) {
     Vpl vpl = vpls.list[i];
@@ -91,21 +99,19 @@ void main() {
 #endif
     for (int k = 0; k < kPixels; ++k) {
       vec3 toSurface = receivers[k].position - vpl.positionArea.xyz;
-      float d2 = max(dot(toSurface, toSurface), 1e-12);
-      float invD = inversesqrt(d2), d = d2 * invD;
+      float d2 = max(dot(toSurface, toSurface), 1e-12), d = sqrt(d2);
       float alongNormal = dot(vpl.normal.xyz, toSurface);
-      float cosines = max(-dot(receivers[k].normal, toSurface), 0.0) * max(alongNormal, 0.0) * (invD * invD);
-      float weight = cosines * vplKernel(d2, d, vpl.positionArea.w);
+      float weight = vplWeight(dot(receivers[k].normal, toSurface), alongNormal, d2, d, vpl.positionArea.w, clampAt);
 #if SHADOWED
       vec3 local = vec3(dot(frame_[0], toSurface), dot(frame_[1], toSurface), alongNormal);
       ivec2 texel = paraboloidTexel(paraboloidProject(local, d), maps.size);
 #if TILED
-      ivec3 at = atlasTexel(firstSlot + i, texel, maps);
+      ivec3 at = atlasTexel(first + i, texel, maps);
 #else
-      ivec3 at = atlasTexel(firstSlot + i, texel);
+      ivec3 at = atlasTexel(first + i, texel);
 #endif
       float stored = uintBitsToFloat(imageLoad(atlas, at).x);
-      float limit = vplShadowLimit(local, d, toLocal(frame_, receivers[k].face), texel, maps.size, shadowBias);
+      float limit = vplShadowLimit(local, d, toLocal(frame_, receivers[k].face), texel, maps.size, bias);
       weight = stored >= limit ? weight : 0.0;
 #endif
       receivers[k].sum += weight * vpl.intensity.rgb;
