@@ -1,11 +1,15 @@
 // World-space triangles of a scene: what every renderer, rasteriser and ray tracer of the project reads.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "framework/base/diagnostic.h"
+#include "framework/scene/deform.h"
 #include "framework/scene/motion.h"
 #include "framework/scene/scene.h"
+#include "framework/scene/subdivision.h"
 
 namespace fovea::scene {
 namespace {
@@ -16,57 +20,40 @@ constexpr uint64_t kMaxTriangles = uint64_t(1) << 26;
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// A node moves when it or anything above it does.
-std::vector<bool> dynamicNodes(const Scene& scene) {
-  std::vector<bool> dynamic(scene.nodes.size());
-  for (size_t i = 0; i < scene.nodes.size(); ++i) {
+// A node moves when it or anything above it does; it is dynamic, too, when its shape changes.
+std::vector<bool> dynamicNodes(const Scene& scene, const NodePoses& poses) {
+  std::vector<bool> moves(scene.nodes.size()), dynamic(scene.nodes.size());
+  for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& n = scene.nodes[i];
-    dynamic[i] = n.dynamic || (n.parent != kNoIndex && dynamic[n.parent]);
+    moves[i] = n.dynamic || (n.parent != kNoIndex && moves[n.parent]) || poses.moves(i);
+  }
+  for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
+    dynamic[i] = moves[i] || poses.reshapes(i);
+    if (skinned(scene, scene.nodes[i]))
+      for (uint32_t joint : scene.skins[scene.nodes[i].skin].joints) dynamic[i] = dynamic[i] || moves[joint];
   }
   return dynamic;
 }
 
-// The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det,
-// and it exists for flattened (singular) transforms too.
-glm::mat3 normalMatrix(const glm::mat4& m) {
-  const glm::mat3 a(m);
-  const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;
-  return sign * glm::mat3(glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1]));
-}
-
-// A singular transform can swallow a normal; any unit vector will do for what is then a sliver.
-glm::vec3 unitNormal(const glm::vec3& n) {
-  const float length = glm::length(n);
-  return length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0, 1, 0);
-}
-
-// Invisible: all of it in one point, triangles that nothing draws or hits.
-glm::mat4 placement(const glm::mat4& toWorld, bool visible) {
-  if (visible) return toWorld;
-  glm::mat4 point(0.0f);
-  point[3] = toWorld[3];
-  return point;
-}
-
 class Flattener {
  public:
-  explicit Flattener(const Scene& scene) : scene_(scene), world_(worldTransforms(scene)), poses_(scene) {}
+  explicit Flattener(const Scene& scene) : scene_(scene), poses_(scene) {}
 
   Geometry run() {
     checkLimits();
-    const std::vector<bool> dynamic = dynamicNodes(scene_);
+    const std::vector<bool> dynamic = dynamicNodes(scene_, poses_);
+    const std::vector<glm::mat4> world = worldTransforms(scene_);
     begin("static", kNoIndex, false);
     for (uint32_t i = 0; i < scene_.nodes.size(); ++i)
-      if (!dynamic[i]) append(i, world_[i]);
+      if (!dynamic[i]) append(i, {world[i], true});
     end();
     out_.staticTriangles = uint32_t(out_.triangles.size());
     for (uint32_t i = 0; i < scene_.nodes.size(); ++i) {
       if (!dynamic[i] || scene_.nodes[i].mesh == kNoIndex) continue;
       begin(scene_.nodes[i].name, i, true);
-      const NodePoses::Pose pose = poses_.at(i, 0);
-      append(i, placement(pose.toWorld, pose.visible));
+      append(i, poses_.at(i, 0));
       end();
-      includePath(i);
+      includePath(i, out_.objects.back());
     }
     return std::move(out_);
   }
@@ -112,44 +99,109 @@ class Flattener {
     out_.objects.push_back(object_);
   }
 
-  // The winding is that of the visible object: it must not change with time.
-  void append(uint32_t nodeIndex, const glm::mat4& m) {
+  void append(uint32_t nodeIndex, const NodePoses::Pose& at) {
     const Node& node = scene_.nodes[nodeIndex];
     if (node.mesh == kNoIndex) return;
-    const bool mirrored = glm::determinant(glm::mat3(world_[nodeIndex])) < 0.0f;
-    for (const Primitive& p : scene_.meshes.at(node.mesh).primitives) {
-      const uint32_t base = uint32_t(out_.positions.size());
-      appendVertices(p, m, node);
-      appendTriangles(p, base, mirrored);
+    const Mesh& mesh = scene_.meshes.at(node.mesh);
+    checkShape(node, mesh);
+    ObjectPose pose{at.toWorld, at.visible};
+    std::vector<glm::mat4> joints;
+    std::vector<float> weights;
+    std::shared_ptr<const Stencils> stencils;
+    if (deforms(scene_, node)) {
+      if (skinned(scene_, node)) poses_.jointsAt(nodeIndex, 0, joints);
+      weights = poses_.weightsAt(nodeIndex, 0);
+      pose.joints = joints;
+      pose.weights = weights;
+      if (mesh.cage) stencils = stencilsOf(node.mesh);
+      describe(node.skin, joints.size(), weights.size(), stencils);
+    }
+    // The winding is that of the visible object: it must not change with time.
+    const bool flip = mirrored(pose);
+    uint32_t base = uint32_t(out_.positions.size());
+    appendVertices(mesh, stencils.get(), pose, node);
+    for (const Primitive& p : mesh.primitives) {
+      appendTriangles(p, base, flip);
+      base += uint32_t(p.positions.size());
     }
   }
 
-  void appendVertices(const Primitive& p, const glm::mat4& m, const Node& node) {
-    const glm::mat3 normals = normalMatrix(m);
-    for (size_t i = 0; i < p.positions.size(); ++i) {
-      const glm::vec3 position(m * glm::vec4(p.positions[i], 1.0f));
-      if (!isFinite(position))
+  // What the frame has to tell of the object at hand.
+  void describe(uint32_t skin, size_t joints, size_t weights, std::shared_ptr<const Stencils> stencils) {
+    if (!object_.dynamic) return;
+    object_.deforms = true;
+    if (joints > 0) {  // meshes of one skin share its joints
+      const auto [known, isNew] = firstJoint_.try_emplace(skin, jointCount_);
+      object_.firstJoint = known->second;
+      if (isNew) jointCount_ += uint32_t(joints);
+    }
+    object_.jointCount = uint32_t(joints);
+    object_.firstWeight = weightCount_, object_.weightCount = uint32_t(weights);
+    object_.stencils = std::move(stencils);
+    weightCount_ += uint32_t(weights);
+  }
+
+  std::shared_ptr<const Stencils> stencilsOf(uint32_t mesh) {
+    std::shared_ptr<const Stencils>& known = stencils_[mesh];
+    if (!known) known = std::make_shared<const Stencils>(*scene_.meshes[mesh].cage);
+    return known;
+  }
+
+  // Loaders and generators get these right; what they get wrong must not reach past the end of anything.
+  void checkShape(const Node& node, const Mesh& mesh) const {
+    if (!deforms(scene_, node)) return;
+    const size_t joints = node.skin < scene_.skins.size() ? scene_.skins[node.skin].joints.size() : 0;
+    const auto check = [&](size_t vertices, const auto& shape) {
+      bool fits = shape.joints.size() == shape.weights.size() &&
+                  (shape.joints.empty() || shape.joints.size() == vertices);
+      for (const MorphTarget& t : shape.targets)
+        for (const auto* list : {&t.positions, &t.normals})
+          fits = fits && (list->empty() || list->size() == vertices);
+      for (size_t i = 0; node.skin != kNoIndex && i < shape.joints.size(); ++i)
+        for (int k = 0; k < 4; ++k) fits = fits && shape.joints[i][k] < joints;
+      if (!fits)
+        throw Error(ExitCode::BadInput, "scene `" + scene_.name + "`: the morph targets or joints of mesh `" +
+                                            mesh.name + "` do not fit its vertices, or those of node `" +
+                                            node.name + "` its skin");
+    };
+    if (mesh.cage) return check(mesh.cage->positions.size(), *mesh.cage);
+    for (const Primitive& p : mesh.primitives) check(p.positions.size(), p);
+  }
+
+  void appendVertices(const Mesh& mesh, const Stencils* stencils, const ObjectPose& pose, const Node& node) {
+    const size_t first = out_.positions.size();
+    size_t count = first;
+    for (const Primitive& p : mesh.primitives) count += p.positions.size();
+    out_.positions.resize(count);
+    out_.normals.resize(count);
+    placeVertices(mesh, stencils, pose, out_.positions.data() + first, out_.normals.data() + first);
+    for (size_t i = first; i < count; ++i) {
+      if (!isFinite(out_.positions[i]))
         throw Error(ExitCode::BadInput,
                     "scene `" + scene_.name + "`: node `" + node.name + "` moves vertex " +
-                        std::to_string(i) + " of mesh `" + scene_.meshes[node.mesh].name +
+                        std::to_string(i - first) + " of mesh `" + mesh.name +
                         "` to a place that is not finite",
                     "check the scales and matrices of the node and of those above it");
-      out_.positions.push_back(position);
-      out_.boundsMin = glm::min(out_.boundsMin, position);
-      out_.boundsMax = glm::max(out_.boundsMax, position);
-      out_.normals.push_back(unitNormal(normals * p.normals[i]));
-      out_.uvs.push_back(p.uvs[i]);
+      out_.boundsMin = glm::min(out_.boundsMin, out_.positions[i]);
+      out_.boundsMax = glm::max(out_.boundsMax, out_.positions[i]);
     }
+    for (const Primitive& p : mesh.primitives) out_.uvs.insert(out_.uvs.end(), p.uvs.begin(), p.uvs.end());
   }
 
-  void includePath(uint32_t nodeIndex) {
+  void includePath(uint32_t nodeIndex, const Object& object) {
     const Mover* mover = poses_.moverOf(nodeIndex);
-    if (!mover) return;
-    Bounds mesh;
-    for (const Primitive& p : scene_.meshes[scene_.nodes[nodeIndex].mesh].primitives)
-      for (const glm::vec3& v : p.positions) mesh.include(v);
-    if (mesh.low.x > mesh.high.x) return;
-    const Bounds swept = sweptBounds(poses_, nodeIndex, *mover, mesh);
+    if (object.vertexCount == 0) return;
+    Bounds swept;
+    if (object.deforms || poses_.animated(nodeIndex)) {
+      swept = animatedBounds(scene_, poses_, object);
+    } else if (mover) {
+      Bounds mesh;
+      for (const Primitive& p : scene_.meshes[scene_.nodes[nodeIndex].mesh].primitives)
+        for (const glm::vec3& v : p.positions) mesh.include(v);
+      swept = sweptBounds(poses_, nodeIndex, *mover, mesh);
+    } else {
+      return;
+    }
     if (!isFinite(swept.low) || !isFinite(swept.high))
       throw Error(ExitCode::BadInput,
                   "scene `" + scene_.name + "`: node `" + scene_.nodes[nodeIndex].name +
@@ -168,10 +220,12 @@ class Flattener {
   }
 
   const Scene& scene_;
-  std::vector<glm::mat4> world_;
   NodePoses poses_;
   Geometry out_;
   Object object_;
+  uint32_t jointCount_ = 0, weightCount_ = 0;                     // of the objects so far
+  std::map<uint32_t, uint32_t> firstJoint_;                       // of skins
+  std::map<uint32_t, std::shared_ptr<const Stencils>> stencils_;  // of meshes with a cage that deforms
 };
 
 }  // namespace
@@ -181,15 +235,10 @@ Geometry flatten(const Scene& scene) { return Flattener(scene).run(); }
 void moveObjects(const Frame& frame, Geometry& geometry) {
   for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
     const Object& object = geometry.objects[i];
-    if (!object.dynamic) continue;
-    const glm::mat4 m = placement(frame.objects[i].toWorld, frame.objects[i].visible);
-    const glm::mat3 normals = normalMatrix(m);
-    uint32_t v = object.firstVertex;
-    for (const Primitive& p : frame.scene->meshes[frame.scene->nodes[object.node].mesh].primitives)
-      for (size_t k = 0; k < p.positions.size(); ++k, ++v) {
-        geometry.positions[v] = glm::vec3(m * glm::vec4(p.positions[k], 1.0f));
-        geometry.normals[v] = unitNormal(normals * p.normals[k]);
-      }
+    if (!object.dynamic || object.vertexCount == 0) continue;
+    placeVertices(frame.scene->meshes[frame.scene->nodes[object.node].mesh], object.stencils.get(),
+                  poseOf(object, i, frame), &geometry.positions[object.firstVertex],
+                  &geometry.normals[object.firstVertex]);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
+#include <utility>
 
 #include "framework/scene/motion.h"
 
@@ -86,7 +87,10 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
           makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry).worldToClip;
     f.views.push_back(std::move(view));
   }
-  f.objects = objectsAt(scene, geometry, f.time, before);
+  ObjectPoses poses = objectsAt(scene, geometry, f.time, before);
+  f.objects = std::move(poses.objects);
+  f.joints = std::move(poses.joints), f.previousJoints = std::move(poses.previousJoints);
+  f.weights = std::move(poses.weights), f.previousWeights = std::move(poses.previousWeights);
   return f;
 }
 

@@ -39,7 +39,8 @@ Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings) {
     gltf::buildMaterials(c);
     gltf::buildMeshes(c);
     gltf::buildNodes(c);
-    gltf::applySkins(c);
+    gltf::buildSkins(c);
+    gltf::buildAnimations(c);
     if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
     if (scene.meshes.empty() || scene.nodes.empty())
       c.warn("", "the model shows nothing: no scene with a mesh in it");

@@ -143,6 +143,8 @@ class ContentChecker : DocumentReader {
       numbersIfPresent(v, path, "translation", 3);
       numbersIfPresent(v, path, "rotation", 4);
       numbersIfPresent(v, path, "scale", 3);
+      if (const Value* weights = ObjectReader(v, path, errors_).array("weights"))
+        numbersIfPresent(v, path, "weights", weights->items.size());
       if (const Value* e = extension(v, path, "KHR_lights_punctual")) checkLightOfNode(*e, path);
     });
     each("scenes", [&](const Value& v, const std::string& path) {
@@ -203,27 +205,43 @@ class ContentChecker : DocumentReader {
       nameOfObject(v, path);
       index(v, path, "inverseBindMatrices", "accessors");
       index(v, path, "skeleton", "nodes");
+      const Value* joints = v.find("joints");
+      if (!joints || (joints->isArray() && joints->items.empty()))
+        error(joints ? *joints : v, path, "the skin has no `joints`");
       indexArray(v, path, "joints", "nodes");
     });
-    each("animations", [&](const Value& v, const std::string& path) {
-      nameOfObject(v, path);
-      const Value* samplers = v.find("samplers");
-      const Value* channels = v.find("channels");
-      if (samplers)
-        eachOf(*samplers, path + ".samplers", [&](const Value& s, const std::string& place) {
-          index(s, place, "input", "accessors", true);
-          index(s, place, "output", "accessors", true);
-          ObjectReader(s, place, errors_).text("interpolation");
-        });
-      if (!channels) return;
-      const size_t count = samplers && samplers->isArray() ? samplers->items.size() : 0;
-      eachOf(*channels, path + ".channels", [&](const Value& c, const std::string& place) {
-        ObjectReader r(c, place, errors_);
-        if (r.require("sampler")) r.integer("sampler", 0, 0, int64_t(count) - 1);
-        if (const Value* target = r.require("target") ? r.object("target") : nullptr)
-          index(*target, place + ".target", "node", "nodes");
-      });
+    each("animations", [&](const Value& v, const std::string& path) { checkAnimation(v, path); });
+  }
+
+  void checkAnimation(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    const Value* samplers = listOf(v, path, "samplers");
+    const Value* channels = listOf(v, path, "channels");
+    if (!samplers || !channels) return;
+    eachOf(*samplers, path + ".samplers", [&](const Value& s, const std::string& place) {
+      index(s, place, "input", "accessors", true);
+      index(s, place, "output", "accessors", true);
+      ObjectReader(s, place, errors_).choice("interpolation", "LINEAR", {"LINEAR", "STEP", "CUBICSPLINE"});
     });
+    const size_t count = samplers->isArray() ? samplers->items.size() : 0;
+    eachOf(*channels, path + ".channels", [&](const Value& c, const std::string& place) {
+      ObjectReader r(c, place, errors_);
+      if (r.require("sampler")) r.integer("sampler", 0, 0, int64_t(count) - 1);
+      const Value* target = r.require("target") ? r.object("target") : nullptr;
+      if (!target) return;
+      index(*target, place + ".target", "node", "nodes");
+      ObjectReader t(*target, place + ".target", errors_);
+      if (t.require("path")) t.text("path");
+    });
+  }
+
+  // A list that must not be empty; nullptr when it is not there.
+  const Value* listOf(const Value& v, const std::string& path, std::string_view key) {
+    const Value* list = v.find(key);
+    if (list && !(list->isArray() && list->items.empty())) return list;
+    error(list ? *list : v, json::joinPath(path, key),
+          "the animation has no `" + std::string(key) + "`: nothing moves");
+    return nullptr;
   }
 
   size_t lightCount_ = 0;

@@ -76,12 +76,6 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
 
 // ---- build ----
 
-// The joints that move a vertex; the weights sum to 1.
-struct VertexSkin {
-  glm::uvec4 joints{0};
-  glm::vec4 weights{1, 0, 0, 0};
-};
-
 struct Context {
   const Source& source;
   const json::Value& root;
@@ -91,9 +85,7 @@ struct Context {
   // Per glTF material: which TEXCOORD set its textures read.
   std::vector<int> texCoordOfMaterial{};
   uint32_t defaultMaterial = kNoIndex;  // made on demand for primitives without one
-  std::vector<std::vector<std::vector<VertexSkin>>>
-      skins{};                        // mesh, primitive, vertex; empty where there are none
-  std::vector<uint32_t> sceneNode{};  // of each glTF node; kNoIndex when the scene does not show it
+  std::vector<uint32_t> sceneNode{};    // of each glTF node; kNoIndex when the scene does not show it
   uint64_t vertices = 0;
   uint64_t degenerateTriangles = 0, badNormals = 0;
 
@@ -109,7 +101,8 @@ std::vector<uint32_t> readIndices(const Context& c, int accessor, const std::str
 void buildMaterials(Context& c);
 void buildMeshes(Context& c);
 void buildNodes(Context& c);  // nodes, lights, cameras
-void applySkins(Context& c);  // skinned meshes as their joints hold them at rest
+void buildSkins(Context& c);
+void buildAnimations(Context& c);  // the first one plays
 
 // "meshes[3] `floor`"
 std::string nameOf(std::string_view array, size_t index, const std::string& name);

@@ -1,4 +1,4 @@
-// Meshes: attributes to world-ready triangles. Skins and morph targets stay at rest here.
+// Meshes: attributes to triangles, with the morph targets and joints that move their vertices.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -43,14 +43,12 @@ class MeshBuilder {
     const json::Value* written = c_.root.find("meshes")->items[index].find("primitives");
     if (written->items.size() != from.primitives.size())
       c_.fail(mesh_, "a primitive could not be understood", "check the types of its attributes");
-    c_.skins.emplace_back();
     for (size_t i = 0; i < from.primitives.size(); ++i) {
       Primitive p;
-      skin_.clear();
       if (!primitive(from.primitives[i], mesh_ + ".primitives[" + std::to_string(i) + "]", p)) continue;
       mesh.primitives.push_back(std::move(p));
-      c_.skins.back().push_back(skin_);
     }
+    readWeights(from, mesh);
     return mesh;
   }
 
@@ -84,7 +82,8 @@ class MeshBuilder {
     std::vector<uint32_t> indices = indicesOf(from, place, out.positions.size());
     out.indices = toTriangles(indices, from.mode);
     dropDegenerate(out);
-    readSkin(from, place, out.positions.size());
+    readSkin(from, place, out);
+    readTargets(from, place, out);
     readNormals(from, place, out);
     if (from.attributes.count("COLOR_0")) colorsIgnored_.insert(mesh_);
     c_.vertices += out.positions.size();
@@ -142,23 +141,68 @@ class MeshBuilder {
   }
 
   // Four joints a vertex; further sets are rare and carry little weight.
-  void readSkin(const tinygltf::Primitive& from, const std::string& place, size_t count) {
+  void readSkin(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
     const auto joints = from.attributes.find("JOINTS_0"), weights = from.attributes.find("WEIGHTS_0");
     if (joints == from.attributes.end() || weights == from.attributes.end()) return;
+    const size_t count = out.positions.size();
     const std::string path = accessorPath(place, "JOINTS_0", joints->second);
     const std::string weightPath = accessorPath(place, "WEIGHTS_0", weights->second);
     checkCount(joints->second, count, path);
     checkCount(weights->second, count, weightPath);
     const std::vector<float> j = readFloats(c_, joints->second, 4, path);
     const std::vector<float> w = readFloats(c_, weights->second, 4, weightPath);
-    skin_.resize(count);
+    out.joints.assign(count, glm::u16vec4(0));
+    out.weights.assign(count, glm::vec4(1, 0, 0, 0));
     for (size_t i = 0; i < count; ++i) {
       const glm::vec4 weight = glm::max(glm::make_vec4(&w[4 * i]), 0.0f);
       const float sum = weight.x + weight.y + weight.z + weight.w;
-      if (sum > 0.0f && std::isfinite(sum)) skin_[i].weights = weight / sum;
+      if (sum > 0.0f && std::isfinite(sum)) out.weights[i] = weight / sum;
+      // What a joint without weight is called does not matter.
       for (int k = 0; k < 4; ++k)
-        skin_[i].joints[k] = uint32_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
+        if (out.weights[i][k] > 0.0f)
+          out.joints[i][k] = uint16_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
     }
+  }
+
+  std::vector<glm::vec3> displacements(const std::map<std::string, int>& target, const char* attribute,
+                                       const std::string& place, size_t count) {
+    std::vector<glm::vec3> list;
+    const auto found = target.find(attribute);
+    if (found == target.end()) return list;
+    const std::string path = accessorPath(place, attribute, found->second);
+    checkCount(found->second, count, path);
+    c_.vertices += count;
+    checkSize(place);
+    const std::vector<float> v = readFloats(c_, found->second, 3, path);
+    list.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      list[i] = glm::make_vec3(&v[3 * i]);
+      if (!isFinite(list[i]))
+        c_.fail(path, "vertex " + std::to_string(i) + " is displaced by what is not finite");
+    }
+    return list;
+  }
+
+  void readTargets(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    for (size_t t = 0; t < from.targets.size(); ++t) {
+      const std::string path = place + ".targets[" + std::to_string(t) + "]";
+      out.targets.push_back({displacements(from.targets[t], "POSITION", path, out.positions.size()),
+                             displacements(from.targets[t], "NORMAL", path, out.positions.size())});
+    }
+  }
+
+  void readWeights(const tinygltf::Mesh& from, Mesh& mesh) {
+    size_t targets = 0;
+    for (const Primitive& p : mesh.primitives) {
+      targets = std::max(targets, p.targets.size());
+      if (p.targets.size() != mesh.primitives[0].targets.size())
+        c_.fail(mesh_, "its primitives have different numbers of morph targets");
+    }
+    if (!from.weights.empty() && from.weights.size() != targets && !mesh.primitives.empty())
+      c_.fail(mesh_ + ".weights", std::to_string(from.weights.size()) + " weights for " +
+                                      std::to_string(targets) + " morph targets");
+    for (size_t i = 0; i < std::min(targets, from.weights.size()); ++i)
+      mesh.weights.push_back(float(from.weights[i]));
   }
 
   std::vector<uint32_t> indicesOf(const tinygltf::Primitive& from, const std::string& place, size_t count) {
@@ -226,22 +270,30 @@ class MeshBuilder {
     c_.vertices += p.indices.size();
     checkSize(mesh_);
     c_.vertices -= p.indices.size();
-    Primitive flat;
-    flat.material = p.material;
-    std::vector<VertexSkin> flatSkin;
-    for (size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      const uint32_t* t = &p.indices[i];
+    std::vector<uint32_t> vertices = std::move(p.indices);
+    const auto spread = [&](auto& list) {
+      auto all = std::move(list);
+      list.clear();
+      if (all.empty()) return;
+      list.reserve(vertices.size());
+      for (uint32_t v : vertices) list.push_back(all[v]);
+    };
+    p.normals.clear();
+    p.indices.clear();
+    for (size_t i = 0; i + 2 < vertices.size(); i += 3) {
+      const uint32_t* t = &vertices[i];
       const glm::vec3 n(glm::normalize(areaVector(p.positions[t[0]], p.positions[t[1]], p.positions[t[2]])));
-      for (int k = 0; k < 3; ++k) {
-        flat.indices.push_back(uint32_t(flat.positions.size()));
-        flat.positions.push_back(p.positions[t[k]]);
-        flat.normals.push_back(n);
-        flat.uvs.push_back(p.uvs[t[k]]);
-        if (!skin_.empty()) flatSkin.push_back(skin_[t[k]]);
-      }
+      p.normals.insert(p.normals.end(), 3, n);
+      for (uint32_t k = 0; k < 3; ++k) p.indices.push_back(uint32_t(i) + k);
     }
-    p = std::move(flat);
-    skin_ = std::move(flatSkin);
+    spread(p.positions);
+    spread(p.uvs);
+    spread(p.joints);
+    spread(p.weights);
+    for (MorphTarget& t : p.targets) {
+      spread(t.positions);
+      spread(t.normals);
+    }
   }
 
  public:
@@ -250,7 +302,6 @@ class MeshBuilder {
  private:
   Context& c_;
   std::string mesh_;
-  std::vector<VertexSkin> skin_;  // of the primitive at hand
 };
 
 }  // namespace

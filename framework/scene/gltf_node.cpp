@@ -103,10 +103,20 @@ class NodeBuilder {
       if (!std::isfinite(local[i / 4][i % 4]))
         c_.fail(nameOf("nodes", from, n.name), "its transform is not finite in single precision");
     if (n.mesh >= 0) node.mesh = uint32_t(n.mesh);
+    if (n.mesh >= 0 && !n.weights.empty()) readWeights(n, from, node);
     const uint32_t index = uint32_t(c_.scene.nodes.size());
     c_.scene.nodes.push_back(node);
     nodeOf_[from] = index;
     return index;
+  }
+
+  void readWeights(const tinygltf::Node& n, size_t from, Node& node) const {
+    const Mesh& mesh = c_.scene.meshes[node.mesh];
+    const size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+    if (n.weights.size() != targets && !mesh.primitives.empty())
+      c_.fail(nameOf("nodes", from, n.name) + ".weights", std::to_string(n.weights.size()) + " weights for " +
+                                                              std::to_string(targets) + " morph targets");
+    for (double w : n.weights) node.weights.push_back(float(w));
   }
 
   glm::quat rotationOf(const tinygltf::Node& n, size_t from) const {

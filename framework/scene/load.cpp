@@ -149,7 +149,8 @@ void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
   root.scale = placement.scale;
   const glm::mat4 world = localTransform(root);
   const size_t textures = scene.textures.size(), materials = scene.materials.size(),
-               meshes = scene.meshes.size(), lights = scene.lights.size(), cameras = scene.cameras.size();
+               meshes = scene.meshes.size(), lights = scene.lights.size(), cameras = scene.cameras.size(),
+               skins = scene.skins.size();
   const uint32_t rootIndex = uint32_t(scene.nodes.size());
   scene.nodes.push_back(root);
   for (Node& n : model.nodes) {
@@ -157,6 +158,7 @@ void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
     n.mesh = shifted(n.mesh, meshes);
     n.light = placement.lights ? shifted(n.light, lights) : kNoIndex;
     n.camera = shifted(n.camera, cameras);
+    n.skin = shifted(n.skin, skins);
     scene.nodes.push_back(std::move(n));
   }
   for (Texture& t : model.textures) scene.textures.push_back(std::move(t));
@@ -168,6 +170,14 @@ void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
   for (Mesh& mesh : model.meshes) {
     for (Primitive& p : mesh.primitives) p.material += uint32_t(materials);
     scene.meshes.push_back(std::move(mesh));
+  }
+  for (Skin& s : model.skins) {
+    for (uint32_t& joint : s.joints) joint = shifted(joint, rootIndex + 1);
+    scene.skins.push_back(std::move(s));
+  }
+  for (Animation& a : model.animations) {
+    for (AnimationChannel& c : a.channels) c.node = shifted(c.node, rootIndex + 1);
+    scene.animations.push_back(std::move(a));
   }
   for (Light& l : model.lights) {
     if (!placement.lights) break;

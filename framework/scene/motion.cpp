@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <unordered_map>
+
+#include "framework/scene/animation.h"
+#include "framework/scene/deform.h"
 
 namespace fovea::scene {
 namespace {
 
-constexpr int kSweepSteps = 32;  // samples of a path between two keys
+constexpr int kSweepSteps = 32;        // samples of a path between two keys
+constexpr int kSteps = 4;              // samples of an animation between two keys
+constexpr size_t kMostSamples = 1024;  // of one object
 
 // Catmull-Rom through the four keys around u in [0, 1] between p1 and p2, with the keys' own times (finite
 // differences).
@@ -113,6 +120,25 @@ void move(Light& light, const LightMotion& motion, double time) {
   if (glm::length(direction) > 1e-6f) light.direction = glm::normalize(direction);
 }
 
+// Lights that hang on nodes of playing animations go where these go.
+void carryLights(const Scene& scene, double time, std::vector<Light>& lights) {
+  const auto plays = [](const Animation& a) { return a.plays; };
+  if (std::none_of(scene.animations.begin(), scene.animations.end(), plays)) return;
+  const NodePoses poses(scene);
+  std::vector<glm::mat4> rest;
+  for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
+    const uint32_t light = scene.nodes[i].light;
+    if (light >= lights.size() || !poses.animated(i)) continue;
+    if (rest.empty()) rest = worldTransforms(scene);
+    if (std::abs(glm::determinant(glm::dmat3(rest[i]))) < 1e-30) continue;
+    const glm::mat4 move(glm::dmat4(poses.at(i, time).toWorld) * glm::inverse(glm::dmat4(rest[i])));
+    Light& l = lights[light];
+    l.position = glm::vec3(move * glm::vec4(l.position, 1));
+    const glm::vec3 direction = glm::mat3(move) * l.direction;
+    if (glm::length(direction) > 1e-6f) l.direction = glm::normalize(direction);
+  }
+}
+
 }  // namespace
 
 Camera cameraAt(const Scene& scene, double time) {
@@ -135,6 +161,7 @@ GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time) {
 
 std::vector<Light> lightsAt(const Scene& scene, double time) {
   std::vector<Light> lights = scene.lights;
+  carryLights(scene, time, lights);
   for (const LightMotion& m : scene.lightMotions)
     if (m.light < lights.size() && !m.keys.empty()) move(lights[m.light], m, time);
   return lights;
@@ -154,10 +181,26 @@ MotionKey poseAt(const Mover& mover, double time) {
 }
 
 NodePoses::NodePoses(const Scene& scene) : scene_(scene) {
-  if (scene.movers.empty()) return;
-  moverOfNode_.assign(scene.nodes.size(), kNoIndex);
+  if (!scene.movers.empty()) moverOfNode_.assign(scene.nodes.size(), kNoIndex);
   for (uint32_t m = 0; m < scene.movers.size(); ++m)
     if (!scene.movers[m].keys.empty()) moverOfNode_.at(scene.movers[m].node) = m;
+  for (const Animation& a : scene.animations) {
+    if (!a.plays) continue;
+    channels_.resize(scene.nodes.size());
+    for (const AnimationChannel& c : a.channels)
+      if (c.node < scene.nodes.size() && componentsOf(c) > 0) channels_[c.node].push_back({&a, &c});
+  }
+}
+
+template <class Visit>
+void NodePoses::eachAbove(uint32_t node, const Visit& visit) const {
+  const uint32_t skin = skinned(scene_, scene_.nodes[node]) ? scene_.nodes[node].skin : kNoIndex;
+  const auto up = [&](uint32_t n) {
+    for (; n != kNoIndex; n = scene_.nodes[n].parent) visit(n);
+  };
+  up(node);
+  if (skin == kNoIndex) return;
+  for (uint32_t joint : scene_.skins[skin].joints) up(joint);
 }
 
 const Mover* NodePoses::moverOf(uint32_t node) const {
@@ -167,39 +210,176 @@ const Mover* NodePoses::moverOf(uint32_t node) const {
   return nullptr;
 }
 
+bool NodePoses::moves(uint32_t node) const {
+  if (!moverOfNode_.empty() && moverOfNode_[node] != kNoIndex) return true;
+  return !channels_.empty() &&
+         std::any_of(channels_[node].begin(), channels_[node].end(),
+                     [](const Channel& c) { return c.channel->path != AnimationChannel::Path::Weights; });
+}
+
+bool NodePoses::reshapes(uint32_t node) const {
+  return !channels_.empty() &&
+         std::any_of(channels_[node].begin(), channels_[node].end(),
+                     [](const Channel& c) { return c.channel->path == AnimationChannel::Path::Weights; });
+}
+
+bool NodePoses::animated(uint32_t node) const {
+  if (channels_.empty()) return false;
+  if (reshapes(node)) return true;
+  for (; node != kNoIndex; node = scene_.nodes[node].parent)
+    if (moves(node) && !channels_[node].empty()) return true;
+  return false;
+}
+
+glm::mat4 NodePoses::localAt(uint32_t node, double time, bool& visible) const {
+  const Node& n = scene_.nodes[node];
+  const uint32_t mover = moverOfNode_.empty() ? kNoIndex : moverOfNode_[node];
+  const bool plays = !channels_.empty() && !channels_[node].empty();
+  if (mover == kNoIndex && !plays) return localTransform(n);
+  Node moved;
+  moved.translation = n.translation, moved.rotation = n.rotation, moved.scale = n.scale;
+  bool stands = true;  // where it does: no channel but those of weights
+  for (size_t i = 0; plays && i < channels_[node].size(); ++i) {
+    const auto [animation, channel] = channels_[node][i];
+    if (channel->path == AnimationChannel::Path::Weights) continue;
+    stands = false;
+    std::array<float, 4> v{};
+    sampleChannel(*channel, animationTime(*animation, time), v);
+    if (channel->path == AnimationChannel::Path::Translation) moved.translation = {v[0], v[1], v[2]};
+    if (channel->path == AnimationChannel::Path::Scale) moved.scale = {v[0], v[1], v[2]};
+    if (channel->path == AnimationChannel::Path::Rotation) moved.rotation = glm::quat(v[3], v[0], v[1], v[2]);
+  }
+  if (mover == kNoIndex) return stands ? localTransform(n) : localTransform(moved);
+  const MotionKey key = poseAt(scene_.movers[mover], time);
+  moved.translation = key.translation;
+  moved.rotation = key.rotation;
+  visible = visible && key.visible;
+  return localTransform(moved);
+}
+
 NodePoses::Pose NodePoses::at(uint32_t node, double time) const {
   Pose pose;
-  for (; node != kNoIndex; node = scene_.nodes[node].parent) {
-    const uint32_t mover = moverOfNode_.empty() ? kNoIndex : moverOfNode_[node];
-    if (mover == kNoIndex) {
-      pose.toWorld = localTransform(scene_.nodes[node]) * pose.toWorld;
-      continue;
-    }
-    const MotionKey key = poseAt(scene_.movers[mover], time);
-    Node moved = scene_.nodes[node];
-    moved.matrix.reset();
-    moved.translation = key.translation;
-    moved.rotation = key.rotation;
-    pose.toWorld = localTransform(moved) * pose.toWorld;
-    pose.visible = pose.visible && key.visible;
-  }
+  for (; node != kNoIndex; node = scene_.nodes[node].parent)
+    pose.toWorld = localAt(node, time, pose.visible) * pose.toWorld;
   return pose;
 }
 
-std::vector<ObjectTransform> objectsAt(const Scene& scene, const Geometry& geometry, double time,
-                                       double before) {
-  std::vector<ObjectTransform> list(geometry.objects.size());
+std::vector<float> NodePoses::weightsAt(uint32_t node, double time) const {
+  std::vector<float> weights = restWeights(scene_, scene_.nodes[node]);
+  if (channels_.empty()) return weights;
+  for (const auto& [animation, channel] : channels_[node])
+    if (channel->path == AnimationChannel::Path::Weights && componentsOf(*channel) <= weights.size())
+      sampleChannel(*channel, animationTime(*animation, time), weights);
+  return weights;
+}
+
+// Joints hang on each other: what is above them is worked out once.
+void NodePoses::jointsAt(uint32_t node, double time, std::vector<glm::mat4>& joints) const {
+  const Skin& skin = scene_.skins[scene_.nodes[node].skin];
+  std::unordered_map<uint32_t, glm::mat4> known;
+  std::vector<uint32_t> path;
+  for (size_t i = 0; i < skin.joints.size(); ++i) {
+    path.clear();
+    uint32_t n = skin.joints[i];
+    for (; n != kNoIndex && !known.count(n); n = scene_.nodes[n].parent) path.push_back(n);
+    glm::mat4 toWorld = n == kNoIndex ? glm::mat4(1.0f) : known[n];
+    bool visible = true;
+    for (auto p = path.rbegin(); p != path.rend(); ++p)
+      known[*p] = toWorld = toWorld * localAt(*p, time, visible);
+    if (path.empty()) toWorld = known[skin.joints[i]];
+    joints.push_back(i < skin.inverseBind.size() ? toWorld * skin.inverseBind[i] : toWorld);
+  }
+}
+
+std::vector<double> NodePoses::sampleTimes(uint32_t node) const {
+  std::set<double> keys = {0.0};
+  double horizon = 0, period = 0;
+  std::set<const Animation*> seen;
+  eachAbove(node, [&](uint32_t n) {
+    if (const Mover* m =
+            moverOfNode_.empty() || moverOfNode_[n] == kNoIndex ? nullptr : &scene_.movers[moverOfNode_[n]]) {
+      for (const MotionKey& k : m->keys) keys.insert(k.time);
+      horizon = std::max(horizon, double(m->keys.back().time));
+    }
+    if (channels_.empty()) return;
+    for (const auto& [animation, channel] : channels_[n]) {
+      for (float t : channel->times) keys.insert(double(t) / animation->speed);
+      period = std::max(period, double(duration(*animation)) / animation->speed);
+    }
+  });
+  // The animation is run through again as often as the movers' paths take.
+  const std::set<double> once = keys;
+  for (double start = period; period > 0 && start < horizon && keys.size() < kMostSamples / kSteps;
+       start += period)
+    for (double t : once) keys.insert(start + t);
+  std::vector<double> times;
+  const double stride = std::max(1.0, double(keys.size()) * kSteps / kMostSamples);
+  double last = 0, due = 0;
+  for (double key : keys) {
+    for (int i = 1; i <= kSteps && key > last; ++i)
+      if (++due >= stride) times.push_back(last + (key - last) * i / kSteps), due -= stride;
+    if (times.empty()) times.push_back(key);
+    last = key;
+  }
+  return times;
+}
+
+ObjectPoses objectsAt(const Scene& scene, const Geometry& geometry, double time, double before) {
+  ObjectPoses list;
+  list.objects.resize(geometry.objects.size());
   const NodePoses poses(scene);
-  for (size_t i = 0; i < list.size(); ++i) {
-    if (!geometry.objects[i].dynamic) continue;
-    const NodePoses::Pose now = poses.at(geometry.objects[i].node, time);
-    const NodePoses::Pose last = time == before ? now : poses.at(geometry.objects[i].node, before);
+  for (size_t i = 0; i < list.objects.size(); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic) continue;
+    const NodePoses::Pose now = poses.at(object.node, time);
+    const NodePoses::Pose last = time == before ? now : poses.at(object.node, before);
     const bool invertible = std::abs(glm::determinant(glm::dmat3(now.toWorld))) > 1e-30;
-    list[i] = {now.toWorld, last.toWorld,
-               invertible ? glm::mat4(glm::inverse(glm::dmat4(now.toWorld))) : glm::mat4(0), now.visible,
-               last.visible};
+    list.objects[i] = {now.toWorld,
+                       last.toWorld,
+                       invertible ? glm::mat4(glm::inverse(glm::dmat4(now.toWorld))) : glm::mat4(0),
+                       now.visible,
+                       last.visible,
+                       object.deforms};
+    if (object.jointCount > 0 && object.firstJoint == list.joints.size()) {  // else the skin of another one
+      poses.jointsAt(object.node, time, list.joints);
+      poses.jointsAt(object.node, before, list.previousJoints);
+    }
+    if (object.weightCount > 0) {
+      for (float w : poses.weightsAt(object.node, time)) list.weights.push_back(w);
+      for (float w : poses.weightsAt(object.node, before)) list.previousWeights.push_back(w);
+    }
   }
   return list;
+}
+
+Bounds animatedBounds(const Scene& scene, const NodePoses& poses, const Object& object) {
+  const Node& node = scene.nodes[object.node];
+  const Mesh& mesh = scene.meshes[node.mesh];
+  std::vector<glm::vec3> positions(object.vertexCount), normals(object.vertexCount);
+  std::vector<glm::mat4> joints;
+  Bounds all, last;
+  for (double time : poses.sampleTimes(object.node)) {
+    ObjectPose pose;
+    pose.toWorld = poses.at(object.node, time).toWorld;
+    joints.clear();
+    if (object.jointCount > 0) poses.jointsAt(object.node, time, joints);
+    const std::vector<float> weights = poses.weightsAt(object.node, time);
+    pose.joints = joints;
+    pose.weights = weights;
+    placeVertices(mesh, object.stencils.get(), pose, positions.data(), normals.data());
+    Bounds now;
+    for (const glm::vec3& p : positions) now.include(p);
+    if (last.low.x <= last.high.x) {
+      const glm::vec3 low = 0.25f * glm::abs(now.low - last.low),
+                      high = 0.25f * glm::abs(now.high - last.high);
+      all.include(now.low - low), all.include(now.high + high);
+      all.include(last.low - low), all.include(last.high + high);
+    } else {
+      all.include(now.low), all.include(now.high);
+    }
+    last = now;
+  }
+  return all;
 }
 
 Bounds sweptBounds(const NodePoses& poses, uint32_t node, const Mover& mover, const Bounds& mesh) {

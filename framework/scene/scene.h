@@ -65,6 +65,7 @@ struct Primitive {
 };
 
 struct SubdivisionCage;  // framework/scene/subdivision.h
+class Stencils;
 
 struct Mesh {
   std::string name;
@@ -220,6 +221,7 @@ struct Object {
   bool deforms = false;                       // morph targets or joints move its vertices one by one
   uint32_t firstJoint = 0, jointCount = 0;    // of Frame::joints; none: the node's transform places it
   uint32_t firstWeight = 0, weightCount = 0;  // of Frame::weights
+  std::shared_ptr<const Stencils> stencils;   // of a cage that deforms: they make the vertices
 };
 
 struct Triangle {

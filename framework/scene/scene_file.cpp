@@ -20,6 +20,7 @@ struct ModelEntry {
   SourceLocation where;
   std::string path;
   Placement placement;
+  AnimationChoice animation;
 };
 
 class Parser {
@@ -63,8 +64,10 @@ class Parser {
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;
+      chooseAnimation(model, m.animation, errors_);
       appendModel(out, std::move(model), m.placement);
     }
+    errors_.throwIfErrors();
     motion_.apply(out, folder, warnings);
     return out;
   }
@@ -89,6 +92,7 @@ class Parser {
     p.rotation = glm::quat(glm::radians(readVector(r, "rotate", glm::vec3(0))));
     p.scale = readScale(r, "scale", glm::vec3(1));
     p.lights = r.boolean("lights", true);
+    readAnimation(r, m.animation);
     r.finish();
     models_.push_back(std::move(m));
   }

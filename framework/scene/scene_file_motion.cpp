@@ -112,6 +112,7 @@ void MotionReader::mover(const Value& v, const std::string& path) {
   if (!m.file.empty()) {
     m.get = r.text("get");
     m.scale = readScale(r, "scale", glm::vec3(1));
+    readAnimation(r, m.animation);
   }
   if (hasShape) {
     m.scale = readScale(r, "size", glm::vec3(1));
@@ -214,6 +215,7 @@ uint32_t MotionReader::nodeOf(const MoverEntry& m, Scene& scene, const std::file
     placement.scale = m.scale;
     placement.lights = false;
     Scene model = loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings);
+    chooseAnimation(model, m.animation, errors_);
     model.cameras.clear();
     for (Node& n : model.nodes) n.camera = kNoIndex;
     appendModel(scene, std::move(model), placement);

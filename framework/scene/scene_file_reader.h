@@ -73,6 +73,19 @@ std::filesystem::path findFile(const NamedFile& named, const std::filesystem::pa
 std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors);
 std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file);
 
+// `animation` of a model: its name or number, or { "name", "speed", "repeat" }.
+struct AnimationChoice {
+  SourceLocation where;
+  std::string path;  // empty: not said, what the model plays by itself
+  std::string name;
+  std::optional<int64_t> index;
+  bool none = false;
+  float speed = 1;
+  Repeat repeat = Repeat::Loop;
+};
+void readAnimation(json::ObjectReader& model, AnimationChoice& choice);
+void chooseAnimation(Scene& model, const AnimationChoice& choice, Diagnostics& errors);
+
 // `movers` and `moving_lights`: read with the rest of the file, applied once the models are there.
 class MotionReader {
  public:
@@ -92,6 +105,7 @@ class MotionReader {
   struct MoverEntry {
     SourceLocation where;
     std::string path, node, name, shape, file, get;
+    AnimationChoice animation{};
     glm::vec3 size{1}, color{0.8f}, emission{0}, scale{1};
     bool smooth = true;
     Repeat repeat = Repeat::Once;
