@@ -53,7 +53,8 @@ void refuseUnknownCommand(const CLI::App& program, const std::string& word) {
 
 ExitCode parseAndRun(int argc, char** argv) {
   CLI::App program(
-      "Renders a scene with a render graph, and shows what graphs, passes, scenes and devices there are.",
+      "Renders a scene with a render graph, shows what graphs, passes, scenes and devices there are, and "
+      "compares pictures.",
       "fovea");
   program.set_version_flag("--version", "fovea " FOVEA_VERSION, "Print the version");
   program.footer(kFooter);
@@ -66,6 +67,8 @@ ExitCode parseAndRun(int argc, char** argv) {
   addSchema(program, action);
   addDevices(program, action);
   addScene(program, action);
+  addCompare(program, action);
+  addCompareSequence(program, action);
   if (argc > 1) refuseUnknownCommand(program, argv[1]);
   try {
     program.parse(argc, argv);

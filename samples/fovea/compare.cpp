@@ -1,0 +1,116 @@
+// fovea compare: how far a picture is from its reference.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "framework/image/error_picture.h"
+#include "framework/image/flip.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/commands.h"
+#include "samples/fovea/compared.h"
+
+namespace fovea::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  CompareOptions common;
+  std::string image, reference, errorImage;
+  std::vector<std::string> halves;
+  double pixelsPerDegree = image::kDefaultPixelsPerDegree, errorScale = 0.1;
+};
+
+struct Row {
+  const char* name;
+  const image::Measures& measures;
+  double directFloor;
+};
+
+Json toJson(const Row& row) {
+  const image::Measures& m = row.measures;
+  return {{"pixels", m.pixels},
+          {"mse", m.mse},
+          {"psnr", m.psnr},
+          {"relmse", m.relMse},
+          {"flip", m.flip},
+          {"noise_floor", m.noiseFloor},
+          {"relmse_noise_floor", m.relMseNoiseFloor},
+          {"direct_floor", row.directFloor}};
+}
+
+void print(const Options& options, const Compared& compared, const Row (&rows)[3]) {
+  if (options.common.json) {
+    Json json = {{"image", options.image}, {"reference", options.reference}};
+    json.update(describe(compared));
+    json["pixels_per_degree"] = options.pixelsPerDegree;
+    for (const Row& row : rows) json[row.name] = toJson(row);
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return;
+  }
+  fmt::print("{} against {}: {}\n\n", options.image, options.reference, describeInWords(compared));
+  constexpr const char* kLine = "{:<10} {:>9} {:>11} {:>9} {:>11} {:>9} {:>12} {:>13}\n";
+  fmt::print(kLine, "", "pixels", "MSE", "PSNR, dB", "relMSE", "FLIP", "noise floor", "direct floor");
+  for (const Row& row : rows) {
+    const image::Measures& m = row.measures;
+    fmt::print(kLine, row.name, m.pixels, formatMeasure(m.mse), formatMeasure(m.psnr),
+               formatMeasure(m.relMse), formatMeasure(m.flip), formatMeasure(m.noiseFloor),
+               formatMeasure(row.directFloor));
+  }
+  if (!compared.halves)
+    fmt::print("\nThe reference has no halves (half_a, half_b): its noise is not known, nor subtracted.\n");
+}
+
+ExitCode compare(const Options& options) {
+  if (!options.errorImage.empty()) image::checkWritable(options.errorImage);
+  const Compared c = loadCompared(options.image, options.reference, options.halves, options.common);
+  const auto measures = image::compare(c.image, c.reference, c.halves, c.fovea, options.pixelsPerDegree);
+  image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
+  if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
+  if (!options.errorImage.empty())
+    image::write(options.errorImage,
+                 {{"", image::errorPicture(image::pixelErrors(c.image, c.reference), c.image.display.width,
+                                           options.errorScale, &c.fovea)}});
+  print(options, c,
+        {{"fovea", measures.fovea, floor.fovea},
+         {"periphery", measures.periphery, floor.periphery},
+         {"whole", measures.whole, floor.whole}});
+  if (!options.errorImage.empty() && !options.common.json) fmt::print("wrote {}\n", options.errorImage);
+  return ExitCode::Ok;
+}
+
+}  // namespace
+
+void addCompare(CLI::App& program, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("compare", "Measure how far a picture is from its reference; needs no device");
+  auto options = std::make_shared<Options>();
+  command->add_option("IMAGE", options->image, "Picture: .exr or .pfm (radiance), or as displayed (.png)")
+      ->required()
+      ->type_name("");
+  command->add_option("REFERENCE", options->reference, "What it should look like")->required()->type_name("");
+  addCompareOptions(*command, options->common);
+  command
+      ->add_option(
+          "--halves", options->halves,
+          "Two independent halves of the reference, for its noise; default: its layers\nhalf_a and half_b")
+      ->type_name("A B")
+      ->expected(2);
+  command
+      ->add_option("--error-image", options->errorImage,
+                   "Write where the errors are (root of the mean square over RGB), with the fovea")
+      ->type_name("FILE");
+  command
+      ->add_option("--error-scale", options->errorScale,
+                   "Error of that picture's lightest colour; default 0.1")
+      ->type_name("X")
+      ->check(CLI::Range(1e-6, 1e3).description(""));
+  command
+      ->add_option("--ppd", options->pixelsPerDegree,
+                   "Pixels per degree of visual angle, for FLIP; default 67")
+      ->type_name("P")
+      ->check(CLI::Range(1.0, 1000.0).description(""));
+  command->callback([options, &action] { action = [options] { return compare(*options); }; });
+}
+
+}  // namespace fovea::cli
