@@ -103,11 +103,12 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
   const bool asFile = file.has_parent_path() || file.extension() == ".json" || isModelFile(file);
   std::error_code ec;
   if (!asFile) {
-    for (const std::string& name : builtinNames())
-      if (name == nameOrFile) return builtin(name);
+    // A scene file of a built-in's name holds what moves in it, so it comes first.
     for (const fs::path& folder : sceneSearchPath())
       if (const fs::path found = folder / (nameOrFile + ".json"); fs::is_regular_file(found, ec))
         return loadFile(found, warnings);
+    for (const std::string& name : builtinNames())
+      if (name == nameOrFile) return builtin(name);
     unknownScene(nameOrFile);
   }
   if (fs::exists(file, ec)) {
@@ -122,13 +123,31 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
   throw Error(ExitCode::BadInput, nameOrFile + ": there is no such scene or model file");
 }
 
-std::vector<std::string> builtinNames() { return {"cornellbox"}; }
+namespace {
+
+struct Generator {
+  const char* name;
+  Scene (*make)();
+};
+constexpr Generator kGenerators[] = {{"cornellbox", cornellBox}, {"atrium", atriumScene}};
+
+}  // namespace
+
+std::vector<std::string> builtinNames() {
+  std::vector<std::string> names;
+  for (const Generator& g : kGenerators) names.push_back(g.name);
+  return names;
+}
 
 Scene builtin(const std::string& name) {
-  if (name == "cornellbox") return cornellBox();
+  std::string list;
+  for (const Generator& g : kGenerators) {
+    if (name == g.name) return g.make();
+    list += (list.empty() ? "" : ", ") + std::string(g.name);
+  }
   const std::string nearest = nearestName(name, builtinNames());
   throw Error(ExitCode::BadInput, "there is no built-in scene `" + name + "`",
-              nearest.empty() ? "the built-in scenes are: cornellbox" : "did you mean `" + nearest + "`?");
+              nearest.empty() ? "the built-in scenes are: " + list : "did you mean `" + nearest + "`?");
 }
 
 glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {

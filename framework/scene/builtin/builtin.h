@@ -6,5 +6,6 @@
 namespace fovea::scene {
 
 Scene cornellBox();
+Scene atriumScene();
 
 }  // namespace fovea::scene
