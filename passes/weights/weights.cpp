@@ -37,8 +37,10 @@ class Weights : public Pass {
   std::string strategy_;
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
   Kernel tally_, finish_;
-  Kernel points_, escapes_, density_, pdf_, constant_;  // `pdf`, and `constant` after it
-  Kernel brick_, nearest_, sum_;                        // `area`
+  Kernel points_, escapes_, density_, pdf_,
+      constant_;                  // `pdf`; `constant` after it; not all: `importance-area`
+  Kernel paths_, share_;          // `importance-area`
+  Kernel brick_, nearest_, sum_;  // `area`
 };
 
 PassDeclaration Weights::declaration() {
@@ -64,26 +66,29 @@ PassDeclaration Weights::declaration() {
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
   addScratch(d);
-  d.parameter("strategy", choice("pdf", {"constant", "pdf", "area"}),
+  d.parameter("strategy", choice("pdf", {"constant", "pdf", "area", "importance-area"}),
               "A_l: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N p), p "
-              "the density of eye "
-              "paths from the region; `area` the surface nearest to the VPL (Voronoi)");
+              "the density of eye paths from the region; `area` the surface nearest to the VPL (Voronoi); "
+              "`importance-area` n / (M p), n of M eye paths ending nearest to the VPL, with the light found "
+              "there: however the VPLs were chosen, the region gets the light that its eye paths find");
   d.parameter("region", choice("fovea", {"fovea", "image"}),
               "where the eye paths start: as in pass candidates");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-  d.parameter(
-      "points", integer(2048, 64, 4096),
-      "screen points that a density is averaged over, for `pdf` and `constant`; rays go to 64 of them");
+  d.parameter("points", integer(2048, 64, 4096),
+              "screen points that a density is averaged over (all but `area`); rays go to 64 of them");
   d.parameter("area_cap", real(4, 1, 1e6),
-              "the most that A_l can be, in medians of all, for `pdf` and `constant`; also what a VPL stands "
+              "the most that A_l can be, in medians of 1 / (N p) (all but `area`); also what a VPL stands "
               "for that the region "
               "does not see");
+  d.parameter("paths", integer(8192, 64, 65536),
+              "eye paths that `importance-area` gives to the VPLs nearest to their ends (M)");
   d.parameter("sides", choice("lit", {"lit", "all"}),
               "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such "
               "sides; `all` every "
               "side, among all VPLs");
   d.parameter("normal_weight", real(0.5, 0, 100),
-              "how far apart for `area` turned normals put surfaces: d^2 + lambda (1 - n.n'), lambda in "
+              "how far apart for `area` and `importance-area` turned normals put surfaces: d^2 + lambda (1 - "
+              "n.n'), lambda in "
               "squared mean free paths "
               "of the scene");
   // At 0 a VPL lies inside whatever else its voxel averages and is shadowed by it; far out it sees round what
@@ -111,18 +116,21 @@ void Weights::addScratch(PassDeclaration& d) {
   d.scratch("kept", buffer("WeightsKept", 8), readWrite,
             "total area of `constant`, m^2, 0: not known yet; last median of the densities, 1/m^2")
       .keep(Lifetime::View);
-  // A choice counts as its index: 0 constant, 1 pdf, 2 area.
-  const SizeExpr area = min(max(parameter("strategy") - 1, 0), 1),
+  // A choice counts as its index: 0 constant, 1 pdf, 2 area, 3 importance-area.
+  const SizeExpr owning = min(max(parameter("strategy") - 1, 0), 1),
+                 shared = max(parameter("strategy") - 2, 0), area = owning - shared,
                  side = ceilDiv(widthOf("voxels.index"), kBrick);
   const SizeExpr bricks = side * side * side;
-  d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * area)),
+  d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * owning)),
             Usage::StorageWrite | Usage::TexelRead, "position, normal of the VPLs that compete for surface");
+  d.scratch("ends", buffer("PathEnd", 32, max(1, parameter("paths") * shared)),
+            Usage::StorageWrite | Usage::TexelRead, "where the eye paths end");
   d.scratch("bricks", buffer("uint", 4, bricks), readWrite | Usage::TexelRead | Usage::TransferWrite,
             "1: holds surface (for `area`: to give away)");
   d.scratch("masks", buffer("uint", 4, max(1, bricks * area * ceilDiv(countOf("vpls"), 32))),
             Usage::StorageWrite | Usage::TexelRead, "a bit for each VPL that can be nearest in a brick");
-  d.scratch("sums", buffer("AreaSum", 8, max(1, countOf("vpls") * area)), readWrite | Usage::TransferWrite,
-            "surface given to each VPL, as whole numbers");
+  d.scratch("sums", buffer("Sum", 8, max(1, countOf("vpls") * owning)), readWrite | Usage::TransferWrite,
+            "surface, or paths and their light, given to each VPL, as whole numbers");
 }
 
 void Weights::prepare(PrepareContext& ctx) {
@@ -132,6 +140,7 @@ void Weights::prepare(PrepareContext& ctx) {
   sideCapacity_ = uint32_t(std::min(ctx.count("voxels.surface"), ctx.count("radiance")));
   bricks_ = (ctx.extent("voxels.index").width + kBrick - 1) / kBrick;
   const bool area = strategy_ == "area";
+  const std::string shared = strategy_ == "importance-area" ? "1" : "0";
   const std::string lit = p.text("sides") == "lit" ? "1" : "0";
   if (area && vplCount_ > kMostCompeting)
     throw Error(ExitCode::BadInput,
@@ -139,7 +148,7 @@ void Weights::prepare(PrepareContext& ctx) {
                     " VPLs, these are " + std::to_string(vplCount_),
                 "set weights.strategy to `pdf`, or use fewer VPLs");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
-  finish_ = ctx.compute("weights/finish.comp");
+  finish_ = ctx.compute("weights/finish.comp", {{"SHARED", shared}});
   if (area) {
     brick_ = ctx.compute("weights/bricks.comp");
     nearest_ = ctx.compute("weights/nearest.comp", {{"LIT_ONLY", lit}});
@@ -147,23 +156,41 @@ void Weights::prepare(PrepareContext& ctx) {
     return;
   }
   points_ = ctx.compute("weights/points.comp");
-  escapes_ = ctx.compute("weights/escapes.comp");
-  density_ = ctx.compute("weights/density.comp", {{"ONCE", strategy_ == "constant" ? "1" : "0"}});
-  pdf_ = ctx.compute("weights/pdf.comp");
+  density_ = ctx.compute("weights/density.comp",
+                         {{"ONCE", strategy_ == "constant" ? "1" : "0"}, {"SHARED", shared}});
+  pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
+  if (strategy_ == "importance-area") {
+    paths_ = ctx.compute("weights/paths.comp");
+    share_ = ctx.compute("weights/share.comp");
+  } else {
+    escapes_ = ctx.compute("weights/escapes.comp");
+  }
   if (strategy_ == "constant") constant_ = ctx.compute("weights/constant.comp");
 }
 
 void Weights::recordDensities(RecordContext& ctx) {
-  const uint32_t region = ctx.parameters().text("region") == "image" ? 1u : 0u;  // kRegionFovea, kRegionImage
-  const uint32_t points = uint32_t(ctx.parameters().integer("points")),
-                 escapePoints = std::min(points, kEscapePoints);
+  const Parameters& p = ctx.parameters();
+  const bool shared = strategy_ == "importance-area";
+  const uint32_t region = p.text("region") == "image" ? 1u : 0u;  // kRegionFovea, kRegionImage
+  const uint32_t points = uint32_t(p.integer("points"));
+  const uint32_t tried = shared ? uint32_t(p.integer("paths")) : std::min(points, kEscapePoints);
   ctx.use(points_).constant("region", region).dispatchThreads(points);
   ctx.barrier();
-  ctx.use(escapes_).constant("escapePoints", escapePoints).dispatchThreads(escapePoints);
+  if (shared)
+    ctx.use(paths_).dispatchThreads(tried);
+  else
+    ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);
   const uint32_t row = std::min(vplCount_, 32768u);
   ctx.use(density_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
   ctx.barrier();
-  ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", escapePoints).dispatch(1);
+  if (shared) {
+    ctx.use(share_)
+        .constant("vplCount", vplCount_)
+        .constant("normalShare", float(p.real("normal_weight")))
+        .dispatchThreads(tried);
+    ctx.barrier();
+  }
+  ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatch(1);
   ctx.barrier();
   if (strategy_ != "constant") return;
   ctx.use(constant_).constant("vplCount", vplCount_).dispatch(1);
@@ -192,7 +219,7 @@ void Weights::record(RecordContext& ctx) {
   const bool area = strategy_ == "area";
   ctx.fill("totals", 0);
   ctx.fill("bricks", 0);
-  if (area) ctx.fill("sums", 0);
+  if (area || strategy_ == "importance-area") ctx.fill("sums", 0);
   ctx.barrier();
   ctx.use(tally_)
       .constant("vplCount", vplCount_)

@@ -9,7 +9,7 @@
 // Most of the sum comes from the few points that are close, so many points are needed, but not a ray for each: an
 // invocation sums its share without V and traces one ray, to a point drawn in proportion to the terms, the same one as long
 // as nothing moves. Its share times V of that point has the right mean.
-// Defines: ONCE 0/1: not once the total of `constant` is known.
+// Defines: ONCE 0/1: not once the total of `constant` is known; SHARED 0/1: lists the VPLs that are seen, for share.comp.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "weights/weights.glsl"
@@ -21,6 +21,10 @@ layout(set = 0) uniform samplerBuffer vpls;
 layout(set = 0) uniform samplerBuffer screen;
 layout(set = 0, std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 
+#if SHARED
+layout(set = 0) uniform samplerBuffer radiance;
+layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: kind; normal, w: luminance
+#endif
 #if ONCE
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 #endif
@@ -73,5 +77,12 @@ void main() {
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }
-  if (lane == 0u && slot < vplCount) densities.list[slot] = sums[0] / float(points);
+  if (lane != 0u || slot >= vplCount) return;
+  densities.list[slot] = sums[0] / float(points);
+#if SHARED
+  int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
+  float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
+  sites.list[2u * slot] = vec4(position, sums[0] > 0.0 ? siteKind(light) : 0.0);
+  sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
+#endif
 }

@@ -1,4 +1,5 @@
 // Strategy `pdf`: A_l = 1 / (N p_A(x_l)). One work group.
+// SHARED 1, strategy `importance-area`: n / (M p_A(x_l)) with n of M eye paths given to the VPL (share.comp).
 //
 // N is the number of eye paths that the list stands for: the VPLs alive, plus the paths that escaped, in proportion.
 //
@@ -17,6 +18,9 @@ layout(set = 0) uniform samplerBuffer densities;
 layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) writeonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) buffer KeptBlock { float total, median; } kept;
+#if SHARED
+layout(set = 0, std430) readonly buffer SumsBlock { uvec2 list[]; } sums;
+#endif
 layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
 
 layout(push_constant) uniform Constants {
@@ -63,14 +67,17 @@ void main() {
   uint lane = gl_LocalInvocationIndex;
   float before = kept.median, median = medianDensity();
   if (!(median > 0.0)) median = before;
-  float paths = float(totals.value.alive);
-  if (totals.value.found > 0u) paths *= float(tried) / float(totals.value.found);
+  float found = float(totals.value.alive);
+  if (totals.value.found > 0u) found *= float(tried) / float(totals.value.found);
   float least = median / areaCap;
   uint unseen = 0u, capped = 0u;
   for (uint i = lane; i < vplCount; i += 64u) {
     bool there = texelFetch(vpls, int(i) * kStateTexels + 1).w > 0.0;
     float p = texelFetch(densities, int(i)).r;
-    areas.list[i] = there && least > 0.0 ? 1.0 / (paths * max(p, least)) : 0.0;
+    areas.list[i] = there && least > 0.0 ? 1.0 / (found * max(p, least)) : 0.0;
+#if SHARED
+    if (there && p > 0.0) areas.list[i] = float(sums.list[i].x) / (float(tried) * max(p, least));
+#endif
     unseen += uint(there && !(p > 0.0));
     capped += uint(there && p > 0.0 && p < least);
   }

@@ -8,7 +8,7 @@
 // numbers add up to the same sum in any order.
 struct Totals {
   uint alive;              // slots that hold a VPL
-  uint found;              // eye paths that found a surface: see escapes.comp
+  uint found;              // eye paths that found a surface: see escapes.comp, paths.comp
   uint areaLow, areaHigh;  // surface of all voxel sides
 };
 
@@ -26,6 +26,16 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
 #define ADD_WIDE(LOW, HIGH, VALUE) { \
   uint before_ = atomicAdd(LOW, VALUE); \
   if (before_ + (VALUE) < before_) atomicAdd(HIGH, 1u); \
+}
+
+// VPLs and ends of eye paths on sides with direct light keep to themselves.
+float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
+
+// Direct light at the end of a path in units of that of a VPL, in fixed point, with an end to it.
+const float kLightUnits = 1024.0, kMostLight = 16.0;
+
+uint lightUnits(float light, float ofVpl) {
+  return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * kLightUnits + 0.5);
 }
 
 // Texels of a VplState.

@@ -239,4 +239,61 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
   return areas;
 }
 
+// Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
+// VPL of its kind, by trying every one. `light`: mean direct light of the paths in units of the VPL's own.
+// doubtful: paths that two VPLs are equally near to.
+struct SharedAreas {
+  std::vector<double> area, light;
+  int doubtful = 0;
+};
+inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplState>& vpls,
+                               const std::vector<glm::vec4>& radiance, const std::vector<Seen>& points,
+                               const std::vector<double>& p, uint32_t paths, const WeightSettings& settings) {
+  SharedAreas result;
+  std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0);
+  const double lambda = normalLambda(room, settings.normalWeight);
+  uint32_t found = 0;
+  for (uint32_t path = 0; path < paths; ++path) {
+    const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
+    const Seen& from = points[point];
+    if (!from.there) continue;
+    const uint32_t stream = randomStream(0, 0, 0x70617468u, point);
+    const float r = std::sqrt(uniformFloat(hashCombine(stream, 0) + turn * 3242174889u)),
+                phi = glm::two_pi<float>() * uniformFloat(hashCombine(stream, 1) + turn * 2447445414u);
+    const glm::vec3 local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r));
+    const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(from.normal), local);
+    const uint32_t s = scene::traceVoxels(room.view(), from.position, direction, from.normal).side;
+    if (s == scene::kNoSide) continue;
+    ++found;
+    const scene::VoxelSide& side = room.voxels.surface[s];
+    double best = 1e300, second = 1e300;
+    size_t owner = vpls.size();
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      if (!(p[i] > 0)) continue;
+      const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
+      const bool same = (radiance[vpls[i].side].w > 0) == (radiance[s].w > 0);
+      const double cost = glm::dot(d, d) + (same ? 0 : 1e20) +
+                          lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
+      second = std::min(second, std::max(cost, best));
+      if (cost < best) {
+        best = cost;
+        owner = i;
+      }
+    }
+    if (owner == vpls.size()) continue;
+    result.doubtful += second - best < 1e-5 * (1 + best);
+    count[owner] += 1;
+    const double own = radiance[vpls[owner].side].w;
+    light[owner] += own > 0 ? std::min(radiance[s].w / own, 16.0) : 1;
+  }
+  result.area = pdfAreas(vpls, p, settings.areaCap, double(paths) / std::max(found, 1u));
+  double alive = 0;
+  for (const scene::VplState& vpl : vpls) alive += vpl.life > 0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    if (p[i] > 0) result.area[i] *= count[i] * alive / std::max(found, 1u);  // n / (M p)
+    result.light.push_back(count[i] > 0 ? light[i] / count[i] : 1);
+  }
+  return result;
+}
+
 }  // namespace fovea::test

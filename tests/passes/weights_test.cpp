@@ -214,6 +214,87 @@ TEST(Weights, FurnaceOfDensities) {
   EXPECT_NEAR(mean, 1, 0.04);
 }
 
+// A list that something else has picked: the VPLs of one half of the room are four times as many. The
+// furnace's light stays, which 1 / (N p) gets wrong; and where the light is not the same everywhere, the
+// paths bring it to whichever VPL is there.
+TEST(Weights, FurnaceOfImportanceAreasWhateverPickedTheVpls) {
+  const Room room = closedRoom(false, 32);
+  WeightSettings settings;
+  std::vector<scene::Candidate> picked;
+  const auto candidates = candidatesOf(room, 3000, settings);
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (candidates[i].position.y < 0 || i % 4 == 0) picked.push_back(candidates[i]);
+  Inputs in = inputs(room, vplsOf(room, picked));
+  const scene::Fovea fovea = scene::makeFovea(settings.gaze, room.size, settings.foveaRadius);
+  const auto meanIrradiance = [&](const char* strategy) {
+    const auto list = weigh(in, strategy, settings);
+    double mean = 0;
+    for (uint32_t i = 0; i < 500; ++i) {
+      const glm::ivec2 p =
+          scene::regionSample(scene::kRegionFovea, fovea, room.size, randomStream(8, 0, 0, i));
+      mean += irradiance(list, room.pixels[size_t(p.y) * room.size.x + p.x]) / 500;
+    }
+    return mean;
+  };
+  EXPECT_NEAR(meanIrradiance("importance-area"), 1, 0.04);
+  for (size_t i = 0; i < in.vpls.size(); ++i)
+    if (in.vpls[i].position.y > 0) in.radiosity[i] = glm::vec4(0);
+  EXPECT_NEAR(meanIrradiance("importance-area"), 0.5, 0.03);
+  EXPECT_GT(meanIrradiance("pdf"), 0.6);
+}
+
+// Every VPL twice as bright as the surface around it: it is the surface that counts.
+TEST(Weights, ImportanceAreasTakeTheLightFromTheEndsOfPaths) {
+  const Room room = closedRoom(false, 32);
+  WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
+  const auto even = weigh(in, "importance-area", settings);
+  for (size_t i = 0; i < in.vpls.size(); ++i) {
+    in.radiosity[i] = glm::vec4(2);
+    in.radiance[in.vpls[i].side] = glm::vec4(2 / glm::pi<float>());
+  }
+  const auto uneven = weigh(in, "importance-area", settings);
+  double before = 0, after = 0;
+  for (size_t i = 0; i < even.size(); ++i) {
+    EXPECT_FLOAT_EQ(even[i].area, uneven[i].area);
+    before += even[i].intensity.x;
+    after += uneven[i].intensity.x;
+  }
+  EXPECT_NEAR(after / before, 1, 0.15);  // the sides of the VPLs themselves are brighter
+}
+
+TEST(Weights, ImportanceAreasEqualTheReference) {
+  const Room room = closedRoom(true);
+  WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
+  for (size_t i = 0; i < in.vpls.size(); i += 5) in.vpls[i] = {};
+  for (uint32_t i = 0; i < in.vpls.size(); ++i)  // off the lattice, where many are equally near
+    if (in.vpls[i].life > 0)
+      in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+  for (size_t s = 0; s < in.radiance.size(); ++s)
+    in.radiance[s] = glm::vec4(std::max(room.voxels.surface[s].position.x, 0.0f));
+  for (size_t i = 0; i < in.vpls.size(); ++i)  // half of it is direct light
+    in.radiosity[i] = glm::vec4(2 * glm::pi<float>() * in.radiance[in.vpls[i].side].w + 0.1f);
+  const auto points = screenPoints(room, settings);
+  const auto p = densities(room, in.vpls, points);
+  const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, p, 8192, settings);
+  const auto got = weigh(in, "importance-area", settings);
+  int wrong = 0;
+  double off = 0, all = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    if (!(in.vpls[i].life > 0)) continue;
+    off += std::abs(got[i].area - want.area[i]);
+    all += want.area[i];
+    const double own = glm::pi<double>() * in.radiance[in.vpls[i].side].w;
+    const double direct = own / in.radiosity[i].w, gain = own > 0 ? 1 + direct * (want.light[i] - 1) : 1;
+    const double intensity = in.radiosity[i].x * want.area[i] * gain / glm::pi<double>();
+    wrong += std::abs(got[i].intensity.x - intensity) > 2e-3 * intensity + 1e-7;
+  }
+  EXPECT_LT(off, 0.01 * all);
+  EXPECT_LE(wrong, int(got.size() / 20));  // a path, or one of 64 rays of a density, falls to the other side
+  EXPECT_LT(want.doubtful, 80);
+}
+
 // Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine
 // elsewhere.
 TEST(Weights, FurnaceOfAreas) {
@@ -316,7 +397,7 @@ TEST(Weights, AVplOutOfSightHasTheLargestArea) {
 TEST(Weights, NothingToWeigh) {
   const Room room = closedRoom(false, 12, glm::ivec2(16));
   const scene::VplState empty;
-  for (const char* strategy : {"constant", "pdf", "area"}) {
+  for (const char* strategy : {"constant", "pdf", "area", "importance-area"}) {
     SCOPED_TRACE(strategy);
     for (const size_t count : {1, 70}) {
       const auto list = weigh(inputs(room, std::vector<scene::VplState>(count, empty)), strategy);
@@ -338,6 +419,7 @@ TEST(Weights, OneVplStandsForAll) {
   const double want = 1 / (p[0] * escaping(room, screenPoints(room, settings)));
   EXPECT_NEAR(weigh(in, "pdf", settings)[0].area, want, 1e-3 * want);
   EXPECT_NEAR(weigh(in, "constant", settings)[0].area, want, 1e-3 * want);
+  EXPECT_NEAR(weigh(in, "importance-area", settings)[0].area, want, 0.01 * want);
 }
 
 TEST(Weights, NothingLit) {
@@ -345,7 +427,7 @@ TEST(Weights, NothingLit) {
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 50, {})));
   for (glm::vec4& r : in.radiance) r = glm::vec4(0);
   for (glm::vec4& r : in.radiosity) r = glm::vec4(0);
-  for (const char* strategy : {"constant", "pdf", "area"})
+  for (const char* strategy : {"constant", "pdf", "area", "importance-area"})
     for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.intensity, glm::vec3(0)) << strategy;
 }
 
@@ -360,7 +442,7 @@ TEST(Weights, FoveaOutsideAndBackground) {
                        pdfAreas(in.vpls, p, 4, escaping(room, screenPoints(room, settings))), 3e-4),
             4);
   for (Seen& s : room.pixels) s.there = false;
-  for (const char* strategy : {"constant", "pdf"})
+  for (const char* strategy : {"constant", "pdf", "importance-area"})
     for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.area, 0) << strategy;
 }
 
@@ -373,7 +455,7 @@ TEST(Weights, NoVoxels) {
   vpl.life = 1;
   vpl.normal = {0, 1, 0};
   vpl.side = 7;  // of another scene
-  for (const char* strategy : {"constant", "pdf", "area"})
+  for (const char* strategy : {"constant", "pdf", "area", "importance-area"})
     for (const scene::Vpl& v : weigh(inputs(room, {vpl, {}}), strategy)) EXPECT_EQ(v.area, 0) << strategy;
 }
 
@@ -393,7 +475,7 @@ TEST(Weights, OutputsAreFinite) {
   in.vpls[8].side = 0xfffffffeu;
   in.vpls[9].position = room.pixels[room.pixels.size() / 2].position;  // on a point of the screen
   in.radiance[room.voxels.surface.size() / 2] = glm::vec4(nan);
-  for (const char* strategy : {"constant", "pdf", "area"}) {
+  for (const char* strategy : {"constant", "pdf", "area", "importance-area"}) {
     SCOPED_TRACE(strategy);
     const auto list = weigh(in, strategy);
     for (size_t i = 0; i < list.size(); ++i) {
@@ -416,7 +498,7 @@ TEST(Weights, OutputsAreFinite) {
 TEST(Weights, TheSameBitsEveryTime) {
   const Room room = closedRoom(true);
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, {})));
-  for (const char* strategy : {"constant", "pdf", "area"}) {
+  for (const char* strategy : {"constant", "pdf", "area", "importance-area"}) {
     const auto a = weigh(in, strategy), b = weigh(in, strategy);
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0) << strategy;
   }
