@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 
@@ -26,6 +27,14 @@ std::string UniqueNames::add(const std::string& name) {
   for (uint32_t n = 2; !seen_.emplace(candidate, 0).second; ++n)
     candidate = name + separator_ + std::to_string(n);
   return candidate;
+}
+
+double shortest(float value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  double out = value;
+  std::from_chars(text, end, out);
+  return out;
 }
 
 void makeFolder(const fs::path& folder) {

@@ -25,6 +25,10 @@ class UniqueNames {
   std::map<std::string, uint32_t> seen_;
 };
 
+// The double with the fewest digits that is this float again: what JSON should say, 0.42 and not
+// 0.41999998688697815.
+double shortest(float value);
+
 // Makes the folder where it is missing. Throws Error(CannotWrite).
 void makeFolder(const std::filesystem::path& folder);
 

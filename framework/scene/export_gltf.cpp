@@ -22,11 +22,11 @@ constexpr int kVertexData = 34962, kIndexData = 34963;                    // tar
 template <class Vector>
 Json numbers(const Vector& v, int count) {
   Json list = Json::array();
-  for (int i = 0; i < count; ++i) list.push_back(v[i]);
+  for (int i = 0; i < count; ++i) list.push_back(shortest(v[i]));
   return list;
 }
 
-Json quaternion(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
+Json quaternion(const glm::quat& q) { return {shortest(q.x), shortest(q.y), shortest(q.z), shortest(q.w)}; }
 
 int wrapMode(Wrap wrap) { return wrap == Wrap::Clamp ? 33071 : wrap == Wrap::Mirror ? 33648 : 10497; }
 
@@ -153,7 +153,7 @@ class GltfWriter {
       warn("materials", "the texture transform of `" + material + "` shears; glTF cannot say so");
     Json transform = Json::object();
     transform["offset"] = numbers(m[2], 2);
-    if (angle != 0) transform["rotation"] = angle;
+    if (angle != 0) transform["rotation"] = shortest(angle);
     transform["scale"] = numbers(scale, 2);
     out["extensions"]["KHR_texture_transform"] = transform;
     extensions_.insert("KHR_texture_transform");
@@ -163,7 +163,7 @@ class GltfWriter {
   void materials() {
     for (const Material& m : scene_.materials) {
       Json pbr = {{"baseColorFactor", numbers(m.baseColor, 4)},
-                  {"metallicFactor", m.metallic},
+                  {"metallicFactor", shortest(m.metallic)},
                   {"roughnessFactor", 1}};
       const auto usable = [&](const TextureUse& use) { return use && use.texture < scene_.textures.size(); };
       if (usable(m.baseColorTexture)) pbr["baseColorTexture"] = textureUse(m.baseColorTexture, m.name);
@@ -172,7 +172,8 @@ class GltfWriter {
         // Factors end at 1; the strength carries the rest.
         const double strength =
             std::max({1.0, double(m.emission.x), double(m.emission.y), double(m.emission.z)});
-        out["emissiveFactor"] = numbers(glm::dvec3(m.emission) / strength, 3);
+        out["emissiveFactor"] =
+            Json{m.emission.x / strength, m.emission.y / strength, m.emission.z / strength};
         if (usable(m.emissionTexture)) out["emissiveTexture"] = textureUse(m.emissionTexture, m.name);
         if (strength > 1) {
           out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
@@ -181,7 +182,7 @@ class GltfWriter {
       }
       if (m.masked) {
         out["alphaMode"] = "MASK";
-        out["alphaCutoff"] = m.alphaCutoff;
+        out["alphaCutoff"] = shortest(m.alphaCutoff);
       }
       if (m.doubleSided) out["doubleSided"] = true;
       root_["materials"].push_back(out);
@@ -233,7 +234,7 @@ class GltfWriter {
       Json out = {{"name", nodeNames_.back()}};
       if (n.matrix) {
         Json matrix = Json::array();
-        for (int i = 0; i < 16; ++i) matrix.push_back((*n.matrix)[i / 4][i % 4]);
+        for (int i = 0; i < 16; ++i) matrix.push_back(shortest((*n.matrix)[i / 4][i % 4]));
         out["matrix"] = matrix;
       } else {
         out["translation"] = numbers(n.translation, 3);
@@ -266,10 +267,11 @@ class GltfWriter {
       Json out = {{"name", lightNames_.back()},
                   {"type", kTypes[uint32_t(l.type)]},
                   {"color", numbers(l.color, 3)},
-                  {"intensity", l.intensity}};
-      if (l.range > 0 && l.type != LightType::Directional) out["range"] = l.range;
+                  {"intensity", shortest(l.intensity)}};
+      if (l.range > 0 && l.type != LightType::Directional) out["range"] = shortest(l.range);
       if (l.type == LightType::Spot)
-        out["spot"] = {{"innerConeAngle", l.innerConeAngle}, {"outerConeAngle", l.outerConeAngle}};
+        out["spot"] = {{"innerConeAngle", shortest(l.innerConeAngle)},
+                       {"outerConeAngle", shortest(l.outerConeAngle)}};
       addRoot({{"name", names_.add("light " + lightNames_.back())},
                {"translation", numbers(l.position, 3)},
                {"rotation", quaternion(lookAlong(l.direction, {0, 1, 0}))},
@@ -283,8 +285,8 @@ class GltfWriter {
 
   void cameras() {
     for (const Camera& c : scene_.cameras) {
-      Json lens = {{"yfov", c.verticalFov}, {"znear", c.zNear}};
-      if (c.zFar > 0) lens["zfar"] = c.zFar;
+      Json lens = {{"yfov", shortest(c.verticalFov)}, {"znear", shortest(c.zNear)}};
+      if (c.zFar > 0) lens["zfar"] = shortest(c.zFar);
       root_["cameras"].push_back({{"name", c.name}, {"type", "perspective"}, {"perspective", lens}});
       addRoot({{"name", names_.add("camera " + c.name)},
                {"translation", numbers(c.position, 3)},

@@ -121,8 +121,9 @@ Unfolded unfold(const Texture& t, Wrap u, Wrap v) {
   return out;
 }
 
-constexpr uint32_t kMaskTexels = 4;                        // of the mask image a side, for each texel
-constexpr uint32_t kMaxMaskSide = 8192;                    // pixels
+constexpr uint32_t kMaskTexels = 4;   // at least so many of the mask image a side, for each texel
+constexpr uint32_t kMaskSide = 1024;  // small textures get more, up to this side, pixels
+constexpr uint32_t kMaxMaskSide = 8192;
 constexpr uint32_t kMinFalloff = 256, kMaxFalloff = 4096;  // pixels a side of a spot light's image
 
 class MitsubaWriter {
@@ -138,8 +139,12 @@ class MitsubaWriter {
     header();
     camera();
     for (const Light& light : lightsAt(scene_, options_.time)) emitter(light);
-    if (scene_.environment != glm::vec3(0))
-      line("<emitter type=\"constant\">" + rgb("radiance", scene_.environment) + "</emitter>");
+    if (scene_.environment != glm::vec3(0)) {
+      // Here it is only seen; as a `constant` emitter it would light everything, too.
+      line("<!-- Where nothing is hit (alpha 0), the scene shows " + triple(scene_.environment) + ". -->");
+      warn("environment",
+           "the environment is only seen, it lights nothing: add it where the picture's alpha is 0");
+    }
     for (uint32_t i = 0; i < scene_.materials.size(); ++i) material(i);
     shapes();
     xml_ += "</scene>\n";
@@ -203,7 +208,7 @@ class MitsubaWriter {
         "  <film type=\"hdrfilm\"><integer name=\"width\" value=\"$width\"/>"
         "<integer name=\"height\" value=\"$height\"/>");
     line(
-        "    <string name=\"pixel_format\" value=\"rgb\"/><string name=\"component_format\" "
+        "    <string name=\"pixel_format\" value=\"rgba\"/><string name=\"component_format\" "
         "value=\"float32\"/>");
     line("    <rfilter type=\"box\"/></film>");
     line("</sensor>");
@@ -268,8 +273,9 @@ class MitsubaWriter {
   static std::string toUv(const TextureUse& use, const glm::vec2& scale) {
     const glm::mat3x2& m = use.transform;
     if (m == glm::mat3x2{1, 0, 0, 1, 0, 0} && scale == glm::vec2(1)) return {};
+    // A 4x4 matrix of which Mitsuba takes the first two rows and columns, and the translation in the last.
     return fmt::format(
-        "<transform name=\"to_uv\"><matrix value=\"{} {} {} 0  {} {} {} 0  0 0 1 0  0 0 0 1\"/></transform>",
+        "<transform name=\"to_uv\"><matrix value=\"{} {} 0 {}  {} {} 0 {}  0 0 1 0  0 0 0 1\"/></transform>",
         scale.x * m[0].x, scale.x * m[1].x, scale.x * m[2].x, scale.y * m[0].y, scale.y * m[1].y,
         scale.y * m[2].y);
   }
@@ -313,13 +319,13 @@ class MitsubaWriter {
     return bitmap(name, file, !plain, "bilinear", from.wrap, toUv(use, from.scale));
   }
 
-  // Whether bilinear alpha reaches the cutoff, at the middles of kMaskTexels^2 parts of each texel.
+  // Whether bilinear alpha reaches the cutoff, at the middles of at least kMaskTexels^2 parts of each texel.
   std::string opacity(const Material& m) {
     const TextureUse& use = m.baseColorTexture;
     if (!textured(use))
       return fmt::format("<float name=\"opacity\" value=\"{}\"/>", m.baseColor.a >= m.alphaCutoff ? 1 : 0);
     const Texture& t = scene_.textures[use.texture];
-    uint32_t parts = kMaskTexels;
+    uint32_t parts = std::max(kMaskTexels, kMaskSide / std::max(t.width, t.height));
     while (parts > 1 && std::max(t.width, t.height) * parts > kMaxMaskSide) parts /= 2;
     // At its own place in the texture, so that the mask lies in one period and wraps as the texture does.
     const Unfolded from = unfold(t, use.wrapU, use.wrapV);

@@ -29,6 +29,8 @@ struct MitsubaOptions {
 //   spot lights     their falloff as a projected image
 //   emission        of double-sided surfaces by two copies, 1e-5 of the scene's diagonal apart
 //   normals         Mitsuba does not turn interpolated normals towards the side of the surface that is seen
+//   backs           of single-sided surfaces are black there; here the eye looks through them
+//   environment     is only seen here: it is left out, the picture's alpha says where it shows
 //   range           of lights is not limited there
 // Throws Error(CannotWrite).
 std::filesystem::path exportMitsuba(const Scene& scene, const std::filesystem::path& folder,

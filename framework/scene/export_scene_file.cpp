@@ -2,13 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/scene/export_files.h"
+
 namespace fovea::scene {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-Json vector(const glm::vec2& v) { return {v.x, v.y}; }
+Json vector(const glm::vec3& v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+Json vector(const glm::vec2& v) { return {shortest(v.x), shortest(v.y)}; }
 
 const char* repeatName(Repeat repeat) {
   return repeat == Repeat::Loop ? "loop" : repeat == Repeat::PingPong ? "back_and_forth" : "once";
@@ -25,9 +27,11 @@ Json moverJson(const Mover& mover, const std::string& node) {
   Json out = {{"node", node}};
   describe(out, mover);
   for (const MotionKey& k : mover.keys) {
-    Json key = {{"t", k.time},
-                {"translation", vector(k.translation)},
-                {"quaternion", {k.rotation.x, k.rotation.y, k.rotation.z, k.rotation.w}}};
+    Json key = {
+        {"t", shortest(k.time)},
+        {"translation", vector(k.translation)},
+        {"quaternion",
+         {shortest(k.rotation.x), shortest(k.rotation.y), shortest(k.rotation.z), shortest(k.rotation.w)}}};
     if (!k.visible) key["visible"] = false;
     out["keys"].push_back(std::move(key));
   }
@@ -38,24 +42,24 @@ Json lightMotionJson(const LightMotion& motion, const std::string& light) {
   Json out = {{"light", light}};
   describe(out, motion);
   for (const LightKey& k : motion.keys)
-    out["keys"].push_back({{"t", k.time},
+    out["keys"].push_back({{"t", shortest(k.time)},
                            {"position", vector(k.position)},
                            {"direction", vector(k.direction)},
                            {"color", vector(k.color)},
-                           {"intensity", k.intensity}});
+                           {"intensity", shortest(k.intensity)}});
   return out;
 }
 
 Json cameraJson(const std::vector<CameraKey>& path) {
   const Camera& first = path.front().camera;
-  Json out = {{"near", first.zNear}, {"far", first.zFar}, {"path", Json::array()}};
+  Json out = {{"near", shortest(first.zNear)}, {"far", shortest(first.zFar)}, {"path", Json::array()}};
   for (const CameraKey& k : path) {
     const Camera& c = k.camera;
-    out["path"].push_back({{"t", k.time},
+    out["path"].push_back({{"t", shortest(k.time)},
                            {"eye", vector(c.position)},
                            {"target", vector(c.position + c.orientation * glm::vec3(0, 0, -1))},
                            {"up", vector(c.orientation * glm::vec3(0, 1, 0))},
-                           {"fov_deg", glm::degrees(c.verticalFov)}});
+                           {"fov_deg", shortest(glm::degrees(c.verticalFov))}});
   }
   return out;
 }
@@ -63,7 +67,7 @@ Json cameraJson(const std::vector<CameraKey>& path) {
 Json gazeJson(const std::vector<GazeSample>& gaze) {
   Json list = Json::array();
   for (const GazeSample& g : gaze) {
-    Json sample = {{"t", g.time}, {"x", g.position.x}, {"y", g.position.y}};
+    Json sample = {{"t", shortest(g.time)}, {"x", shortest(g.position.x)}, {"y", shortest(g.position.y)}};
     if (!g.valid) sample["valid"] = false;
     if (g.left) sample["left"] = vector(*g.left);
     if (g.right) sample["right"] = vector(*g.right);
@@ -104,9 +108,9 @@ Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& wa
 std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
   Json root = {{"name", scene.name},
                {"models", Json::array({Json{{"file", names.model}}})},
-               {"exposure", scene.exposure},
+               {"exposure", shortest(scene.exposure)},
                {"environment", vector(scene.environment)},
-               {"ipd", scene.ipd}};
+               {"ipd", shortest(scene.ipd)}};
   if (!scene.cameraPath.empty()) root["camera"] = cameraJson(scene.cameraPath);
   if (!scene.gaze.empty()) root["gaze"] = gazeJson(scene.gaze);
   if (Json movers = moversJson(scene, names, warnings); !movers.empty()) root["movers"] = std::move(movers);

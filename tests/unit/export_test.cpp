@@ -1,0 +1,307 @@
+// Exported scenes: glTF comes back as the same picture; Mitsuba's files say what the scene says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "framework/image/image.h"
+#include "framework/scene/export_gltf.h"
+#include "framework/scene/export_mitsuba.h"
+#include "framework/scene/frame.h"
+#include "scene_support.h"
+
+namespace fovea::test {
+namespace {
+
+using namespace scene;
+using testing::HasSubstr;
+
+float distance(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b); }
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void expectSameTexture(const Scene& a, const TextureUse& ua, const Scene& b, const TextureUse& ub) {
+  ASSERT_EQ(bool(ua), bool(ub));
+  if (!ua) return;
+  const Texture &ta = a.textures[ua.texture], &tb = b.textures[ub.texture];
+  EXPECT_EQ(ta.width, tb.width);
+  EXPECT_EQ(ta.height, tb.height);
+  EXPECT_TRUE(ta.rgba == tb.rgba) << ta.name;
+  EXPECT_EQ(ta.srgb, tb.srgb);
+  EXPECT_EQ(ua.wrapU, ub.wrapU);
+  EXPECT_EQ(ua.wrapV, ub.wrapV);
+  for (int i = 0; i < 3; ++i) EXPECT_LT(glm::length(ua.transform[i] - ub.transform[i]), 1e-5f);
+}
+
+void expectSameMaterials(const Scene& a, const Scene& b) {
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (size_t i = 0; i < a.materials.size(); ++i) {
+    const Material &x = a.materials[i], &y = b.materials[i];
+    SCOPED_TRACE(x.name);
+    EXPECT_EQ(x.name, y.name);
+    EXPECT_LT(glm::length(x.baseColor - y.baseColor), 1e-6f);
+    EXPECT_FLOAT_EQ(x.metallic, y.metallic);
+    EXPECT_LE(distance(x.emission, y.emission), 1e-6f * glm::length(x.emission));
+    EXPECT_EQ(x.masked, y.masked);
+    if (x.masked) EXPECT_FLOAT_EQ(x.alphaCutoff, y.alphaCutoff);
+    EXPECT_EQ(x.doubleSided, y.doubleSided);
+    expectSameTexture(a, x.baseColorTexture, b, y.baseColorTexture);
+    if (x.emission != glm::vec3(0)) expectSameTexture(a, x.emissionTexture, b, y.emissionTexture);
+  }
+}
+
+void expectSameLights(const std::vector<Light>& a, const std::vector<Light>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    SCOPED_TRACE(a[i].name);
+    EXPECT_EQ(a[i].type, b[i].type);
+    EXPECT_LT(distance(a[i].color, b[i].color), 1e-6f);
+    EXPECT_FLOAT_EQ(a[i].intensity, b[i].intensity);
+    if (a[i].type != LightType::Directional) {
+      EXPECT_FLOAT_EQ(a[i].range, b[i].range);
+      EXPECT_LT(distance(a[i].position, b[i].position), 1e-5f);
+    }
+    if (a[i].type != LightType::Point) EXPECT_LT(distance(a[i].direction, b[i].direction), 1e-5f);
+    if (a[i].type == LightType::Spot) {
+      EXPECT_FLOAT_EQ(a[i].innerConeAngle, b[i].innerConeAngle);
+      EXPECT_FLOAT_EQ(a[i].outerConeAngle, b[i].outerConeAngle);
+    }
+  }
+}
+
+void expectSameView(const View& a, const View& b) {
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) EXPECT_NEAR(a.worldToClip[c][r], b.worldToClip[c][r], 2e-4f);
+  EXPECT_LT(glm::length(a.gaze - b.gaze), 1e-6f);
+}
+
+// Everything in its place at 0 s and at a later time; triangles in the same order, whatever node they hang
+// on.
+void expectSameScene(const Scene& a, const Scene& b) {
+  expectSameMaterials(a, b);
+  Geometry ga = flatten(a), gb = flatten(b);
+  ASSERT_EQ(ga.triangles.size(), gb.triangles.size());
+  ASSERT_EQ(ga.positions.size(), gb.positions.size());
+  EXPECT_EQ(ga.staticTriangles, gb.staticTriangles);
+  ASSERT_EQ(ga.objects.size(), gb.objects.size());
+  for (size_t i = 0; i < ga.triangles.size(); ++i) {
+    EXPECT_EQ(ga.triangles[i].materialAndObject, gb.triangles[i].materialAndObject);
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(ga.triangles[i].v[k], gb.triangles[i].v[k]);
+  }
+  const float scale = glm::length(ga.boundsMax - ga.boundsMin);
+  for (const uint64_t index : {0, 50}) {
+    const Frame fa = makeFrame(a, ga, {640, 480}, index, 1), fb = makeFrame(b, gb, {640, 480}, index, 1);
+    moveObjects(fa, ga);
+    moveObjects(fb, gb);
+    float position = 0, normal = 0, uv = 0;
+    for (size_t i = 0; i < ga.positions.size(); ++i) {
+      position = std::max(position, distance(ga.positions[i], gb.positions[i]));
+      normal = std::max(normal, distance(ga.normals[i], gb.normals[i]));
+      uv = std::max(uv, glm::length(ga.uvs[i] - gb.uvs[i]));
+    }
+    EXPECT_LE(position, 1e-5f * scale) << "frame " << index;
+    EXPECT_LE(normal, 1e-5f) << "frame " << index;
+    EXPECT_LE(uv, 1e-5f) << "frame " << index;
+    expectSameLights(fa.lights, fb.lights);
+    expectSameView(fa.views[0], fb.views[0]);
+    expectSameView(fa.views[1], fb.views[1]);
+    EXPECT_FLOAT_EQ(fa.exposure, fb.exposure);
+  }
+  EXPECT_LT(distance(a.environment, b.environment), 1e-6f);
+}
+
+void roundTrip(const Scene& scene) {
+  const TemporaryFolder folder;
+  Diagnostics warnings;
+  const auto file = exportGltf(scene, folder.path() / "deep" / "er", warnings);
+  expectSameScene(scene, load(file.string(), warnings));
+  EXPECT_TRUE(warnings.list().empty()) << warnings.format();
+}
+
+Texture texture(uint32_t width, uint32_t height) {
+  Texture t{"a texture.jpg", width, height, true, {}};
+  for (uint32_t i = 0; i < width * height * 4; ++i) t.rgba.push_back(uint8_t(i * 37 + i / 7));
+  return t;
+}
+
+Primitive quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t material) {
+  Primitive p;
+  p.positions = {corner, corner + u, corner + u + v, corner + v};
+  p.normals.assign(4, glm::normalize(glm::cross(u, v)));
+  p.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  p.indices = {0, 1, 2, 0, 2, 3};
+  p.material = material;
+  return p;
+}
+
+// A bit of everything that a scene can hold.
+Scene everything() {
+  Scene s;
+  s.name = "a bit/of everything";
+  s.textures = {texture(8, 4), texture(5, 3)};
+  s.materials.resize(3);
+  s.materials[0].name = "tiles";
+  s.materials[0].baseColor = {0.5f, 0.25f, 0.75f, 1};
+  s.materials[0].baseColorTexture = {0, Wrap::Mirror, Wrap::Clamp,
+                                     glm::mat3x2{1.6f, -1.2f, 0.3f, 0.4f, 0.1f, -2}};
+  s.materials[0].metallic = 0.3f;
+  s.materials[1].name = "leaf";
+  s.materials[1].baseColorTexture = {1};
+  s.materials[1].masked = s.materials[1].doubleSided = true;
+  s.materials[1].alphaCutoff = 0.37f;
+  s.materials[2].name = "lamp";
+  s.materials[2].emission = {12.5f, 3, 0.7f};
+  s.materials[2].emissionTexture = {0};
+  s.meshes = {
+      {"room", {quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 0), quad({-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)}},
+      {"lamp", {quad({-1, 2, -1}, {0, 0, 1}, {1, 0, 0}, 2)}}};
+  s.nodes.resize(4);
+  s.nodes[0].name = s.nodes[1].name = s.nodes[3].name = "twice";
+  s.nodes[0].mesh = 0;
+  s.nodes[1].parent = 0;
+  s.nodes[1].matrix = glm::mat4{1, 0, 0, 0, 0.5f, 2, 0, 0, 0, 0, -1, 0, 0.1f, 0.2f, 0.3f, 1};
+  s.nodes[1].mesh = 1;
+  s.nodes[2].name = "slides";
+  s.nodes[2].parent = 0;
+  s.nodes[2].mesh = 1;
+  s.nodes[2].scale = {0.5f, 1, 0.25f};
+  s.nodes[2].dynamic = true;
+  s.nodes[3].mesh = 1;
+  s.nodes[3].translation = {3, 0.5f, 0};
+  s.nodes[3].dynamic = true;  // stands still, an object of its own
+  const glm::quat turn = glm::normalize(glm::quat(0.9f, 0.1f, 0.4f, 0.2f));
+  s.movers = {
+      {2, true, Repeat::PingPong, {{0, {0, 1, 0}, turn, true}, {0.8f, {2, 1, 0}, {1, 0, 0, 0}, true}}}};
+  const glm::vec3 down = glm::normalize(glm::vec3(0.3f, -1, 0.2f));
+  Light sun, bulb, spot;
+  sun.name = bulb.name = spot.name = "light";
+  sun.direction = spot.direction = down;
+  sun.intensity = 3.25f;
+  bulb.type = LightType::Point;
+  bulb.color = {1, 0.5f, 0.25f};
+  bulb.intensity = 40;
+  bulb.range = 7;
+  bulb.position = {1, 2, 3};
+  spot.type = LightType::Spot;
+  spot.position = {0, 3, 0.1f};
+  spot.innerConeAngle = 0.2f;
+  spot.outerConeAngle = 0.6f;
+  s.lights = {sun, bulb, spot};
+  s.lightMotions = {{1,
+                     false,
+                     Repeat::Loop,
+                     {{0, {1, 2, 3}, {0, 0, -1}, {1, 1, 1}, 40}, {2, {0, 3, 3}, {0, 0, -1}, {1, 0, 0}, 20}}}};
+  Camera c;
+  c.position = {0.2f, 1, 6};
+  c.orientation = glm::normalize(glm::quat(1, 0.05f, 0.1f, 0.02f));
+  c.zFar = 30;
+  s.cameras = {c};
+  s.gaze = {{0, {0.3f, 0.4f}, true, {}, {}},
+            {0.5f, {0.6f, 0.7f}, true, glm::vec2(0.61f, 0.7f), glm::vec2(0.59f, 0.7f)}};
+  s.exposure = 2.5f;
+  s.environment = {0.1f, 0.2f, 0.3f};
+  s.ipd = 0.07f;
+  return s;
+}
+
+TEST(ExportGltf, EverythingComesBack) { roundTrip(everything()); }
+
+TEST(ExportGltf, ACameraPathComesBack) {
+  Scene s = everything();
+  Camera c = s.cameras[0];
+  s.cameraPath = {{0, c}};
+  c.position.x += 1;
+  c.verticalFov = 1.1f;
+  s.cameraPath.push_back({2, c});
+  roundTrip(s);
+}
+
+TEST(ExportGltf, CornellBoxComesBack) { roundTrip(builtin("cornellbox")); }
+
+TEST(ExportGltf, MovingCornellBoxComesBack) {
+  Diagnostics warnings;
+  roundTrip(load("cornellbox_moving", warnings));
+}
+
+TEST(ExportGltf, SponzaComesBack) {
+  FOVEA_NEED_SCENES(folder);
+  if (!std::filesystem::exists(folder / "sponza/Sponza.gltf")) GTEST_SKIP() << "no Sponza here";
+  Diagnostics warnings;
+  Scene sponza = load("sponza", warnings);
+  for (Texture& t : sponza.textures) {  // a strip of each: packing them takes all the time
+    t.height = std::min(t.height, 16u);
+    t.rgba.resize(size_t(t.width) * t.height * 4);
+  }
+  roundTrip(sponza);
+}
+
+TEST(ExportGltf, SaysWhereItCannotWrite) {
+  const TemporaryFolder folder;
+  folder.write("file", "in the way");
+  Diagnostics warnings;
+  const std::string message =
+      errorOf([&] { exportGltf(everything(), folder.path() / "file", warnings); }, ExitCode::CannotWrite);
+  EXPECT_THAT(message, HasSubstr((folder.path() / "file").string()));
+}
+
+TEST(ExportMitsuba, SaysWhatTheSceneSays) {
+  const TemporaryFolder folder;
+  Diagnostics warnings;
+  MitsubaOptions options;
+  options.size = {40, 30};
+  const auto file = exportMitsuba(everything(), folder.path(), options, warnings);
+  const std::string xml = content(file);
+  EXPECT_EQ(file.filename(), "a_bit_of_everything.xml");
+  EXPECT_THAT(xml, HasSubstr(R"(name="width" value="40")"));
+  EXPECT_THAT(xml, HasSubstr(R"(integrator type="volpath")"));  // for the mask
+  EXPECT_THAT(xml, HasSubstr(R"(<rgb name="irradiance" value="3.25, 3.25, 3.25"/>)"));
+  EXPECT_THAT(xml, HasSubstr(R"(<point name="position" value="1, 2, 3"/>)"));
+  EXPECT_THAT(xml, HasSubstr(R"(emitter type="area")"));
+  EXPECT_THAT(warnings.format(), HasSubstr("range"));
+  EXPECT_THAT(warnings.format(), HasSubstr("environment"));
+}
+
+// The image that a spot light projects holds its falloff: looked up bilinearly it is the light's own.
+TEST(ExportMitsuba, SpotImageIsTheFalloff) {
+  const TemporaryFolder folder;
+  Scene s = everything();
+  s.lights = {s.lights[2]};
+  Diagnostics warnings;
+  exportMitsuba(s, folder.path(), {}, warnings);
+  const image::File file = image::read(folder.path() / "textures/spot_light.exr");
+  const image::Image& falloff = file.layers.at(0).image;
+  const float edge = std::tan(0.6f), ci = std::cos(0.2f), co = std::cos(0.6f);
+  for (float angle = 0; angle < 0.6f; angle += 0.013f) {
+    const float x = (std::tan(angle) / edge * 0.5f + 0.5f) * float(falloff.width) - 0.5f;
+    const uint32_t i = uint32_t(x), row = falloff.height / 2;
+    if (i + 1 >= falloff.width) break;
+    const auto at = [&](uint32_t c) { return 0.5f * (falloff.at(c, row - 1, 0) + falloff.at(c, row, 0)); };
+    const float got = glm::mix(at(i), at(i + 1), x - float(i));
+    const float s1 = glm::clamp((std::cos(angle) - co) / (ci - co), 0.0f, 1.0f);
+    EXPECT_NEAR(got, s1 * s1, 5e-4f) << angle;
+  }
+}
+
+// Where the mover is at the time that is asked for.
+TEST(ExportMitsuba, ExportsTheMoment) {
+  const TemporaryFolder folder;
+  Scene s = everything();
+  Diagnostics warnings;
+  MitsubaOptions options;
+  options.time = 0.8;
+  exportMitsuba(s, folder.path(), options, warnings);
+  const std::string ply = content(folder.path() / "meshes/slides_lamp.ply");
+  const size_t header = ply.find("end_header\n") + 11;
+  ASSERT_LT(header, ply.size());
+  float first[3];
+  std::memcpy(first, ply.data() + header, sizeof first);
+  EXPECT_LT(distance({first[0], first[1], first[2]}, {2 - 0.5f, 1 + 2, -0.25f}), 1e-5f);
+  const std::string xml = content(folder.path() / "a_bit_of_everything.xml");
+  EXPECT_EQ(xml.find(R"(value="1, 2, 3")"), std::string::npos);  // the bulb has moved on
+}
+
+}  // namespace
+}  // namespace fovea::test
