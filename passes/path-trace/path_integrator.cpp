@@ -65,6 +65,7 @@ PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, const Material& materia
   PathVertex v;
   v.normal = side * s.shadingNormal;
   v.face = side * s.geometricNormal;
+  v.position = s.position;
   v.origin = s.position + v.face * rays_.epsilon();
   v.reflectance = glm::vec3(reflectance(*frame_.scene, material, s.uv));
   return v;
@@ -92,7 +93,7 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
 }
 
 glm::vec3 PathIntegrator::unshadowed(const Light& light, const PathVertex& v, Ray& shadowRay) const {
-  const LightSample l = sampleLight(light, v.origin);
+  const LightSample l = sampleLight(light, v.position);
   const float cosine = glm::dot(v.normal, l.direction);
   if (cosine <= 0 || glm::dot(v.face, l.direction) <= 0) return glm::vec3(0);
   shadowRay.origin = v.origin;

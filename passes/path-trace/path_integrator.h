@@ -22,6 +22,7 @@ struct PathSampler {
 
 // A surface as the path that reached it sees it.
 struct PathVertex {
+  glm::vec3 position{0};         // world space, m
   glm::vec3 origin{0};           // of rays that leave it, just off the surface
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the viewer's side
   glm::vec3 reflectance{0};

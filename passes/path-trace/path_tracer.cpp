@@ -83,7 +83,8 @@ PathTraceStatistics Tracer::run() {
     end = std::min(samples_, end + std::min(end, kLongestRound));
   }
   PathTraceStatistics statistics{paths_, rays_, 0};
-  for (const uint32_t n : film_.rowSamples) statistics.samples += double(n) / double(view_.size.y);
+  for (const uint32_t n : film_.rowSamples) statistics.samples += double(n);
+  statistics.samples /= double(view_.size.y);
   return statistics;
 }
 
