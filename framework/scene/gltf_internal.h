@@ -104,6 +104,12 @@ void buildNodes(Context& c);  // nodes, lights, cameras
 void buildSkins(Context& c);
 void buildAnimations(Context& c);  // the first one plays
 
+// `extras.fovea_subdivision` of a mesh's primitives (gltf_cage.cpp).
+bool hasCage(const json::Value& primitives);
+// The mesh's primitives become its cage. Throws Error(BadInput) with the place of what is wrong.
+void buildCage(const json::Value& primitives, const std::string& place, Mesh& mesh);
+void refineCages(Context& c);
+
 // "meshes[3] `floor`"
 std::string nameOf(std::string_view array, size_t index, const std::string& name);
 

@@ -43,12 +43,14 @@ class MeshBuilder {
     const json::Value* written = c_.root.find("meshes")->items[index].find("primitives");
     if (written->items.size() != from.primitives.size())
       c_.fail(mesh_, "a primitive could not be understood", "check the types of its attributes");
+    isCage_ = hasCage(*written);
     for (size_t i = 0; i < from.primitives.size(); ++i) {
       Primitive p;
       if (!primitive(from.primitives[i], mesh_ + ".primitives[" + std::to_string(i) + "]", p)) continue;
       mesh.primitives.push_back(std::move(p));
     }
     readWeights(from, mesh);
+    if (isCage_) buildCage(*written, mesh_, mesh);
     return mesh;
   }
 
@@ -81,10 +83,10 @@ class MeshBuilder {
     readUvs(from, place, out);
     std::vector<uint32_t> indices = indicesOf(from, place, out.positions.size());
     out.indices = toTriangles(indices, from.mode);
-    dropDegenerate(out);
+    if (!isCage_) dropDegenerate(out);
     readSkin(from, place, out);
     readTargets(from, place, out);
-    readNormals(from, place, out);
+    if (!isCage_) readNormals(from, place, out);
     if (from.attributes.count("COLOR_0")) colorsIgnored_.insert(mesh_);
     c_.vertices += out.positions.size();
     checkSize(place);
@@ -302,6 +304,7 @@ class MeshBuilder {
  private:
   Context& c_;
   std::string mesh_;
+  bool isCage_ = false;  // faces and vertices stay as they are
 };
 
 }  // namespace
@@ -309,6 +312,7 @@ class MeshBuilder {
 void buildMeshes(Context& c) {
   MeshBuilder builder(c);
   for (size_t i = 0; i < c.model.meshes.size(); ++i) c.scene.meshes.push_back(builder.build(i));
+  refineCages(c);
   if (c.degenerateTriangles > 0)
     c.warn("meshes", std::to_string(c.degenerateTriangles) + " triangles without area were left out");
   if (c.badNormals > 0)

@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "framework/scene/subdivision.h"
+
 namespace fovea::scene {
 namespace {
 
@@ -94,11 +96,21 @@ void hash(Hasher& h, const Primitive& p) {
   h.array(p.weights);
 }
 
+// At rest the primitives say all of it.
+void hash(Hasher& h, const SubdivisionCage& cage) {
+  if (cage.targets.empty() && cage.joints.empty()) return;
+  h.array(cage.positions);
+  for (const MorphTarget& t : cage.targets) h.array(t.positions);
+  h.array(cage.joints);
+  h.array(cage.weights);
+}
+
 // What deforms, and how.
 void hashAnimation(Hasher& h, const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     for (const Primitive& p : mesh.primitives) hash(h, p);
     if (!mesh.weights.empty()) h.array(mesh.weights);
+    if (mesh.cage) hash(h, *mesh.cage);
   }
   for (size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& n = scene.nodes[i];

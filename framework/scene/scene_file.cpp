@@ -20,6 +20,7 @@ struct ModelEntry {
   SourceLocation where;
   std::string path;
   Placement placement;
+  std::optional<SubdivisionEntry> subdivision;
   AnimationChoice animation;
 };
 
@@ -64,6 +65,7 @@ class Parser {
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;
+      if (m.subdivision) applySubdivision(*m.subdivision, model);
       chooseAnimation(model, m.animation, errors_);
       appendModel(out, std::move(model), m.placement);
     }
@@ -92,6 +94,8 @@ class Parser {
     p.rotation = glm::quat(glm::radians(readVector(r, "rotate", glm::vec3(0))));
     p.scale = readScale(r, "scale", glm::vec3(1));
     p.lights = r.boolean("lights", true);
+    if (const Value* s = r.object("subdivision"))
+      m.subdivision = readSubdivision(*s, r.pathOf("subdivision"), errors_);
     readAnimation(r, m.animation);
     r.finish();
     models_.push_back(std::move(m));

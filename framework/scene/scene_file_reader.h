@@ -69,6 +69,20 @@ struct NamedFile {
 };
 std::filesystem::path findFile(const NamedFile& named, const std::filesystem::path& folder);
 
+// `subdivision` of a model.
+struct SubdivisionEntry {
+  SourceLocation where;
+  std::string path;
+  uint32_t level = 1;
+  bool loop = true;                 // of meshes that are no cages yet; else Catmull-Clark
+  float creaseDegrees = 180;        // edges sharper than this stay sharp
+  std::vector<std::string> meshes;  // empty: all
+};
+SubdivisionEntry readSubdivision(const json::Value& v, const std::string& path, Diagnostics& errors);
+// Makes cages of the model's meshes and refines them; those that are cages take the level. Throws
+// Error(BadInput).
+void applySubdivision(const SubdivisionEntry& entry, Scene& model);
+
 // Samples of the gaze: an array of the scene file, or a CSV file.
 std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors);
 std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file);

@@ -285,7 +285,10 @@ TEST(Subdivision, NormalsAndTrianglesFaceTheSameWay) {
   expectFacing(refine(cubeCage(4)), 0.9f);
   expectFacing(refine(torusCage(8, 6, 3)), 0.9f);
   expectFacing(refine(icosahedronCage(3)), 0.9f);
-  expectFacing(refine(everythingCage(3)), 0.4f);
+  // A sharp vertex inside smooth faces is a spike, whose sides may fold; creases are not.
+  SubdivisionCage cage = everythingCage(3);
+  cage.corners.clear();
+  expectFacing(refine(cage), 0.6f);
 }
 
 TEST(Subdivision, MaterialsGoDownWithTheFaces) {
