@@ -104,12 +104,12 @@ void addCompare(CLI::App& program, Action& action) {
       ->add_option("--error-scale", options->errorScale,
                    "Error of that picture's lightest colour; default 0.1")
       ->type_name("X")
-      ->check(CLI::Range(1e-6, 1e3).description(""));
+      ->check(numberBetween(1e-6, 1e3));
   command
       ->add_option("--ppd", options->pixelsPerDegree,
                    "Pixels per degree of visual angle, for FLIP; default 67")
       ->type_name("P")
-      ->check(CLI::Range(1.0, 1000.0).description(""));
+      ->check(numberBetween(1, 1000));
   command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

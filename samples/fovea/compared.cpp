@@ -16,7 +16,7 @@ namespace fovea::cli {
 namespace {
 
 constexpr const char* kRadiance = "radiance";
-constexpr float kMaxRadius = 4;  // as the passes have it
+constexpr double kMaxRadius = 4;  // as the passes have it
 
 [[noreturn]] void bad(const std::string& message, const std::string& remedy) {
   throw Error(ExitCode::BadInput, message, remedy);
@@ -222,6 +222,16 @@ std::string describeInWords(const Compared& c) {
 
 std::string formatMeasure(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4g}", value); }
 
+CLI::Validator numberBetween(double low, double high) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return good ? std::string() : fmt::format("`{}` is not a number from {:g} to {:g}", text, low, high);
+      },
+      "");
+}
+
 void addCompareOptions(CLI::App& command, CompareOptions& options) {
   command
       .add_option(
@@ -232,7 +242,7 @@ void addCompareOptions(CLI::App& command, CompareOptions& options) {
       .add_option("--radius", options.radius,
                   "Radius of the fovea in image widths, up to 4; default: as in the metadata,\nelse 0.25")
       ->type_name("R")
-      ->check(CLI::Range(0.0f, kMaxRadius).description(""));
+      ->check(numberBetween(0, kMaxRadius));
   command
       .add_option("--layer", options.layer,
                   "Layer of both files to compare; default: radiance, or the only one")
@@ -241,7 +251,7 @@ void addCompareOptions(CLI::App& command, CompareOptions& options) {
       .add_option("--exposure", options.exposure,
                   "Radiance is shown as sRGB(clamp(E x radiance)); default: as in the metadata, else 1")
       ->type_name("E")
-      ->check(CLI::Range(1e-9f, 1e9f).description(""));
+      ->check(numberBetween(1e-9, 1e9));
   command.add_flag("--json", options.json, "Print JSON, null where a number is not known");
 }
 

@@ -18,6 +18,8 @@ struct CompareOptions {
   std::optional<float> radius, exposure;
   bool json = false;
 };
+// CLI::Range lets NaN pass.
+CLI::Validator numberBetween(double low, double high);
 void addCompareOptions(CLI::App& command, CompareOptions& options);
 
 struct Compared {

@@ -37,7 +37,7 @@ struct RenderOptions {
   GraphOptions graph;
   std::string scene, size = "1024x1024", gaze, device, timings, trace;
   std::vector<std::string> outputs;
-  uint32_t frames = 1, warmup = 0, seed = 1;
+  uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
   bool quiet = false, validation = false, showFovea = false;
 };
 
@@ -94,7 +94,7 @@ class Render {
   RunInfo info_;
   uint32_t inFlight_ = 2;
   uint64_t finished_ = 0;
-  double lastWallMs_ = 2 * kSlowFrameMs;  // of the first frame nothing is known
+  double lastWallMs_ = 2 * kSlowFrameMs;       // of the first frame nothing is known
   std::optional<graph::FrameResult> picture_;  // the last frame that was read back
   std::vector<std::string> files_;             // written beside the pictures
 };
@@ -275,15 +275,15 @@ void Render::renderFrames() {
   const uint64_t total = uint64_t(options_.warmup) + options_.frames;
   const bool pictures = !readback_.empty();
   progress_.frames(0, total);
-  uint64_t index = 0;
+  uint64_t index = 0;  // since the first frame of the run
   for (; index < total && !interrupted(); ++index) {
     const bool keep = outputs_->hasSequence() || index + 1 == total || lastWallMs_ > kSlowFrameMs;
-    submit(index, pictures && keep && index >= options_.warmup);
+    submit(options_.first + index, pictures && keep && index >= options_.warmup);
     takeFinished();
   }
   while (auto result = executor_->next()) take(std::move(*result));
   if (interrupted() && pictures && !picture_ && index >= options_.warmup) {
-    submit(index, true);
+    submit(options_.first + index, true);
     while (auto result = executor_->next()) take(std::move(*result));
   }
   progress_.clear();
@@ -369,6 +369,12 @@ void addRender(CLI::App& program, Action& action) {
   command
       ->add_option("--warmup", options->warmup,
                    "Frames before those, neither measured nor written; default 0")
+      ->type_name("N")
+      ->check(CLI::Range(0u, 10'000'000u).description(""));
+  command
+      ->add_option(
+          "--first", options->first,
+          "Number of the first frame, warm-up included: the scene's time is 42 frames a\nsecond; default 0")
       ->type_name("N")
       ->check(CLI::Range(0u, 10'000'000u).description(""));
   command->add_option("--seed", options->seed, "Seed of all random numbers; default 1")->type_name("S");

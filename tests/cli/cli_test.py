@@ -90,7 +90,7 @@ class Usage(CliTest):
 
     def test_numbers(self):
         for arguments in (["--frames", "0"], ["--frames", "-1"], ["--frames", "many"], ["--warmup", "-1"],
-                          ["--seed", "-1"], ["--seed", "1.5"], ["--seed", "4294967296"]):
+                          ["--seed", "-1"], ["--seed", "1.5"], ["--seed", "4294967296"], ["--first", "-1"]):
             with self.subTest(arguments=arguments):
                 self.fails(USAGE, *DIRECT, *arguments, says=[arguments[0]])
 
@@ -289,6 +289,16 @@ class Files(CliTest):
         self.succeeds(*DIRECT, "-o", "a_%03d.png", "-o", "last.png", "--frames", "3", "--warmup", "1")
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
                          ["a_001.png", "a_002.png", "a_003.png", "last.png"])
+
+    def test_first_frame(self):
+        """A run may start where in the scene's time it likes."""
+        moving = ["render", "direct", "--scene", "cornellbox_moving", *SMALL]
+        self.succeeds(*moving, "-o", "a_%03d.exr", "--frames", "45")
+        self.succeeds(*moving, "-o", "b_%03d.exr", "--frames", "2", "--warmup", "1", "--first", "42")
+        self.assertEqual(sorted(p.name for p in self.folder.glob("b_*")), ["b_043.exr", "b_044.exr"])
+        same = lambda a, b: subprocess.run(["idiff", "-q", a, b], cwd=self.folder, capture_output=True).returncode == 0
+        self.assertTrue(same("a_044.exr", "b_044.exr"))
+        self.assertFalse(same("a_000.exr", "b_044.exr"))
 
     def test_moving_scene_and_fovea(self):
         moving = ["render", "direct", "--scene", "cornellbox_moving", *SMALL, "--frames", "70"]

@@ -1,0 +1,172 @@
+"""fovea compare and fovea compare-sequence from outside. Usage: compare_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+
+import json
+import math
+import struct
+import sys
+import unittest
+
+from cli_test import BAD_INPUT, CANNOT_WRITE, USAGE, CliTest
+
+SIZE = (16, 8)
+
+
+def srgb(x):
+    x = min(max(x, 0), 1)
+    return 12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055
+
+
+class CompareTest(CliTest):
+    def pfm(self, name, value, size=SIZE):
+        """`value`: a number, or a function of x, y (from the top) and the channel."""
+        pixel = value if callable(value) else lambda x, y, c: value
+        (self.folder / name).parent.mkdir(exist_ok=True)
+        values = [pixel(x, y, c) for y in reversed(range(size[1])) for x in range(size[0]) for c in range(3)]
+        (self.folder / name).write_bytes(b"PF\n%d %d\n-1.0\n" % size + struct.pack(f"<{len(values)}f", *values))
+        return name
+
+    def json(self, *arguments):
+        return json.loads(self.succeeds(*arguments, "--json").stdout)
+
+
+class Compare(CompareTest):
+    def test_numbers(self):
+        self.pfm("g.pfm", 0.25)
+        # Wrong in one pixel of the fovea, which is the pixels at most 2 from (8, 4).
+        self.pfm("a.pfm", lambda x, y, c: 0.5 if (x, y) == (7, 3) else 0.25)
+        m = self.json("compare", "a.pfm", "g.pfm", "--radius", "0.125", "--exposure", "2")
+        self.assertEqual((m["exposure"], m["gaze"], m["size"]), (2, [0.5, 0.5], list(SIZE)))
+        pixels = sum((x + 0.5 - 8) ** 2 + (y + 0.5 - 4) ** 2 <= 4 for x in range(16) for y in range(8))
+        self.assertEqual((m["fovea"]["pixels"], m["whole"]["pixels"]), (pixels, 128))
+        error = (srgb(1) - srgb(0.5)) ** 2
+        self.assertAlmostEqual(m["fovea"]["mse"], error / pixels, delta=1e-6)
+        self.assertAlmostEqual(m["whole"]["mse"], error / 128, delta=1e-7)
+        self.assertAlmostEqual(m["whole"]["psnr"], -10 * math.log10(error / 128), delta=1e-3)
+        self.assertAlmostEqual(m["whole"]["relmse"], (0.25 / 0.26) ** 2 / 128, delta=1e-6)
+        self.assertEqual((m["periphery"]["mse"], m["periphery"]["relmse"], m["periphery"]["psnr"]), (0, 0, None))
+        self.assertGreater(m["fovea"]["flip"], m["periphery"]["flip"])
+        self.assertIsNone(m["whole"]["noise_floor"])
+        # The fovea elsewhere, and nowhere.
+        self.assertEqual(self.json("compare", "a.pfm", "g.pfm", "--radius", "0.1", "--gaze", "0,0")["fovea"]["mse"], 0)
+        self.assertIsNone(self.json("compare", "a.pfm", "g.pfm", "--radius", "0")["fovea"]["mse"])
+
+    def test_halves(self):
+        self.pfm("g.pfm", 0.5)
+        self.pfm("a.pfm", 0.4)
+        self.pfm("h1.pfm", 0.52)
+        self.pfm("h2.pfm", 0.48)
+        m = self.json("compare", "a.pfm", "g.pfm", "--halves", "h1.pfm", "h2.pfm")["fovea"]
+        noise = (srgb(0.52) - srgb(0.48)) ** 2 / 4
+        self.assertAlmostEqual(m["noise_floor"], noise, delta=1e-8)
+        self.assertAlmostEqual(m["mse"], (srgb(0.5) - srgb(0.4)) ** 2 - noise, delta=1e-7)
+        self.assertAlmostEqual(m["relmse_noise_floor"], 0.04 ** 2 / 4 / 0.51 ** 2, delta=1e-7)
+        self.pfm("h2.pfm", 0.48, (8, 8))
+        self.fails(BAD_INPUT, "compare", "a.pfm", "g.pfm", "--halves", "h1.pfm", "h2.pfm", says=["half", "8x8", "16x8"])
+        self.fails(USAGE, "compare", "a.pfm", "g.pfm", "--halves", "h1.pfm")
+
+    def test_rendered(self):
+        """Metadata and layers of the program's own files."""
+        reference = ["render", "reference", "--scene", "cornellbox", "--size", "32x32", "--set", "spp=8"]
+        self.succeeds("render", "ours", "--scene", "cornellbox", "--size", "32x32", "--set", "fovea_radius=0.2", "--set",
+                      "vpl_count=16", "--set", "map_size=16", "-o", "a.exr", "-o", "a.png", "--gaze", "0.25,0.75")
+        self.succeeds(*reference, "-o", "g.exr")
+        m = self.json("compare", "a.exr", "g.exr")
+        self.assertEqual([round(g, 6) for g in m["gaze"]], [0.25, 0.75])
+        self.assertEqual((m["layer"], m["exposure"], round(m["fovea_radius"], 6)), ("radiance", 1.25, 0.2))
+        for region in ("fovea", "periphery", "whole"):
+            for key in ("mse", "relmse", "flip", "noise_floor", "direct_floor"):
+                self.assertIsInstance(m[region][key], float, (region, key))
+        indirect = self.json("compare", "a.exr", "g.exr", "--layer", "indirect")["whole"]
+        self.assertGreater(indirect["noise_floor"], 0)
+        shown = self.json("compare", "a.png", "g.exr")
+        self.assertAlmostEqual(shown["whole"]["mse"], m["whole"]["mse"], delta=2e-4)
+        self.assertIsNone(shown["whole"]["relmse"])
+        self.fails(BAD_INPUT, "compare", "a.exr", "g.exr", "--layer", "half_a", says=["a.exr", "`half_a`", "`radiance`"])
+        self.fails(BAD_INPUT, "compare", "a.png", "g.exr", "--layer", "radiance", says=["a.png"])
+        self.succeeds(*reference, "--set", "tonemap.exposure=3", "-o", "bright.exr")
+        self.fails(BAD_INPUT, "compare", "a.exr", "bright.exr", says=["1.25", "3", "--exposure"])
+        self.succeeds("compare", "a.exr", "bright.exr", "--exposure", "2")
+
+    def test_table_and_error_picture(self):
+        self.pfm("g.pfm", 0.25, (80, 40))
+        self.pfm("a.pfm", 0.3, (80, 40))
+        out = self.succeeds("compare", "a.pfm", "g.pfm", "--error-image", "error.png").stdout
+        for row in ("fovea", "periphery", "whole"):
+            self.assertRegex(out, rf"(?m)^{row} +\d+ +[\d.e-]+")
+        self.assertIn("halves", out)
+        width, height = struct.unpack(">II", (self.folder / "error.png").read_bytes()[16:24])
+        self.assertEqual(width, 80)
+        self.assertGreater(height, 40)
+        self.fails(CANNOT_WRITE, "compare", "a.pfm", "g.pfm", "--error-image", "none/error.png", says=["none"])
+
+    def test_what_cannot_be_compared(self):
+        self.pfm("g.pfm", 0.25)
+        self.pfm("wide.pfm", 0.25, (17, 8))
+        self.fails(BAD_INPUT, "compare", "wide.pfm", "g.pfm", says=["wide.pfm", "17x8", "16x8"])
+        self.fails(BAD_INPUT, "compare", "none.pfm", "g.pfm", says=["none.pfm"])
+        self.write("text.exr", "no picture")
+        self.fails(BAD_INPUT, "compare", "g.pfm", "text.exr", says=["text.exr"])
+        self.fails(BAD_INPUT, "compare", "g.pfm", "g.pfm", "--layer", "indirect", says=["indirect"])
+        for bad in (math.nan, math.inf, -math.inf):
+            self.pfm("bad.pfm", lambda x, y, c: bad if (x, y, c) == (3, 5, 1) else 0.25)
+            self.fails(BAD_INPUT, "compare", "bad.pfm", "g.pfm", says=["bad.pfm", "3, 5"])
+            self.fails(BAD_INPUT, "compare", "g.pfm", "bad.pfm", "--json", says=["bad.pfm"])
+            self.fails(BAD_INPUT, "compare", "bad.pfm", "bad.pfm")
+            self.fails(BAD_INPUT, "compare", "g.pfm", "g.pfm", "--halves", "g.pfm", "bad.pfm", says=["bad.pfm"])
+
+    def test_usage(self):
+        self.pfm("g.pfm", 0.25)
+        for arguments in (["--gaze", "2,0"], ["--gaze", "x"], ["--radius", "-1"], ["--radius", "nan"], ["--exposure", "0"],
+                          ["--exposure", "many"], ["--error-scale", "0"], ["--ppd", "0"], ["--ppd", "nan"]):
+            with self.subTest(arguments=arguments):
+                self.fails(USAGE, "compare", "g.pfm", "g.pfm", *arguments, says=[arguments[0]])
+        self.fails(USAGE, "compare", "g.pfm", says=["REFERENCE"])
+
+
+class CompareSequence(CompareTest):
+    def sequence(self, folder, values, first=0):
+        for i, value in enumerate(values):
+            self.pfm(f"{folder}/f_{first + i:03d}.pfm", value)
+
+    def test_numbers(self):
+        self.sequence("a", [0.15, 0.25, 0.65])
+        self.sequence("g", [0.1, 0.2, 0.3])
+        a, g = [srgb(x) for x in (0.15, 0.25, 0.65)], [srgb(x) for x in (0.1, 0.2, 0.3)]
+        steps = lambda v: (v[1] - v[0], v[2] - v[1])
+        for names in (("a", "g"), ("a/f_%03d.pfm", "g"), ("a", "g/f_%d.pfm")):
+            m = self.json("compare-sequence", *names)
+            self.assertEqual((m["frames"], m["whole"]["pairs"]), (3, 2))
+            for region in ("fovea", "periphery", "whole"):
+                r = m[region]
+                self.assertAlmostEqual(r["mse"], sum((x - y) ** 2 for x, y in zip(a, g)) / 3, delta=1e-6)
+                self.assertAlmostEqual(r["mse_prime"], sum(s ** 2 for s in steps(a)) / 2, delta=1e-6)
+                self.assertAlmostEqual(r["reference_mse_prime"], sum(s ** 2 for s in steps(g)) / 2, delta=1e-6)
+                self.assertAlmostEqual(r["excess"], sum((s - t) ** 2 for s, t in zip(steps(a), steps(g))) / 2, delta=1e-6)
+                self.assertIsNone(r["excess_noise_floor"])
+        self.assertRegex(self.succeeds("compare-sequence", "a", "g").stdout, r"(?m)^fovea +2 ")
+
+    def test_what_cannot_be_compared(self):
+        command = ["compare-sequence", "a", "g"]
+        self.sequence("g", [0.1, 0.2, 0.3])
+        self.fails(BAD_INPUT, *command, says=["`a`"])
+        (self.folder / "a").mkdir()
+        self.fails(BAD_INPUT, *command, says=["`a`", "no frames"])
+        self.sequence("a", [0.1, 0.2])
+        self.fails(BAD_INPUT, *command, says=["0 to 1", "0 to 2"])
+        self.sequence("a", [0.2], first=3)
+        self.fails(BAD_INPUT, *command, says=["lacks frame 2"])
+        self.sequence("a", [0.2, math.nan], first=2)
+        (self.folder / "g/f_003.pfm").write_bytes((self.folder / "g/f_002.pfm").read_bytes())
+        self.fails(BAD_INPUT, *command, says=["a/f_003.pfm", "NaN"])
+        self.pfm("a/f_003.pfm", 0.1, (8, 8))
+        self.fails(BAD_INPUT, *command, says=["a/f_003.pfm", "8x8"])
+        self.pfm("a/other_0.pfm", 0.1)
+        self.fails(BAD_INPUT, *command, says=["more than one sequence"])
+        self.fails(BAD_INPUT, "compare-sequence", "a/f_%02x.pfm", "g", says=["%04d"])
+        self.fails(BAD_INPUT, "compare-sequence", "g/f_000.pfm", "g", says=["folder"])
+        self.sequence("one", [0.1])
+        self.fails(BAD_INPUT, "compare-sequence", "one", "one", says=["two frames"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
