@@ -10,6 +10,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/ray_scene.h"
+#include "tests/support/failure_pictures.h"
 #include "tests/support/pass_test.h"
 
 namespace fovea::test {
@@ -43,6 +44,7 @@ struct Agreement {
   double wrong = 0;   // share of pixels off by more than 5%
   double error = 0;   // mean absolute error, relative to the rays' mean
   double energy = 0;  // sum over the picture, relative to the rays'
+  std::vector<float> picture, rays;
   void record() const {
     testing::Test::RecordProperty("wrong", std::to_string(wrong));
     testing::Test::RecordProperty("error", std::to_string(error));
@@ -62,6 +64,7 @@ Agreement compare(const scene::Scene& scene) {
     const glm::vec3 expected =
         directRadiance(scene, geometry, rays, view, glm::vec2(i % kSize.x, i / kSize.x) + 0.5f);
     const glm::vec3 value(got[4 * i], got[4 * i + 1], got[4 * i + 2]);
+    result.rays.insert(result.rays.end(), {expected.x, expected.y, expected.z, 1});
     result.wrong += glm::length(value - expected) > 0.05f * glm::length(expected) + 1e-4f;
     const glm::vec3 difference = glm::abs(value - expected);
     result.error += difference.x + difference.y + difference.z;
@@ -72,14 +75,18 @@ Agreement compare(const scene::Scene& scene) {
   result.error /= want;
   result.energy = sum / want;
   result.record();
+  result.picture = got;
   return result;
 }
 
 TEST(DirectGraph, CornellBoxEqualsRays) {
-  const Agreement agreement = compare(scene::builtin("cornellbox"));
+  const scene::Scene scene = scene::builtin("cornellbox");
+  const Agreement agreement = compare(scene);
   EXPECT_LT(agreement.wrong, 0.01);  // rims of shadows, which the filter softens
   EXPECT_LT(agreement.error, 0.02);
   EXPECT_NEAR(agreement.energy, 1, 0.01);
+  if (HasFailure())
+    ADD_FAILURE() << failurePictures(agreement.picture, agreement.rays, kSize.x, scene.exposure);
 }
 
 TEST(DirectGraph, SponzaEqualsRays) {
@@ -94,6 +101,8 @@ TEST(DirectGraph, SponzaEqualsRays) {
   EXPECT_LT(agreement.wrong, 0.05);  // foliage and the rims of shadows, texels of 2 cm
   EXPECT_LT(agreement.error, 0.08);
   EXPECT_NEAR(agreement.energy, 1, 0.02);
+  if (HasFailure())
+    ADD_FAILURE() << failurePictures(agreement.picture, agreement.rays, kSize.x, scene.exposure);
 }
 
 }  // namespace

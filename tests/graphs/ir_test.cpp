@@ -6,6 +6,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "tests/support/failure_pictures.h"
 #include "tests/support/pass_test.h"
 #include "tests/support/path_reference.h"
 #include "tests/support/shapes.h"
@@ -59,6 +60,7 @@ TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
 struct Comparison {
   glm::dvec3 meanRatio{0};
   double relativeError = 0;  // mean of (a - g)^2 / (g + 0.01)^2
+  std::vector<float> reference;
 };
 
 Comparison compare(const std::vector<float>& image, const scene::Scene& s, uint32_t side, int samples) {
@@ -76,6 +78,7 @@ Comparison compare(const std::vector<float>& image, const scene::Scene& s, uint3
       const glm::dvec3 got(image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]);
       sumImage += got;
       sumReference += want;
+      result.reference.insert(result.reference.end(), {float(want.x), float(want.y), float(want.z), 1});
       const glm::dvec3 e = (got - want) / (want + 0.01);
       result.relativeError += glm::dot(e, e) / (3.0 * side * side);
     }
@@ -93,10 +96,12 @@ TEST(InstantRadiosity, AccumulatedFramesApproachTracedPaths) {
   const GraphRun run = runIr(
       "ir_accumulated", s,
       {"vpl_count=1000", "kernel=clamp", "clamp_distance=0", "interleave=1", "shadow_map_size=512"}, 48, 6);
-  const Comparison c = compare(toFloats(run.outputs.at("indirect")), s, 48, 400);
+  const std::vector<float> indirect = toFloats(run.outputs.at("indirect"));
+  const Comparison c = compare(indirect, s, 48, 400);
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(c.meanRatio[channel], 1, 0.03) << "channel " << channel;
   EXPECT_LT(c.relativeError, 0.05);  // 0.028: the spikes of 1 / d^2 where two walls meet
+  if (HasFailure()) ADD_FAILURE() << failurePictures(indirect, c.reference, 48, s.exposure);
 }
 
 // The paper's clamp of 1.5 m loses light near the VPLs (METHOD section 3), and only loses.
