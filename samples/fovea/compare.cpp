@@ -58,7 +58,8 @@ void print(const Options& options, const Compared& compared, const Row (&rows)[3
                formatMeasure(row.directFloor));
   }
   if (!compared.halves)
-    fmt::print("\nThe reference has no halves (half_a, half_b): its noise is not known, nor subtracted.\n");
+    fmt::print(
+        "\nNo halves of this reference (layers half_a, half_b): its noise is not known, nor subtracted.\n");
 }
 
 ExitCode compare(const Options& options) {

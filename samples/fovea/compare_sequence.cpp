@@ -146,7 +146,8 @@ void print(const Options& options, const Frames& frames, const Compared& last,
     fmt::print(kLine, name, m.pairs, formatMeasure(m.mse), formatMeasure(m.change),
                formatMeasure(m.referenceChange), formatMeasure(m.excess), formatMeasure(m.excessNoiseFloor));
   if (std::isnan(result.whole.noiseFloor))
-    fmt::print("\nThe reference has no halves (half_a, half_b): its noise is not known, nor subtracted.\n");
+    fmt::print(
+        "\nNo halves of this reference (layers half_a, half_b): its noise is not known, nor subtracted.\n");
 }
 
 ExitCode compareSequence(const Options& options) {
