@@ -85,10 +85,8 @@ void addPaving(MeshBuilder& m, const Palette& p) {
       const uint32_t index = uint32_t(i * kAcross + j);
       const bool border = i == 0 || j == 0 || i == kAlong - 1 || j == kAcross - 1;
       const bool band = i == 1 || j == 1 || i == kAlong - 2 || j == kAcross - 2;
-      const bool accent =
-          !border && !band && (i - 2) % 4 == 2 && (j - 2) % 4 == (i % 8 < 4 ? 1 : 3) - 0 && false;
       const bool lozenge = !border && !band && (i + j) % 4 == 0 && (i - j + 40) % 4 == 0;
-      const uint32_t stone = border || accent || lozenge         ? p.floorDark
+      const uint32_t stone = border || lozenge                   ? p.floorDark
                              : band || random(21, index) < 0.35f ? p.floorWarm
                                                                  : p.floorPale;
       Shape slab =
@@ -135,13 +133,13 @@ void addCornices(MeshBuilder& m, const Palette& p) {
   m.add(p.limestone, ring(rectangle(0.24f, 0.10f), kUpper + 0.05f));
   // The roof over the galleries: boards below, tiles above.
   m.add(p.roofTiles,
-        ring(Outline({{0.78f, 0}, {0.78f, 0.06f}, {-3.9f, 1.36f}, {-3.9f, 0.2f}, {-0.3f, 0}}), kRoof));
+        ring(Outline({{0.84f, 0}, {0.84f, 0.06f}, {-3.9f, 1.36f}, {-3.9f, 0.2f}, {-0.3f, 0}}), kRoof));
 }
 
 void addLowerSide(MeshBuilder& m, const Palette& p, const Side& side) {
   const float length = side.length(), half = 0.5f * length, radius = 0.5f * kOpening;
   m.add(p.plaster, arcadeWall(length, side.bays, kOpening, kCornice - kSpring, kWall, 0), at(0, kSpring, 0));
-  const Shape outer = archivolt(radius, 0.20f, 0.05f, 24);
+  const Shape outer = archivolt(radius, 0.20f, 0.05f, 20);
   const Shape keystone = bent(box({-0.09f, 0, 0}, {0.09f, 0.34f, 0.09f}, {.bevel = 0.012f}), [](glm::vec3 q) {
     return glm::vec3(q.x * (1 + 0.8f * q.y), q.y, q.z * (0.7f + 0.9f * q.y));
   });
@@ -161,7 +159,7 @@ void addLowerSide(MeshBuilder& m, const Palette& p, const Side& side) {
   for (int i = 0; i < side.bays; ++i) {
     const float x = -half + kBay * (float(i) + 0.5f);
     m.add(p.limestone, outer, at(x, kSpring, 0.5f * kWall));
-    m.add(p.limestone, archivolt(radius, 0.20f, 0.05f, 14), at(x, kSpring, -0.5f * kWall) * turnY(180));
+    m.add(p.limestone, archivolt(radius, 0.20f, 0.05f, 12), at(x, kSpring, -0.5f * kWall) * turnY(180));
     m.add(p.limestone, keystone, at(x, kSpring + radius - 0.03f, 0.5f * kWall - 0.02f));
     m.add(p.plaster, groinVault(kDepth, 1.45f), at(x, kSpring + 0.08f, -0.5f * kDepth));
   }
@@ -187,13 +185,13 @@ void addUpperSide(MeshBuilder& m, const Palette& p, const Side& side) {
   const Shape moulding = archivolt(0.5f * kUpperOpening, 0.10f, 0.035f, 16);
   const float foot = kUpper + kParapet;
   const MeshBuilder slender = colonnette(p.limestone, kUpperSpring - foot);
-  const Shape post = baluster(kParapet - 0.24f),
-              pedestal = block(0.30f, kParapet + 0.002f, 0.32f, {.bevel = 0.012f});
+  const Shape post = baluster(kParapet - 0.24f), pedestal = block(0.30f, kParapet + 0.002f, 0.32f);
   const Shape dentil = box({-0.07f, 0, 0}, {0.07f, 0.13f, 0.18f});
   for (int i = 0; i < arches; ++i) {
     const float x = -half + pitch * (float(i) + 0.5f);
     m.add(p.limestone, moulding, at(x, kUpperSpring, 0.15f));
-    for (int k = 0; k < 5; ++k) m.add(p.limestone, post, at(x + 0.235f * (float(k) - 2), kUpper + 0.10f, 0));
+    for (int k = 0; k < 4; ++k)
+      m.add(p.limestone, post, at(x + 0.27f * (float(k) - 1.5f), kUpper + 0.10f, 0));
   }
   for (int i = 1; i < arches; ++i) {
     const float x = -half + pitch * float(i);
@@ -205,19 +203,18 @@ void addUpperSide(MeshBuilder& m, const Palette& p, const Side& side) {
     m.add(p.limestone, dentil,
           at(-half + length * (float(i) + 0.5f) / float(dentils), kEaves + 0.195f, 0.24f));
   // Ceiling beams of the gallery.
-  const Shape beam = box({-0.08f, 0, -kDepth - 0.1f}, {0.08f, 0.22f, 0.0f}, {.bevel = 0.01f});
+  const Shape beam = box({-0.08f, 0, -kDepth - 0.1f}, {0.08f, 0.22f, 0.0f});
   const int beams = int(length / 0.75f);
   for (int i = 0; i < beams; ++i)
     m.add(p.wood, beam, at(-half + length * (float(i) + 0.5f) / float(beams), kEaves + 0.10f, 0));
   // Tiles along the eaves, which catch the light.
   Outline half_({-0.085f, 0});
-  half_.arc(0.085f, 0, -1, 5).line(0.068f, 0).arc(-0.068f, 0, 1, 5);
+  half_.arc(0.085f, 0, -1, 4).line(0.068f, 0).arc(-0.068f, 0, 1, 3);
   const Shape tile = sweep({{0, 0, 0.08f}, {0, 0.165f, -0.52f}}, half_, {.up = glm::vec3(0, 1, 0)});
   const int tiles = int((length + 1.2f) / 0.235f);
   for (int i = 0; i < tiles; ++i)
-    m.add(
-        p.roofTiles, tile,
-        at(-half - 0.6f + (length + 1.2f) * (float(i) + 0.5f) / float(tiles), kRoof + 0.045f, 0.74f - 0.0f));
+    m.add(p.roofTiles, tile,
+          at(-half - 0.6f + (length + 1.2f) * (float(i) + 0.5f) / float(tiles), kRoof + 0.045f, 0.74f));
 }
 
 // The wall behind the galleries: doors and niches below, shuttered windows above, sealed by a second layer.
@@ -288,7 +285,7 @@ void addGalleries(MeshBuilder& m, const Palette& p) {
       m.add(p.plaster, groinVault(kDepth, 1.45f),
             at(sx * (x0 + 0.5f * kDepth), kSpring + 0.08f, sz * (z0 + 0.5f * kDepth)));
       for (int i = 0; i < 4; ++i)
-        m.add(p.wood, box({-0.08f, 0, 0}, {0.08f, 0.22f, kDepth}, {.bevel = 0.01f}),
+        m.add(p.wood, box({-0.08f, 0, 0}, {0.08f, 0.22f, kDepth}),
               at(sx * (x0 + 0.375f + 0.75f * float(i)), kEaves + 0.10f, sz > 0 ? z0 : -z0 - kDepth));
     }
 }
@@ -303,20 +300,20 @@ void addDrape(MeshBuilder& m, const Palette& p, const Side& side, int bay, float
   f.drawn = drawn;
   f.seed = seed;
   f.folds = 9;
-  m.add(cloth, surface(drape(f, 72, 22)), side.placement * at(x, y, z));
+  m.add(cloth, surface(drape(f, 54, 14)), side.placement * at(x, y, z));
   m.add(p.iron, tube({{-0.5f * kOpening, 0, 0}, {0.5f * kOpening, 0, 0}}, 0.016f, 8),
         side.placement * at(x, y + 0.015f, z));
 }
 
-// A carpet over the balustrade.
+// A carpet over the balustrade, `drop` long on the court's side.
 void addCarpet(MeshBuilder& m, const Side& side, float x, uint32_t cloth, float width, float drop) {
-  const Sheet s = sheet(14, 24, {width, 2.4f}, [&](float u, float v) {
-    const float along = v * (drop + 0.75f) - 0.45f;  // from inside over the rail and down
-    const float hang = along - 0.17f, sway = 0.012f * std::sin(7 * u + 2 * v) * std::max(hang, 0.0f);
-    const float px = (u - 0.5f) * width;
-    if (along < -0.15f) return glm::vec3(px, 0.02f + (along + 0.15f), -0.17f);
-    if (along < 0.17f) return glm::vec3(px, 0.02f + 0.008f * std::cos(9 * along), along);
-    return glm::vec3(px, 0.02f - hang, 0.175f + sway + 0.33f * std::min(std::max(hang - 0.80f, 0.0f), 0.4f));
+  const Sheet s = sheet(12, 24, {width, drop + 0.75f}, [&](float u, float v) {
+    const float along = v * (drop + 0.62f) - 0.45f;  // from inside over the rail and down
+    const float hang = std::max(along - 0.17f, 0.0f), px = (u - 0.5f) * width;
+    if (along < -0.17f) return glm::vec3(px, 0.015f + (along + 0.17f), -0.175f);
+    if (hang == 0) return glm::vec3(px, 0.015f, along);
+    return glm::vec3(px * (1 - 0.03f * hang), 0.015f - hang,
+                     0.175f + 0.025f * hang * std::sin(9 * u + 3 * v));
   });
   m.add(cloth, surface(s), side.placement * at(x, kUpper + kParapet, 0));
 }
@@ -325,15 +322,16 @@ void furnish(SceneBuilder& b, const Palette& p) {
   MeshBuilder m;
   addDrape(m, p, kSides[1], 1, 0.9f, p.cloth[1], 31);
   addDrape(m, p, kSides[1], 3, -0.9f, p.cloth[2], 32);
-  addDrape(m, p, kSides[1], 5, 0.0f, p.cloth[0], 33);
-  addDrape(m, p, kSides[0], 1, 0.0f, p.cloth[3], 34);
+  addDrape(m, p, kSides[1], 5, -0.8f, p.cloth[3], 33);
   addDrape(m, p, kSides[0], 2, 0.9f, p.cloth[0], 35);
   addDrape(m, p, kSides[0], 4, -0.85f, p.cloth[1], 36);
+  addDrape(m, p, kSides[0], 5, -0.9f, p.cloth[3], 39);
   addDrape(m, p, kSides[0], 6, 0.85f, p.cloth[2], 37);
-  addCarpet(m, kSides[0], -3.75f, p.carpet[0], 1.05f, 1.9f);
-  addCarpet(m, kSides[0], 5.25f, p.carpet[1], 0.95f, 1.7f);
-  addCarpet(m, kSides[1], 2.25f, p.carpet[0], 1.05f, 1.9f);
-  addCarpet(m, kSides[3], -0.75f, p.carpet[1], 1.0f, 1.8f);
+  addDrape(m, p, kSides[3], 0, -0.9f, p.cloth[3], 38);
+  addCarpet(m, kSides[0], -3.75f, p.carpet[0], 1.05f, 0.78f);
+  addCarpet(m, kSides[0], 5.25f, p.carpet[1], 0.95f, 0.72f);
+  addCarpet(m, kSides[1], 2.25f, p.carpet[0], 1.05f, 0.78f);
+  addCarpet(m, kSides[3], -0.75f, p.carpet[1], 1.0f, 0.75f);
   for (const int k : {0, 1})
     for (const float x : {-6.0f, 0.0f, 6.0f})
       m.add(lantern(p), kSides[k].placement * at(x, kSpring + 1.46f, -0.5f * kDepth));
@@ -347,10 +345,10 @@ void furnish(SceneBuilder& b, const Palette& p) {
 
   const uint32_t trees[2] = {b.mesh("orange tree", orangeTree(p, 41)),
                              b.mesh("second orange tree", orangeTree(p, 47))};
-  b.place("orange tree 1", trees[0], {-4.6f, 0, -2.6f}, 20);
-  b.place("orange tree 2", trees[1], {4.4f, 0, -2.6f}, 200, glm::vec3(1.1f));
-  b.place("orange tree 3", trees[1], {-4.5f, 0, 2.7f}, 75, glm::vec3(0.95f));
-  b.place("orange tree 4", trees[0], {4.6f, 0, 2.6f}, 140, glm::vec3(1.05f));
+  b.place("orange tree 1", trees[0], {-5.7f, 0, -3.3f}, 20);
+  b.place("orange tree 2", trees[1], {4.4f, 0, -3.0f}, 200, glm::vec3(1.1f));
+  b.place("orange tree 3", trees[1], {-3.7f, 0, 3.0f}, 75, glm::vec3(0.95f));
+  b.place("orange tree 4", trees[0], {4.8f, 0, 2.9f}, 140, glm::vec3(1.05f));
 
   MeshBuilder greens;
   const glm::mat4 pots[4] = {at(-9.6f, kStep, 3.7f), at(-9.5f, kStep, -3.8f), at(9.6f, kStep, -3.6f),
@@ -383,7 +381,7 @@ void addMovingDrape(SceneBuilder& b, const Palette& p) {
     g.billow = billow;
     g.wave = wave;
     g.phase = phase;
-    return drape(g, 30, 10);
+    return drape(g, 24, 8);
   };
   f.billow = 0.12f;
   const Sheet rest = shape(0.12f, 0, 0);
@@ -393,7 +391,7 @@ void addMovingDrape(SceneBuilder& b, const Palette& p) {
                   {shape(0.34f, 0, 0), shape(0.12f, 0.13f, 0), shape(0.12f, 0.13f, 0.5f * glm::pi<float>())}),
              p.cloth[0]);
   const glm::vec3 where = glm::vec3(
-      kSides[1].placement * glm::vec4(-0.5f * kSides[1].length() + kBay * 4.5f, kSpring - 0.03f, 0.02f, 1));
+      kSides[1].placement * glm::vec4(-0.5f * kSides[1].length() + kBay * 2.5f, kSpring - 0.03f, 0.02f, 1));
   const uint32_t node = b.place("curtain in the wind", mesh, where, 180);
   b.swing(node,
           {{.amplitude = 0.8f, .period = 4},
@@ -423,12 +421,12 @@ Scene atriumScene() {
   furnish(b, p);
   addMovingDrape(b, p);
   MeshBuilder plane;
-  plane.add(p.paper, paperPlane());
-  b.place("paper plane", b.mesh("paper plane", std::move(plane)), {-1.5f, 3.4f, -0.6f}, 60);
-  b.sun("sun", {1.0f, 0.93f, 0.82f}, 20, {0.42f, -1.0f, 0.36f});
-  b.camera({-9.3f, 1.75f, -0.9f}, {0, 3.0f, 0.35f}, 52);
-  b.scene.environment = {0.09f, 0.16f, 0.28f};
-  return b.finish(2.6f, {0.62f, 0.55f});
+  plane.add(p.paper, paperPlane(), scaled(0.75f));
+  b.place("paper plane", b.mesh("paper plane", std::move(plane)), {-2.6f, 3.6f, -0.9f}, 60);
+  b.sun("sun", {1.0f, 0.93f, 0.82f}, 20, {0.40f, -0.92f, 0.50f});
+  b.camera({-9.7f, 1.7f, -1.3f}, {0, 2.3f, 0.0f}, 50);
+  b.scene.environment = {0.20f, 0.36f, 0.62f};
+  return b.finish(1.15f, {0.62f, 0.55f});
 }
 
 }  // namespace fovea::scene

@@ -22,7 +22,7 @@ float smoothstep(float low, float high, float x) {
 
 // A leaf of a capital: rises along +y from the origin, leans against +z and curls over at its tip.
 Shape capitalLeaf(float width, float height, float curl) {
-  const Sheet s = sheet(4, 6, {width, height}, [&](float u, float v) {
+  const Sheet s = sheet(4, 3, {width, height}, [&](float u, float v) {
     const float t = 1 - v, x = 2 * u - 1;
     const float half =
         0.5f * width * (0.85f + 0.35f * std::sin(t * 2.6f)) * (1 - 0.75f * smoothstep(0.75f, 1, t));
@@ -37,9 +37,9 @@ Shape capitalLeaf(float width, float height, float curl) {
 // Moulded foot of a column: two rolls with a hollow between them.
 void atticBase(Outline& o, float radius, float y, float height) {
   const float r = radius, h = height;
-  o.line(r * 1.36f, y).arc(r * 1.36f, y + 0.38f * h, 1, 6).line(r * 1.24f, y + 0.40f * h);
-  o.arc(r * 1.16f, y + 0.64f * h, -0.5f, 4).line(r * 1.2f, y + 0.66f * h).arc(r * 1.2f, y + 0.88f * h, 1, 5);
-  o.line(r * 1.06f, y + 0.90f * h).arc(r, y + 1.15f * h, -0.25f, 3);
+  o.line(r * 1.36f, y).arc(r * 1.36f, y + 0.38f * h, 1, 5).line(r * 1.24f, y + 0.40f * h);
+  o.arc(r * 1.16f, y + 0.64f * h, -0.5f, 3).line(r * 1.2f, y + 0.66f * h).arc(r * 1.2f, y + 0.88f * h, 1, 4);
+  o.line(r * 1.06f, y + 0.90f * h).arc(r, y + 1.15f * h, -0.25f, 2);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ Palette makePalette(SceneBuilder& b) {
   Palette p{};
   const uint32_t stone =
       b.texture(plaster("limestone", glm::vec3(0.80f, 0.78f, 0.74f), 0.30f, 0.18f, 512, 11));
-  const uint32_t wall = b.texture(plaster("wall", glm::vec3(0.82f, 0.80f, 0.78f), 0.22f, 0.22f, 512, 12));
+  const uint32_t wall = b.texture(plaster("wall", glm::vec3(0.82f, 0.80f, 0.78f), 0.22f, 0.16f, 512, 12));
   MasonryLook blocks;
   blocks.columns = 4;
   blocks.rows = 7;
@@ -85,13 +85,13 @@ Palette makePalette(SceneBuilder& b) {
   p.limestone = b.material("limestone", {0.80f, 0.73f, 0.61f}, {.texture = stone, .metres = 2.6f});
   p.ashlar =
       b.material("ashlar", {0.80f, 0.72f, 0.59f}, {.texture = ashlar, .metres = 3.2f, .metresHigh = 2.45f});
-  p.plaster = b.material("plaster", {0.86f, 0.68f, 0.46f}, {.texture = wall, .metres = 5});
+  p.plaster = b.material("plaster", {0.84f, 0.62f, 0.38f}, {.texture = wall, .metres = 5});
   p.dado = b.material("red plaster", {0.62f, 0.24f, 0.15f}, {.texture = wall, .metres = 3.7f});
   p.tiles = b.material("floor tiles", {0.66f, 0.36f, 0.23f}, {.texture = tiles, .metres = 2.4f});
   p.roofTiles = b.material("roof tiles", {0.66f, 0.30f, 0.17f}, {.texture = stone, .metres = 1.1f});
-  p.floorPale = b.material("pale paving", {0.72f, 0.67f, 0.58f}, {.texture = stone, .metres = 3.1f});
-  p.floorWarm = b.material("warm paving", {0.66f, 0.56f, 0.44f}, {.texture = stone, .metres = 2.7f});
-  p.floorDark = b.material("red paving", {0.46f, 0.22f, 0.16f}, {.texture = stone, .metres = 2.2f});
+  p.floorPale = b.material("pale paving", {0.56f, 0.50f, 0.42f}, {.texture = stone, .metres = 3.1f});
+  p.floorWarm = b.material("warm paving", {0.50f, 0.41f, 0.31f}, {.texture = stone, .metres = 2.7f});
+  p.floorDark = b.material("red paving", {0.36f, 0.17f, 0.12f}, {.texture = stone, .metres = 2.2f});
   p.mortar = b.material("mortar", {0.30f, 0.27f, 0.23f});
   p.wood = b.material("beams", {0.36f, 0.22f, 0.12f}, {.texture = grain, .metres = 0.9f});
   p.door = b.material("doors", {0.26f, 0.33f, 0.27f}, {.texture = grain, .metres = 0.8f});
@@ -104,7 +104,7 @@ Palette makePalette(SceneBuilder& b) {
   p.leaf = b.material("leaves", {0.11f, 0.27f, 0.05f}, {.doubleSided = true});
   p.darkLeaf = b.material("dark leaves", {0.06f, 0.17f, 0.04f}, {.doubleSided = true});
   p.orange = b.material("oranges", {0.88f, 0.36f, 0.03f});
-  p.paper = b.material("paper", {0.86f, 0.83f, 0.76f}, {.doubleSided = true});
+  p.paper = b.material("paper", {0.80f, 0.16f, 0.09f}, {.doubleSided = true});
   const glm::vec3 colors[4] = {
       {0.66f, 0.06f, 0.045f}, {0.07f, 0.14f, 0.44f}, {0.84f, 0.50f, 0.07f}, {0.10f, 0.32f, 0.11f}};
   const char* names[4] = {"madder cloth", "indigo cloth", "ochre cloth", "green cloth"};
@@ -124,15 +124,15 @@ MeshBuilder column(uint32_t stone, float height) {
   Outline o;
   o.line(0, kPlinth);
   atticBase(o, kRadius, kPlinth, 0.17f);
-  for (int i = 1; i <= 8; ++i) {  // entasis: widest at a third of the height
-    const float t = float(i) / 8;
+  for (int i = 1; i <= 6; ++i) {  // entasis: widest at a third of the height
+    const float t = float(i) / 6;
     o.line(kRadius * (1 + 0.03f * std::sin(t * 2.4f) - 0.16f * t * t), glm::mix(0.33f, top - 0.07f, t));
   }
   const float neck = o.points().back().x;
   o.line(neck + 0.025f, top - 0.05f).arc(neck + 0.025f, top - 0.005f, 1, 4).line(neck - 0.005f, top);
   o.curve({neck - 0.01f, top + 0.5f * kCapital}, {neck + 0.03f, top + 0.75f * kCapital},
           {neck + 0.10f, top + kCapital}, 6);
-  m.add(stone, lathe(o, {.segments = 24}));
+  m.add(stone, lathe(o, {.segments = 18}));
   const Shape low = capitalLeaf(0.125f, 0.20f, 0.05f), high = capitalLeaf(0.12f, 0.34f, 0.07f);
   for (int i = 0; i < 8; ++i) {
     m.add(stone, low, turnY(45.0f * float(i)) * at(0, top, neck - 0.012f));
@@ -140,12 +140,12 @@ MeshBuilder column(uint32_t stone, float height) {
   }
   // Scrolls below the abacus' corners.
   std::vector<glm::vec3> spiral;
-  for (int i = 0; i <= 14; ++i) {
-    const float t = float(i) / 14, a = 1.2f - 8.2f * t, r = 0.062f * (1 - 0.75f * t);
+  for (int i = 0; i <= 9; ++i) {
+    const float t = float(i) / 9, a = 1.2f - 8.2f * t, r = 0.062f * (1 - 0.75f * t);
     spiral.push_back({0, r * std::sin(a), r * std::cos(a)});
   }
   const Shape scroll =
-      sweep(spiral, roundedRectangle(0.03f, 0.07f, 0.012f, 1),
+      sweep(spiral, rectangle(0.03f, 0.07f),
             {.up = glm::vec3(1, 0, 0), .creaseDegrees = 60, .scale = [](float t) { return 1 - 0.45f * t; }});
   for (int i = 0; i < 4; ++i)
     m.add(stone, scroll, turnY(90.0f * float(i) + 45) * at(0, height - kAbacus - 0.075f, neck + 0.13f));
@@ -157,7 +157,7 @@ MeshBuilder column(uint32_t stone, float height) {
       return p;
     };
     const glm::vec2 end = turned({0.26f, -0.30f}), cut = turned({0.30f, -0.26f});
-    plan.arc(end.x, end.y, -0.16f, 5);
+    plan.arc(end.x, end.y, -0.16f, 4);
     if (i < 3)
       plan.line(cut.x, cut.y);
     else
@@ -177,10 +177,7 @@ MeshBuilder colonnette(uint32_t stone, float height) {
   const float top = height - 0.30f, neck = kRadius * 0.86f;
   o.line(kRadius * 1.01f, 0.5f * height).line(neck, top - 0.02f).arc(neck, top + 0.02f, 1, 3);
   o.curve({neck, top + 0.12f}, {neck + 0.02f, top + 0.19f}, {neck + 0.065f, height - 0.07f}, 6);
-  m.add(stone, lathe(o, {.segments = 16, .swell = [&](float a, float y) {
-                           const float t = smoothstep(top + 0.02f, top + 0.10f, y);  // petals of the capital
-                           return 1 + 0.13f * t * (std::abs(std::cos(4 * a)) - 0.4f);
-                         }}));
+  m.add(stone, lathe(o, {.segments = 12}));
   m.add(stone, block(0.29f, 0.075f, 0.29f, {.bevel = 0.012f}), at(0, height - 0.075f, 0));
   return m;
 }
@@ -189,15 +186,15 @@ Shape baluster(float height) {
   const float h = height;
   Outline o({0.062f, 0});
   o.line(0.062f, 0.06f * h).line(0.045f, 0.10f * h);
-  o.through({{0.034f, 0.16f * h}, {0.066f, 0.36f * h}, {0.030f, 0.66f * h}, {0.027f, 0.80f * h}}, 2);
+  o.through({{0.034f, 0.16f * h}, {0.070f, 0.36f * h}, {0.030f, 0.66f * h}, {0.027f, 0.80f * h}}, 2);
   o.line(0.046f, 0.85f * h).line(0.046f, 0.89f * h).line(0.060f, 0.93f * h).line(0.060f, h);
-  return lathe(o, {.segments = 10});
+  return lathe(o, {.segments = 8});
 }
 
 Shape groinVault(float side, float rise) {
   const float half = 0.5f * side;
   // A quarter, denser where it rises steeply; the groin runs along the diagonals of its cells.
-  const Sheet quarter = sheet(8, 8, {half, half}, [&](float u, float v) {
+  const Sheet quarter = sheet(6, 6, {half, half}, [&](float u, float v) {
     const float a = 0.5f * glm::pi<float>() * u, b = 0.5f * glm::pi<float>() * v;
     return glm::vec3(half * std::sin(a), rise * std::max(std::cos(a), std::cos(b)), half * std::sin(b));
   });
@@ -215,12 +212,12 @@ MeshBuilder tondo(uint32_t rim, uint32_t glaze, uint32_t relief) {
   MeshBuilder m;
   Outline ring({0.24f, 0});
   ring.line(0.30f, 0).line(0.30f, 0.03f).arc(0.25f, 0.05f, 0.6f, 4).line(0.235f, 0.02f);
-  m.add(rim, lathe(ring, {.segments = 28, .closed = true}), turnX(90));
-  m.add(glaze, lathe(Outline({{0.245f, 0.012f}, {0.12f, 0.018f}, {0, 0.02f}}), {.segments = 24}), turnX(90));
+  m.add(rim, lathe(ring, {.segments = 18, .closed = true}), turnX(90));
+  m.add(glaze, lathe(Outline({{0.245f, 0.012f}, {0.12f, 0.018f}, {0, 0.02f}}), {.segments = 20}), turnX(90));
   // A flower of eight petals.
   const Outline bud = Outline({0.17f, 0.015f})
-                          .curve({0.16f, 0.05f}, {0.07f, 0.055f}, {0.05f, 0.03f}, 4)
-                          .curve({0.045f, 0.05f}, {0.02f, 0.06f}, {0, 0.06f}, 3);
+                          .curve({0.16f, 0.05f}, {0.07f, 0.055f}, {0.05f, 0.03f}, 2)
+                          .curve({0.045f, 0.05f}, {0.02f, 0.06f}, {0, 0.06f}, 2);
   m.add(relief,
         lathe(bud, {.segments = 32,
                     .swell = [](float a, float) { return 0.62f + 0.38f * std::abs(std::cos(4 * a)); }}),
@@ -258,8 +255,8 @@ MeshBuilder shutters(uint32_t wood, float width, float height) {
     for (const float y : {0.0f, 0.47f, 0.94f})
       leaf.add(wood,
                box({-0.5f * w + 0.06f, y * height, 0.02f}, {0.5f * w - 0.06f, (y + 0.06f) * height, 0.05f}));
-    for (int i = 0; i < 16; ++i) {
-      const float y = (0.075f + 0.052f * float(i) + (i >= 8 ? 0.025f : 0.0f)) * height;
+    for (int i = 0; i < 12; ++i) {
+      const float y = (0.085f + 0.070f * float(i) + (i >= 6 ? 0.02f : 0.0f)) * height;
       leaf.add(wood, box({-0.5f * w + 0.06f, -0.016f, -0.004f}, {0.5f * w - 0.06f, 0.016f, 0.004f}),
                at(0, y, 0.033f) * turnX(35));
     }
@@ -279,7 +276,7 @@ MeshBuilder wellHead(const Palette& p) {
   o.curve({0.56f, 0.60f}, {0.60f, 0.85f}, {0.70f, 1.00f}, 8).line(0.73f, 1.02f).arc(0.73f, 1.09f, 1, 5);
   o.line(0.78f, 1.10f).line(0.78f, 1.17f).line(0.76f, 1.19f).line(0.56f, 1.19f).line(0.54f, 1.17f);
   o.line(0.50f, 0.95f);
-  m.add(p.limestone, lathe(o, {.segments = 48, .closed = true, .swell = [](float a, float y) {
+  m.add(p.limestone, lathe(o, {.segments = 36, .closed = true, .swell = [](float a, float y) {
                                  const float t = smoothstep(0.5f, 0.6f, y) * (1 - smoothstep(0.92f, 1.0f, y));
                                  return 1 + 0.035f * t * std::cos(12 * a);
                                }}));
@@ -317,8 +314,8 @@ MeshBuilder pot(uint32_t clay, uint32_t soil, float radius, float height) {
       .line(0.84f * r, h)
       .line(0.82f * r, 0.88f * h);
   MeshBuilder m;
-  m.add(clay, lathe(o, {.segments = 28}));
-  m.add(clay, torus(0.885f * r, 0.022f * r, 28, 6), at(0, 0.55f * h, 0));
+  m.add(clay, lathe(o, {.segments = 24}));
+  m.add(clay, torus(0.885f * r, 0.022f * r, 24, 5), at(0, 0.55f * h, 0));
   m.add(soil,
         lathe(Outline({{0.83f * r, 0.885f * h}, {0.4f * r, 0.90f * h}, {0, 0.91f * h}}), {.segments = 20}));
   return m;
@@ -330,11 +327,11 @@ MeshBuilder orangeTree(const Palette& p, uint32_t seed) {
   f.trunkRadius = 0.055f;
   f.crown = {0.72f, 0.66f, 0.72f};
   f.boughs = 6;
-  f.twigs = 190;
-  f.leavesPerTwig = 9;
+  f.twigs = 140;
+  f.leavesPerTwig = 8;
   f.twigLength = 0.24f;
-  f.leaf = {.length = 0.105f, .width = 0.052f, .fold = 0.35f, .droop = 0.25f, .steps = 1};
-  f.fruits = 34;
+  f.leaf = {.length = 0.115f, .width = 0.058f, .fold = 0.35f, .droop = 0.25f, .steps = 1};
+  f.fruits = 24;
   f.fruitRadius = 0.038f;
   f.seed = seed;
   const Plant t = tree(f);
@@ -383,7 +380,7 @@ MeshBuilder jar(uint32_t clay, float height) {
       .line(0.17f * h, h);
   o.line(0.13f * h, h).line(0.10f * h, 0.90f * h).line(0.11f * h, 0.80f * h).line(0, 0.70f * h);
   MeshBuilder m;
-  m.add(clay, lathe(o, {.segments = 28}));
+  m.add(clay, lathe(o, {.segments = 22}));
   for (const float side : {-1.0f, 1.0f})
     m.add(clay, tube(smoothPath({{side * 0.125f * h, 0.90f * h, 0},
                                  {side * 0.24f * h, 0.88f * h, 0},

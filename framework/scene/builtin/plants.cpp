@@ -87,7 +87,7 @@ Plant tree(const TreeForm& f) {
       plant.wood,
       tube(
           trunk, [&](float t) { return f.trunkRadius * (1 - 0.75f * t) * (1 + 0.5f * std::exp(-t * 18.0f)); },
-          10));
+          8));
   std::vector<std::vector<glm::vec3>> boughs;
   for (int i = 0; i < f.boughs; ++i) {
     const float a = glm::two_pi<float>() * (float(i) + 0.6f * draw()) / float(f.boughs);
@@ -100,6 +100,7 @@ Plant tree(const TreeForm& f) {
                            boughs.back(), [&](float t) { return f.trunkRadius * (0.45f - 0.35f * t); }, 6));
   }
   const Shape blade = leafBlade(f.leaf);
+  std::vector<glm::vec3> ends;
   for (int i = 0; i < f.twigs; ++i) {
     // Evenly over the crown's shell, most of them near its surface, none straight below.
     const float y = 1 - 1.75f * (float(i) + draw()) / float(f.twigs),
@@ -112,17 +113,16 @@ Plant tree(const TreeForm& f) {
     const glm::vec3 start = end - glm::normalize(end - middle + glm::vec3(0, 0.35f, 0) * f.crown.y +
                                                  0.4f * f.crown.y * draw.direction()) *
                                       f.twigLength;
-    const std::vector<glm::vec3> twig = {
-        start, glm::mix(start, end, 0.5f) + 0.1f * f.twigLength * draw.direction(), end};
+    const std::vector<glm::vec3> twig = {start, end};
     append(plant.wood,
            sweep(twig, circle(0.05f * f.trunkRadius + 0.002f, 3), {.caps = false, .creaseDegrees = 180}));
     addLeaves(plant.leaves, twig, f.leavesPerTwig, blade, draw);
+    ends.push_back(end);
   }
-  const Shape fruit = sphere(f.fruitRadius, 10, 7);
-  for (int i = 0; i < f.fruits; ++i) {
-    glm::vec3 d = draw.direction();
-    d.y = std::max(d.y, -0.6f);
-    append(plant.fruits, fruit, at(middle + f.crown * glm::normalize(d) * draw(0.9f, 1.0f)));
+  const Shape fruit = sphere(f.fruitRadius, 9, 6);
+  for (int i = 0; i < f.fruits; ++i) {  // each below the end of a twig
+    const glm::vec3& end = ends[size_t(draw(0, float(ends.size()) - 0.5f))];
+    append(plant.fruits, fruit, at(end - glm::vec3(0, 1.1f * f.fruitRadius, 0)));
   }
   return plant;
 }

@@ -85,6 +85,17 @@ Texture masonry(const std::string& name, const MasonryLook& look, uint32_t width
   });
 }
 
+namespace {
+
+// Where water has run down: narrow, drawn out, here and there.
+float streaks(float u, float v, uint32_t seed) {
+  const float across = noise({u * 26 + 2 * noise({u * 6, v * 6}, seed + 3, 6), 0}, seed + 4, 26);
+  const float place = fractal({u * 5, v * 5}, seed + 5, 2, 5);
+  return across * smoothstep(0.35f, 0.75f, place);
+}
+
+}  // namespace
+
 Texture plaster(const std::string& name, glm::vec3 color, float contrast, float stains, uint32_t size,
                 uint32_t seed) {
   return bake(name, size, size, [&](float u, float v) {
@@ -93,7 +104,7 @@ Texture plaster(const std::string& name, glm::vec3 color, float contrast, float 
     // Warm and cool patches.
     const float tint = contrast * 0.25f * (2 * fractal({u * 3, v * 3}, seed + 2, 3, 3) - 1);
     c *= glm::vec3(1 + tint, 1, 1 - tint);
-    const float streak = fractal({u * 24, v * 2}, seed + 3, 3, 2) * fractal({u * 4, v * 3}, seed + 4, 2, 1);
+    const float streak = streaks(u, v, seed);
     return c * (1 - stains * smoothstep(0.28f, 0.55f, streak));
   });
 }
