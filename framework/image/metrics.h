@@ -5,7 +5,7 @@
 // adds to every error measured with it: from two independent halves of it, whose mean it is, the noise is
 // E[(h1 - h2)^2] / 4. Where halves are given it is subtracted, so that a measure may come out slightly below
 // 0 by chance, and its mean over seeds stays right. (T is curved: halves of few samples give a floor that is
-// somewhat too large, by 9% with 16 samples a pixel in the Cornell box.)
+// somewhat too large, by a tenth with 16 samples a pixel in the Cornell box.)
 #pragma once
 
 #include <cstdint>
