@@ -71,7 +71,7 @@ struct Slot {
   std::vector<std::pair<std::string, gpu::Buffer>> outputs;  // readback
   bool busy = false, readOutputs = false;
   uint64_t frame = 0;
-  double cpuMs = 0;
+  double cpuMs = 0, animateCpuMs = 0;
   Clock::time_point submitted;
   std::vector<double> passCpuMs;                   // in execution order
   std::vector<std::vector<double>> counterValues;  // per pass, as set by the CPU
@@ -116,7 +116,11 @@ struct Executor::Impl {
   void bindViews(const scene::Frame& frame);
   void finish(uint32_t slotIndex);
   bool isFinished(uint32_t slotIndex) const;
-  uint32_t queryCount() const { return static_cast<uint32_t>(2 + 2 * order.size()); }
+  // First of the frame, two a pass, two around the vertices of what moves, last of the frame.
+  uint32_t queryCount() const { return static_cast<uint32_t>(4 + 2 * order.size()); }
+  uint32_t animateQuery() const { return queryCount() - 3; }
+  void recordMoves(Slot& slot);
+  void flushTimestamp();
 };
 
 Executor::Impl::~Impl() {
@@ -333,17 +337,31 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
   }
 }
 
+// Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty
+// barrier is one) a pass of dispatches alone would start after its own work.
+void Executor::Impl::flushTimestamp() {
+  if (!device.isCpu()) return;
+  const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  vkCmdPipelineBarrier2(cmd, &nothing);
+}
+
+void Executor::Impl::recordMoves(Slot& slot) {
+  if (!gpuScene.moves()) return;
+  device.beginLabel(cmd, "animate");
+  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, animateQuery());
+  flushTimestamp();
+  gpuScene.recordMoves(cmd, state.slot);
+  flushTimestamp();
+  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, animateQuery() + 1);
+  device.endLabel(cmd);
+}
+
 void Executor::Impl::runPass(Slot& slot, PassInstance& pass, const scene::Frame& frame, uint32_t position) {
   const auto start = Clock::now();
   std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
   device.beginLabel(cmd, pass.bound->name.c_str());
   vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 1 + 2 * position);
-  // Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an
-  // empty barrier is one) a pass of dispatches alone would start after its own work.
-  if (device.isCpu()) {
-    const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    vkCmdPipelineBarrier2(cmd, &nothing);
-  }
+  flushTimestamp();
   if (pass.bound->declaration->kind == PassKind::Host) {
     device.endLabel(cmd);  // a label cannot span two command buffers
     runHostPass(slot, pass, frame);
@@ -385,15 +403,22 @@ void Executor::Impl::finish(uint32_t slotIndex) {
   gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a frame");
   const auto now = Clock::now();
   std::vector<uint64_t> ticks(queryCount());
-  gpu::check(vkGetQueryPoolResults(device.handle(), slot.queries, 0, queryCount(),
-                                   ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
-                                   VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-             "reading timestamps");
+  const auto read = [&](uint32_t first, uint32_t count) {
+    gpu::check(vkGetQueryPoolResults(device.handle(), slot.queries, first, count, count * sizeof(uint64_t),
+                                     &ticks[first], sizeof(uint64_t),
+                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+               "reading timestamps");
+  };
+  read(0, animateQuery());
+  if (gpuScene.moves()) read(animateQuery(), 2);
+  read(queryCount() - 1, 1);
   const double toMs = device.timestampPeriodNs() * 1e-6;
   FrameResult result;
   result.frame = slot.frame;
   result.cpuMs = slot.cpuMs;
   result.gpuMs = double(ticks.back() - ticks.front()) * toMs;
+  result.animateMs = double(ticks[animateQuery() + 1] - ticks[animateQuery()]) * toMs;
+  result.animateCpuMs = slot.animateCpuMs;
   const auto since = lastFinish.value_or(slot.submitted);
   result.wallMs = std::chrono::duration<double, std::milli>(now - since).count();
   lastFinish = now;
@@ -469,6 +494,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   e.state.sceneReset = e.frameCount == 0;
   e.state.viewReset = e.state.sceneReset || frame.cameraCut;
   e.gpuScene.update(frame, slotIndex);
+  slot.animateCpuMs = e.gpuScene.moves() ? millisecondsSince(start) : 0;
   e.state.sharedSet = e.gpuScene.set(slotIndex);
   e.bindViews(frame);
 
@@ -476,14 +502,13 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   e.beginSegment(slot);
   vkCmdResetQueryPool(e.cmd, slot.queries, 0, e.queryCount());
   vkCmdWriteTimestamp2(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 0);
-  memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
-                VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  constexpr VkPipelineStageFlags2 kFirst =
+      VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  constexpr VkAccessFlags2 kAny = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAny, kFirst, kAny);
   vkCmdFillBuffer(e.cmd, e.state.counters.handle(), 0, VK_WHOLE_SIZE, 0);
-  e.gpuScene.recordMoves(e.cmd, slotIndex);
-  memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+  e.recordMoves(slot);
+  memoryBarrier(e.cmd, kFirst, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAny);
   if (e.state.viewReset) zeroKeptResources(e.state, e.cmd, e.state.sceneReset);
   uint32_t position = 0;
   for (const Level& level : e.plan->levels) {
@@ -519,6 +544,12 @@ std::optional<FrameResult> Executor::next() {
     e.inFlight.pop_front();
   }
   return poll();
+}
+
+bool Executor::readsGeometry() const {
+  return std::any_of(impl_->order.begin(), impl_->order.end(), [&](uint32_t index) {
+    return impl_->passes[index]->bound->declaration->kind == PassKind::Host;
+  });
 }
 
 uint64_t Executor::residentBytes() const { return impl_->device.allocatedBytes() - impl_->residentAtStart; }

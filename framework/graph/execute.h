@@ -29,8 +29,8 @@ namespace fovea::graph {
 
 class Registry;
 
-// What a host pass that takes long has to say: its name and the share of its work that is done; false asks it to end
-// soon, with what it has.
+// What a host pass that takes long has to say: its name and the share of its work that is done; false asks it
+// to end soon, with what it has.
 using HostProgress = std::function<bool(const std::string& pass, double share)>;
 
 struct ExecutorOptions {
@@ -52,10 +52,12 @@ struct OutputData {
 };
 
 struct FrameResult {
-  uint64_t frame = 0;  // Frame::index
-  double gpuMs = 0;    // first to last timestamp
-  double cpuMs = 0;    // recording and host passes
-  double wallMs = 0;   // since the previous frame was finished; the first frame: since it was submitted
+  uint64_t frame = 0;    // Frame::index
+  double gpuMs = 0;      // first to last timestamp
+  double animateMs = 0;  // of it, before the passes: the vertices of what moves
+  double animateCpuMs = 0;
+  double cpuMs = 0;   // recording and host passes
+  double wallMs = 0;  // since the previous frame was finished; the first frame: since it was submitted
   std::vector<PassTiming> passes;                        // in order of execution
   std::vector<std::pair<std::string, double>> counters;  // "deferred.pairs"
   std::map<std::string, OutputData> outputs;             // only when asked for
@@ -95,6 +97,10 @@ class Executor {
   std::optional<FrameResult> poll();
   // Waits for the oldest unreturned frame; nullopt when every submitted frame was returned.
   std::optional<FrameResult> next();
+
+  // Whether a pass works on the CPU, and so reads Frame::geometry as it is in the frame; the vertices that
+  // GPU passes see come from Frame::objects, joints and weights alone.
+  bool readsGeometry() const;
 
   uint64_t residentBytes() const;  // device memory held by this executor
 

@@ -188,20 +188,25 @@ class Flattener {
     for (const Primitive& p : mesh.primitives) out_.uvs.insert(out_.uvs.end(), p.uvs.begin(), p.uvs.end());
   }
 
-  void includePath(uint32_t nodeIndex, const Object& object) {
-    const Mover* mover = poses_.moverOf(nodeIndex);
+  // The box of the object in its space or in the world, see Object; and all places that it comes to.
+  void includePath(uint32_t nodeIndex, Object& object) {
     if (object.vertexCount == 0) return;
-    Bounds swept;
-    if (object.deforms || poses_.animated(nodeIndex)) {
-      swept = animatedBounds(scene_, poses_, object);
-    } else if (mover) {
-      Bounds mesh;
-      for (const Primitive& p : scene_.meshes[scene_.nodes[nodeIndex].mesh].primitives)
-        for (const glm::vec3& v : p.positions) mesh.include(v);
-      swept = sweptBounds(poses_, nodeIndex, *mover, mesh);
+    const Mover* mover = poses_.moverOf(nodeIndex);
+    Bounds box;
+    if (object.deforms) {
+      box = animatedBounds(scene_, poses_, object);
     } else {
-      return;
+      for (const Primitive& p : scene_.meshes[scene_.nodes[nodeIndex].mesh].primitives)
+        for (const glm::vec3& v : p.positions) box.include(v);
     }
+    object.low = box.low, object.high = box.high;
+    Bounds swept = box;
+    if (!object.deforms && poses_.animated(nodeIndex))
+      swept = animatedBounds(scene_, poses_, object);
+    else if (!object.deforms && mover)
+      swept = sweptBounds(poses_, nodeIndex, *mover, box);
+    else if (!object.deforms)
+      return;
     if (!isFinite(swept.low) || !isFinite(swept.high))
       throw Error(ExitCode::BadInput,
                   "scene `" + scene_.name + "`: node `" + scene_.nodes[nodeIndex].name +

@@ -9,6 +9,7 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
 #include "framework/image/image.h"
+#include "framework/scene/animator.h"
 #include "framework/scene/gpu_textures.h"
 #include "framework/scene/lights.h"
 
@@ -23,8 +24,9 @@ struct FrameBlock {
   uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
   float time, exposure;
   glm::vec4 boundsMin, boundsMax, environment;
+  glm::uvec4 staticVertices;
 };
-static_assert(sizeof(FrameBlock) == 80);
+static_assert(sizeof(FrameBlock) == 96);
 
 struct ViewBlock {
   glm::mat4 worldToView, viewToClip, worldToClip, clipToWorld, previousWorldToClip;
@@ -113,7 +115,7 @@ ObjectTexels objectEntry(const ObjectTransform& o) {
                             glm::transpose(o.toObject)};
   for (int i = 0; i < 3; ++i)
     texels.toWorld[i] = rows[0][i], texels.previous[i] = rows[1][i], texels.toObject[i] = rows[2][i];
-  texels.flags = glm::vec4(o.visible, o.previousVisible, 0, 0);
+  texels.flags = glm::vec4(o.visible, o.previousVisible, o.deforms, 0);
   return texels;
 }
 
@@ -141,11 +143,10 @@ struct GpuScene::Impl {
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
   uint32_t staticVertices;
-  gpu::Buffer indices, triangles, positions, attributes, materials, srgb, uniforms;
+  gpu::Buffer indices, triangles, positions, attributes, previous, materials, srgb, uniforms;
   uint32_t objectCount;
-  std::vector<gpu::Buffer> objects;  // one a slot
-  std::vector<gpu::Buffer>
-      moves;  // one a slot: positions, then attributes, of the vertices past the static ones
+  std::vector<gpu::Buffer> objects;    // one a slot
+  std::unique_ptr<Animator> animator;  // null: nothing moves
   GpuTextures textures;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -169,7 +170,12 @@ struct GpuScene::Impl {
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     static_assert(sizeof(Triangle) == 16);
     triangles = makeBuffer(device, "scene triangles", g.triangles, kTexelUsage);
-    positions = makeBuffer(device, "scene positions", positionList(g), kTexelUsage);
+    positions = makeBuffer(device, "scene positions", positionList(g),
+                           kTexelUsage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    previous = gpu::Buffer(device,
+                           {"last positions of what moves", std::max(1u, movedVertices()) * sizeof(glm::vec4),
+                            kTexelUsage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                            gpu::MemoryKind::Device});
     attributes = makeBuffer(device, "scene attributes", attributeList(g), kTexelUsage);
     std::vector<MaterialTexels> list;
     for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
@@ -186,9 +192,8 @@ struct GpuScene::Impl {
   TextureTexels textureEntry(const Scene& scene, const TextureUse& use) const;
   MaterialTexels materialEntry(const Scene& scene, const Material& m) const;
   void makeUniforms(uint32_t slots);
-  void makeMoves(uint32_t slots);
+  void makeMoves(const Scene& scene, const Geometry& g, uint32_t slots);
   void storeObjects(const Frame& frame, uint32_t slot) const;
-  void storeMoves(const Geometry& geometry, uint32_t slot) const;
   uint32_t movedVertices() const { return vertexCount - staticVertices; }
   void makeLayout();
   void makeSets(uint32_t slots);
@@ -230,16 +235,13 @@ void GpuScene::Impl::makeUniforms(uint32_t slots) {
   std::memset(uniforms.mapped(), 0, slots * slotStride);
 }
 
-void GpuScene::Impl::makeMoves(uint32_t slots) {
+void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t slots) {
+  if (movedVertices() > 0) animator = std::make_unique<Animator>(device, scene, g, slots);
   for (uint32_t slot = 0; slot < slots; ++slot) {
     objects.emplace_back(device,
                          gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
                                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
     storeObjects({}, slot);
-    if (movedVertices() > 0)
-      moves.emplace_back(device,
-                         gpu::BufferDesc{"vertices that move", movedVertices() * 2 * sizeof(glm::vec4),
-                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::Upload});
   }
 }
 
@@ -248,14 +250,6 @@ void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
   auto* entries = static_cast<ObjectTexels*>(objects[slot].mapped());
   for (uint32_t i = 0; i < objectCount; ++i)
     entries[i] = objectEntry(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
-}
-
-void GpuScene::Impl::storeMoves(const Geometry& g, uint32_t slot) const {
-  auto* entries = static_cast<glm::vec4*>(moves[slot].mapped());
-  for (uint32_t v = staticVertices; v < vertexCount; ++v, ++entries) {
-    entries[0] = glm::vec4(g.positions[v], 1);
-    entries[movedVertices()] = glm::vec4(octEncode(g.normals[v]), g.uvs[v]);
-  }
 }
 
 constexpr VkDescriptorType kBindings[] = {
@@ -269,6 +263,7 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 sRGB table
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 objects
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 10 last frame's positions
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
@@ -286,7 +281,7 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 7 * slots},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
@@ -310,12 +305,13 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  const VkBufferView texels[6] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
+  const VkBufferView texels[7] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
                                   positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   srgb.texelView(VK_FORMAT_R32_SFLOAT),
-                                  objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
+                                  objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  previous.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorImageInfo image{nearest, textures.image().view(),
                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -340,7 +336,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geom
     : impl_(std::make_unique<Impl>(device, scene, geometry)) {
   const uint32_t slots = std::max(1u, framesInFlight);
   impl_->makeUniforms(slots);
-  impl_->makeMoves(slots);
+  impl_->makeMoves(scene, geometry, slots);
   impl_->makeLayout();
   impl_->makeSets(slots);
 }
@@ -352,7 +348,7 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   checkCount("views", frame.views.size(), kMaxViews);
   if (slot >= impl_->sets.size())
     throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
-  const Impl& s = *impl_;
+  Impl& s = *impl_;
   const FrameBlock block{uint32_t(frame.index),
                          frame.seed,
                          uint32_t(frame.lights.size()),
@@ -363,7 +359,8 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
                          frame.exposure,
                          glm::vec4(s.boundsMin, 0),
                          glm::vec4(s.boundsMax, 0),
-                         glm::vec4(s.environment, 0)};
+                         glm::vec4(s.environment, 0),
+                         glm::uvec4(s.staticVertices, 0, 0, 0)};
   impl_->store(slot, 0, block);
   uint32_t layer = 0;
   for (size_t i = 0; i < frame.lights.size(); ++i) {
@@ -373,20 +370,15 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   for (size_t i = 0; i < frame.views.size(); ++i)
     impl_->store(slot, s.viewOffset + i * s.viewStride, viewEntry(frame.views[i]));
   s.storeObjects(frame, slot);
-  if (s.movedVertices() == 0) return;
-  if (!frame.geometry || frame.geometry->positions.size() != s.vertexCount)
-    throw Error(ExitCode::Internal, "the frame has no geometry, or another one than the scene on the device");
-  s.storeMoves(*frame.geometry, slot);
+  if (s.animator) s.animator->update(frame, slot);
 }
 
 void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
-  const Impl& s = *impl_;
-  if (s.movedVertices() == 0) return;
-  const uint64_t first = s.staticVertices * sizeof(glm::vec4), bytes = s.movedVertices() * sizeof(glm::vec4);
-  const VkBufferCopy positions{0, first, bytes}, attributes{bytes, first, bytes};
-  vkCmdCopyBuffer(cmd, s.moves[slot].handle(), s.positions.handle(), 1, &positions);
-  vkCmdCopyBuffer(cmd, s.moves[slot].handle(), s.attributes.handle(), 1, &attributes);
+  Impl& s = *impl_;
+  if (s.animator) s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
 }
+
+bool GpuScene::moves() const { return impl_->animator != nullptr; }
 
 VkDescriptorSetLayout GpuScene::setLayout() const { return impl_->layout; }
 VkDescriptorSet GpuScene::set(uint32_t slot) const { return impl_->sets.at(slot); }
@@ -395,6 +387,7 @@ gpu::Buffer& GpuScene::indices() const { return impl_->indices; }
 gpu::Buffer& GpuScene::triangles() const { return impl_->triangles; }
 gpu::Buffer& GpuScene::positions() const { return impl_->positions; }
 gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
+gpu::Buffer& GpuScene::previous() const { return impl_->previous; }
 gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
 const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
 uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }

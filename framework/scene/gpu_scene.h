@@ -27,14 +27,15 @@ class GpuScene {
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
   ~GpuScene();
 
-  // Writes this frame's uniforms (frame, views, lights, objects) and the vertices that moved (of
-  // Frame::geometry) into the slot of the frame in flight; no GPU wait, no allocation. Throws Error(BadInput)
-  // on more than kMaxViews or kMaxLights.
+  // Writes this frame's uniforms (frame, views, lights, objects) and the poses of what moves into the slot of
+  // the frame in flight; no GPU wait, no allocation. Frame::geometry is not read. Throws Error(BadInput) on
+  // more than kMaxViews or kMaxLights.
   void update(const Frame& frame, uint32_t slot);
-  // Copies those vertices to positions() and attributes(). The caller's barriers keep the copy (transfer
-  // stage) behind all earlier readers and before all later ones. Records nothing for a scene in which nothing
-  // moves.
+  // Brings positions() and attributes() to that frame on the device, and last frame's positions of what moves
+  // into binding 10. The caller's barriers keep it (transfer and compute stages) behind all earlier readers
+  // and before all later ones. Records nothing for a scene in which nothing moves.
   void recordMoves(VkCommandBuffer cmd, uint32_t slot) const;
+  bool moves() const;  // whether recordMoves() does anything
 
   VkDescriptorSetLayout setLayout() const;
   // Binding 1, the view, is a dynamic uniform buffer: viewOffset(i) is the offset for Frame::views[i].
@@ -47,6 +48,7 @@ class GpuScene {
   gpu::Buffer& triangles() const;   // uvec4: 3 vertices, material | object << 16
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
+  gpu::Buffer& previous() const;    // vec4: last frame's positions of the vertices that move
   gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;

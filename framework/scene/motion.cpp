@@ -352,6 +352,21 @@ ObjectPoses objectsAt(const Scene& scene, const Geometry& geometry, double time,
   return list;
 }
 
+Bounds movingBounds(const Geometry& geometry, const Frame& frame) {
+  Bounds all;
+  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic || object.vertexCount == 0) continue;
+    const ObjectTransform& o = frame.objects[i];
+    for (int c = 0; c < 8; ++c) {
+      const glm::vec3 corner(c & 1 ? object.high.x : object.low.x, c & 2 ? object.high.y : object.low.y,
+                             c & 4 ? object.high.z : object.low.z);
+      all.include(!o.visible ? glm::vec3(o.toWorld[3]) : object.deforms ? corner : o.fromObject(corner));
+    }
+  }
+  return all;
+}
+
 Bounds animatedBounds(const Scene& scene, const NodePoses& poses, const Object& object) {
   const Node& node = scene.nodes[object.node];
   const Mesh& mesh = scene.meshes[node.mesh];

@@ -222,6 +222,8 @@ struct Object {
   uint32_t firstJoint = 0, jointCount = 0;    // of Frame::joints; none: the node's transform places it
   uint32_t firstWeight = 0, weightCount = 0;  // of Frame::weights
   std::shared_ptr<const Stencils> stencils;   // of a cage that deforms: they make the vertices
+  // Box of its vertices, in its own space. Of one that deforms: in the world, of the whole animation.
+  glm::vec3 low{0}, high{0};
 };
 
 struct Triangle {

@@ -40,7 +40,8 @@ struct VoxelSide {
   glm::vec3 normal{0};    // average, unit
   float object = 0;
   glm::vec3 reflectance{0};
-  float unused0 = 0;
+  float triangle =
+      0;  // of an object that deforms: the one with the largest piece, counted past the static ones
   glm::vec3 emission{0};  // W/(sr m^2)
   float unused1 = 0;
 };

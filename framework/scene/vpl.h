@@ -25,10 +25,14 @@ struct VplState {
   glm::vec3 normal{0};    // unit, world space
   float life = 0;         // frames it has been shown in, this one included: 0 an empty slot, 1 a new VPL
   glm::vec3 reflectance{0};
-  uint32_t side = 0;           // voxel side of this frame
-  glm::vec3 localPosition{0};  // in the space of its object, so that it follows
+  uint32_t side = 0;  // voxel side of this frame
+  // In the space of its object, so that it follows. On an object that deforms (ObjectTransform::deforms) its
+  // place in a triangle: the triangle's number past the static ones, weights of its second and third vertex.
+  glm::vec3 localPosition{0};
   float object = 0;
-  glm::vec3 localNormal{0};      // unit, in the space of its object, as found: turns are measured against it
+  // Unit, in the space of its object (that deforms: along the triangle's axes), as found: turns are measured
+  // against it.
+  glm::vec3 localNormal{0};
   float previousImportance = 0;  // of the frame before (Eq. 1)
 };
 static_assert(sizeof(VplState) == 80);
@@ -41,7 +45,7 @@ struct Candidate {
   float object = 0;
   glm::vec3 reflectance{0};
   float luminance = 0;         // of the side's radiance, W/(sr m^2)
-  glm::vec3 localPosition{0};  // in the space of its object
+  glm::vec3 localPosition{0};  // as VplState has it
   float unused = 0;
 };
 static_assert(sizeof(Candidate) == 64);

@@ -17,6 +17,7 @@
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/motion.h"
 #include "framework/scene/paraboloid.h"
 #include "framework/scene/simplify.h"
 #include "framework/scene/vpl.h"
@@ -226,22 +227,18 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
 }
 
 // A sphere around everything that moves; radius below 0: nothing does.
-glm::vec4 moversOf(const scene::Geometry& geometry) {
-  glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
-  for (const scene::Object& object : geometry.objects)
-    for (uint32_t v = 0; object.dynamic && v < object.vertexCount; ++v) {
-      low = glm::min(low, geometry.positions[object.firstVertex + v]);
-      high = glm::max(high, geometry.positions[object.firstVertex + v]);
-    }
-  return low.x > high.x ? glm::vec4(0, 0, 0, -1)
-                        : glm::vec4(0.5f * (low + high), 0.5f * glm::length(high - low));
+glm::vec4 moversOf(const scene::Frame& frame) {
+  const scene::Bounds box = scene::movingBounds(*frame.geometry, frame);
+  return box.low.x > box.high.x
+             ? glm::vec4(0, 0, 0, -1)
+             : glm::vec4(0.5f * (box.low + box.high), 0.5f * glm::length(box.high - box.low));
 }
 
 void ShadowAtlas::chooseSlots(RecordContext& ctx) {
   const uint32_t slots = uint32_t(ctx.count("vpls"));
   Commands choose = ctx.use(choose_);
   choose.constant("slots", slots).constant("frameNumber", uint32_t(ctx.frameNumber()));
-  if (hasState_) choose.constant("movers", moversOf(*ctx.frame().geometry));
+  if (hasState_) choose.constant("movers", moversOf(ctx.frame()));
   choose.dispatch(1);
   ctx.barrier();
   ctx.use(clear_)

@@ -228,7 +228,7 @@ void Render::showFovea() {
 
 void Render::submit(uint64_t index, bool readOutputs) {
   const scene::Frame f = frame(index);
-  scene::moveObjects(f, geometry_);
+  if (executor_->readsGeometry()) scene::moveObjects(f, geometry_);
   executor_->submit(f, readOutputs);
 }
 

@@ -59,8 +59,21 @@ Spread spreadOf(std::vector<double> values) {
 }
 
 void Timings::add(const graph::FrameResult& result) {
-  frames_.push_back(
-      {result.frame, result.gpuMs, result.cpuMs, result.wallMs, result.passes, result.counters, {}});
+  graph::FrameResult& kept = frames_.emplace_back();
+  kept.frame = result.frame;
+  kept.gpuMs = result.gpuMs, kept.cpuMs = result.cpuMs, kept.wallMs = result.wallMs;
+  kept.animateMs = result.animateMs, kept.animateCpuMs = result.animateCpuMs;
+  kept.passes = result.passes;
+  kept.counters = result.counters;
+  if (kept.animateMs > 0 || kept.animateCpuMs > 0)
+    kept.passes.insert(kept.passes.begin(), {kAnimate, kept.animateMs, kept.animateCpuMs});
+}
+
+std::string Timings::name(uint32_t pass) const {
+  return pass == kAnimate ? "animate" : plan_->graph->passes[pass].name;
+}
+std::string Timings::type(uint32_t pass) const {
+  return pass == kAnimate ? "scene" : plan_->graph->passes[pass].declaration->type;
 }
 
 std::vector<Timings::Row> Timings::rows() const {
@@ -75,7 +88,8 @@ std::vector<Timings::Row> Timings::rows() const {
     }
   std::vector<Row> rows;
   for (uint32_t index : order) {
-    const bool host = pass(index).declaration->kind == graph::PassKind::Host;
+    const bool host =
+        index != kAnimate && plan_->graph->passes[index].declaration->kind == graph::PassKind::Host;
     rows.push_back({index, host, spreadOf(values[index].first), spreadOf(values[index].second)});
   }
   return rows;
@@ -107,8 +121,8 @@ std::string Timings::table() const {
   size_t nameWidth = 5, typeWidth = 4;
   double total = 0;
   for (const Row& row : all) {
-    nameWidth = std::max(nameWidth, pass(row.pass).name.size());
-    typeWidth = std::max(typeWidth, pass(row.pass).declaration->type.size());
+    nameWidth = std::max(nameWidth, name(row.pass).size());
+    typeWidth = std::max(typeWidth, type(row.pass).size());
     total += row.time();
   }
   std::string text;
@@ -124,7 +138,7 @@ std::string Timings::table() const {
   const std::string rule = std::string(text.size() - 1, '-') + '\n';
   text += rule;
   for (const Row& row : all)
-    add(pass(row.pass).name, pass(row.pass).declaration->type, times(row.gpu, row.cpu),
+    add(name(row.pass), type(row.pass), times(row.gpu, row.cpu),
         fmt::format("{:>7.1f}%", total > 0 ? 100 * row.time() / total : 0));
   text += rule;
   add("frame", "", times(frameSpread([](const auto& f) { return f.gpuMs; }), frameSpread([](const auto& f) {
@@ -152,8 +166,8 @@ std::string Timings::counterTable() const {
 std::string Timings::json(const RunInfo& run) const {
   Json passes = Json::array();
   for (const Row& row : rows())
-    passes.push_back({{"name", pass(row.pass).name},
-                      {"type", pass(row.pass).declaration->type},
+    passes.push_back({{"name", name(row.pass)},
+                      {"type", type(row.pass)},
                       {"gpu_ms", toJson(row.gpu)},
                       {"cpu_ms", toJson(row.cpu)}});
   Json counted = Json::object();
@@ -192,9 +206,9 @@ std::string Timings::csv() const {
   std::string text = "frame,pass,type,gpu_ms,cpu_ms,frame_gpu_ms,frame_cpu_ms,frame_wall_ms,counters\n";
   for (const graph::FrameResult& frame : frames_)
     for (const graph::PassTiming& t : frame.passes)
-      text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame.frame, pass(t.pass).name,
-                          pass(t.pass).declaration->type, t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs,
-                          frame.wallMs, countersOf(frame, pass(t.pass).name));
+      text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame.frame, name(t.pass),
+                          type(t.pass), t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs, frame.wallMs,
+                          countersOf(frame, name(t.pass)));
   return text;
 }
 

@@ -32,7 +32,9 @@ class Timings {
 
   void add(const graph::FrameResult& result);  // outputs are not kept
   const std::vector<graph::FrameResult>& frames() const { return frames_; }
-  const graph::BoundPass& pass(uint32_t index) const { return plan_->graph->passes[index]; }
+  // Of a PassTiming's pass. Before the passes of a scene that moves comes `animate`: its vertices.
+  std::string name(uint32_t pass) const;
+  std::string type(uint32_t pass) const;
 
   std::string table() const;  // for people
   std::string json(const RunInfo& run) const;
@@ -41,6 +43,7 @@ class Timings {
   void write(const std::filesystem::path& file, const RunInfo& run) const;
 
  private:
+  static constexpr uint32_t kAnimate = ~0u;
   struct Row {  // one pass over all frames
     uint32_t pass = 0;
     bool host = false;

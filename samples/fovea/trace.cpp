@@ -39,8 +39,8 @@ void addTrack(Json& events, const Timings& timings, const graph::FrameResult& fr
   events.push_back(slice("frame " + std::to_string(frame.frame), "frame", track, start, duration, number));
   for (const graph::PassTiming& t : frame.passes) {
     if (time(t) <= 0) continue;
-    const graph::BoundPass& pass = timings.pass(t.pass);
-    events.push_back(slice(pass.name, "pass", track, start, time(t), {{"type", pass.declaration->type}}));
+    events.push_back(
+        slice(timings.name(t.pass), "pass", track, start, time(t), {{"type", timings.type(t.pass)}}));
     start += time(t);
   }
 }

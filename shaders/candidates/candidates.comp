@@ -85,6 +85,12 @@ void main() {
 #if HAS_RADIANCE
   candidate.reflectanceLuminance.w = texelFetch(radiance, int(hit.side)).w;
 #endif
-  candidate.localPosition = vec4(toObject(uint(side.object), side.position), 0.0);
+  uint object = uint(side.object);
+  if (objectDeforms(object)) {  // on the surface, and it stays there
+    candidate.localPosition = vec4(attach(sideTriangle(hit.side), side.position), 0.0);
+    candidate.positionSide.xyz = attachedPosition(candidate.localPosition.xyz);
+  } else {
+    candidate.localPosition = vec4(toObject(object, side.position), 0.0);
+  }
   candidates[i] = candidate;
 }

@@ -19,6 +19,7 @@ layout(set = 1, binding = 0) uniform FrameBlock {
   vec4 boundsMin;        // world space, m
   vec4 boundsMax;
   vec4 environment;      // radiance where nothing is hit
+  uvec4 staticVertices;  // x: vertices below it never move
 } frame;
 
 layout(set = 1, binding = 1) uniform ViewBlock {
@@ -54,10 +55,16 @@ layout(set = 1, binding = 8) uniform samplerBuffer sceneSrgb;           // linea
 
 layout(set = 1, binding = 9) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
 
+layout(set = 1, binding = 10) uniform samplerBuffer scenePrevious;      // xyz world, last frame, of vertices that may move
+
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
 uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
+vec3 scenePreviousPosition(uint vertex) {  // in the frame before
+  if (vertex < frame.staticVertices.x) return scenePosition(vertex);
+  return texelFetch(scenePrevious, int(vertex - frame.staticVertices.x)).xyz;
+}
 vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int(vertex)).xy); }
 vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
 uint materialOf(uvec4 triangle) { return triangle.w & 0xffffu; }
@@ -68,7 +75,7 @@ uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 // An object's own space is that of its mesh; what is known of a point in it (VplState.localPosition) stays true while the
 // object moves. Object 0 is all that never moves; its own space is the world's. The same as scene::ObjectTransform.
 // Texels of one object: rows of the transform to the world (0-2), of last frame's (3-5), of the inverse (6-8; zeros where
-// there is none), 9: x: visible, y: last frame.
+// there is none), 9: x: visible, y: last frame; z: its vertices move one by one.
 const int kObjectTexels = 10;
 
 mat4x3 objectRows(uint object, int row) {
@@ -81,11 +88,53 @@ mat4x3 inverseObjectTransform(uint object) { return objectRows(object, 6); }
 bool objectVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
 bool objectWasVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
 
+// Vertices move one by one (morph targets, joints): a point of it keeps its place in a triangle instead.
+bool objectDeforms(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).z > 0.5; }
+
 vec3 fromObject(uint object, vec3 position) { return objectTransform(object) * vec4(position, 1.0); }
 vec3 toObject(uint object, vec3 position) { return inverseObjectTransform(object) * vec4(position, 1.0); }
 // Unit normals, also through a scale that differs between the axes.
 vec3 normalFromObject(uint object, vec3 n) { return normalize(transpose(mat3(inverseObjectTransform(object))) * n); }
 vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objectTransform(object))) * n); }
+
+// ---- Points of surfaces that deform -------------------------------------------------------------------------------
+
+// A point keeps its place in a triangle: the triangle's number past the static ones (exact as a float below 2^24) and the
+// weights of its second and third vertex. A direction keeps its components along the triangle's own axes.
+
+// The point of the triangle that is nearest to `position` (Ericson 2005, 5.1.5).
+vec3 attach(uint triangle, vec3 position) {
+  uvec4 t = sceneTriangle(frame.staticTriangleCount + triangle);
+  vec3 a = scenePosition(t.x), ab = scenePosition(t.y) - a, ac = scenePosition(t.z) - a, ap = position - a;
+  float d1 = dot(ab, ap), d2 = dot(ac, ap), bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
+  float area = bb * cc - bc * bc;
+  float v = area > 0.0 ? (cc * d1 - bc * d2) / area : 0.0, w = area > 0.0 ? (bb * d2 - bc * d1) / area : 0.0;
+  if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) return vec3(triangle, v, w);
+  // On the edge that is nearest.
+  float onB = clamp(d1 / max(bb, 1e-30), 0.0, 1.0), onC = clamp(d2 / max(cc, 1e-30), 0.0, 1.0);
+  vec3 bp = ap - ab, edge = ac - ab;
+  float onEdge = clamp(dot(edge, bp) / max(dot(edge, edge), 1e-30), 0.0, 1.0);
+  vec3 toB = ap - onB * ab, toC = ap - onC * ac, toEdge = bp - onEdge * edge;
+  float b2 = dot(toB, toB), c2 = dot(toC, toC), e2 = dot(toEdge, toEdge);
+  if (b2 <= c2 && b2 <= e2) return vec3(triangle, onB, 0.0);
+  return c2 <= e2 ? vec3(triangle, 0.0, onC) : vec3(triangle, 1.0 - onEdge, onEdge);
+}
+
+vec3 attachedPosition(vec3 place) {
+  uvec4 t = sceneTriangle(frame.staticTriangleCount + uint(place.x));
+  vec3 a = scenePosition(t.x);
+  return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
+}
+
+// Columns: along the first edge, across it in the plane, the normal; unit.
+mat3 triangleAxes(uint triangle) {
+  uvec4 t = sceneTriangle(frame.staticTriangleCount + triangle);
+  vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);
+  if (!(dot(n, n) > 0.0)) return mat3(1.0);
+  edge = normalize(edge);
+  n = normalize(n);
+  return mat3(edge, cross(n, edge), n);
+}
 
 // ---- Materials ---------------------------------------------------------------------------------------------------
 

@@ -42,7 +42,7 @@ struct VoxelSide {
   float area;        // m^2 of surface, 0: an empty side
   vec3 normal;       // average, unit
   float object;
-  vec3 reflectance;  // average
+  vec3 reflectance;  // average; its fourth component: sideTriangle()
   vec3 emission;     // average, W/(sr m^2)
 };
 

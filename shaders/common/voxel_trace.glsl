@@ -23,6 +23,9 @@ VoxelSide loadSide(uint side) {
                    texelFetch(voxelsSurface, first + 2).rgb, texelFetch(voxelsSurface, first + 3).rgb);
 }
 
+// Of a side of an object that deforms: the triangle, past the static ones, of which the largest piece lies in it.
+uint sideTriangle(uint side) { return uint(texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 2).w); }
+
 struct VoxelHit {
   uint side;       // kNoSide: the ray leaves the grid
   float distance;  // along the ray, m: where it meets the side's plane, kept within the voxel

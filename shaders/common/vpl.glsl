@@ -19,8 +19,10 @@ struct VplState {
   vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame, in [0, 1]
   vec4 normalLife;          // xyz: unit, world space; w: frames it has been shown in, this one included: 0 empty, 1 new
   vec4 reflectanceSide;     // rgb: reflectance; w: voxel side of this frame (bits of a uint)
-  vec4 localPosition;       // xyz: in the space of its object, so that it follows; w: object
-  vec4 localNormal;         // xyz: unit, in the space of its object, as found; w: importance of the frame before (Eq. 1)
+  vec4 localPosition;       // xyz: in the space of its object, so that it follows; w: object. On an object that deforms
+                            // its place in a triangle (attach() in common/scene.glsl)
+  vec4 localNormal;         // xyz: unit, in the space of its object (that deforms: along the triangle's axes), as found;
+                            // w: importance of the frame before (Eq. 1)
 };
 
 const uint kNoSide = 0xffffffffu;
@@ -30,7 +32,7 @@ struct Candidate {
   vec4 positionSide;          // xyz: world space; w: voxel side (bits of a uint), kNoSide: an attempt that hit nothing
   vec4 normalObject;          // xyz: unit, world space; w: object
   vec4 reflectanceLuminance;  // rgb: reflectance; w: luminance of the side's radiance, W/(sr m^2)
-  vec4 localPosition;         // xyz: in the space of its object; w: unused
+  vec4 localPosition;         // xyz: as VplState has it; w: unused
 };
 
 #endif

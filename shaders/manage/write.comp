@@ -16,8 +16,10 @@ layout(set = 0, std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  //
 const uint kOne = 0x3f800000u;  // bits of 1.0
 
 // In the space of its object, the world's when that never moves.
-uvec3 localNormal(uvec4 normalObject) {
+uvec3 localNormal(uvec4 normalObject, uint place) {
   uint object = uint(uintBitsToFloat(normalObject.w));
+  if (objectDeforms(object))
+    return floatBitsToUint(uintBitsToFloat(normalObject.xyz) * triangleAxes(uint(uintBitsToFloat(place))));
   return object == 0u ? normalObject.xyz : floatBitsToUint(normalToObject(object, uintBitsToFloat(normalObject.xyz)));
 }
 
@@ -29,7 +31,7 @@ void writeCandidate(uint slot, int i) {
   list.texels[5u * slot + 1u] = uvec4(normalObject.xyz, kOne);
   list.texels[5u * slot + 2u] = uvec4(reflectance.xyz, positionSide.w);
   list.texels[5u * slot + 3u] = uvec4(localPosition.xyz, normalObject.w);
-  list.texels[5u * slot + 4u] = uvec4(localNormal(normalObject), importance);
+  list.texels[5u * slot + 4u] = uvec4(localNormal(normalObject, localPosition.x), importance);
 }
 
 void main() {

@@ -43,8 +43,10 @@ void main() {
   bool lived = vpl.normalLife.w > 0.0;
   if (lived) {
     uint object = uint(vpl.localPosition.w);
-    vec3 position = fromObject(object, vpl.localPosition.xyz);
-    vec3 normal = normalFromObject(object, vpl.localNormal.xyz);
+    bool deforms = objectDeforms(object);
+    vec3 position = deforms ? attachedPosition(vpl.localPosition.xyz) : fromObject(object, vpl.localPosition.xyz);
+    vec3 normal = deforms ? triangleAxes(uint(vpl.localPosition.x)) * vpl.localNormal.xyz
+                          : normalFromObject(object, vpl.localNormal.xyz);
     uint side = sideAt(position, normal, vpl.localPosition.w);
     if (side != kNoSide) {
       VoxelSide surface = loadSide(side);

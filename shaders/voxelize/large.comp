@@ -32,5 +32,5 @@ void main() {
   Material material = loadMaterial(materialOf(indices));
   uint first = (chunk - chunks.list[owner]) * kChunkColumns, end = min(first + kChunkColumns, columnCount(t));
   for (uint column = first + gl_LocalInvocationIndex; column < end; column += 64u)
-    visitColumn(t, indices, material, column);
+    visitColumn(t, constants.firstTriangle + owner, indices, material, column);
 }

@@ -43,6 +43,8 @@ void main() {
   float object = float(0xffffu - (sums.words[word + 26u] & 0xffffu));
   voxelsSurface.texels[texel] = vec4(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell);
   voxelsSurface.texels[texel + 1u] = vec4(normal, object);
-  voxelsSurface.texels[texel + 2u] = vec4(sums3At(word + 14u) * inverse, 0.0);
+  uint piece = sums.words[word + 27u], mask = (1u << kTriangleBits) - 1u;
+  float triangle = piece == 0u ? 0.0 : float(mask - (piece & mask));  // below 2^24: exact
+  voxelsSurface.texels[texel + 2u] = vec4(sums3At(word + 14u) * inverse, triangle);
   voxelsSurface.texels[texel + 3u] = vec4(sums3At(word + 20u) * inverse, 0.0);
 }

@@ -23,5 +23,5 @@ void main() {
 #endif
   if (large) return;
   Material material = loadMaterial(materialOf(indices));
-  for (uint column = 0u; column < columns; ++column) visitColumn(t, indices, material, column);
+  for (uint column = 0u; column < columns; ++column) visitColumn(t, constants.firstTriangle + i, indices, material, column);
 }

@@ -4,7 +4,8 @@
 
 const uint kSmallColumns = 16u;   // a triangle with more columns of cells is split into chunks
 const uint kChunkColumns = 256u;  // of this many, a work group each
-const uint kSumWords = 28u;       // of one side, see add.glsl
+const uint kSumWords = 28u;       // of one side, see visit.glsl
+const uint kTriangleBits = 22u;   // of what remembers the largest piece of an object that deforms
 const uint kRow = 32768u;         // work groups in a row of a dispatch
 const uint kScanBlock = 256u;     // words that a work group of a prefix sum works on
 

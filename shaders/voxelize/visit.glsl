@@ -48,8 +48,9 @@ void addTo(uint word, precise vec3 x) {
   addTo(word + 4u, x.z);
 }
 
-// Words of a side: area, position, normal + 1, reflectance, emission (each weighted by the area), object.
-void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint object) {
+// Words of a side: area, position, normal + 1, reflectance, emission (each weighted by the area), object, triangle.
+// `triangle`: past the static ones; kTriangleBits all set: not of an object that deforms.
+void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint object, uint triangle) {
   uint word = side * kSumWords;
   precise vec3 position = piece.area * piece.centre;
   precise vec3 biased = piece.area * (normal + 1.0);
@@ -62,10 +63,13 @@ void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint ob
   if (emission != vec3(0.0)) addTo(word + 20u, emission);
   // The object of the largest piece; of several such the smallest number.
   atomicMax(sums.words[word + 26u], uint(min(piece.area * 32768.0, 65535.0)) << 16 | (0xffffu - object));
+  // Likewise, coarser.
+  const uint kNone = (1u << kTriangleBits) - 1u;
+  if (triangle < kNone) atomicMax(sums.words[word + 27u], uint(min(piece.area * 512.0, 1023.0)) << kTriangleBits | (kNone - triangle));
 }
 #endif
 
-void visitCell(CellTriangle t, uvec4 indices, Material material, ivec3 turned) {
+void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, ivec3 turned) {
   vec3 place = vec3(turned);
   precise vec3 a = t.a - place;
   precise vec3 b = t.b - place;
@@ -88,16 +92,17 @@ void visitCell(CellTriangle t, uvec4 indices, Material material, ivec3 turned) {
   if (material.alphaCutoff > 0.0 && surface.alpha < material.alphaCutoff) return;
   piece.centre = turnBack(piece.centre, t.axis);
   uint side = 2u * voxel + voxelSideOf(t.normal);
-  addPiece(side, piece, t.normal, surface, objectOf(indices));
-  if (material.doubleSided) addPiece(side ^ 1u, piece, -t.normal, surface, objectOf(indices));
+  uint moving = objectDeforms(objectOf(indices)) ? triangle - frame.staticTriangleCount : ~0u;
+  addPiece(side, piece, t.normal, surface, objectOf(indices), moving);
+  if (material.doubleSided) addPiece(side ^ 1u, piece, -t.normal, surface, objectOf(indices), moving);
 #else
   if (material.alphaCutoff > 0.0 && !alphaTest(materialOf(indices), cellUv(t, indices, a, piece.centre))) return;
   atomicOr(marks.words[linear / 32u], bit);
 #endif
 }
 
-void visitColumn(CellTriangle t, uvec4 indices, Material material, uint column) {
+void visitColumn(CellTriangle t, uint triangle, uvec4 indices, Material material, uint column) {
   ivec2 xy = columnAt(t, column);
   ivec2 range = columnRange(t, xy);
-  for (int z = range.x; z <= range.y; ++z) visitCell(t, indices, material, ivec3(xy, z));
+  for (int z = range.x; z <= range.y; ++z) visitCell(t, triangle, indices, material, ivec3(xy, z));
 }
