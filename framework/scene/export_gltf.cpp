@@ -9,6 +9,7 @@
 #include "framework/scene/export_files.h"
 #include "framework/scene/export_scene_file.h"
 #include "framework/scene/scene_file.h"
+#include "framework/scene/subdivision.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -49,7 +50,7 @@ class GltfWriter {
     animations();
     root_["scenes"][0]["nodes"] = roots_;
     finish();
-    const SceneFileNames names{name_ + ".gltf", nodeNames_, lightNames_};
+    const SceneFileNames names{name_ + ".gltf", nodeNames_, lightNames_, animationNames_};
     const fs::path file = folder_ / (name_ + ".json");
     writeWholeFile(file, sceneFileText(scene_, names, warnings_));
     return file;
@@ -191,7 +192,7 @@ class GltfWriter {
 
   // ---- Meshes ----
 
-  Json primitive(const Primitive& p) {
+  Json primitive(const Primitive& p, const std::vector<MorphTarget>& targets) {
     Json attributes = {{"POSITION", positions(p.positions)},
                        {"NORMAL", accessor(p.normals, {"VEC3", kFloat, 3, kVertexData})},
                        {"TEXCOORD_0", accessor(p.uvs, {"VEC2", kFloat, 2, kVertexData})}};
@@ -202,7 +203,7 @@ class GltfWriter {
     Json out = {{"attributes", attributes},
                 {"indices", accessor(p.indices, {"SCALAR", kUnsignedInt, 1, kIndexData})},
                 {"material", p.material}};
-    for (const MorphTarget& t : p.targets) {
+    for (const MorphTarget& t : targets) {
       Json target = Json::object();
       if (!t.positions.empty()) target["POSITION"] = positions(t.positions);
       if (!t.normals.empty()) target["NORMAL"] = accessor(t.normals, {"VEC3", kFloat, 3, kVertexData});
@@ -211,13 +212,44 @@ class GltfWriter {
     return out;
   }
 
+  // The morph targets of a cage as those of its refined triangles: limit points are linear in the cage's, so
+  // that positions are exact; normals are so at the ends of each target.
+  std::vector<std::vector<MorphTarget>> refinedTargets(const Mesh& mesh) {
+    std::vector<std::vector<MorphTarget>> all(mesh.primitives.size());
+    const SubdivisionCage& cage = *mesh.cage;
+    if (!cage.joints.empty())
+      warn("meshes", "mesh `" + mesh.name + "` is a cage that follows joints: exported at rest");
+    if (cage.targets.empty()) return all;
+    const Stencils stencils(cage);
+    for (const MorphTarget& target : cage.targets) {
+      std::vector<glm::vec3> points = cage.positions, limits(stencils.vertexCount()), normals(limits.size());
+      for (size_t i = 0; i < std::min(points.size(), target.positions.size()); ++i)
+        points[i] += target.positions[i];
+      stencils.evaluate(points, limits, normals);
+      size_t v = 0;
+      for (size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const Primitive& p = mesh.primitives[i];
+        MorphTarget& out = all[i].emplace_back();
+        for (size_t k = 0; k < p.positions.size(); ++k, ++v) {
+          out.positions.push_back(limits[v] - p.positions[k]);
+          out.normals.push_back(normals[v] - p.normals[k]);
+        }
+      }
+    }
+    return all;
+  }
+
   void meshes() {
     meshOf_.assign(scene_.meshes.size(), kNoIndex);
     for (size_t i = 0; i < scene_.meshes.size(); ++i) {
       const Mesh& mesh = scene_.meshes[i];
       Json out = {{"name", mesh.name}, {"primitives", Json::array()}};
-      for (const Primitive& p : mesh.primitives)
-        if (!p.indices.empty()) out["primitives"].push_back(primitive(p));
+      std::vector<std::vector<MorphTarget>> refined;
+      if (mesh.cage) refined = refinedTargets(mesh);
+      for (size_t k = 0; k < mesh.primitives.size(); ++k) {
+        const Primitive& p = mesh.primitives[k];
+        if (!p.indices.empty()) out["primitives"].push_back(primitive(p, mesh.cage ? refined[k] : p.targets));
+      }
       if (!mesh.weights.empty()) out["weights"] = mesh.weights;
       if (out["primitives"].empty()) continue;  // glTF has no empty meshes
       meshOf_[i] = uint32_t(root_["meshes"].size());
@@ -308,7 +340,8 @@ class GltfWriter {
     static const char* const kPaths[] = {"translation", "rotation", "scale", "weights"};
     static const char* const kInterpolations[] = {"STEP", "LINEAR", "CUBICSPLINE"};
     for (const Animation& a : scene_.animations) {
-      Json out = {{"name", a.name}, {"channels", Json::array()}, {"samplers", Json::array()}};
+      animationNames_.push_back(animationUnique_.add(a.name));
+      Json out = {{"name", animationNames_.back()}, {"channels", Json::array()}, {"samplers", Json::array()}};
       for (const AnimationChannel& c : a.channels) {
         const bool rotation = c.path == AnimationChannel::Path::Rotation,
                    weights = c.path == AnimationChannel::Path::Weights;
@@ -329,7 +362,10 @@ class GltfWriter {
                                    {"output", output},
                                    {"interpolation", kInterpolations[size_t(c.interpolation)]}});
       }
-      if (!a.channels.empty()) root_["animations"].push_back(std::move(out));
+      if (a.channels.empty())
+        animationNames_.back().clear();  // glTF has none without channels
+      else
+        root_["animations"].push_back(std::move(out));
     }
   }
 
@@ -355,8 +391,8 @@ class GltfWriter {
   std::map<uint32_t, size_t> imageOf_;  // by texture
   std::vector<uint32_t> meshOf_;
   std::set<std::string> extensions_;
-  UniqueNames names_, lightUnique_, imageNames_{"_"};
-  std::vector<std::string> nodeNames_, lightNames_;
+  UniqueNames names_, lightUnique_, animationUnique_, imageNames_{"_"};
+  std::vector<std::string> nodeNames_, lightNames_, animationNames_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/scene/export_files.h"
+#include "framework/scene/motion.h"
 
 namespace fovea::scene {
 namespace {
@@ -84,6 +85,7 @@ Mover resting(const Scene& scene, uint32_t node) {
 Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
   Json list = Json::array();
   std::vector<bool> moved(scene.nodes.size());
+  const NodePoses poses(scene);
   for (const Mover& m : scene.movers) {
     list.push_back(moverJson(m, names.nodes[m.node]));
     moved[m.node] = true;
@@ -92,7 +94,7 @@ Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& wa
     const Node& n = scene.nodes[i];
     bool below = false;
     for (uint32_t p = n.parent; p != kNoIndex && !below; p = scene.nodes[p].parent) below = moved[p];
-    if (!n.dynamic || moved[i] || below || !scene.animations.empty()) continue;
+    if (!n.dynamic || moved[i] || below || poses.animated(i)) continue;
     if (n.matrix)
       warnings.warning({scene.name, 0, 0}, "nodes",
                        "node `" + n.name + "` is placed by a matrix: exported as part of what never moves");
@@ -103,11 +105,30 @@ Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& wa
   return list;
 }
 
+// What the model plays; a scene file knows of one animation at a time.
+Json modelJson(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
+  Json model = {{"file", names.model}};
+  if (scene.animations.empty()) return model;
+  model["animation"] = false;
+  for (size_t i = 0; i < scene.animations.size(); ++i) {
+    const Animation& a = scene.animations[i];
+    if (!a.plays || names.animations[i].empty()) continue;
+    if (!model["animation"].is_boolean())
+      warnings.warning({scene.name, 0, 0}, "animations",
+                       "several animations play at once: of the exported model only `" +
+                           scene.animations[0].name + "` does");
+    else
+      model["animation"] = {
+          {"name", names.animations[i]}, {"speed", shortest(a.speed)}, {"repeat", repeatName(a.repeat)}};
+  }
+  return model;
+}
+
 }  // namespace
 
 std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
   Json root = {{"name", scene.name},
-               {"models", Json::array({Json{{"file", names.model}}})},
+               {"models", Json::array({modelJson(scene, names, warnings)})},
                {"exposure", shortest(scene.exposure)},
                {"environment", vector(scene.environment)},
                {"ipd", shortest(scene.ipd)}};

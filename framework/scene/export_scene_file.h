@@ -10,9 +10,9 @@
 namespace fovea::scene {
 
 struct SceneFileNames {
-  std::string model;                // relative to the scene file
-  std::vector<std::string> nodes;   // as the model calls them; no name twice
-  std::vector<std::string> lights;  // likewise
+  std::string model;                            // relative to the scene file
+  std::vector<std::string> nodes;               // as the model calls them; no name twice
+  std::vector<std::string> lights, animations;  // likewise; an animation that is not there: ""
 };
 
 // The text of a scene file (samples/scenes/README.md) that shows `scene` by the exported model.

@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <glm/gtc/constants.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "framework/image/image.h"
 #include "framework/scene/export_gltf.h"
 #include "framework/scene/export_mitsuba.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/subdivision.h"
 #include "scene_support.h"
 
 namespace fovea::test {
@@ -216,6 +218,47 @@ TEST(ExportGltf, ACameraPathComesBack) {
   c.position.x += 1;
   c.verticalFov = 1.1f;
   s.cameraPath.push_back({2, c});
+  roundTrip(s);
+}
+
+// A flag of two joints with a morph target, both along keys, and a cage that takes another shape.
+TEST(ExportGltf, WhatDeformsComesBack) {
+  Scene s = everything();
+  s.nodes[3].dynamic = false;
+  Primitive& flag = s.meshes[1].primitives[0];
+  flag.targets = {{{{0, 0, 0}, {0, 0.2f, 0}, {0, 0.3f, 0.1f}, {0, 0, 0}}, {}}};
+  flag.joints.assign(4, glm::u16vec4(0, 1, 0, 0));
+  flag.weights = {{1, 0, 0, 0}, {0.5f, 0.5f, 0, 0}, {0, 1, 0, 0}, {1, 0, 0, 0}};
+  s.meshes[1].weights = {0.5f};
+  s.skins = {{"bones", {4, 5}, {glm::mat4(1), glm::inverse(glm::mat4(2))}}};
+  s.nodes[3].skin = 0;
+  s.nodes.resize(7);
+  s.nodes[4].name = "bone 1";
+  s.nodes[5].name = "bone 2";
+  s.nodes[5].parent = 4;
+  SubdivisionCage cage;
+  cage.positions = flag.positions;
+  cage.faceSizes = {4};
+  cage.faceVertices = {0, 1, 2, 3};
+  cage.faceMaterials = {2};
+  cage.targets = {{{{0, 0.5f, 0}, {0, 0, 0.2f}, {0, 0, 0}, {0.1f, 0, 0}}, {}}};
+  s.meshes.push_back({"cage", {}, {0.0f}, std::make_shared<const SubdivisionCage>(cage)});
+  s.nodes[6].name = "sheet";
+  s.nodes[6].mesh = 2;
+  refineCages(s);
+  using Path = AnimationChannel::Path;
+  using Interpolation = AnimationChannel::Interpolation;
+  const float half = std::sqrt(0.5f);
+  s.animations = {{"rest", {{4, Path::Scale, Interpolation::Step, {0}, {1, 2, 1}}}},
+                  {"wave",
+                   {{5, Path::Rotation, Interpolation::Linear, {0, 1.5f}, {0, 0, 0, 1, half, 0, 0, half}},
+                    {3, Path::Weights, Interpolation::Linear, {0, 1, 2}, {0, 1, 0.25f}},
+                    {6, Path::Weights, Interpolation::Step, {0, 1}, {0, 1}}},
+                   true,
+                   1.5f,
+                   Repeat::PingPong}};
+  const Geometry g = flatten(s);
+  EXPECT_EQ(std::count_if(g.objects.begin(), g.objects.end(), [](const Object& o) { return o.deforms; }), 3);
   roundTrip(s);
 }
 
