@@ -3,6 +3,7 @@
 import json
 import math
 import struct
+import subprocess
 import sys
 import unittest
 
@@ -83,6 +84,12 @@ class Compare(CompareTest):
         self.assertIsNone(shown["whole"]["relmse"])
         self.fails(BAD_INPUT, "compare", "a.exr", "g.exr", "--layer", "half_a", says=["a.exr", "`half_a`", "`radiance`"])
         self.fails(BAD_INPUT, "compare", "a.png", "g.exr", "--layer", "radiance", says=["a.png"])
+        change = lambda *how: subprocess.run(["oiiotool", *how], cwd=self.folder, check=True)
+        for key, value in (("gaze", "0.5,abc"), ("gaze", "0.5"), ("fovea_radius", "nan"), ("exposure", "-1")):
+            change("a.exr", "--sattrib", "fovea." + key, value, "-o", "changed.exr")
+            self.fails(BAD_INPUT, "compare", "changed.exr", "g.exr", says=["changed.exr", value.split(",")[-1]])
+        change("g.exr", "--ch", "radiance.R,radiance.G,radiance.B,half_a.R,half_a.G,half_a.B", "-o", "changed.exr")
+        self.fails(BAD_INPUT, "compare", "a.exr", "changed.exr", says=["only one", "half_b"])
         self.succeeds(*reference, "--set", "tonemap.exposure=3", "-o", "bright.exr")
         self.fails(BAD_INPUT, "compare", "a.exr", "bright.exr", says=["1.25", "3", "--exposure"])
         self.succeeds("compare", "a.exr", "bright.exr", "--exposure", "2")
