@@ -4,8 +4,8 @@
 // pixels and RGB of squares of differences of T. A reference of finite samples has noise of its own, which
 // adds to every error measured with it: from two independent halves of it, whose mean it is, the noise is
 // E[(h1 - h2)^2] / 4. Where halves are given it is subtracted, so that a measure may come out slightly below
-// 0 by chance, and its mean over seeds stays right. (T is curved: halves of few samples give a floor that is
-// somewhat too large, by a tenth with 16 samples a pixel in the Cornell box.)
+// 0 by chance, and its mean over seeds stays right. (T is curved: with few samples the floor is off,
+// by a tenth one way or the other with 16 to 32 samples a pixel.)
 #pragma once
 
 #include <cstdint>
