@@ -1,7 +1,6 @@
-// Limit points and normals against closed forms, topology, seams, stencils, and cages that must be refused.
+// Limit points and normals against closed forms, topology, seams, stencils.
 #include "framework/scene/subdivision.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "framework/base/diagnostic.h"
 #include "tests/support/cages.h"
 
 namespace fovea::scene {
@@ -18,7 +16,6 @@ namespace {
 
 using namespace test;
 using Scheme = SubdivisionCage::Scheme;
-using testing::HasSubstr;
 
 Primitive refineOne(const SubdivisionCage& cage) {
   std::vector<Primitive> primitives = refine(cage);
@@ -379,82 +376,6 @@ TEST(Subdivision, RefiningIsDeterministic) {
     EXPECT_EQ(a[i].positions, b[i].positions);
     EXPECT_EQ(a[i].normals, b[i].normals);
     EXPECT_EQ(a[i].indices, b[i].indices);
-  }
-}
-
-// ---- cages that must be refused ----
-
-void expectRefused(const SubdivisionCage& cage, const std::string& place, const std::string& message) {
-  const std::vector<CageProblem> problems = checkCage(cage);
-  ASSERT_FALSE(problems.empty()) << place;
-  EXPECT_EQ(problems.front().place, place);
-  EXPECT_THAT(problems.front().message, HasSubstr(message));
-  EXPECT_THROW(refine(cage), Error);
-  EXPECT_THROW(Stencils{cage}, Error);
-}
-
-TEST(Subdivision, BadCagesAreRefused) {
-  const auto changed = [](const std::function<void(SubdivisionCage&)>& change) {
-    SubdivisionCage cage = cubeCage(2);
-    change(cage);
-    return cage;
-  };
-  using Cage = SubdivisionCage;
-  expectRefused(Cage{}, "faceSizes", "no faces");
-  expectRefused(changed([](Cage& c) { c.level = 0; }), "level", "not in 1 to 8");
-  expectRefused(changed([](Cage& c) { c.level = 9; }), "level", "not in 1 to 8");
-  expectRefused(changed([](Cage& c) { c.positions[3].y = NAN; }), "positions[3]", "not finite");
-  expectRefused(changed([](Cage& c) { c.faceVertices[5] = 8; }), "faceVertices[5]", "only 8");
-  expectRefused(changed([](Cage& c) { c.faceSizes[2] = 2; }), "faceSizes[2]", "a face of 2 vertices");
-  expectRefused(changed([](Cage& c) { c.faceSizes[2] = 5; }), "faceVertices", "add up to 25");
-  expectRefused(changed([](Cage& c) { c.faceVertices[1] = 0; }), "faces[0]", "names vertex 0 twice");
-  expectRefused(changed([](Cage& c) { std::swap(c.faceVertices[1], c.faceVertices[3]); }), "faces[4]",
-                "in the same direction");
-  expectRefused(changed([](Cage& c) { addFace(c, {0, 1, 7}); }), "faces[6]", "in the same direction");
-  expectRefused(changed([](Cage& c) { c.positions.emplace_back(0, 0, 0); }), "positions[8]",
-                "belongs to no face");
-  expectRefused(changed([](Cage& c) {
-                  c.positions.emplace_back(3, 3, 3);
-                  c.positions.emplace_back(3, 3, 4);
-                  addFace(c, {7, 8, 9});
-                }),
-                "positions[7]", "meet only in this vertex");
-  expectRefused(changed([](Cage& c) { c.creases.push_back({0, 7, 1}); }), "creases[0]", "no edge between");
-  expectRefused(changed([](Cage& c) { c.creases.push_back({0, 900, 1}); }), "creases[0]", "no edge between");
-  expectRefused(changed([](Cage& c) { c.creases.push_back({0, 1, -1}); }), "creases[0]", "sharpness");
-  expectRefused(changed([](Cage& c) { c.corners.push_back({12, 1}); }), "corners[0]", "no vertex 12");
-  expectRefused(changed([](Cage& c) { c.uvs = {{0, 0}}; }), "faceUvs", "missing");
-  expectRefused(changed([](Cage& c) { c.faceUvs = c.faceVertices; }), "faceUvs[0]", "only 0");
-  expectRefused(changed([](Cage& c) { c.faceMaterials = {0, 1}; }), "faceMaterials", "for 6 faces");
-  expectRefused(changed([](Cage& c) { c.scheme = Scheme::Loop; }), "faceSizes[0]", "triangles only");
-  expectRefused(changed([](Cage& c) { c.targets.resize(1), c.targets[0].positions.resize(3); }), "targets[0]",
-                "for 8 points");
-  Cage large = gridCage(200, 200, 8, [](uint32_t, uint32_t) { return 0.0f; });
-  expectRefused(large, "level", "at most 4194304");
-}
-
-TEST(Subdivision, CagesOfASceneAreRefinedOnce) {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.meshes.resize(2);
-  scene.meshes[0].name = "ball";
-  auto cage = std::make_shared<SubdivisionCage>(cubeCage(2));
-  scene.meshes[0].cage = cage;
-  refineCages(scene);
-  ASSERT_EQ(scene.meshes[0].primitives.size(), 1u);
-  EXPECT_EQ(scene.meshes[0].primitives[0].indices.size(), 6u * 4 * 4 * 2 * 3);
-  EXPECT_TRUE(scene.meshes[1].primitives.empty());
-  scene.meshes[0].primitives[0].material = 0;
-  refineCages(scene);
-  EXPECT_EQ(scene.meshes[0].primitives.size(), 1u);
-  cage->faceMaterials.assign(6, 3);
-  scene.meshes[0].primitives.clear();
-  try {
-    refineCages(scene);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("mesh `ball`"));
-    EXPECT_THAT(e.what(), HasSubstr("only 1"));
   }
 }
 
