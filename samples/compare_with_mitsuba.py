@@ -116,6 +116,7 @@ def main():
     parser.add_argument("--batches", type=int, default=64, help="independent pictures of Mitsuba; default 64")
     parser.add_argument("--spp", type=int, default=64, help="samples a pixel of each; default 64")
     parser.add_argument("--depth", type=int, default=4, help="1 emission, 2 direct light; default 4")
+    parser.add_argument("--frame", type=int, default=0, help="of a scene that moves, 42 a second; default 0")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--variant", default="scalar_rgb", help="of Mitsuba; default scalar_rgb, llvm_ad_rgb is faster")
     parser.add_argument("--save", type=pathlib.Path, metavar="FOLDER")
@@ -127,12 +128,12 @@ def main():
         name = pathlib.Path(scene).stem
         with tempfile.TemporaryDirectory(prefix="fovea-mitsuba-") as folder:
             xml = run(options.fovea, "scene", "export", scene, "-o", folder, "--format", "mitsuba", "--size",
-                      options.size, "--depth", options.depth).strip()
+                      options.size, "--depth", options.depth, "--frame", options.frame).strip()
             mean, variance = render_mitsuba(xml, environment(options.fovea, scene), options)
             picture = pathlib.Path(folder) / "ours.exr"
             run(options.fovea, "render", "reference", "--scene", scene, "--size", options.size, "--set", "filter=box",
                 "--set", "sampling=independent", "--set", f"depth={options.depth}", "--set",
-                f"spp={options.batches * options.spp}", "-o", picture)
+                f"spp={options.batches * options.spp}", "--first", options.frame, "-o", picture)
             ours = read_layers(picture)
         if options.save:
             save(options.save / f"{name}.exr", mean, variance, options)

@@ -11,13 +11,14 @@ namespace fovea::scene {
 
 // Writes into `folder` (made where it is missing):
 //   NAME.gltf, NAME.bin, textures/*.png  the model: meshes, materials, nodes, lights (KHR_lights_punctual),
-//   cameras NAME.json                            a scene file that names it and holds what glTF has no place
-//   for: exposure,
-//                                        environment, gaze, distance of the eyes, camera path, movers, moving
-//                                        lights
-// NAME is the scene's name as safeFileName() has it. `load` of the scene file gives back the same picture;
-// node and light names that occur twice get a number. Returns the path of NAME.json. Throws
-// Error(CannotWrite).
+//                                        cameras, skins, morph targets, animations
+//   NAME.json                            a scene file that names it and holds what glTF has no place for:
+//                                        exposure, environment, gaze, distance of the eyes, camera path,
+//                                        movers, moving lights, which animation plays
+// NAME is the scene's name as safeFileName() has it. load() of the scene file gives back the same picture at
+// any time; names of nodes, lights and animations that occur twice get a number. Control cages become the
+// triangles that are seen, with their morph targets; one that follows joints stays at rest, with a warning.
+// Returns the path of NAME.json. Throws Error(CannotWrite).
 std::filesystem::path exportGltf(const Scene& scene, const std::filesystem::path& folder,
                                  Diagnostics& warnings);
 
