@@ -130,13 +130,13 @@ def main():
             xml = run(options.fovea, "scene", "export", scene, "-o", folder, "--format", "mitsuba", "--size",
                       options.size, "--depth", options.depth, "--frame", options.frame).strip()
             mean, variance = render_mitsuba(xml, environment(options.fovea, scene), options)
+            if options.save:
+                save(options.save / f"{name}.exr", mean, variance, options)
             picture = pathlib.Path(folder) / "ours.exr"
             run(options.fovea, "render", "reference", "--scene", scene, "--size", options.size, "--set", "filter=box",
                 "--set", "sampling=independent", "--set", f"depth={options.depth}", "--set",
                 f"spp={options.batches * options.spp}", "--first", options.frame, "-o", picture)
             ours = read_layers(picture)
-        if options.save:
-            save(options.save / f"{name}.exr", mean, variance, options)
         agree = compare(name, mean, variance, ours, options) and agree
     sys.exit(0 if agree else 1)
 
