@@ -2,6 +2,7 @@
 // explained.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -14,6 +15,12 @@ struct Fovea {
   glm::vec2 centre{0};  // may lie outside the image
   float radius = 0;     // r_f, pixels
 };
+
+// In image widths: of a fovea of `angle` (radians, from the line of sight) in the middle of the picture.
+inline float foveaRadiusOfAngle(float angle, float verticalFov, glm::uvec2 imageSize) {
+  const float halfWidth = std::tan(0.5f * verticalFov) * float(imageSize.x) / float(imageSize.y);
+  return 0.5f * std::tan(angle) / halfWidth;
+}
 
 // gaze: normalised; foveaRadius: in image widths.
 inline Fovea makeFovea(glm::vec2 gaze, glm::vec2 imageSize, float foveaRadius) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <unordered_map>
 
@@ -146,16 +147,27 @@ Camera cameraAt(const Scene& scene, double time) {
   return scene.cameras.empty() ? Camera{} : scene.cameras.front();
 }
 
-GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time) {
-  GazeSample sample;
-  bool found = false;
-  for (const GazeSample& g : gaze) {
-    if (!g.valid) continue;
-    if (found && double(g.time) > time) break;
-    sample = g;
-    found = true;
-    if (double(g.time) > time) break;  // before the first valid sample: that one
+GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time, double gap) {
+  const auto valid = [](const GazeSample& g) { return g.valid; };
+  const auto after = std::upper_bound(gaze.begin(), gaze.end(), time,
+                                      [](double t, const GazeSample& g) { return t < double(g.time); });
+  const auto back = std::find_if(std::make_reverse_iterator(after), gaze.rend(), valid);
+  if (back == gaze.rend()) {
+    const auto first = std::find_if(after, gaze.end(), valid);
+    return first == gaze.end() ? GazeSample{} : *first;
   }
+  GazeSample sample = *back;
+  const bool blink = back != std::make_reverse_iterator(after);  // between the sample and now
+  if (blink || after == gaze.end() || !after->valid) return sample;
+  const double interval = double(after->time) - double(sample.time);
+  if (interval > gap) return sample;
+  const float u = float((time - double(sample.time)) / interval);
+  const auto join = [u](glm::vec2& from, const glm::vec2& to) {
+    if (glm::distance(from, to) <= kGazeJump) from += u * (to - from);
+  };
+  join(sample.position, after->position);
+  if (sample.left && after->left) join(*sample.left, *after->left);
+  if (sample.right && after->right) join(*sample.right, *after->right);
   return sample;
 }
 

@@ -2,6 +2,7 @@
 // nodes.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "framework/scene/frame.h"
@@ -11,9 +12,19 @@ namespace fovea::scene {
 
 Camera cameraAt(const Scene& scene, double time);
 
-// The sample in force at `time`: the last one at or before it that is valid. Linear between two valid
-// neighbours would smear a saccade over the sampling interval, so samples hold.
-GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time);
+// Samples of an eye tracker that lie further apart, in time or in the picture, are not joined.
+inline constexpr double kGazeGap = 0.05;   // s; slower trackers, pauses and blinks
+inline constexpr float kGazeJump = 0.05f;  // parts of the image; saccades
+
+// Where the eye looks at `time`: at the last valid sample at or before it (before all of them: at the first
+// one). Within a fixation or a slow pursuit linear to the next sample: when that is valid, follows at most
+// `gap` after it and lies no further than kGazeJump off. A saccade is never smeared over the interval between
+// two samples; a blink or a pause of the tracker holds what was before it.
+GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time, double gap = kGazeGap);
+
+// A table of samples, see samples/scenes/README.md. Throws Error(BadInput) with the file and the line of
+// every mistake.
+std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file);
 
 std::vector<Light> lightsAt(const Scene& scene, double time);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/scene/load.h"
+#include "framework/scene/motion.h"
 #include "framework/scene/scene_file_reader.h"
 
 namespace fovea::scene {

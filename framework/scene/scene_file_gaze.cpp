@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "framework/scene/motion.h"
 #include "framework/scene/scene_file_reader.h"
 
 namespace fovea::scene {

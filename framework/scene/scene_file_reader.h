@@ -83,9 +83,8 @@ SubdivisionEntry readSubdivision(const json::Value& v, const std::string& path, 
 // Error(BadInput).
 void applySubdivision(const SubdivisionEntry& entry, Scene& model);
 
-// Samples of the gaze: an array of the scene file, or a CSV file.
+// Samples of the gaze, an array of the scene file; for a table readGazeCsv() (motion.h).
 std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors);
-std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file);
 
 // `animation` of a model: its name or number, or { "name", "speed", "repeat" }.
 struct AnimationChoice {

@@ -17,6 +17,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
 #include "framework/scene/load.h"
+#include "framework/scene/motion.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 #include "samples/fovea/files.h"
@@ -35,7 +36,8 @@ constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
   GraphOptions graph;
-  std::string scene, size = "1024x1024", gaze, device, timings, trace;
+  std::string scene, size = "1024x1024", gaze, gazeTrace, device, timings, trace;
+  double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0;
   std::vector<std::string> outputs;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
   bool quiet = false, validation = false, showFovea = false;
@@ -63,6 +65,7 @@ class Render {
   void checkFiles();
   void chooseOutputs();
   void loadInputs();
+  void useFoveaAngle(const graph::BoundGraph& bound);
   void buildPlan();
   void buildExecutor();
   void renderFrames();
@@ -130,13 +133,30 @@ void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
   // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
-  graph::bind(description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})),
-              early);
+  const graph::BoundGraph bound = graph::bind(
+      description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})), early);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
   geometry_ = scene::flatten(scene_);
+  if (!options_.gazeTrace.empty()) scene_.gaze = scene::readGazeCsv(options_.gazeTrace);
+  if (options_.foveaDegrees > 0) useFoveaAngle(bound);
   chooseOutputs();
   stopIfInterrupted();
+}
+
+// Passes know the radius in image widths: what the angle is in the first frame's picture.
+void Render::useFoveaAngle(const graph::BoundGraph& bound) {
+  const float radius = scene::foveaRadiusOfAngle(glm::radians(float(options_.foveaDegrees)),
+                                                 scene::cameraAt(scene_, 0).verticalFov, size_);
+  GraphOptions changed = options_.graph;
+  for (const graph::BoundPass& pass : bound.passes)
+    if (pass.parameters.find("fovea_radius"))
+      changed.set.push_back(fmt::format("{}.fovea_radius={:.6f}", pass.name, radius));
+  if (changed.set.size() == options_.graph.set.size())
+    throw Error(ExitCode::Usage,
+                "graph " + description_.name + " has no fovea that --fovea-degrees could size");
+  Diagnostics known = messages_;
+  description_ = loadGraph(changed, known);
 }
 
 void Render::buildPlan() {
@@ -194,6 +214,12 @@ void Render::buildExecutor() {
 
 scene::Frame Render::frame(uint64_t index) const {
   scene::Frame f = scene::makeFrame(scene_, geometry_, size_, index, options_.seed);
+  if (!options_.gazeTrace.empty() && options_.gazeGapMs != 1000 * scene::kGazeGap) {
+    const scene::GazeSample sample = scene::gazeAt(scene_.gaze, f.time, 0.001 * options_.gazeGapMs);
+    const glm::vec2 eyes[] = {sample.position, sample.left.value_or(sample.position),
+                              sample.right.value_or(sample.position)};
+    for (size_t i = 0; i < f.views.size() && i < std::size(eyes); ++i) f.views[i].gaze = eyes[i];
+  }
   if (gaze_)
     for (scene::View& view : f.views) view.gaze = *gaze_;
   f.gpu = gpuScene_.get();
@@ -382,6 +408,28 @@ void addRender(CLI::App& program, Action& action) {
       ->add_option("--gaze", options->gaze,
                    "Where the eye looks, 0,0 (top left) to 1,1; default: the scene's")
       ->type_name("X,Y");
+  CLI::Option* trace =
+      command
+          ->add_option("--gaze-trace", options->gazeTrace,
+                       "Where the eye looks over time: a table t,x,y,valid (seconds, 0 to 1 from\nthe "
+                       "top left, 0 in a blink) instead of the scene's")
+          ->type_name("FILE.csv")
+          ->excludes("--gaze");
+  command
+      ->add_option(
+          "--gaze-gap", options->gazeGapMs,
+          "Join samples of the trace that lie at most so many ms apart; others, and jumps\nof more than "
+          "5% of the picture, hold the last one; default 50")
+      ->type_name("MS")
+      ->needs(trace)
+      ->check(CLI::Range(0.0, 10000.0).description(""));
+  command
+      ->add_option(
+          "--fovea-degrees", options->foveaDegrees,
+          "Foveal radius as an angle from the line of sight, by the field of view of the\nfirst frame's "
+          "camera; default: the graph's fovea_radius, in image widths")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.1, 60.0).description(""));
   command->add_flag("--show-fovea", options->showFovea,
                     "Draw the foveal circle and a cross where the eye looks onto .png pictures");
   command
