@@ -82,6 +82,11 @@ PassDeclaration Weights::declaration() {
               "does not see");
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths that `importance-area` gives to the VPLs nearest to their ends (M)");
+  d.parameter(
+      "kernel", choice("disc", {"disc", "clamp"}),
+      "what `importance-area` takes the VPLs to be shaded with, as in pass deferred: with `clamp` the "
+      "region's mean gets the light back that the clamp takes");
+  d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "of the kernel `clamp`");
   d.parameter("sides", choice("lit", {"lit", "all"}),
               "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such "
               "sides; `all` every "
@@ -180,8 +185,12 @@ void Weights::recordDensities(RecordContext& ctx) {
     ctx.use(paths_).dispatchThreads(tried);
   else
     ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);
+  const bool clamped = shared && p.text("kernel") == "clamp";
   const uint32_t row = std::min(vplCount_, 32768u);
-  ctx.use(density_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
+  ctx.use(density_)
+      .constant("vplCount", vplCount_)
+      .constant("nearest", clamped ? float(p.real("clamp_distance")) : 0.0f)
+      .dispatch(row, (vplCount_ + row - 1) / row);
   ctx.barrier();
   if (shared) {
     ctx.use(share_)

@@ -32,6 +32,7 @@ layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
+  float nearest;  // m; above 0: nothing counts as nearer, as for the kernel `clamp`
 };
 
 shared float sums[64];
@@ -44,7 +45,8 @@ float landing(VoxelGrid grid, uint point, vec3 position, vec3 normal) {
   vec3 to = position - from.xyz;
   float d2 = dot(to, to);
   float cosines = max(dot(texelFetch(screen, int(3u * point + 1u)).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
-  return from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * (kPi * d2 + grid.cell * grid.cell)) : 0.0;
+  float solid = nearest > 0.0 ? kPi * max(d2, nearest * nearest) : kPi * d2 + grid.cell * grid.cell;
+  return from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * solid) : 0.0;
 }
 
 float seenShare(VoxelGrid grid, uint slot, uint lane, vec3 position, vec3 normal) {

@@ -244,102 +244,132 @@ TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   }
 }
 
-// What management does to the light, for each weight and number of VPLs: printed. The default, pdf, has the
-// least bias in the fovea, and in the Cornell box its bias falls with the number of VPLs. It is not small:
-// the list holds what importance has picked, and a density of eye paths knows nothing of that. In Sponza
-// `area` gives the VPLs hidden sunlit walls.
+// What management does to the light, for each weight and number of VPLs: printed. `importance-area` has the
+// least bias in the fovea, for it does not care what picked the VPLs; what is left is that voxels are coarse
+// (their densities miss 2 to 4% of the light that the VPLs send, and paths through them find 1% too much, in
+// the Cornell box). A list picked by importance is no sample of the eye paths, as `pdf` takes it to be, and
+// `area` and `constant` give the VPLs hidden sunlit walls.
 TEST(Foveated, BiasOfOursByWeight) {
   for (const EnergyScene& e : energyScenes()) {
     const bool large = e.name != "cornellbox";
-    const uint32_t seeds = large ? 1 : 2;
     const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
     const glm::vec2 gaze = gazeOf(e.scene);
     const double inside = meanOf(traced, kEnergySize, gaze, 0.25f, true),
                  outside = meanOf(traced, kEnergySize, gaze, 0.25f, false);
     std::map<std::string, double> worst;
-    for (const char* weights : {"pdf", "area", "constant"}) {
+    for (const std::string weights : {"importance-area", "pdf", "area", "constant"}) {
       std::vector<double> biases;
       for (const int n : {250, 1000, 4000}) {
-        if (large && n > 1000) break;  // long
-        double fovea = 0, rest = 0;
-        for (uint32_t seed = 1; seed <= seeds; ++seed) {
-          const auto image =
-              indirectOf("ours", e.scene,
-                         {"terms=direct", "kernel=clamp", "clamp_distance=0.1",
-                          std::string("weights=") + weights, "vpl_count=" + std::to_string(n),
-                          "attempts=" + std::to_string(2 * n), "atlas_layout=tiled", "map_size=32"},
-                         2, seed);
-          fovea += (meanOf(image, kEnergySize, gaze, 0.25f, true) / inside - 1) / seeds;
-          rest += (meanOf(image, kEnergySize, gaze, 0.25f, false) / outside - 1) / seeds;
-        }
-        std::printf("[ MEASURED ] %s, ours, weights %-8s N %4d: bias in the fovea %+.3f, outside %+.3f\n",
-                    e.name.c_str(), weights, n, fovea, rest);
+        if (large && n != 1000) continue;  // long
+        if (n > 1000 && (weights == "area" || weights == "constant")) continue;
+        const auto image =
+            indirectOf("ours", e.scene,
+                       {"terms=direct", "kernel=clamp", "clamp_distance=0.1", "weights=" + weights,
+                        "vpl_count=" + std::to_string(n), "attempts=" + std::to_string(2 * n),
+                        "atlas_layout=tiled", "map_size=32"},
+                       2, 1);
+        const double fovea = meanOf(image, kEnergySize, gaze, 0.25f, true) / inside - 1;
+        const double rest = meanOf(image, kEnergySize, gaze, 0.25f, false) / outside - 1;
+        std::printf("[ MEASURED ] %s, ours, weights %-15s N %4d: bias in the fovea %+.3f, outside %+.3f\n",
+                    e.name.c_str(), weights.c_str(), n, fovea, rest);
         worst[weights] = std::max(worst[weights], std::abs(fovea));
         biases.push_back(std::abs(fovea));
       }
-      if (std::string(weights) == "pdf" && !large) {
-        EXPECT_LE(biases[2], biases[0]);
-        EXPECT_LE(biases[2], 0.2);
+      if (weights == "importance-area" && !large) {
+        EXPECT_LE(biases[2], biases[0] + 0.02);
+        EXPECT_LE(worst[weights], 0.05);
       }
     }
-    EXPECT_LE(worst["pdf"], std::min(worst["area"], worst["constant"])) << e.name;
+    EXPECT_LE(worst["importance-area"], 0.2) << e.name;
+    EXPECT_LE(worst["importance-area"], std::min({worst["pdf"], worst["area"], worst["constant"]})) << e.name;
   }
 }
 
 // ---- Error in the fovea
 // ------------------------------------------------------------------------------------------
 
-double foveaError(const std::vector<float>& a, const std::vector<float>& g, glm::uvec2 size, glm::vec2 gaze) {
-  return meanOver(size, gaze, 0.25f, true, [&](size_t i) {
-    double e = 0;
-    for (size_t c = 0; c < 3; ++c) {
-      const double d = (a[i + c] - g[i + c]) / (g[i + c] + 0.01);
-      e += d * d / 3;
-    }
-    return e;
-  });
+struct FoveaError {
+  double relative = 0;  // linear relMSE of the indirect light
+  double display = 0;   // MSE through sRGB with the scene's exposure, direct light included
+  FoveaError& operator+=(const FoveaError& o) {
+    relative += o.relative;
+    display += o.display;
+    return *this;
+  }
+};
+
+double toDisplay(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
-// Linear relative error of the indirect light in the fovea (METHOD section 4) where a camera arrives after
-// some frames, over five seeds; reference: traced paths. The paper finds Ours below Ours_r and below IR_1000.
-// Here Ours is not below IR_1000, with its clamp or (the ablation) without: light paths lie where the light
-// is, while where eye paths end does not depend on the light there, and the Cornell box has no hidden rooms
-// in which light paths would be wasted. What is tested is that reuse by importance is no worse than reuse at
-// random.
+FoveaError foveaError(const GraphRun& run, const std::vector<float>& reference, float exposure,
+                      glm::uvec2 size, glm::vec2 gaze) {
+  const auto a = toFloats(run.outputs.at("indirect")), direct = toFloats(run.outputs.at("direct"));
+  const auto mean = [&](auto f) {
+    return meanOver(size, gaze, 0.25f, true, [&](size_t i) { return (f(i) + f(i + 1) + f(i + 2)) / 3; });
+  };
+  const auto square = [](double x) { return x * x; };
+  return {mean([&](size_t i) { return square((a[i] - reference[i]) / (reference[i] + 0.01)); }),
+          mean([&](size_t i) {
+            return square(toDisplay(exposure * (a[i] + direct[i])) -
+                          toDisplay(exposure * (reference[i] + direct[i])));
+          })};
+}
+
+// Errors in the fovea (METHOD section 4) where a camera arrives after some frames, over five seeds;
+// reference: traced paths. Every pixel takes all VPLs: interleaved over 64 x 64 pixels the filter across
+// edges alone makes a relMSE of 0.05. The clamp at 1.5 m is then nearly all of the error, and the same for
+// every frame. ours gives the fovea the light back that the clamp takes and is below ir_1000 as in the paper;
+// with the disc kernel (the ablation) light paths, which lie where the light is, are as good: the Cornell box
+// has no hidden rooms to waste them in. Against reuse at random, reuse by importance makes no difference that
+// five seeds show: the weights make good what either has picked.
 TEST(Foveated, FovealErrorByMethod) {
   const scene::Scene s = scene::builtin("cornellbox");
   const glm::vec2 gaze = gazeOf(s);
-  constexpr uint32_t kFrames = 5, kSeeds = 5;
+  constexpr uint32_t kFrames = 4;
   constexpr glm::uvec2 kSize{64, 64};
   const auto reference = tracedIndirect(s, kSize, 2, 256);
-  std::map<std::string, double> mean;
-  for (const char* kernel : {"clamp", "disc"})
-    for (const char* graph : {"ours", "ours_r", "ir_1000"}) {
-      double& sum = mean[std::string(graph) + " " + kernel];
-      for (uint32_t seed = 1; seed <= kSeeds; ++seed) {
+  std::map<std::string, FoveaError> mean;
+  for (const std::string kernel : {"clamp", "disc"})
+    for (const std::string graph : {"ours", "ours_r", "ir_1000"}) {
+      if (kernel == "disc" && graph == "ours_r") continue;
+      const uint32_t seeds = kernel == "disc" ? 2 : 5;
+      std::vector<FoveaError> errors;
+      for (uint32_t seed = 1; seed <= seeds; ++seed) {
+        float exposure = 1;
         GraphRunOptions options;
         options.size = kSize;
-        options.frames = kFrames;
+        options.frames = graph == "ir_1000" ? 1 : kFrames;
         options.seed = seed;
-        options.set = {"map_size=64", "shadow_map_size=1024", std::string("kernel=") + kernel};
+        options.set = {"map_size=32", "atlas_layout=tiled", "shadow_map_size=1024", "interleave=1",
+                       "kernel=" + kernel};
+        options.outputs = {"indirect", "direct"};
         options.beforeFrame = [&](scene::Frame& frame) {
+          exposure = frame.exposure;
           scene::Camera camera = s.cameras[0];
-          camera.position.x += 0.05f * (float(frame.index) - float(kFrames - 1));
+          camera.position.x += 0.05f * (float(frame.index) - float(options.frames - 1));
           for (scene::View& v : frame.views) {
             const std::string name = v.name;
             v = scene::makeView(camera, options.size, *frame.geometry, gaze);
             v.name = name;
           }
         };
-        sum +=
-            foveaError(toFloats(runGraph(graph, s, options).outputs.at("indirect")), reference, kSize, gaze) /
-            kSeeds;
+        errors.push_back(foveaError(runGraph(graph, s, options), reference, exposure, kSize, gaze));
       }
-      std::printf("[ MEASURED ] %-8s %-6s relMSE of the indirect light in the fovea %.4f\n", graph, kernel,
-                  sum);
+      FoveaError& m = mean[graph + " " + kernel];
+      double spread = 0;
+      for (const FoveaError& e : errors) m += {e.relative / seeds, e.display / seeds};
+      for (const FoveaError& e : errors)
+        spread += (e.display - m.display) * (e.display - m.display) / (seeds - 1);
+      std::printf(
+          "[ MEASURED ] %-8s %-6s in the fovea: relMSE of the indirect light %.4f, MSE of the picture "
+          "%.2e +- %.0e\n",
+          graph.c_str(), kernel.c_str(), m.relative, m.display, std::sqrt(spread / seeds));
     }
-  EXPECT_LT(mean["ours clamp"], 1.1 * mean["ours_r clamp"]);
-  EXPECT_LT(mean["ours disc"], 1.1 * mean["ours_r disc"]);
+  EXPECT_LT(mean["ours clamp"].display, mean["ir_1000 clamp"].display);
+  EXPECT_LT(mean["ours clamp"].display, 1.1 * mean["ours_r clamp"].display);
+  EXPECT_LT(mean["ours disc"].relative, 3 * mean["ir_1000 disc"].relative);
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ struct WeightSettings {
   uint32_t points = 1024;
   double areaCap = 4, normalWeight = 0.5, offset = 0;
   bool litOnly = true;
+  double clamp = 0;  // m; 0: the kernel is `disc`
   glm::vec2 gaze{0.5f};
 };
 
@@ -135,7 +136,7 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
 // p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion
 // to the terms.
 inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
-                                     const std::vector<Seen>& points) {
+                                     const std::vector<Seen>& points, float clamp = 0) {
   const scene::Voxels voxels = room.view();
   const float cell = voxels.grid.cell;
   std::vector<double> result;
@@ -147,7 +148,9 @@ inline std::vector<double> densities(const Room& room, const std::vector<scene::
       const float cosines =
           std::max(glm::dot(s.normal, to), 0.0f) * std::max(-glm::dot(vpl.normal, to), 0.0f);
       const bool counts = vpl.life > 0 && s.there && cosines > 1e-12f * d2 && d2 > 1e-12f;
-      return counts ? cosines / (d2 * (glm::pi<float>() * d2 + cell * cell)) : 0.0f;
+      const float solid =
+          clamp > 0 ? glm::pi<float>() * std::max(d2, clamp * clamp) : glm::pi<float>() * d2 + cell * cell;
+      return counts ? cosines / (d2 * solid) : 0.0f;
     };
     double total = 0;
     for (uint32_t lane = 0; lane < 64; ++lane) {

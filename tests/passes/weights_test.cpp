@@ -92,6 +92,8 @@ void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSe
   test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
   test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
   test.param("sides", settings.litOnly ? "lit" : "all").param("offset", settings.offset);
+  test.param("kernel", settings.clamp > 0 ? "clamp" : "disc");
+  if (settings.clamp > 0) test.param("clamp_distance", settings.clamp);
   test.viewSize(w, h).scene(room.scene);
   test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
@@ -137,15 +139,16 @@ int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::
   return wrong;
 }
 
-// Irradiance at a point from all VPLs, with the disc kernel; nothing stands in between.
-double irradiance(const std::vector<scene::Vpl>& list, const Seen& s) {
+// Irradiance at a point from all VPLs, with the disc kernel or clamped; nothing stands in between.
+double irradiance(const std::vector<scene::Vpl>& list, const Seen& s, double clamp = 0) {
   double e = 0;
   for (const scene::Vpl& v : list) {
     const glm::dvec3 to = glm::dvec3(v.position) - glm::dvec3(s.position);
     const double d2 = std::max(glm::dot(to, to), 1e-12);
     const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) *
                            std::max(-glm::dot(glm::dvec3(v.normal), to), 0.0);
-    e += v.intensity.x * cosines / d2 / (d2 + v.area / glm::pi<double>());
+    e += v.intensity.x * cosines / d2 /
+         (clamp > 0 ? std::max(d2, clamp * clamp) : d2 + v.area / glm::pi<double>());
   }
   return e;
 }
@@ -232,11 +235,14 @@ TEST(Weights, FurnaceOfImportanceAreasWhateverPickedTheVpls) {
     for (uint32_t i = 0; i < 500; ++i) {
       const glm::ivec2 p =
           scene::regionSample(scene::kRegionFovea, fovea, room.size, randomStream(8, 0, 0, i));
-      mean += irradiance(list, room.pixels[size_t(p.y) * room.size.x + p.x]) / 500;
+      mean += irradiance(list, room.pixels[size_t(p.y) * room.size.x + p.x], settings.clamp) / 500;
     }
     return mean;
   };
   EXPECT_NEAR(meanIrradiance("importance-area"), 1, 0.04);
+  settings.clamp = 1.5;
+  EXPECT_NEAR(meanIrradiance("importance-area"), 1, 0.02);
+  settings.clamp = 0;
   for (size_t i = 0; i < in.vpls.size(); ++i)
     if (in.vpls[i].position.y > 0) in.radiosity[i] = glm::vec4(0);
   EXPECT_NEAR(meanIrradiance("importance-area"), 0.5, 0.03);
@@ -265,34 +271,38 @@ TEST(Weights, ImportanceAreasTakeTheLightFromTheEndsOfPaths) {
 
 TEST(Weights, ImportanceAreasEqualTheReference) {
   const Room room = closedRoom(true);
-  WeightSettings settings;
-  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
-  for (size_t i = 0; i < in.vpls.size(); i += 5) in.vpls[i] = {};
-  for (uint32_t i = 0; i < in.vpls.size(); ++i)  // off the lattice, where many are equally near
-    if (in.vpls[i].life > 0)
-      in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
-  for (size_t s = 0; s < in.radiance.size(); ++s)
-    in.radiance[s] = glm::vec4(std::max(room.voxels.surface[s].position.x, 0.0f));
-  for (size_t i = 0; i < in.vpls.size(); ++i)  // half of it is direct light
-    in.radiosity[i] = glm::vec4(2 * glm::pi<float>() * in.radiance[in.vpls[i].side].w + 0.1f);
-  const auto points = screenPoints(room, settings);
-  const auto p = densities(room, in.vpls, points);
-  const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, p, 8192, settings);
-  const auto got = weigh(in, "importance-area", settings);
-  int wrong = 0;
-  double off = 0, all = 0;
-  for (size_t i = 0; i < got.size(); ++i) {
-    if (!(in.vpls[i].life > 0)) continue;
-    off += std::abs(got[i].area - want.area[i]);
-    all += want.area[i];
-    const double own = glm::pi<double>() * in.radiance[in.vpls[i].side].w;
-    const double direct = own / in.radiosity[i].w, gain = own > 0 ? 1 + direct * (want.light[i] - 1) : 1;
-    const double intensity = in.radiosity[i].x * want.area[i] * gain / glm::pi<double>();
-    wrong += std::abs(got[i].intensity.x - intensity) > 2e-3 * intensity + 1e-7;
+  for (const double clamp : {0.0, 1.5}) {
+    WeightSettings settings;
+    settings.clamp = clamp;
+    Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
+    for (size_t i = 0; i < in.vpls.size(); i += 5) in.vpls[i] = {};
+    for (uint32_t i = 0; i < in.vpls.size(); ++i)  // off the lattice, where many are equally near
+      if (in.vpls[i].life > 0)
+        in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+    for (size_t s = 0; s < in.radiance.size(); ++s)
+      in.radiance[s] = glm::vec4(std::max(room.voxels.surface[s].position.x, 0.0f));
+    for (size_t i = 0; i < in.vpls.size(); ++i)  // half of it is direct light
+      in.radiosity[i] = glm::vec4(2 * glm::pi<float>() * in.radiance[in.vpls[i].side].w + 0.1f);
+    const auto points = screenPoints(room, settings);
+    const auto p = densities(room, in.vpls, points, float(clamp));
+    const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, p, 8192, settings);
+    const auto got = weigh(in, "importance-area", settings);
+    int wrong = 0;
+    double off = 0, all = 0;
+    for (size_t i = 0; i < got.size(); ++i) {
+      if (!(in.vpls[i].life > 0)) continue;
+      off += std::abs(got[i].area - want.area[i]);
+      all += want.area[i];
+      const double own = glm::pi<double>() * in.radiance[in.vpls[i].side].w;
+      const double direct = own / in.radiosity[i].w, gain = own > 0 ? 1 + direct * (want.light[i] - 1) : 1;
+      const double intensity = in.radiosity[i].x * want.area[i] * gain / glm::pi<double>();
+      wrong += std::abs(got[i].intensity.x - intensity) > 2e-3 * intensity + 1e-7;
+    }
+    EXPECT_LT(off, 0.01 * all);
+    EXPECT_LE(wrong,
+              int(got.size() / 20));  // a path, or one of 64 rays of a density, falls to the other side
+    EXPECT_LT(want.doubtful, 80);
   }
-  EXPECT_LT(off, 0.01 * all);
-  EXPECT_LE(wrong, int(got.size() / 20));  // a path, or one of 64 rays of a density, falls to the other side
-  EXPECT_LT(want.doubtful, 80);
 }
 
 // Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine
