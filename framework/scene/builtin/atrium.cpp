@@ -51,15 +51,14 @@ Shape ring(const Outline& section, float y) {
 }
 
 // A wall of arches standing on imposts at y = 0, its middle at z = 0.
-Shape arcadeWall(float length, int arches, float opening, float height, float thickness, float bevel) {
-  const float pitch = length / float(arches), half = 0.5f * opening;
-  Outline o({0.5f * length, 0});
-  o.line(0.5f * length, height).line(-0.5f * length, height).line(-0.5f * length, 0);
+Shape arcadeWall(float length, int arches, float opening, float height, float thickness) {
+  const float pitch = length / float(arches);
+  Shape s;
   for (int i = 0; i < arches; ++i) {
     const float x = -0.5f * length + pitch * (float(i) + 0.5f);
-    o.line(x - half, 0).arc(x + half, 0, -1, 18);
+    append(s, extrude(archedPanel(pitch, height, opening, 0, 18).moved({x, 0}), thickness));
   }
-  return placed(extrude(o, thickness, {.bevel = bevel}), at(0, 0, -0.5f * thickness));
+  return placed(s, at(0, 0, -0.5f * thickness));
 }
 
 // The moulding around an arch, on the face z = 0, centre of the arch at the origin.
@@ -138,7 +137,7 @@ void addCornices(MeshBuilder& m, const Palette& p) {
 
 void addLowerSide(MeshBuilder& m, const Palette& p, const Side& side) {
   const float length = side.length(), half = 0.5f * length, radius = 0.5f * kOpening;
-  m.add(p.plaster, arcadeWall(length, side.bays, kOpening, kCornice - kSpring, kWall, 0), at(0, kSpring, 0));
+  m.add(p.plaster, arcadeWall(length, side.bays, kOpening, kCornice - kSpring, kWall), at(0, kSpring, 0));
   const Shape outer = archivolt(radius, 0.20f, 0.05f, 20);
   const Shape keystone = bent(box({-0.09f, 0, 0}, {0.09f, 0.34f, 0.09f}, {.bevel = 0.012f}), [](glm::vec3 q) {
     return glm::vec3(q.x * (1 + 0.8f * q.y), q.y, q.z * (0.7f + 0.9f * q.y));
@@ -180,7 +179,7 @@ void addLowerSide(MeshBuilder& m, const Palette& p, const Side& side) {
 void addUpperSide(MeshBuilder& m, const Palette& p, const Side& side) {
   const float length = side.length(), half = 0.5f * length, pitch = 0.5f * kBay;
   const int arches = 2 * side.bays;
-  m.add(p.plaster, arcadeWall(length, arches, kUpperOpening, kEaves - kUpperSpring, 0.30f, 0),
+  m.add(p.plaster, arcadeWall(length, arches, kUpperOpening, kEaves - kUpperSpring, 0.30f),
         at(0, kUpperSpring, 0));
   const Shape moulding = archivolt(0.5f * kUpperOpening, 0.10f, 0.035f, 16);
   const float foot = kUpper + kParapet;
@@ -341,6 +340,10 @@ void furnish(SceneBuilder& b, const Palette& p) {
   m.add(jar(p.clay, 0.60f), at(-7.9f, kStep, -kHalfShort - 0.15f) * turnY(40));
   m.add(jar(p.clay, 0.95f), at(-8.2f, kStep, -kHalfShort - 0.75f) * turnY(80));
   m.add(wellHead(p), turnY(28));
+  const Shape orange = sphere(0.038f, 9, 6);  // windfalls
+  const glm::vec2 fallen[6] = {{-4.9f, -1.9f}, {-4.1f, 2.1f}, {3.7f, -2.2f},
+                               {4.9f, -2.0f},  {3.9f, 2.3f},  {-2.7f, 0.9f}};
+  for (const glm::vec2& f : fallen) m.add(p.orange, orange, at(f.x, 0.037f, f.y));
   b.place("furniture", b.mesh("furniture", std::move(m)));
 
   const uint32_t trees[2] = {b.mesh("orange tree", orangeTree(p, 41)),
@@ -423,10 +426,10 @@ Scene atriumScene() {
   MeshBuilder plane;
   plane.add(p.paper, paperPlane(), scaled(0.75f));
   b.place("paper plane", b.mesh("paper plane", std::move(plane)), {-2.6f, 3.6f, -0.9f}, 60);
-  b.sun("sun", {1.0f, 0.93f, 0.82f}, 20, {0.40f, -0.92f, 0.50f});
+  b.sun("sun", {1.0f, 0.93f, 0.82f}, 20, {0.40f, -0.92f, 0.43f});
   b.camera({-9.7f, 1.7f, -1.3f}, {0, 2.3f, 0.0f}, 50);
-  b.scene.environment = {0.20f, 0.36f, 0.62f};
-  return b.finish(1.15f, {0.62f, 0.55f});
+  b.scene.environment = {0.19f, 0.34f, 0.58f};
+  return b.finish(1.25f, {0.62f, 0.55f});
 }
 
 }  // namespace fovea::scene

@@ -25,13 +25,13 @@ Shape capitalLeaf(float width, float height, float curl) {
   const Sheet s = sheet(4, 3, {width, height}, [&](float u, float v) {
     const float t = 1 - v, x = 2 * u - 1;
     const float half =
-        0.5f * width * (0.85f + 0.35f * std::sin(t * 2.6f)) * (1 - 0.75f * smoothstep(0.75f, 1, t));
+        0.5f * width * (0.85f + 0.35f * std::sin(t * 2.6f)) * (1 - 0.6f * smoothstep(0.7f, 1, t));
     const float over = smoothstep(0.55f, 1, t);
     const float rib = 0.12f * width * (1 - std::abs(x)) + 0.05f * width * std::cos(9 * x);
     return glm::vec3(x * half, height * (t - 0.22f * over * over),
                      rib + 0.10f * height * t + curl * over * over);
   });
-  return surface(s, 0.014f);
+  return surface(s, 0.009f);
 }
 
 // Moulded foot of a column: two rolls with a hollow between them.
