@@ -104,27 +104,41 @@ std::vector<float> randomWeights(size_t count) {
   return weights;
 }
 
+// A ray that grazes the border of a voxel hits one side or the other by rounding: what it may see is a range.
+// All other rays are exact.
 struct Reference {
   scene::Voxels voxels;
   const std::vector<float>& weights;
-  bool grazes = false;  // of the last VPL: a ray whose hit rounding may decide
+  size_t rays = 0, grazing = 0;
 
-  double importance(glm::vec3 position, glm::vec3 normal) {
+  struct Range {
+    double low = 0, high = 0;
+  };
+  Range importance(glm::vec3 position, glm::vec3 normal) {
     const glm::mat3 frame = scene::orthonormalFrame(normal);
-    double sum = 0, cosines = 0;
-    grazes = false;
+    Range sum;
+    double cosines = 0;
     for (const glm::vec3 local : scene::kHemisphereRay) {
       const glm::vec3 direction = scene::toWorld(frame, local);
       const uint32_t side = scene::traceVoxels(voxels, position, direction, normal).side;
+      const auto weight = [&](uint32_t s) { return s == scene::kNoSide ? 0.0 : double(weights[s]); };
+      double low = weight(side), high = low;
+      bool grazes = false;
       for (uint32_t k = 0; k < 8; ++k) {  // the same ray, a hair beside
         const glm::vec3 origin = position + 1e-5f * voxels.grid.cell * randomVec3(40, k);
         const glm::vec3 turned = glm::normalize(direction + 1e-6f * randomVec3(43, k));
-        grazes |= scene::traceVoxels(voxels, origin, turned, normal).side != side;
+        const uint32_t other = scene::traceVoxels(voxels, origin, turned, normal).side;
+        grazes |= other != side;
+        low = std::min(low, weight(other));
+        high = std::max(high, weight(other));
       }
-      sum += side == scene::kNoSide ? 0.0 : double(weights[side]) * local.z;
+      ++rays;
+      grazing += grazes;
+      sum.low += low * local.z;
+      sum.high += high * local.z;
       cosines += local.z;
     }
-    return sum / cosines;
+    return {sum.low / cosines, sum.high / cosines};
   }
 };
 
@@ -152,7 +166,7 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
   test.run();
 
   Reference reference{{voxels.grid, voxels.index, voxels.surface}, weights};
-  size_t live = 0, excluded = 0;
+  size_t live = 0;
   const auto compare = [&](const std::vector<float>& got, const auto& list, auto isLive) {
     ASSERT_EQ(got.size(), list.size());
     for (size_t i = 0; i < got.size(); ++i) {
@@ -161,12 +175,10 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
         continue;
       }
       ++live;
-      double expected = reference.importance(list[i].position, list[i].normal);
-      if (luminance) expected *= std::min(1.0, double(0.6f) * double(radiance[list[i].side].w));
-      excluded += reference.grazes;
-      if (!reference.grazes) {
-        EXPECT_NEAR(got[i], expected, 1e-5) << i;
-      }
+      const double light = luminance ? std::min(1.0, double(0.6f) * double(radiance[list[i].side].w)) : 1.0;
+      const Reference::Range expected = reference.importance(list[i].position, list[i].normal);
+      EXPECT_GE(got[i], light * expected.low - 1e-5) << i;
+      EXPECT_LE(got[i], light * expected.high + 1e-5) << i;
     }
   };
   compare(test.values<float>("candidate_importance"), candidates,
@@ -174,7 +186,9 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
   compare(test.values<float>("vpl_importance"), vpls, [](const VplState& v) { return v.life > 0; });
   EXPECT_EQ(test.counter("rays"), double(6 * live));
   // In the edges of the room rays run along walls exactly: whether they face them is up to rounding.
-  EXPECT_LT(double(excluded), 0.05 * double(live)) << "rays that graze";
+  std::printf("[ MEASURED ] %zu of %zu rays graze the border of a voxel\n", reference.grazing,
+              reference.rays);
+  EXPECT_LT(double(reference.grazing), 0.02 * double(reference.rays));
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, AgainstTheCpu, testing::Values(false, true));

@@ -492,6 +492,55 @@ void checkRefresh(const char* policy, double share) {
 
 TEST(ShadowAtlas, NewAndMostImportantMapsAreDrawn) { checkRefresh("top", 0.05); }
 TEST(ShadowAtlas, HalfOfTheBudgetGoesToStaleMaps) { checkRefresh("split", 0.1); }
+// `split` draws maps that see a mover first, and comes round to the others: those count as four times
+// younger.
+TEST(ShadowAtlas, StaleMapsThatSeeAMoverAreDrawnFirst) {
+  Scene s = emptyScene();
+  addBox(s, 0, {-9, -9, -9}, {9, 9, 9});
+  scene::Node root;
+  root.dynamic = true;
+  s.nodes.push_back(root);
+  const size_t mover = s.nodes.size() - 1;
+  addBox(s, 0, {-0.2f, 2.8f, -0.2f}, {0.2f, 3.2f, 0.2f});
+  for (size_t i = mover + 1; i < s.nodes.size(); ++i) s.nodes[i].parent = uint32_t(mover);
+  s.movers = {{uint32_t(mover), true, scene::Repeat::Once, {{0, glm::vec3(0)}, {1, {0.4f, 0, 0}}}}};
+  constexpr uint32_t kSlots = 40, kImportant = 5, kFrames = 30;  // the other half of the budget is five, too
+  std::vector<Vpl> vpls(kSlots);
+  std::vector<scene::VplState> state(kSlots);
+  std::vector<float> before;
+  std::vector<uint32_t> drawn(kSlots);
+  PassTest test("shadow-atlas");
+  test.scene(s).param("size", 8).param("refresh", "split").param("refresh_share", 0.25);
+  for (uint32_t frame = 0; frame < kFrames; ++frame) {
+    for (uint32_t i = 0; i < kSlots;
+         ++i) {  // they move, so that maps tell when they are drawn; every other one sees it
+      vpls[i] = vpl({0.01f * float(i) + 0.02f * float(frame), 1, 0}, {0, i % 2 == 0 ? 1 : -1, 0.1f});
+      state[i] = stateOf(vpls[i], float(frame + 1), i < kSlots - kImportant ? 0.1f : 0.9f);
+    }
+    if (frame == 0)
+      test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+    else {
+      test.set("vpls", vpls);
+      test.set("state", state);
+    }
+    test.run();
+    const std::vector<float> now = test.values<float>("atlas");
+    for (uint32_t i = 0; frame > 0 && i < kSlots; ++i) {
+      const bool changed =
+          !std::equal(now.begin() + 64 * i, now.begin() + 64 * (i + 1), before.begin() + 64 * i);
+      drawn[i] += changed;
+      if (i >= kSlots - kImportant) {
+        EXPECT_TRUE(changed) << i;
+      } else if (frame <= 7 && i % 2 == 1) {
+        EXPECT_FALSE(changed) << "slot " << i << " sees no mover, frame " << frame;
+      }
+    }
+    for (uint32_t i = 0; frame == 4 && i < kSlots - kImportant; i += 2) EXPECT_GE(drawn[i], 1u) << i;
+    before = now;
+  }
+  for (uint32_t i = 0; i < kSlots; ++i) EXPECT_GE(drawn[i], 1u) << i;
+}
+
 TEST(ShadowAtlas, NoBudgetDrawsNewMapsOnly) { checkRefresh("top", 0.0); }
 TEST(ShadowAtlas, WholeBudgetDrawsAllMaps) {
   Scene s = emptyScene();
