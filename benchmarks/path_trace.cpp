@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <ctime>
@@ -55,11 +56,13 @@ std::vector<PathIntegrator::TracedRay> recordRays(const scene::Frame& frame, con
     for (uint32_t y = 0; y < view.size.y; ++y)
       for (uint32_t x = 0; x < view.size.x; ++x) {
         const passes::EyePoint eye = integrator.look(glm::vec2(x, y) + 0.5f, count);
-        passes::PathSampler random;
-        for (uint32_t s = begin; eye.surface && s < end; ++s) {
-          random.stream = hashCombine(y * view.size.x + x, s % 16);
-          random.index = s / 16;
-          integrator.indirect(eye.vertex, random, count);
+        for (uint32_t s = begin; eye.surface && s < end;) {
+          std::array<passes::PathSampler, PathIntegrator::kMaxPaths> random;
+          std::array<glm::vec3, PathIntegrator::kMaxPaths> light;
+          const uint32_t atOnce = std::min(end - s, uint32_t(random.size()));
+          for (uint32_t i = 0; i < atOnce; ++i, ++s)
+            random[i] = {false, hashCombine(y * view.size.x + x, s % 16), s / 16};
+          integrator.indirect(eye.vertex, std::span(random).first(atOnce), light, count);
         }
       }
   return recorded;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/scene/scene.h"
+#include "framework/scene/texture_taps.h"
 
 namespace fovea::scene {
 namespace {
@@ -21,6 +22,8 @@ const std::array<float, 256>& srgbTable() {
 }
 
 int64_t wrapTexel(int64_t i, int64_t size, Wrap wrap) {
+  if (i >= 0 && i < size) return i;
+  if (wrap == Wrap::Repeat && (size & (size - 1)) == 0) return i & (size - 1);
   switch (wrap) {
     case Wrap::Clamp:
       return std::min(std::max(i, int64_t(0)), size - 1);
@@ -34,10 +37,8 @@ int64_t wrapTexel(int64_t i, int64_t size, Wrap wrap) {
   return ((i % size) + size) % size;
 }
 
-glm::vec4 texel(const Texture& t, int64_t x, int64_t y) {
-  const uint8_t* p = &t.rgba[(size_t(y) * t.width + size_t(x)) * 4];
-  if (!t.srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
-  const auto& table = srgbTable();
+glm::vec4 decode(const uint8_t* p, bool srgb, const std::array<float, 256>& table) {
+  if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
   return {table[p[0]], table[p[1]], table[p[2]], float(p[3]) / 255.0f};
 }
 
@@ -47,21 +48,33 @@ float tame(float texels) { return std::isfinite(texels) ? std::min(std::max(texe
 
 }  // namespace
 
-glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
-  if (!use || use.texture >= scene.textures.size()) return glm::vec4(1.0f);
+TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
+  TextureTaps taps;
+  if (!use || use.texture >= scene.textures.size()) return taps;
   const Texture& t = scene.textures[use.texture];
-  if (t.width == 0 || t.height == 0) return glm::vec4(1.0f);
+  if (t.width == 0 || t.height == 0) return taps;
   const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
   // Texel centres lie at half-integers; LOD 0, bilinear, each texel decoded before it is filtered.
   const float u = tame(p.x * float(t.width) - 0.5f), v = tame(p.y * float(t.height) - 0.5f);
   const float u0 = std::floor(u), v0 = std::floor(v);
-  const float fu = u - u0, fv = v - v0;
   const int64_t w = t.width, h = t.height;
   const int64_t x0 = wrapTexel(int64_t(u0), w, use.wrapU), x1 = wrapTexel(int64_t(u0) + 1, w, use.wrapU);
   const int64_t y0 = wrapTexel(int64_t(v0), h, use.wrapV), y1 = wrapTexel(int64_t(v0) + 1, h, use.wrapV);
-  const glm::vec4 top = glm::mix(texel(t, x0, y0), texel(t, x1, y0), fu);
-  const glm::vec4 bottom = glm::mix(texel(t, x0, y1), texel(t, x1, y1), fu);
-  return glm::mix(top, bottom, fv);
+  const auto at = [&](int64_t x, int64_t y) { return t.rgba.data() + size_t(y * w + x) * 4; };
+  return {{at(x0, y0), at(x1, y0), at(x0, y1), at(x1, y1)}, u - u0, v - v0, t.srgb};
+}
+
+glm::vec4 sample(const TextureTaps& taps) {
+  if (taps.texel[0] == nullptr) return glm::vec4(1.0f);
+  const auto& table = srgbTable();
+  const auto texel = [&](int i) { return decode(taps.texel[i], taps.srgb, table); };
+  const glm::vec4 top = glm::mix(texel(0), texel(1), taps.right);
+  const glm::vec4 bottom = glm::mix(texel(2), texel(3), taps.right);
+  return glm::mix(top, bottom, taps.lower);
+}
+
+glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
+  return sample(textureTaps(scene, use, uv));
 }
 
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv) {

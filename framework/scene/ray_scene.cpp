@@ -213,30 +213,41 @@ std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geome
   return entries[0].rays;
 }
 
-SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit) {
-  const Triangle& t = geometry.triangles[hit.triangle];
-  const float w = 1.0f - hit.u - hit.v;
-  const glm::vec3 &a = geometry.positions[t.v[0]], &b = geometry.positions[t.v[1]],
-                  &c = geometry.positions[t.v[2]];
+TriangleVertices triangleVertices(const Geometry& geometry, uint32_t triangle) {
+  const Triangle& t = geometry.triangles[triangle];
+  TriangleVertices result;
+  for (int k = 0; k < 3; ++k) {
+    result.positions[k] = geometry.positions[t.v[k]];
+    result.normals[k] = geometry.normals.empty() ? glm::vec3(0) : geometry.normals[t.v[k]];
+    result.uvs[k] = geometry.uvs.empty() ? glm::vec2(0) : geometry.uvs[t.v[k]];
+  }
+  result.materialAndObject = t.materialAndObject;
+  return result;
+}
+
+SurfaceHit surfaceAt(const TriangleVertices& t, float u, float v) {
+  const float w = 1.0f - u - v;
+  const glm::vec3 &a = t.positions[0], &b = t.positions[1], &c = t.positions[2];
   SurfaceHit s;
-  s.position = a * w + b * hit.u + c * hit.v;
+  s.position = a * w + b * u + c * v;
   const glm::vec3 n = glm::cross(b - a, c - a);
   const float length = glm::length(n);
   s.geometricNormal = length > 0 ? n / length : glm::vec3(0, 1, 0);
   s.shadingNormal = s.geometricNormal;
-  if (!geometry.normals.empty()) {
-    const glm::vec3 m =
-        geometry.normals[t.v[0]] * w + geometry.normals[t.v[1]] * hit.u + geometry.normals[t.v[2]] * hit.v;
-    const float shadingLength = glm::length(m);
-    if (shadingLength > 1e-12f) s.shadingNormal = m / shadingLength;
-    // Models exist whose normals point against their winding; the winding decides.
-    if (glm::dot(s.shadingNormal, s.geometricNormal) < 0) s.shadingNormal = -s.shadingNormal;
-  }
-  if (!geometry.uvs.empty())
-    s.uv = geometry.uvs[t.v[0]] * w + geometry.uvs[t.v[1]] * hit.u + geometry.uvs[t.v[2]] * hit.v;
-  s.material = t.material();
-  s.object = t.object();
+  const glm::vec3 m = t.normals[0] * w + t.normals[1] * u + t.normals[2] * v;
+  const float shadingLength = glm::length(m);
+  if (shadingLength > 1e-12f) s.shadingNormal = m / shadingLength;
+  // Models exist whose normals point against their winding; the winding decides.
+  if (glm::dot(s.shadingNormal, s.geometricNormal) < 0) s.shadingNormal = -s.shadingNormal;
+  s.uv = t.uvs[0] * w + t.uvs[1] * u + t.uvs[2] * v;
+  const Triangle ids{{0, 0, 0}, t.materialAndObject};
+  s.material = ids.material();
+  s.object = ids.object();
   return s;
+}
+
+SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit) {
+  return surfaceAt(triangleVertices(geometry, hit.triangle), hit.u, hit.v);
 }
 
 }  // namespace fovea::scene

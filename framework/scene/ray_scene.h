@@ -65,4 +65,13 @@ class RayScene {
 // Attributes at a hit; `geometry` is the one the ray was traced in.
 SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit);
 
+// All that surfaceAt() needs of one triangle side by side: two cache lines instead of ten, for those who look up millions.
+struct alignas(64) TriangleVertices {
+  glm::vec3 positions[3], normals[3];  // normals of length 0 where the geometry has none
+  glm::vec2 uvs[3];
+  uint32_t materialAndObject;
+};
+TriangleVertices triangleVertices(const Geometry& geometry, uint32_t triangle);
+SurfaceHit surfaceAt(const TriangleVertices& triangle, float u, float v);
+
 }  // namespace fovea::scene

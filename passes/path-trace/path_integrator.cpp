@@ -1,5 +1,6 @@
 #include "passes/path-trace/path_integrator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -7,6 +8,7 @@
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/paraboloid.h"
+#include "framework/scene/texture_taps.h"
 
 namespace fovea::passes {
 namespace {
@@ -45,8 +47,41 @@ std::array<float, 4> PathSampler::group(uint32_t number) const {
   return u;
 }
 
+// One path under way.
+struct PathIntegrator::Path {
+  PathVertex vertex;
+  glm::vec3 light{0}, throughput{0};
+  Ray ray;  // from the vertex
+  RayHit hit;
+  SurfaceHit surface;
+  TextureTaps texture;
+};
+
 PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RayScene& rays, uint32_t depth)
-    : frame_(frame), view_(view), rays_(rays), emitters_(frame), depth_(depth) {}
+    : frame_(frame), view_(view), rays_(rays), emitters_(frame), depth_(depth) {
+  triangles_.reserve(frame.geometry->triangles.size());
+  for (uint32_t t = 0; t < frame.geometry->triangles.size(); ++t)
+    triangles_.push_back(triangleVertices(*frame.geometry, t));
+  copyTexels();
+}
+
+void PathIntegrator::copyTexels() {
+  const Scene& scene = *frame_.scene;
+  firstTexel_.assign(scene.textures.size(), 0);
+  std::vector<bool> used(scene.textures.size());
+  size_t size = 0;
+  for (const Material& m : scene.materials) {
+    const uint32_t texture = m.baseColorTexture.texture;
+    if (texture >= scene.textures.size() || used[texture]) continue;
+    used[texture] = true;
+    firstTexel_[texture] = size;
+    size += scene.textures[texture].rgba.size();
+  }
+  texels_.resize(size);
+  for (size_t i = 0; i < used.size(); ++i)
+    if (used[i])
+      std::copy(scene.textures[i].rgba.begin(), scene.textures[i].rgba.end(), &texels_[firstTexel_[i]]);
+}
 
 RayHit PathIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
   ++rays;
@@ -60,14 +95,17 @@ bool PathIntegrator::occluded(const Ray& ray, uint64_t& rays) const {
   return rays_.occluded(ray);
 }
 
-PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, const Material& material, bool front) const {
-  const float side = front ? 1.0f : -1.0f;
+PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, const Material& material, glm::vec3 direction,
+                                    glm::vec3 texture) const {
+  const float side = glm::dot(s.geometricNormal, direction) < 0 ? 1.0f : -1.0f;
   PathVertex v;
   v.normal = side * s.shadingNormal;
   v.face = side * s.geometricNormal;
   v.position = s.position;
-  v.origin = s.position + v.face * rays_.epsilon();
-  v.reflectance = glm::vec3(reflectance(*frame_.scene, material, s.uv));
+  // Off the surface and back along the ray, where there is nothing: also where two walls meet, whose seam a
+  // step away from one of them would not leave.
+  v.origin = s.position + (v.face - direction) * rays_.epsilon();
+  v.reflectance = glm::vec3(material.baseColor) * texture * (1.0f - material.metallic);
   return v;
 }
 
@@ -83,7 +121,8 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
       continue;
     }
     point.surface = true;
-    point.vertex = vertexAt(s, material, front);
+    point.vertex = vertexAt(s, material, glm::normalize(ray.direction),
+                            glm::vec3(sampleTexture(*frame_.scene, material.baseColorTexture, s.uv)));
     point.direct = emission(*frame_.scene, material, s.uv);
     if (depth_ >= 2) point.direct += point.vertex.reflectance * kInversePi * allLights(point.vertex, rays);
     return point;
@@ -158,41 +197,83 @@ glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float 
   return p.radiance * (cosine * kInversePi / (density + cosine * kInversePi));
 }
 
-glm::vec3 PathIntegrator::indirect(const PathVertex& first, const PathSampler& random, uint64_t& rays) const {
-  glm::vec3 light(0), throughput = first.reflectance;
-  PathVertex v = first;
-  // `edges` join the vertex to the eye; the light that it reflects has come along one more at least.
-  for (uint32_t edges = 1; edges < depth_; ++edges) {
-    const std::array<float, 4> u = random.group(2 * edges);
-    if (edges > 1) light += throughput * kInversePi * oneLight(v, u[2], rays);
-    if (!emitters_.empty()) {
-      const std::array<float, 4> w = random.group(2 * edges + 1);
-      light += throughput * emitterLight(v, w[2], w[0], w[1], rays);
-    } else if (edges + 1 == depth_) {
-      break;  // nothing a further hit could add
-    }
-    Ray ray;
-    ray.origin = v.origin;
-    ray.direction = cosineDirection(v.normal, u[0], u[1]);
-    if (glm::dot(ray.direction, v.face) <= 0) break;
-    const RayHit hit = intersect(ray, rays);
-    if (!hit) break;
-    const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
-    const Material& material = frame_.scene->materials[s.material];
-    const bool front = glm::dot(s.geometricNormal, ray.direction) < 0;
-    if (!front && !material.doubleSided) break;
-    if (const float density = emitters_.density(hit.triangle); density > 0) {
-      const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, ray.direction));
-      const float other = density * hit.distance * hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr
-      const float own = glm::dot(v.normal, ray.direction) * kInversePi;
-      light += throughput * emission(*frame_.scene, material, s.uv) * (own / (own + other));
-    }
-    if (edges + 1 == depth_) break;
-    v = vertexAt(s, material, front);
-    throughput *= v.reflectance;
-    if (throughput == glm::vec3(0)) break;
+// Light that arrives at the vertex, as far as it is asked for directly; then the ray to the next one. `edges`
+// join the vertex to the eye; the light that it reflects has come along one more at least.
+bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const {
+  const PathVertex& v = path.vertex;
+  const std::array<float, 4> u = random.group(2 * edges);
+  if (edges > 1) path.light += path.throughput * kInversePi * oneLight(v, u[2], rays);
+  if (!emitters_.empty()) {
+    const std::array<float, 4> w = random.group(2 * edges + 1);
+    path.light += path.throughput * emitterLight(v, w[2], w[0], w[1], rays);
+  } else if (edges + 1 == depth_) {
+    return false;  // nothing a further hit could add
   }
-  return light;
+  path.ray.origin = v.origin;
+  path.ray.direction = cosineDirection(v.normal, u[0], u[1]);
+  if (glm::dot(path.ray.direction, v.face) <= 0) return false;
+  path.hit = intersect(path.ray, rays);
+  if (!path.hit) return false;
+  const auto* triangle = reinterpret_cast<const char*>(&triangles_[path.hit.triangle]);
+  __builtin_prefetch(triangle);
+  __builtin_prefetch(triangle + 64);
+  return true;
+}
+
+// What was hit, and where its texture lies.
+bool PathIntegrator::arrive(Path& path) const {
+  path.surface = surfaceAt(triangles_[path.hit.triangle], path.hit.u, path.hit.v);
+  const bool front = glm::dot(path.surface.geometricNormal, path.ray.direction) < 0;
+  const Material& material = frame_.scene->materials[path.surface.material];
+  if (!front && !material.doubleSided) return false;
+  path.texture = textureTaps(*frame_.scene, material.baseColorTexture, path.surface.uv);
+  if (path.texture.texel[0] != nullptr) {
+    const uint32_t texture = material.baseColorTexture.texture;
+    const uint8_t *from = frame_.scene->textures[texture].rgba.data(), *to = &texels_[firstTexel_[texture]];
+    for (const uint8_t*& texel : path.texture.texel) texel = to + (texel - from);
+    path.texture.prefetch();
+  }
+  return true;
+}
+
+bool PathIntegrator::reflect(Path& path, uint32_t edges) const {
+  const SurfaceHit& s = path.surface;
+  const Material& material = frame_.scene->materials[s.material];
+  if (const float density = emitters_.density(path.hit.triangle); density > 0) {
+    const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.ray.direction));
+    const float other =
+        density * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr
+    const float own = glm::dot(path.vertex.normal, path.ray.direction) * kInversePi;
+    path.light += path.throughput * emission(*frame_.scene, material, s.uv) * (own / (own + other));
+  }
+  if (edges + 1 == depth_) return false;
+  path.vertex = vertexAt(s, material, path.ray.direction, glm::vec3(sample(path.texture)));
+  path.throughput *= path.vertex.reflectance;
+  return path.throughput != glm::vec3(0);
+}
+
+void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampler> random,
+                              std::span<glm::vec3> light, uint64_t& rays) const {
+  std::array<Path, kMaxPaths> paths;
+  std::array<uint8_t, kMaxPaths> alive;  // their numbers
+  size_t count = random.size();
+  for (size_t i = 0; i < count; ++i) {
+    paths[i].vertex = first;
+    paths[i].throughput = first.reflectance;
+    alive[i] = uint8_t(i);
+  }
+  const auto keepThose = [&](const auto& that) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; ++i)
+      if (that(alive[i])) alive[kept++] = alive[i];
+    count = kept;
+  };
+  for (uint32_t edges = 1; edges < depth_ && count > 0; ++edges) {
+    keepThose([&](uint8_t i) { return leave(paths[i], edges, random[i], rays); });
+    keepThose([&](uint8_t i) { return arrive(paths[i]); });
+    keepThose([&](uint8_t i) { return reflect(paths[i], edges); });
+  }
+  for (size_t i = 0; i < random.size(); ++i) light[i] = paths[i].light;
 }
 
 }  // namespace fovea::passes

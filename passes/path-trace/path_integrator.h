@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "framework/scene/frame.h"
 #include "framework/scene/ray_scene.h"
 #include "passes/path-trace/emitters.h"
+#include "passes/path-trace/huge_pages.h"
 
 namespace fovea::passes {
 
@@ -47,9 +49,13 @@ class PathIntegrator {
 
   // What the eye sees at `pixel` (pixels, centres at +0.5), between the near and the far plane.
   EyePoint look(glm::vec2 pixel, uint64_t& rays) const;
-  // One sample of the light that reaches the eye from there by all other ways of at most `depth` edges: at
-  // least two reflections from the scene's lights, at least one from emissive triangles.
-  glm::vec3 indirect(const PathVertex& first, const PathSampler& random, uint64_t& rays) const;
+  // Samples of the light that reaches the eye from there by all other ways of at most `depth` edges: at least
+  // two reflections from the scene's lights, at least one from emissive triangles. light[i] is that of path
+  // random[i]; they are traced side by side, so that each waits for the memory while the others are worked
+  // on.
+  static constexpr size_t kMaxPaths = 32;
+  void indirect(const PathVertex& first, std::span<const PathSampler> random, std::span<glm::vec3> light,
+                uint64_t& rays) const;
 
   // For benchmarks: every ray of indirect() is noted here, the shadow rays with a finite end or infinity as
   // they are.
@@ -60,9 +66,17 @@ class PathIntegrator {
   void record(std::vector<TracedRay>* to) { record_ = to; }
 
  private:
+  struct Path;
   scene::RayHit intersect(const scene::Ray& ray, uint64_t& rays) const;
   bool occluded(const scene::Ray& ray, uint64_t& rays) const;
-  PathVertex vertexAt(const scene::SurfaceHit& s, const scene::Material& material, bool front) const;
+  // `direction`: unit, of the ray that hit.
+  PathVertex vertexAt(const scene::SurfaceHit& s, const scene::Material& material, glm::vec3 direction,
+                      glm::vec3 texture) const;
+  void copyTexels();
+  // The three steps of a path from one vertex to the next; false: it ends.
+  bool leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
+  bool arrive(Path& path) const;
+  bool reflect(Path& path, uint32_t edges) const;
   // Irradiance of one light on a vertex where nothing is in between.
   glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
   glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;          // irradiance
@@ -74,6 +88,10 @@ class PathIntegrator {
   const scene::View& view_;
   const scene::RayScene& rays_;
   Emitters emitters_;
+  // What hits look up, side by side in few pages: the geometry's triangles, and the texels of base colours.
+  HugeVector<scene::TriangleVertices> triangles_;
+  HugeVector<uint8_t> texels_;
+  std::vector<size_t> firstTexel_;  // of each texture of the scene, in texels_
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;
 };

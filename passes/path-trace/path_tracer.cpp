@@ -1,6 +1,7 @@
 #include "passes/path-trace/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -40,6 +41,7 @@ class Tracer {
   void work(bool reports, uint32_t end);
   void traceRow(uint32_t y, uint32_t end);
   void tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, uint64_t& rays);
+  void addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 indirect);
   void report();
   uint32_t samplesInSlot(uint32_t slot, uint32_t samples) const {
     return (samples + slotCount_ - 1 - slot) / slotCount_;
@@ -128,22 +130,33 @@ void Tracer::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, ui
   const glm::vec2 corner(x, y);
   EyePoint eye;
   if (!settings_.box) eye = integrator_.look(corner + 0.5f, rays);
-  PathSampler random;
-  random.independent = settings_.independent;
-  for (uint32_t s = begin; s < end; ++s) {
-    random.stream = hashCombine(stream, random.independent ? s : s % slotCount_);
-    random.index = s / slotCount_;
+  const uint32_t atOnce = settings_.box ? 1 : uint32_t(PathIntegrator::kMaxPaths);  // paths from one point
+  std::array<PathSampler, PathIntegrator::kMaxPaths> random;
+  std::array<glm::vec3, PathIntegrator::kMaxPaths> indirect;
+  for (uint32_t s = begin; s < end;) {
+    const uint32_t count = std::min(atOnce, end - s);
+    for (uint32_t i = 0; i < count; ++i)
+      random[i] = {settings_.independent,
+                   hashCombine(stream, settings_.independent ? s + i : (s + i) % slotCount_),
+                   (s + i) / slotCount_};
     if (settings_.box) {
-      const auto u = random.group(0);
+      const auto u = random[0].group(0);
       eye = integrator_.look(corner + glm::vec2(u[0], u[1]), rays);
     }
-    const glm::vec3 indirect = eye.surface ? integrator_.indirect(eye.vertex, random, rays) : glm::vec3(0);
-    const glm::vec3 varying = settings_.box ? eye.direct + indirect : indirect;
-    film_.direct[pixel] += glm::dvec3(eye.direct);
-    film_.indirect[pixel] += glm::dvec3(indirect);
-    film_.slots[pixel * slotCount_ + s % slotCount_] += varying;
-    if (settings_.independent) film_.squares[pixel] += glm::dvec3(varying) * glm::dvec3(varying);
+    std::fill_n(indirect.begin(), count, glm::vec3(0));
+    if (eye.surface)
+      integrator_.indirect(eye.vertex, std::span(random).first(count), std::span(indirect).first(count),
+                           rays);
+    for (uint32_t i = 0; i < count; ++i, ++s) addSample(pixel, s, eye.direct, indirect[i]);
   }
+}
+
+void Tracer::addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 indirect) {
+  const glm::vec3 varying = settings_.box ? direct + indirect : indirect;
+  film_.direct[pixel] += glm::dvec3(direct);
+  film_.indirect[pixel] += glm::dvec3(indirect);
+  film_.slots[pixel * slotCount_ + s % slotCount_] += varying;
+  if (settings_.independent) film_.squares[pixel] += glm::dvec3(varying) * glm::dvec3(varying);
 }
 
 // Of the mean over all samples.

@@ -1,0 +1,28 @@
+// A texture look-up in two steps, so that what many of them need of the memory can be asked for before it is
+// needed.
+#pragma once
+
+#include <cstdint>
+
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+
+// The four texels around a point and the weights of the right and the lower ones. Valid as long as the
+// texture.
+struct TextureTaps {
+  const uint8_t* texel[4] =
+      {};  // RGBA: upper left, upper right, lower left, lower right; null: no texture, white
+  float right = 0, lower = 0;
+  bool srgb = true;
+  void prefetch() const {
+    __builtin_prefetch(texel[0]);
+    __builtin_prefetch(texel[2]);
+  }
+};
+
+// sampleTexture(scene, use, uv) is sample(textureTaps(scene, use, uv)).
+TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv);
+glm::vec4 sample(const TextureTaps& taps);
+
+}  // namespace fovea::scene

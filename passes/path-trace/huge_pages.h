@@ -1,0 +1,42 @@
+// Memory in huge pages, where the system has them: look-ups all over a hundred megabytes otherwise wait for
+// page tables more than for the data.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace fovea::passes {
+
+template <class T>
+struct HugePageAllocator {
+  using value_type = T;
+  static constexpr size_t kPage = size_t(1) << 21;
+
+  HugePageAllocator() = default;
+  template <class U>
+  HugePageAllocator(const HugePageAllocator<U>&) {}  // NOLINT: implicit, as allocators must be
+
+  T* allocate(size_t count) {
+    const size_t page = count * sizeof(T) < kPage ? 64 : kPage;
+    const size_t bytes = (count * sizeof(T) + page - 1) / page * page;
+    void* memory = std::aligned_alloc(page, bytes);
+    if (memory == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+    if (page == kPage) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost when it is refused
+#endif
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, size_t) { std::free(memory); }
+  template <class U>
+  bool operator==(const HugePageAllocator<U>&) const {
+    return true;
+  }
+};
+
+template <class T>
+using HugeVector = std::vector<T, HugePageAllocator<T>>;
+
+}  // namespace fovea::passes
