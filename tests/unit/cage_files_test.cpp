@@ -232,6 +232,35 @@ TEST(CageFiles, BadSurfacesAreRefusedWithTheirPlace) {
               AllOf(HasSubstr("primitives[1]"), HasSubstr("all of them need it, or none")));
 }
 
+// Each byte of the description and of the indices changed: an error or a scene, never anything else.
+TEST(CageFiles, EveryByteOfACageChanged) {
+  const std::string good =
+      document(tetrahedronCage(1), cageExtras(R"("scheme":"loop","level":1,"faceSizes":[3,3,3,3],
+"creases":[[0,1,10],[1,2,1.5]],"corners":[[3,10]])"))
+          .glb();
+  TemporaryFolder folder;
+  const size_t extras = good.find("fovea_subdivision"), indices = good.find("BIN") + 4 + 48;
+  ASSERT_NE(extras, std::string::npos);
+  int loaded = 0, refused = 0;
+  for (size_t i = extras; i < good.size(); ++i) {
+    if (i == extras + 120) i = std::max(i, indices);
+    for (const int change : {0x01, 0x10, 0xff}) {
+      std::string bad = good;
+      bad[i] = char(bad[i] ^ change);
+      Diagnostics warnings;
+      try {
+        flatten(loadText(folder, bad, warnings, "model.glb"));
+        ++loaded;
+      } catch (const Error& e) {
+        EXPECT_EQ(int(e.code()), int(ExitCode::BadInput)) << "byte " << i << ": " << e.what();
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 300);
+  EXPECT_GT(loaded, 10);
+}
+
 // ---- scene files ----
 
 struct SceneResult {
