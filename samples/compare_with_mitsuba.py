@@ -53,8 +53,9 @@ def render_mitsuba(xml, sky, options):
         rgba = np.array(mi.render(scene, seed=options.seed + seed), dtype=np.float64)
         batch = rgba[..., :3] + (1 - rgba[..., 3:4]) * sky
         total, squares = total + batch, squares + batch * batch
-        print(f"\r  Mitsuba {seed + 1}/{options.batches}", end="", file=sys.stderr, flush=True)
-    print("\r" + " " * 30 + "\r", end="", file=sys.stderr)
+        if sys.stderr.isatty():
+            end = "\r\033[K" if seed + 1 == options.batches else ""
+            print(f"\r  Mitsuba {seed + 1}/{options.batches}{end}", end="", file=sys.stderr, flush=True)
     n = options.batches
     mean = total / n
     return mean, np.maximum(squares / n - mean * mean, 0) / (n - 1)
