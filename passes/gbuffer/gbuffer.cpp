@@ -1,6 +1,7 @@
 // What the eye sees: the nearest surface through the centre of every pixel.
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
+#include "framework/scene/draw_clusters.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
 
@@ -35,6 +36,7 @@ class GBuffer : public Pass {
               "triangle of each pixel, 0xffffffff: none");
     d.parameter("cull", choice("auto", {"auto", "none"}),
                 "back faces: `auto` hides those of single-sided materials, as glTF says, `none` shows all");
+    d.counter("triangles", "triangles of which parts may be in view, those drawn");
     return d;
   }
 
@@ -55,10 +57,19 @@ class GBuffer : public Pass {
 
   void record(RecordContext& ctx) override {
     const scene::GpuScene& gpu = *ctx.frame().gpu;
+    const scene::Geometry& geometry = *ctx.frame().geometry;
+    if (gpu_ != &gpu) {
+      clusters_ = scene::drawClusters(gpu.drawRuns(), geometry);
+      gpu_ = &gpu;
+    }
+    scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
+    uint64_t drawn = 0;
+    for (const scene::DrawRun& run : visible_) drawn += run.triangleCount;
+    ctx.counter("triangles", double(drawn));
     const auto clear = Attachment::Load::Clear;
     const Attachment depth{"gbuffer.depth", clear, {.depthStencil = {1.0f, 0}}};
     ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, [&] {
-      for (const scene::DrawRun& run : gpu.drawRuns())
+      for (const scene::DrawRun& run : visible_)
         ctx.use(draw_[size_t(run.kind)])
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
@@ -69,6 +80,9 @@ class GBuffer : public Pass {
 
  private:
   Kernel draw_[3], resolve_;
+  const scene::GpuScene* gpu_ = nullptr;  // whose clusters these are
+  std::vector<scene::DrawCluster> clusters_;
+  std::vector<scene::DrawRun> visible_;
 };
 
 FOVEA_PASS(GBuffer);

@@ -1,8 +1,11 @@
 // Averages of light and foveated weight over ever larger cells, for cone tracing (METHOD 2, mipmap).
+#include <glm/glm.hpp>
 #include <string>
 
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/movers.h"
 
 namespace fovea::passes {
 namespace {
@@ -14,13 +17,18 @@ class Mipmap : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("mipmap", "mip hierarchy of the voxels' light and foveated weight, for cone tracing");
     d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
             "surfaces in the voxels");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");
     d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
             "foveated weight of every voxel side; without it the weights are 0")
+        .makeOptional();
+    d.input("changed", buffer("VoxelChanged", 4), Usage::TexelRead,
+            "which sides' radiance is new in this frame (pass light-inject): cells without one stay as they "
+            "are. "
+            "Without it all are made anew")
         .makeOptional();
     const SizeExpr size = ceilDiv(widthOf("voxels.index"), 2);
     const SizeExpr width = size * (SizeExpr(1) + SizeExpr(5) * parameter("directional"));
@@ -34,6 +42,12 @@ class Mipmap : public Pass {
              "level 0 has cells of 2x2x2 voxels; levels that are not half of the one before are 0 "
              "(shaders/common/cone.glsl)")
         .keep(Lifetime::Scene);  // so that cells which are and stay empty need no store
+    // A bit for each cell of the levels from 1: something below it changed.
+    const SizeExpr half = ceilDiv(size, 2);
+    d.scratch("dirty", buffer("uint", 4, ceilDiv(half * half * half, 16) + SizeExpr(kAllMips)),
+              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite, "cells to make anew");
+    d.parameter("importance", choice("cones", {"rays", "cones"}),
+                "method of pass importance: for `rays` nothing reads the weights, and they are 0");
     d.parameter("directional", flag(true),
                 "six volumes side by side, +x -x +y -y +z -z, each of what looks that way: a thin wall does "
                 "not show the light of its back");
@@ -42,37 +56,64 @@ class Mipmap : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     directional_ = ctx.parameters().flag("directional");
-    const char* directional = directional_ ? "1" : "0";
-    base_ = ctx.compute("mipmap/base.comp", {{"DIRECTIONAL", directional},
-                                             {"WEIGHTED", ctx.has("weights") ? "1" : "0"},
-                                             {"ODD", std::to_string(ctx.extent("voxels.index").width % 2)}});
-    down_ = ctx.compute("mipmap/down.comp", {{"DIRECTIONAL", directional}});
+    weighted_ = ctx.has("weights") && ctx.parameters().text("importance") == "cones";
+    keeps_ = ctx.has("changed") && !weighted_;  // weights are others in every frame
+    const gpu::Defines defines{{"DIRECTIONAL", directional_ ? "1" : "0"},
+                               {"WEIGHTED", weighted_ ? "1" : "0"},
+                               {"KEEPS", keeps_ ? "1" : "0"}};
+    gpu::Defines base = defines;
+    base["ODD"] = std::to_string(ctx.extent("voxels.index").width % 2);
+    base_ = ctx.compute("mipmap/base.comp", base);
+    down_ = ctx.compute("mipmap/down.comp", defines);
   }
 
   void record(RecordContext& ctx) override {
     gpu::Image& color = ctx.image("mips.color");
     gpu::Image& weight = ctx.image("mips.weight");
-    uint32_t size = ctx.extent("mips.color").height;
-    ctx.use(base_)
-        .bind("mipsColor", color.mipView(0))
-        .bind("mipsWeight", weight.mipView(0))
-        .dispatchThreads(size, size, size);
+    uint32_t size = ctx.extent("mips.color").height, firstBit = 0;
+    if (keeps_) {
+      ctx.fill("dirty", 0);
+      ctx.barrier();
+    }
+    recordBase(ctx, size);
     for (uint32_t level = 1; level < color.desc().mips && size % 2 == 0; ++level) {
       size /= 2;
       ctx.barrier();
-      ctx.use(down_)
-          .bind("sourceColor", color.mipView(level - 1))
-          .bind("sourceWeight", weight.mipView(level - 1))
+      Commands down = ctx.use(down_);
+      down.bind("sourceColor", color.mipView(level - 1))
           .bind("targetColor", color.mipView(level))
-          .bind("targetWeight", weight.mipView(level))
-          .constant("size", int32_t(size))
-          .dispatchThreads(directional_ ? 6 * size : size, size, size);
+          .constant("size", int32_t(size));
+      if (weighted_)
+        down.bind("sourceWeight", weight.mipView(level - 1)).bind("targetWeight", weight.mipView(level));
+      if (keeps_) down.constant("firstBit", firstBit);
+      down.dispatchThreads(size, size, size);
+      firstBit += size * size * size;
     }
   }
 
  private:
   static constexpr int64_t kAllMips = 32;  // more than any size has
-  bool directional_ = true;
+
+  void recordBase(RecordContext& ctx, uint32_t size) {
+    Commands base = ctx.use(base_);
+    base.bind("mipsColor", ctx.image("mips.color").mipView(0));
+    if (weighted_) base.bind("mipsWeight", ctx.image("mips.weight").mipView(0));
+    if (keeps_) {
+      const scene::Geometry& geometry = *ctx.frame().geometry;
+      const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu || scene::anyDeforms(geometry);
+      const scene::MoverBox now = scene::moverBox(geometry), either = scene::around(now, before_);
+      base.constant("moversLow", glm::vec4(either.low, 0))
+          .constant("moversHigh", glm::vec4(either.high, 0))
+          .constant("all_", uint32_t(all));
+      before_ = now;
+      gpu_ = ctx.frame().gpu;
+    }
+    base.dispatchThreads(size, size, size);
+  }
+
+  bool directional_ = true, weighted_ = false, keeps_ = false;
+  scene::MoverBox before_;                // where what moves was in the frame before,
+  const scene::GpuScene* gpu_ = nullptr;  // and in which scene
   Kernel base_, down_;
 };
 

@@ -1,4 +1,8 @@
-// One depth map a light (six for a point light), as layers of one image.
+// One depth map a light (six for a point light), as layers of one image. What never moves is drawn once, and
+// again when a light changes; what moves is drawn over a copy of that.
+#include <algorithm>
+#include <vector>
+
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
@@ -20,15 +24,21 @@ class ShadowMap : public Pass {
                       "depth maps of all lights: directional and spot one layer each, point six",
                       PassKind::ComputeAndGraphics);
     d.output(
-        "maps", "shadow-maps",
-        {member("depth",
-                image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
-                             environment("scene.shadow_layers")),
-                Usage::DepthAttachment,
-                "1: nearest to the light, 0: nothing hit; layers in the order of the lights"),
-         member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
-                "projection of each layer, shaders/common/shadow.glsl; those past the layers hold nothing")},
-        "what each light sees");
+         "maps", "shadow-maps",
+         {member("depth",
+                 image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
+                              environment("scene.shadow_layers")),
+                 Usage::DepthAttachment | Usage::TransferWrite,
+                 "1: nearest to the light, 0: nothing hit; layers in the order of the lights"),
+          member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
+                 "projection of each layer, shaders/common/shadow.glsl; those past the layers hold nothing")},
+         "what each light sees")
+        .keep(Lifetime::Scene);
+    d.scratch("still",
+              image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
+                           environment("scene.shadow_layers")),
+              Usage::DepthAttachment | Usage::TransferRead, "depth of what never moves")
+        .keep(Lifetime::Scene);
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
     d.parameter("size", size, "width and height of a map");
@@ -48,25 +58,67 @@ class ShadowMap : public Pass {
   void record(RecordContext& ctx) override {
     ctx.use(views_).dispatch(1);
     ctx.barrier();
-    const Attachment depth{"maps.depth", Attachment::Load::Clear, {.depthStencil = {0.0f, 0}}};
+    const scene::Geometry& geometry = *ctx.frame().geometry;
+    const uint32_t all = uint32_t(geometry.triangles.size()), fixed = std::min(geometry.staticTriangles, all);
+    const bool moves = fixed < all;
+    if (ctx.firstFrame() || !isDrawn(ctx.frame()))
+      draw(ctx, moves ? "still" : "maps.depth", Attachment::Load::Clear, 0, fixed);
+    lights_ = ctx.frame().lights;
+    gpu_ = ctx.frame().gpu;
+    if (!moves) return;
+    ctx.barrier();
+    copyStill(ctx);
+    ctx.barrier();
+    draw(ctx, "maps.depth", Attachment::Load::Keep, fixed, all);
+  }
+
+ private:
+  // Whether what never moves has been drawn as these lights see it.
+  bool isDrawn(const scene::Frame& frame) const {
+    return gpu_ == frame.gpu &&
+           std::equal(lights_.begin(), lights_.end(), frame.lights.begin(), frame.lights.end(),
+                      [](const scene::Light& a, const scene::Light& b) {
+                        return a.type == b.type && a.position == b.position && a.direction == b.direction &&
+                               a.range == b.range && a.outerConeAngle == b.outerConeAngle;
+                      });
+  }
+
+  static void copyStill(RecordContext& ctx) {
+    const gpu::Image& still = ctx.image("still");
+    VkImageCopy copy{};
+    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, still.desc().layers};
+    copy.extent = ctx.extent("still");
+    vkCmdCopyImage(ctx.cmd(), still.handle(), VK_IMAGE_LAYOUT_GENERAL, ctx.image("maps.depth").handle(),
+                   VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+  }
+
+  // Triangles [first, end) into all layers.
+  void draw(RecordContext& ctx, const char* target, Attachment::Load load, uint32_t first,
+            uint32_t end) const {
+    const Attachment depth{target, load, {.depthStencil = {0.0f, 0}}};
     const uint32_t layers = scene::shadowLayers(ctx.frame().lights);
     ctx.render(
         {}, &depth,
         [&] {
           if (layers > 0)
-            for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers);
+            for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers, first, end);
         },
-        ctx.image("maps.depth").desc().layers);
+        ctx.image(target).desc().layers);
   }
 
- private:
-  void draw(RecordContext& ctx, const scene::DrawRun& run, uint32_t layers) const {
+  void draw(RecordContext& ctx, const scene::DrawRun& run, uint32_t layers, uint32_t first,
+            uint32_t end) const {
+    first = std::max(first, run.firstTriangle);
+    end = std::min(end, run.firstTriangle + run.triangleCount);
+    if (first >= end) return;
     const bool tested = run.kind == scene::DrawKind::Tested;
     Commands commands = ctx.use(draw_[tested]);
-    if (tested) commands.constant("firstTriangle", run.firstTriangle);
-    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle,
-                         layers);
+    if (tested) commands.constant("firstTriangle", first);
+    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * (end - first), 3 * first, layers);
   }
+
+  std::vector<scene::Light> lights_;      // that `still` is drawn for,
+  const scene::GpuScene* gpu_ = nullptr;  // and of which scene
   Kernel views_, draw_[2];
 };
 

@@ -19,7 +19,7 @@ class Update : public Pass {
     d.input("previous", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
             "VPLs of the frame before");
     d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surfaces of this frame");
     d.output("vpls", buffer("VplState", sizeof(scene::VplState), countOf("previous")), Usage::StorageWrite,

@@ -14,7 +14,7 @@ class ViewVoxels : public Pass {
     PassDeclaration d("view-voxels", "debug view: the first voxel side along each of the eye's rays");
     d.view();
     d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surface voxels");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`")

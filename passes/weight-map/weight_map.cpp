@@ -21,7 +21,7 @@ class WeightMap : public Pass {
              member("face", image2D(), Usage::Sampled)},
             "surfaces seen by the eye");
     d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::Sampled),
+            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "grid whose sides are weighted");
     d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),

@@ -219,8 +219,9 @@ vec4 materialReflectance(uint material, vec2 uv) {
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
-  if (emission == vec3(0.0)) return emission;
-  return emission * sampleSceneTexture(first + 5, uv).rgb;
+  // A loop of no turns is skipped where a branch is not, on a CPU device; few surfaces emit.
+  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns) emission *= sampleSceneTexture(first + 5, uv).rgb;
+  return emission;
 }
 
 SurfacePoint surfaceAt(uint material, vec2 uv) {

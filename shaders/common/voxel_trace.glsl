@@ -1,5 +1,5 @@
 // Rays through the voxels: the first surface that one meets. The same formulas as framework/scene/voxel_trace.h.
-// Needs common/scene.glsl and an input port `voxels` (index as Usage::Sampled, surface as Usage::TexelRead); its bindings
+// Needs common/scene.glsl and an input port `voxels` (index as Usage::StorageRead, surface as Usage::TexelRead); its bindings
 // number themselves.
 #ifndef FOVEA_VOXEL_TRACE_GLSL
 #define FOVEA_VOXEL_TRACE_GLSL
@@ -7,14 +7,15 @@
 #include "common/voxel.glsl"
 #include "common/vpl.glsl"
 
-layout(set = 0) uniform utexture3D voxelsIndex;
+// An image and not a texture: on lavapipe a load from a texture costs several times as much.
+layout(set = 0, r32ui) uniform readonly uimage3D voxelsIndex;
 layout(set = 0) uniform samplerBuffer voxelsSurface;
 
 // The grid of the bundle that is wired.
-VoxelGrid voxelsGrid() { return voxelGrid(uint(textureSize(voxelsIndex, 0).x)); }
+VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }
 
 // Number of the voxel in a cell plus 1; 0: empty, or outside the grid.
-uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? texelFetch(voxelsIndex, cell, 0).r : 0u; }
+uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? imageLoad(voxelsIndex, cell).r : 0u; }
 
 VoxelSide loadSide(uint side) {
   int first = int(side) * kVoxelSideTexels;
@@ -96,7 +97,7 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   ivec3 stride = ivec3(sign(direction)) * ivec3(moves);
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
-    uint voxel = texelFetch(voxelsIndex, cell, 0).r;
+    uint voxel = imageLoad(voxelsIndex, cell).r;
     vec3 walls = (vec3(cell) + ahead - p) * inverse + never;
     float next = min(min(walls.x, walls.y), walls.z);
     if (voxel != 0u) {

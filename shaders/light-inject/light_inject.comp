@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Direct light on the voxels: L = rho E / pi + emission for every side, E averaged over several points of its surface.
+// Direct light on the voxels: L = rho E / pi + emission for every listed side, E averaged over several points of its surface.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/voxel_trace.glsl"
@@ -9,11 +9,13 @@
 #define SHADOW_BINDING 8
 #include "common/shadow.glsl"
 #endif
+#include "light-inject/patch.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 64) in;  // kSidesPerGroup
 
-layout(set = 0) uniform usamplerBuffer voxelsInfo;
 layout(set = 0, std430) writeonly buffer Radiance { vec4 sides[]; } radiance;
+layout(set = 0) uniform usamplerBuffer work;    // see select.comp
+layout(set = 0) uniform usamplerBuffer listed;
 
 layout(push_constant) uniform Constants {
   int taps;
@@ -21,28 +23,6 @@ layout(push_constant) uniform Constants {
 };
 
 const uint kLightInject = 0x11c7u;  // of the random numbers
-
-// Where a side's surface lies in its cell: two axes across, one along the largest component of the normal. As far from
-// the average position as the nearer wall of the cell allows in each axis, and no more than its area: exact for a surface
-// that fills the cell or a part that begins at a wall of the cell, as at the edges and corners of planes.
-struct Patch {
-  vec3 u, v;    // half axes in the tangent plane, m
-};
-
-vec3 toAxes(uint axis, vec3 p) { return axis == 0u ? p.yzx : axis == 1u ? p.zxy : p; }
-vec3 fromAxes(uint axis, vec3 p) { return axis == 0u ? p.zxy : axis == 1u ? p.yzx : p; }
-
-Patch patchOf(VoxelGrid grid, VoxelSide side) {
-  vec3 low = voxelToWorld(grid, floor(worldToVoxel(grid, side.position)));
-  vec3 reach = max(min(side.position - low, low + grid.cell - side.position), 0.0);
-  vec3 a = abs(side.normal);
-  uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
-  vec3 n = toAxes(axis, side.normal), r = toAxes(axis, reach);
-  float widest = 4.0 * r.x * r.y / max(abs(n.z), 0.1);
-  r.xy *= min(1.0, sqrt(side.area / max(widest, 1e-30)));
-  vec2 rise = -n.xy / (n.z >= 0.0 ? max(n.z, 0.1) : min(n.z, -0.1));
-  return Patch(fromAxes(axis, vec3(r.x, 0.0, r.x * rise.x)), fromAxes(axis, vec3(0.0, r.y, r.y * rise.y)));
-}
 
 // Irradiance of a side by one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
 // Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop: what it takes to load it counts.
@@ -63,26 +43,24 @@ vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cel
   return sum / float(taps);
 }
 
+// rgb: outgoing radiance, a: its luminance.
+vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
+  // The points start anew for each cell; by the cell and not by the number of the voxel, which changes when
+  // something moves.
+  uvec3 cell = uvec3(max(worldToVoxel(grid, side.position), vec3(0.0)));
+  uint bits = randomStream(kLightInject, cell.x, cell.y, 2u * cell.z + which);
+  vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
+  vec3 irradiance = vec3(0.0);
+  for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
+  vec3 result = side.reflectance * irradiance / kPi + side.emission;
+  return vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
+}
+
 void main() {
-  // The first half of the invocations takes the sides 0, the second the sides 1: most voxels have but one, and
-  // neighbours with the same fate run together.
-  uint voxels = texelFetch(voxelsInfo, 0).x;
-  uint id = gl_GlobalInvocationID.x;
-  if (id >= 2u * voxels) return;
-  uint number = id < voxels ? 2u * id : 2u * (id - voxels) + 1u;
+  uint place = gl_GlobalInvocationID.x;
+  if (place >= texelFetch(work, 0).w) return;
+  uint number = texelFetch(listed, int(place)).x;
   VoxelSide side = loadSide(number);
-  vec3 result = vec3(0.0);
-  if (side.area > 0.0) {
-    VoxelGrid grid = voxelsGrid();
-    Patch area = patchOf(grid, side);
-    // The points start anew for each cell; by the cell and not by the number of the voxel, which changes when
-    // something moves.
-    uvec3 cell = uvec3(max(worldToVoxel(grid, side.position), vec3(0.0)));
-    uint bits = randomStream(kLightInject, cell.x, cell.y, 2u * cell.z + (number & 1u));
-    vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
-    vec3 irradiance = vec3(0.0);
-    for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
-    result = side.reflectance * irradiance / kPi + side.emission;
-  }
-  radiance.sides[number] = vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
+  VoxelGrid grid = voxelsGrid();
+  radiance.sides[number] = side.area > 0.0 ? radianceOf(grid, side, patchOf(grid, side), number & 1u) : vec4(0.0);
 }

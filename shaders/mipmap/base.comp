@@ -9,10 +9,19 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
 layout(set = 0, rgba16f) uniform image3D mipsColor;
-layout(set = 0, r16f) uniform writeonly image3D mipsWeight;
 layout(set = 0) uniform samplerBuffer radiance;
 #if WEIGHTED
+layout(set = 0, r16f) uniform writeonly image3D mipsWeight;
 layout(set = 0) uniform samplerBuffer weights;
+#endif
+#if KEEPS
+layout(set = 0) uniform usamplerBuffer changed;
+#include "mipmap/dirty.glsl"
+
+layout(push_constant) uniform Constants {
+  vec4 moversLow, moversHigh;  // box around all that moves, in this frame and the last one; low > high: nothing does
+  uint all_;                   // 1: nothing is kept from the last frame
+};
 #endif
 
 // What a voxel shows towards a face: coverage is the side's projected area by that of the voxel's face.
@@ -45,11 +54,23 @@ void main() {
   uint any_ = 0u;
   for (int i = 0; i < 8; ++i) {
     ivec3 at = 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2);
-    voxels[i] = ODD != 0 ? voxelAt(grid, at) : texelFetch(voxelsIndex, at, 0).r;
+    voxels[i] = ODD != 0 ? voxelAt(grid, at) : imageLoad(voxelsIndex, at).r;
     any_ |= voxels[i];
   }
   float faceArea = grid.cell * grid.cell;
-  for (int face = 0; face < kFaces; ++face) {
+  bool anew = true;
+#if KEEPS
+  // Voxels come and go where something moves; a voxel may lie a little outside of what it holds.
+  vec3 low = voxelToWorld(grid, 2.0 * vec3(cell) - 1.0), high = voxelToWorld(grid, 2.0 * vec3(cell) + 3.0);
+  anew = all_ != 0u || (all(lessThanEqual(low, moversHigh.xyz)) && all(greaterThanEqual(high, moversLow.xyz)));
+  for (int i = 0; i < (any_ != 0u ? 8 : 0); ++i) {
+    int side = 2 * int(max(voxels[i], 1u) - 1u);
+    uint new_ = texelFetch(changed, side).x | texelFetch(changed, side + 1).x;
+    anew = anew || (voxels[i] != 0u && new_ != 0u);
+  }
+  if (anew) markDirty(0u, size / 2, cell / 2);
+#endif
+  for (int face = 0; face < (anew ? kFaces : 0); ++face) {
     Cell sum = kEmpty;
     for (int column = 0; column < 4 && any_ != 0u; ++column)
       sum = add(sum, behind(voxelTowards(voxels[nearChild(face, column)], face, faceArea),
@@ -58,6 +79,8 @@ void main() {
     // Most cells are empty and have been so. Storing is what costs (on lavapipe 10 times a look).
     if (sum.color.a <= 0.0 && imageLoad(mipsColor, texel).a <= 0.0) continue;
     imageStore(mipsColor, texel, stored(0.25 * sum.color));
+#if WEIGHTED
     imageStore(mipsWeight, texel, stored(vec4(0.25 * sum.weight)));
+#endif
   }
 }

@@ -21,7 +21,7 @@ uint sideAt(vec3 position, vec3 normal, float object) {
   VoxelGrid grid = voxelsGrid();
   vec3 p = worldToVoxel(grid, position);
   if (!(all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, vec3(grid.resolution))))) return kNoSide;
-  uint voxel = texelFetch(voxelsIndex, ivec3(p), 0).r;
+  uint voxel = imageLoad(voxelsIndex, ivec3(p)).r;
   if (voxel == 0u) return kNoSide;
   uint found = kNoSide;
   float best = turnCos;

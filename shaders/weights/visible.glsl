@@ -42,7 +42,7 @@ bool seesVpl(VoxelGrid grid, vec3 from, vec3 face, vec3 to, vec3 normal) {
     if (!insideGrid(grid, cell)) break;
     bool full = texelFetch(bricks, int(brickIndex(grid, cell / kBrick))).r != 0u;
     if (full) {
-      uint voxel = texelFetch(voxelsIndex, cell, 0).r;
+      uint voxel = imageLoad(voxelsIndex, cell).r;
       if (voxel != 0u && (blocks(grid, s, 2u * voxel - 2u) || blocks(grid, s, 2u * voxel - 1u))) return false;
     }
     vec3 low = vec3(full ? cell : cell / kBrick * kBrick);

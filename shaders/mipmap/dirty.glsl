@@ -1,0 +1,18 @@
+// A bit for each cell of the levels from 1, level after level: something below it changed in this frame.
+#ifndef FOVEA_MIPMAP_DIRTY_GLSL
+#define FOVEA_MIPMAP_DIRTY_GLSL
+
+layout(set = 0, std430) buffer Dirty { uint bits[]; } dirty;
+
+uint dirtyBit(uint first, int size, ivec3 cell) { return first + uint(cell.x + size * (cell.y + size * cell.z)); }
+bool isDirty(uint first, int size, ivec3 cell) {
+  uint bit = dirtyBit(first, size, cell);
+  return (dirty.bits[bit >> 5u] >> (bit & 31u) & 1u) != 0u;
+}
+// size: of the level in cells; where that is not half of the one below there is no such level.
+void markDirty(uint first, int size, ivec3 cell) {
+  uint bit = dirtyBit(first, size, cell);
+  if (all(lessThan(cell, ivec3(size)))) atomicOr(dirty.bits[bit >> 5u], 1u << (bit & 31u));
+}
+
+#endif
