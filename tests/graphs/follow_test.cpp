@@ -1,0 +1,176 @@
+// VPLs over the frames of a scene that moves: on a rigid box they keep their place in it, on a waving cloth
+// they keep their place in a triangle and so stay on the surface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "framework/base/paths.h"
+#include "framework/scene/vpl.h"
+#include "tests/passes/ray_reference.h"
+#include "tests/support/pass_test.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::test {
+namespace {
+
+using scene::VplState;
+
+constexpr uint32_t kFrames = 24;
+
+// A cloth of 16 x 16 quads that waves, hanging before a wall.
+void addCloth(scene::Scene& s, uint32_t material) {
+  scene::Primitive p;
+  p.material = material;
+  scene::MorphTarget wave[2];
+  constexpr int kSide = 17;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const float u = float(x) / (kSide - 1), v = float(y) / (kSide - 1);
+      p.positions.emplace_back(1.6f * u - 1.7f, 1.6f * v + 0.2f, -0.6f);
+      p.normals.emplace_back(0, 0, 1);
+      p.uvs.emplace_back(u, v);
+      wave[0].positions.emplace_back(0.1f * v, 0, 0.25f * std::sin(7 * u + 2 * v));
+      wave[1].positions.emplace_back(0, 0.1f * u, 0.25f * std::cos(6 * u - 3 * v));
+    }
+  for (uint32_t y = 0; y + 1 < kSide; ++y)
+    for (uint32_t x = 0; x + 1 < kSide; ++x) {
+      const uint32_t v = kSide * y + x;
+      p.indices.insert(p.indices.end(), {v, v + 1, v + kSide + 1, v, v + kSide + 1, v + kSide});
+    }
+  p.targets = {wave[0], wave[1]};
+  addPrimitive(s, std::move(p));
+  scene::Animation a;
+  a.plays = true;
+  a.channels = {{uint32_t(s.nodes.size() - 1),
+                 scene::AnimationChannel::Path::Weights,
+                 scene::AnimationChannel::Interpolation::Linear,
+                 {0, 0.4f, 0.8f, 1.2f},
+                 {0, 0, 1, 0.2f, -0.2f, 1, 0, 0}}};
+  s.animations = {a};
+}
+
+// A room without its front wall; the cloth at the left, a box that slides and turns at the right.
+scene::Scene waving() {
+  scene::Scene s;
+  s.materials.clear();
+  uint32_t m[6];
+  for (uint32_t& material : m) material = addMaterial(s, glm::vec3(0.6f));
+  addRoom(s, m, 2);
+  s.nodes.pop_back();  // +z is open
+  const uint32_t root = uint32_t(s.nodes.size());
+  scene::Node node;
+  node.dynamic = true;
+  s.nodes.push_back(node);
+  addBox(s, addMaterial(s, {0.8f, 0.6f, 0.1f}), {-0.6f, -0.6f, -0.6f}, {0.6f, 0.6f, 0.6f});
+  for (size_t i = root + 1; i < s.nodes.size(); ++i) s.nodes[i].parent = root;
+  const auto turned = [](float deg) {
+    return glm::angleAxis(glm::radians(deg), glm::vec3(0.2f, 0.9f, 0.3f));
+  };
+  s.movers = {{root,
+               true,
+               scene::Repeat::Once,
+               {{0, {0.9f, -0.6f, 0}, glm::normalize(turned(0)), true},
+                {1, {0.4f, 0.2f, 0.3f}, glm::normalize(turned(50)), true}}}};
+  addCloth(s, addMaterial(s, {0.2f, 0.5f, 0.8f}));
+  s.materials.back().doubleSided = true;
+  scene::Light lamp;
+  lamp.type = scene::LightType::Point;
+  lamp.position = {0, 1.5f, 1.5f};
+  lamp.intensity = 20;
+  s.lights = {lamp};
+  s.cameras.emplace_back();
+  s.cameras[0].position = {0, 0, 5};
+  return s;
+}
+
+// `ours` with what it keeps of its VPLs as one more output.
+std::string graphWithState() {
+  const auto folder = std::filesystem::temp_directory_path() / "fovea-follow";
+  std::filesystem::create_directories(folder);
+  for (const auto& graphs : dataFolders("graphs")) {
+    std::error_code ec;
+    if (!std::filesystem::exists(graphs / "ours.json", ec)) continue;
+    const auto file = folder / "ours_state.json";
+    std::ofstream(file) << R"({"extends": ")" << (graphs / "ours.json").string()
+                        << R"(", "outputs": {"state": "manage"}})";
+    return file.string();
+  }
+  return {};
+}
+
+double distanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                          const glm::dvec3& c) {
+  const glm::dvec3 n = glm::normalize(glm::cross(b - a, c - a));
+  const glm::dvec3 q = p - glm::dot(p - a, n) * n;
+  const auto inside = [&](const glm::dvec3& u, const glm::dvec3& v) {
+    return glm::dot(glm::cross(v - u, q - u), n) >= 0;
+  };
+  if (inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(glm::dot(p - a, n));
+  const auto toEdge = [&](const glm::dvec3& u, const glm::dvec3& v) {
+    const double t = glm::clamp(glm::dot(p - u, v - u) / glm::dot(v - u, v - u), 0.0, 1.0);
+    return glm::distance(p, u + t * (v - u));
+  };
+  return std::min({toEdge(a, b), toEdge(b, c), toEdge(c, a)});
+}
+
+TEST(Follow, VplsStayOnWhatMoves) {
+  const scene::Scene s = waving();
+  scene::Geometry g = scene::flatten(s);
+  std::vector<scene::Frame> frames;
+  GraphRunOptions options;
+  options.size = {64, 64};
+  options.frames = kFrames;
+  options.everyFrame = true;
+  options.outputs = {"state"};
+  options.set = {"vpl_count=300", "voxels=32", "attempts=1500", "region=image"};
+  options.beforeFrame = [&](scene::Frame& frame) { frames.push_back(frame); };
+  const GraphRun run = runGraph(graphWithState(), s, options);
+  ASSERT_EQ(run.frames.size(), kFrames);
+  std::vector<VplState> before;
+  size_t onBox = 0, onCloth = 0, kept[2] = {0, 0};
+  float oldest[2] = {0, 0};
+  for (uint32_t f = 0; f < kFrames; ++f) {
+    frames[f].scene = &s;  // the run had a copy of it
+    scene::moveObjects(frames[f], g);
+    const auto& bytes = run.frames[f].outputs.at("state").bytes;
+    std::vector<VplState> now(bytes.size() / sizeof(VplState));
+    std::memcpy(now.data(), bytes.data(), bytes.size());
+    for (size_t i = 0; i < now.size(); ++i) {
+      const VplState& v = now[i];
+      if (v.life == 0 || v.object == 0) continue;
+      const size_t object = size_t(v.object);
+      const bool cloth = g.objects[object].deforms;
+      (cloth ? onCloth : onBox) += 1;
+      oldest[cloth] = std::max(oldest[cloth], v.life);
+      if (cloth) {
+        const scene::Triangle& t = g.triangles.at(g.staticTriangles + size_t(v.localPosition.x));
+        ASSERT_EQ(t.object(), object) << f << " " << i;
+        const glm::dvec3 a(g.positions[t.v[0]]), b(g.positions[t.v[1]]), c(g.positions[t.v[2]]);
+        ASSERT_LT(distanceToTriangle(glm::dvec3(v.position), a, b, c), 1e-4) << f << " " << i;
+      } else {
+        const glm::vec3 local = frames[f].objects[object].intoObject(v.position);
+        ASSERT_LT(glm::distance(local, v.localPosition), 1e-4f) << f << " " << i;
+      }
+      if (before.empty() || v.life != before[i].life + 1 || before[i].object != v.object) continue;
+      ++kept[cloth];
+      ASSERT_EQ(v.localPosition, before[i].localPosition) << f << " " << i;
+      ASSERT_EQ(v.localNormal, before[i].localNormal) << f << " " << i;
+    }
+    before = std::move(now);
+  }
+  for (const bool cloth : {false, true}) {
+    EXPECT_GT(kept[cloth], (cloth ? onCloth : onBox) / 2) << (cloth ? "cloth" : "box");
+    EXPECT_GE(oldest[cloth], 8) << (cloth ? "cloth" : "box");
+  }
+  EXPECT_GT(onBox, 20u * kFrames / 4);
+  EXPECT_GT(onCloth, 20u * kFrames / 4);
+  std::printf("VPLs a frame: %.1f on the box (%.0f%% of them older), %.1f on the cloth (%.0f%%)\n",
+              double(onBox) / kFrames, 100.0 * double(kept[0]) / double(onBox), double(onCloth) / kFrames,
+              100.0 * double(kept[1]) / double(onCloth));
+}
+
+}  // namespace
+}  // namespace fovea::test
