@@ -391,7 +391,7 @@ void addMovingDrape(SceneBuilder& b, const Palette& p) {
   const uint32_t mesh =
       b.mesh("curtain in the wind",
              cage(rest, 2,
-                  {shape(0.34f, 0, 0), shape(0.12f, 0.13f, 0), shape(0.12f, 0.13f, 0.5f * glm::pi<float>())}),
+                  {shape(0.42f, 0, 0), shape(0.12f, 0.17f, 0), shape(0.12f, 0.17f, 0.5f * glm::pi<float>())}),
              p.cloth[0]);
   const glm::vec3 where = glm::vec3(
       kSides[1].placement * glm::vec4(-0.5f * kSides[1].length() + kBay * 2.5f, kSpring - 0.03f, 0.02f, 1));

@@ -89,9 +89,9 @@ Palette makePalette(SceneBuilder& b) {
   p.dado = b.material("red plaster", {0.62f, 0.24f, 0.15f}, {.texture = wall, .metres = 3.7f});
   p.tiles = b.material("floor tiles", {0.66f, 0.36f, 0.23f}, {.texture = tiles, .metres = 2.4f});
   p.roofTiles = b.material("roof tiles", {0.66f, 0.30f, 0.17f}, {.texture = stone, .metres = 1.1f});
-  p.floorPale = b.material("pale paving", {0.56f, 0.50f, 0.42f}, {.texture = stone, .metres = 3.1f});
-  p.floorWarm = b.material("warm paving", {0.50f, 0.41f, 0.31f}, {.texture = stone, .metres = 2.7f});
-  p.floorDark = b.material("red paving", {0.36f, 0.17f, 0.12f}, {.texture = stone, .metres = 2.2f});
+  p.floorPale = b.material("pale paving", {0.48f, 0.42f, 0.34f}, {.texture = stone, .metres = 3.1f});
+  p.floorWarm = b.material("warm paving", {0.42f, 0.33f, 0.245f}, {.texture = stone, .metres = 2.7f});
+  p.floorDark = b.material("red paving", {0.32f, 0.14f, 0.10f}, {.texture = stone, .metres = 2.2f});
   p.mortar = b.material("mortar", {0.30f, 0.27f, 0.23f});
   p.wood = b.material("beams", {0.36f, 0.22f, 0.12f}, {.texture = grain, .metres = 0.9f});
   p.door = b.material("doors", {0.26f, 0.33f, 0.27f}, {.texture = grain, .metres = 0.8f});
@@ -104,7 +104,7 @@ Palette makePalette(SceneBuilder& b) {
   p.leaf = b.material("leaves", {0.11f, 0.27f, 0.05f}, {.doubleSided = true});
   p.darkLeaf = b.material("dark leaves", {0.06f, 0.17f, 0.04f}, {.doubleSided = true});
   p.orange = b.material("oranges", {0.88f, 0.36f, 0.03f});
-  p.paper = b.material("paper", {0.80f, 0.16f, 0.09f}, {.doubleSided = true});
+  p.paper = b.material("paper", {0.88f, 0.30f, 0.12f}, {.doubleSided = true});
   const glm::vec3 colors[4] = {
       {0.66f, 0.06f, 0.045f}, {0.07f, 0.14f, 0.44f}, {0.84f, 0.50f, 0.07f}, {0.10f, 0.32f, 0.11f}};
   const char* names[4] = {"madder cloth", "indigo cloth", "ochre cloth", "green cloth"};
