@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "framework/scene/scene.h"
+#include "framework/scene/motion.h"
 
 namespace fovea::scene {
 
@@ -14,26 +14,15 @@ struct MoverBox {
   bool empty() const { return low.x > high.x; }
 };
 
-// Around all dynamic objects as the frame's geometry has them.
-inline MoverBox moverBox(const Geometry& geometry) {
-  MoverBox box;
-  for (const Object& object : geometry.objects)
-    for (uint32_t v = 0; object.dynamic && v < object.vertexCount; ++v) {
-      box.low = glm::min(box.low, geometry.positions[object.firstVertex + v]);
-      box.high = glm::max(box.high, geometry.positions[object.firstVertex + v]);
-    }
-  return box;
+// Around all dynamic objects of the frame; wider than they are, and around the whole of its animation where
+// one deforms.
+inline MoverBox moverBox(const Frame& frame) {
+  const Bounds box = movingBounds(*frame.geometry, frame);
+  return {box.low, box.high};
 }
 
 inline MoverBox around(const MoverBox& a, const MoverBox& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
-}
-
-// Some vertices are placed on the device: Geometry::positions need not have them, and moverBox() cannot tell.
-inline bool anyDeforms(const Geometry& geometry) {
-  for (const Object& object : geometry.objects)
-    if (object.deforms) return true;
-  return false;
 }
 
 }  // namespace fovea::scene

@@ -82,9 +82,8 @@ class LightInject : public Pass {
     const scene::Frame& frame = ctx.frame();
     const bool stay = gpu_ == frame.gpu && std::equal(lights_.begin(), lights_.end(), frame.lights.begin(),
                                                       frame.lights.end(), same);
-    const bool all =
-        ctx.firstFrame() || !stay || scene::anyDeforms(*frame.geometry) || !ctx.parameters().flag("keep");
-    const scene::MoverBox now = scene::moverBox(*frame.geometry), either = scene::around(now, before_);
+    const bool all = ctx.firstFrame() || !stay || !ctx.parameters().flag("keep");
+    const scene::MoverBox now = scene::moverBox(frame), either = scene::around(now, before_);
     const uint32_t layers = scene::shadowLayers(frame.lights);
     const bool moving = !either.empty();
     Commands cover = ctx.use(covered_);

@@ -99,9 +99,8 @@ class Mipmap : public Pass {
     base.bind("mipsColor", ctx.image("mips.color").mipView(0));
     if (weighted_) base.bind("mipsWeight", ctx.image("mips.weight").mipView(0));
     if (keeps_) {
-      const scene::Geometry& geometry = *ctx.frame().geometry;
-      const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu || scene::anyDeforms(geometry);
-      const scene::MoverBox now = scene::moverBox(geometry), either = scene::around(now, before_);
+      const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu;
+      const scene::MoverBox now = scene::moverBox(ctx.frame()), either = scene::around(now, before_);
       base.constant("moversLow", glm::vec4(either.low, 0))
           .constant("moversHigh", glm::vec4(either.high, 0))
           .constant("all_", uint32_t(all));
