@@ -78,7 +78,7 @@ void main() {
   if (inList) changed.sides[number] = uint(anew);
   uvec4 ballot = subgroupBallot(anew);
   uint first = 0u;
-  if (subgroupElect() && anew) first = atomicAdd(work.count, subgroupBallotBitCount(ballot));
+  if (subgroupElect()) first = atomicAdd(work.count, subgroupBallotBitCount(ballot));
   first = subgroupBroadcastFirst(first);
   if (!anew) return;
   uint place = first + subgroupBallotExclusiveBitCount(ballot);
