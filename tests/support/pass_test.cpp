@@ -52,14 +52,15 @@ scene::Scene defaultScene() {
 // Everything a graph needs to run over a scene.
 struct Setup {
   scene::Scene scene;
-  scene::Geometry geometry;
+  scene::Geometry geometry;  // of the frame, for the tests
+  scene::Geometry rest;      // what passes on the device have to make do with
   std::unique_ptr<scene::GpuScene> gpuScene;
   std::unique_ptr<graph::Executor> executor;
   std::shared_ptr<const graph::Plan> plan;
 
   void build(const graph::Description& description, Diagnostics& messages, glm::uvec2 size,
              std::vector<std::string> readback) {
-    geometry = scene::flatten(scene);
+    geometry = rest = scene::flatten(scene);
     gpuScene = std::make_unique<scene::GpuScene>(testDevice(), scene, geometry, kFramesInFlight);
     const graph::Environment environment =
         graph::sceneEnvironment(&testDevice(), scene, geometry, graph::frameViews({size.x, size.y}));
@@ -79,6 +80,11 @@ struct Setup {
     scene::Frame f = scene::makeFrame(scene, geometry, size, index, seed);
     f.gpu = gpuScene.get();
     return f;
+  }
+
+  void move(scene::Frame& frame) {
+    scene::moveObjects(frame, geometry);
+    if (!executor->readsGeometry()) frame.geometry = &rest;
   }
 };
 
@@ -234,7 +240,7 @@ void PassTest::run(uint32_t frames) {
   for (uint32_t i = 0; i < frames; ++i) {
     scene::Frame frame = impl_->setup.frame(impl_->size, impl_->frameIndex++, impl_->seed);
     if (impl_->hook) impl_->hook(*this, frame);
-    scene::moveObjects(frame, impl_->setup.geometry);
+    impl_->setup.move(frame);
     for (auto& [name, input] : impl_->inputs) {
       if (input.changed) executor.setInput(name, input.raw);
       input.changed = false;
@@ -293,7 +299,7 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
   for (uint32_t i = 0; i < options.frames; ++i) {
     scene::Frame frame = setup.frame(options.size, i, options.seed);
     if (options.beforeFrame) options.beforeFrame(frame);
-    scene::moveObjects(frame, setup.geometry);
+    setup.move(frame);
     setup.executor->submit(frame, options.everyFrame || i + 1 == options.frames);
     if (options.everyFrame) collect();
   }
