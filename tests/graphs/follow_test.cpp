@@ -172,5 +172,20 @@ TEST(Follow, VplsStayOnWhatMoves) {
               100.0 * double(kept[1]) / double(onCloth));
 }
 
+// What light-inject keeps of the frame before is what it would make anew, also in the shadow of a cloth.
+TEST(Follow, LightAroundAClothIsKeptOnlyWhereItStays) {
+  GraphRunOptions options;
+  options.size = {48, 48};
+  options.frames = 8;
+  options.everyFrame = true;
+  options.set = {"vpl_count=64", "attempts=128", "voxels=32", "map_size=16", "shadow_map_size=256"};
+  const GraphRun kept = runGraph("ours", waving(), options);
+  options.set.push_back("light-inject.keep=false");
+  const GraphRun anew = runGraph("ours", waving(), options);
+  for (uint32_t i = 0; i < options.frames; ++i)
+    for (const auto& [name, data] : kept.frames[i].outputs)
+      EXPECT_TRUE(toFloats(data) == toFloats(anew.frames[i].outputs.at(name))) << name << ", frame " << i;
+}
+
 }  // namespace
 }  // namespace fovea::test
