@@ -396,6 +396,9 @@ void addMovingDrape(SceneBuilder& b, const Palette& p) {
   const glm::vec3 where = glm::vec3(
       kSides[1].placement * glm::vec4(-0.5f * kSides[1].length() + kBay * 2.5f, kSpring - 0.03f, 0.02f, 1));
   const uint32_t node = b.place("curtain in the wind", mesh, where, 180);
+  MeshBuilder rod;
+  rod.add(p.iron, tube({{-0.5f * kOpening, 0, 0}, {0.5f * kOpening, 0, 0}}, 0.016f, 8));
+  b.place("curtain rod", b.mesh("curtain rod", std::move(rod)), where);
   b.swing(node,
           {{.amplitude = 0.8f, .period = 4},
            {.amplitude = 1, .period = 2},

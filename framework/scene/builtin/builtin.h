@@ -11,5 +11,6 @@ namespace fovea::scene {
 
 Scene cornellBox();
 Scene atriumScene();
+Scene roomScene();
 
 }  // namespace fovea::scene
