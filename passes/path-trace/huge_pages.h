@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace fovea::passes {
@@ -28,6 +29,15 @@ struct HugePageAllocator {
     if (page == kPage) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost when it is refused
 #endif
     return static_cast<T*>(memory);
+  }
+  // Leaves what resize() adds as it is: it is about to be written.
+  template <class U>
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
   }
   void deallocate(T* memory, size_t) { std::free(memory); }
   template <class U>
