@@ -81,9 +81,10 @@ class PathReference {
   uint32_t bounces_;
 };
 
-// Indirect radiance of every pixel, 4 floats each, as graphs put it out.
+// Indirect radiance of every pixel, 4 floats each, as graphs put it out. Another `stream`: other random
+// numbers.
 inline std::vector<float> tracedIndirect(const scene::Scene& s, glm::uvec2 size, uint32_t bounces,
-                                         int samples) {
+                                         int samples, uint32_t stream = 0) {
   const scene::Geometry g = flatten(s);
   const scene::Frame frame = makeFrame(s, g, size, 0, 1);
   const PathReference reference(s, g, bounces);
@@ -92,7 +93,8 @@ inline std::vector<float> tracedIndirect(const scene::Scene& s, glm::uvec2 size,
     for (uint32_t x = 0; x < size.x; ++x) {
       const glm::vec3 direction =
           glm::normalize(frame.views[0].rayDirection({float(x) + 0.5f, float(y) + 0.5f}));
-      const glm::dvec3 l = reference.indirect(frame.views[0].eye, direction, y * size.x + x, samples);
+      const glm::dvec3 l =
+          reference.indirect(frame.views[0].eye, direction, (stream * size.y + y) * size.x + x, samples);
       image.insert(image.end(), {float(l.r), float(l.g), float(l.b), 1.0f});
     }
   return image;
