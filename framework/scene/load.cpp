@@ -129,7 +129,8 @@ struct Generator {
   const char* name;
   Scene (*make)();
 };
-constexpr Generator kGenerators[] = {{"cornellbox", cornellBox}, {"atrium", atriumScene}};
+constexpr Generator kGenerators[] = {
+    {"cornellbox", cornellBox}, {"atrium", atriumScene}, {"room", roomScene}};
 
 }  // namespace
 

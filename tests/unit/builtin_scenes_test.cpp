@@ -126,7 +126,8 @@ TEST_P(BuiltinScenes, IsClosedAroundTheViewer) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes, testing::Values(Expected{"atrium", 279000}),
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
+                         testing::Values(Expected{"atrium", 279000}, Expected{"room", 476000}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
