@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/scene/animation.h"
+#include "framework/scene/deform.h"
 #include "framework/scene/gltf_internal.h"
 
 namespace fovea::scene::gltf {
@@ -85,7 +86,7 @@ class AnimationBuilder {
     size_t components = channel.path == Path::Rotation ? 4 : 3;
     if (channel.path == Path::Weights) {
       const Mesh* mesh = node.mesh == kNoIndex ? nullptr : &c_.scene.meshes[node.mesh];
-      components = mesh && !mesh->primitives.empty() ? mesh->primitives[0].targets.size() : 0;
+      components = mesh ? morphTargets(*mesh) : 0;
       if (components == 0) {
         c_.warn(path, "node `" + node.name + "` has no morph targets: its weights are ignored");
         return false;

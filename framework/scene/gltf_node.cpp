@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "framework/scene/deform.h"
 #include "framework/scene/gltf_internal.h"
 
 namespace fovea::scene::gltf {
@@ -112,8 +113,8 @@ class NodeBuilder {
 
   void readWeights(const tinygltf::Node& n, size_t from, Node& node) const {
     const Mesh& mesh = c_.scene.meshes[node.mesh];
-    const size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
-    if (n.weights.size() != targets && !mesh.primitives.empty())
+    const size_t targets = morphTargets(mesh);
+    if (n.weights.size() != targets && (mesh.cage || !mesh.primitives.empty()))
       c_.fail(nameOf("nodes", from, n.name) + ".weights", std::to_string(n.weights.size()) + " weights for " +
                                                               std::to_string(targets) + " morph targets");
     for (double w : n.weights) node.weights.push_back(float(w));

@@ -6,6 +6,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "framework/scene/gltf_internal.h"
+#include "framework/scene/subdivision.h"
 
 namespace fovea::scene::gltf {
 namespace {
@@ -35,12 +36,15 @@ Skin skinOf(const Context& c, size_t index) {
 }
 
 void checkJoints(const Context& c, const Mesh& mesh, size_t joints, const std::string& place) {
-  for (const Primitive& p : mesh.primitives)
-    for (size_t i = 0; i < p.joints.size(); ++i)
+  const auto check = [&](const std::vector<glm::u16vec4>& list) {
+    for (size_t i = 0; i < list.size(); ++i)
       for (int k = 0; k < 4; ++k)
-        if (p.joints[i][k] >= joints)
-          c.fail(place, "vertex " + std::to_string(i) + " follows joint " + std::to_string(p.joints[i][k]) +
+        if (list[i][k] >= joints)
+          c.fail(place, "vertex " + std::to_string(i) + " follows joint " + std::to_string(list[i][k]) +
                             " of a skin with " + std::to_string(joints) + " joints");
+  };
+  for (const Primitive& p : mesh.primitives) check(p.joints);
+  if (mesh.cage) check(mesh.cage->joints);
 }
 
 }  // namespace

@@ -135,10 +135,12 @@ void Render::loadInputs() {
   Diagnostics early = messages_;
   const graph::BoundGraph bound = graph::bind(
       description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})), early);
+  std::vector<scene::GazeSample> trace;
+  if (!options_.gazeTrace.empty()) trace = scene::readGazeCsv(options_.gazeTrace);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
   geometry_ = scene::flatten(scene_);
-  if (!options_.gazeTrace.empty()) scene_.gaze = scene::readGazeCsv(options_.gazeTrace);
+  if (!options_.gazeTrace.empty()) scene_.gaze = std::move(trace);
   if (options_.foveaDegrees > 0) useFoveaAngle(bound);
   chooseOutputs();
   stopIfInterrupted();

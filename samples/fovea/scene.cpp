@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "framework/graph/report.h"
+#include "framework/scene/animation.h"
 #include "framework/scene/load.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
@@ -76,6 +77,9 @@ ExitCode info(const std::string& name) {
                      formatVector(c.orientation * glm::vec3(0, 0, -1)), glm::degrees(c.verticalFov)));
   if (!s.cameraPath.empty())
     line("path", fmt::format("{} camera keys over {:.3g} s", s.cameraPath.size(), s.cameraPath.back().time));
+  for (const scene::Animation& a : s.animations)
+    line(a.plays ? "plays" : "could play",
+         fmt::format("{}, {} channels over {:.3g} s", a.name, a.channels.size(), scene::duration(a)));
   for (const scene::Mover& m : s.movers) line("moves", formatPath(s.nodes[m.node].name, m));
   for (const scene::LightMotion& m : s.lightMotions)
     line("moves", "light " + formatPath(s.lights[m.light].name, m));

@@ -99,6 +99,17 @@ class Usage(CliTest):
             with self.subTest(gaze=gaze):
                 self.fails(USAGE, *DIRECT, "--gaze=" + gaze, says=["0 to 1"])
 
+    def test_gaze_trace(self):
+        self.fails(USAGE, *DIRECT, "--gaze-trace", "g.csv", "--gaze", "0.5,0.5", says=["--gaze"])
+        self.fails(USAGE, *DIRECT, "--gaze-gap", "20", says=["--gaze-trace"])
+        self.fails(BAD_INPUT, *DIRECT, "--gaze-trace", "none.csv", says=["none.csv"])
+        self.write("g.csv", "t,x,y,valid\n0,0.5,0.5,1\nrubbish\n0.2,0.5,7,1\n")
+        self.fails(BAD_INPUT, *DIRECT, "--gaze-trace", "g.csv", says=["g.csv:3", "g.csv:4"])
+
+    def test_fovea_degrees(self):
+        self.fails(USAGE, *DIRECT, "--fovea-degrees", "0", says=["--fovea-degrees"])
+        self.fails(USAGE, *DIRECT, "--fovea-degrees", "10", says=["direct", "no fovea"])
+
     def test_output_names(self):
         self.fails(USAGE, *DIRECT, "-o", "picture", says=["picture", "png"])
         self.fails(USAGE, *DIRECT, "-o", "picture.txt", says=["exr"])
@@ -284,6 +295,15 @@ class Files(CliTest):
             self.assertRegex(text, rf'fovea[.:]{key}: "{re.escape(value)}')
         png = (self.folder / "a.png").read_bytes()
         self.assertEqual(struct.unpack(">II", png[16:24]), (48, 32))
+
+    def test_gaze_of_a_trace(self):
+        self.write("g.csv", "t,x,y,valid\n0,0.25,0.75,1\n0.04,0.27,0.75,1\n0.06,0.9,0.1,1\n")
+        self.succeeds(*DIRECT, "-o", "a_%d.exr", "--frames", "4", "--gaze-trace", "g.csv")
+        gaze = [re.search(r'gaze: "([^"]*)"', subprocess.run(["iinfo", "-v", f"a_{i}.exr"], cwd=self.folder,
+                          capture_output=True, text=True, check=True).stdout)[1] for i in range(4)]
+        xs = [float(g.split(",")[0]) for g in gaze]
+        for got, expected in zip(xs, (0.25, 0.25 + 0.02 / 42 / 0.04, 0.27, 0.9)):
+            self.assertAlmostEqual(got, expected, places=4)
 
     def test_sequence(self):
         self.succeeds(*DIRECT, "-o", "a_%03d.png", "-o", "last.png", "--frames", "3", "--warmup", "1")
