@@ -138,7 +138,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   MeshBuilder m;
   m.add(closet(p), at(-kX, 0, -0.15f) * turnY(90));
   m.add(bookcase(p), at(-1.55f, 0, kBack));
-  m.add(daybed(p), at(0.45f, 0, kBack + 0.18f));
+  m.add(daybed(p), at(0.67f, 0, kBack + 0.26f));
   m.add(floorLamp(p), at(-0.84f, 0, -1.72f) * turnY(20));
   m.add(pendant(p), at(-0.35f, kHeight - 0.03f, 0.1f));
   m.add(table(p), at(0.98f, 0, -0.42f) * turnY(12));
@@ -165,14 +165,19 @@ void furnish(SceneBuilder& b, const Palette& p) {
   toys.add(ball(p, 0.115f), at(0.44f, kTrack.y, 0.57f) * turnY(40));
   toys.add(basket(p), at(-1.40f, 0, -1.52f));
   toys.add(stackingRings(p), at(kTrack) * at(-0.44f, 0, 0.12f));
+  toys.add(openBook(p), at(0.02f, 0.0f, 1.17f) * turnY(28));
+  const BoxOptions round = {.bevel = 0.004f, .bevelSteps = 2};
+  toys.add(p.toy[3], block(0.07f, 0.07f, 0.07f, round), at(-0.45f, 0, 1.16f) * turnY(25));
+  toys.add(p.toy[0], block(0.14f, 0.035f, 0.07f, round), at(-0.62f, 0, 1.05f) * turnY(-38));
+  toys.add(p.toy[2], cylinder(0.032f, 0.11f, 40, 0.003f), at(-0.36f, 0.032f, 1.34f) * turnY(65) * turnZ(90));
   b.place("toys", b.mesh("toys", std::move(toys)));
 }
 
 // The curtains: the left one takes the draught, billows and ripples; the right one is tied back.
 void addCurtains(SceneBuilder& b, const Palette& p) {
   CurtainForm f;
-  f.width = 0.66f;
-  f.height = 1.70f;
+  f.width = 0.58f;
+  f.height = 2.36f;
   f.folds = 6;
   f.seed = 621;
   f.billow = 0.05f;
@@ -181,12 +186,12 @@ void addCurtains(SceneBuilder& b, const Palette& p) {
     g.billow = billow;
     g.wave = wave;
     g.phase = phase;
-    return curtain(g, 48, 18);
+    return curtain(g, 44, 20);
   };
   const uint32_t mesh =
       b.mesh("curtain in the draught",
              cage(shape(0.05f, 0, 0), 2,
-                  {shape(0.24f, 0, 0), shape(0.05f, 0.05f, 0), shape(0.05f, 0.05f, 0.5f * glm::pi<float>())}),
+                  {shape(0.36f, 0, 0), shape(0.05f, 0.05f, 0), shape(0.05f, 0.05f, 0.5f * glm::pi<float>())}),
              p.curtain);
   const glm::vec3 rod(kWindow.x, 2.405f, kBack + 0.12f);
   const uint32_t node = b.place("curtain in the draught", mesh, rod + glm::vec3(-1.42f, 0, 0));
@@ -203,11 +208,11 @@ void addCurtains(SceneBuilder& b, const Palette& p) {
   tied.seed = 631;
   m.add(p.curtain, surface(curtain(tied, 120, 60)), at(rod + glm::vec3(1.42f, 0, 0)) * scaled(-1, 1, 1));
   m.add(p.cloth[0], torus(0.105f, 0.014f, 40, 8),
-        at(rod + glm::vec3(1.345f, -0.98f, 0)) * scaled(0.95f, 1.6f, 0.75f) * turnZ(-12));
+        at(rod + glm::vec3(1.35f, -1.37f, 0)) * scaled(0.95f, 1.6f, 0.75f) * turnZ(-12));
   for (const float side : {-1.0f, 1.0f})
     for (int i = 0; i < 7; ++i)
       m.add(p.brass, torus(0.020f, 0.0035f, 24, 8),
-            at(rod + glm::vec3(side * (1.42f - 0.66f * (float(i) + 0.02f) / 6.1f), 0.020f, 0)) * turnZ(90));
+            at(rod + glm::vec3(side * (1.42f - 0.58f * (float(i) + 0.02f) / 6.1f), 0.020f, 0)) * turnZ(90));
   b.place("curtain, tied back", b.mesh("curtain, tied back", std::move(m)));
 }
 
@@ -219,7 +224,7 @@ void addTrain(SceneBuilder& b, const Palette& p) {
     float behind;
   } cars[3] = {{"locomotive", locomotive(p), 0}, {"tender", tender(p), 0.345f}, {"coach", coach(p), 0.675f}};
   for (const auto& car : cars) {
-    const TrackPoint t = trackAt(-0.10f - car.behind);
+    const TrackPoint t = trackAt(-0.30f - car.behind);
     b.place(car.name, b.mesh(car.name, car.mesh), kTrack + t.position + glm::vec3(0, kRailTop, 0),
             t.turnYDegrees);
   }
@@ -243,15 +248,15 @@ Scene roomScene() {
   sun.name = "sun";
   sun.type = LightType::Spot;
   sun.color = {1.0f, 0.92f, 0.80f};
-  sun.direction = glm::normalize(glm::vec3(-0.45f, -0.40f, 0.66f));
+  sun.direction = glm::normalize(glm::vec3(-0.42f, -0.41f, 0.68f));
   sun.position = glm::vec3(kWindow.x, kWindow.y + 0.5f * kWindowHeight, kBack) - 10.0f * sun.direction;
   sun.intensity = 2000;  // 20 lux at the window
   sun.innerConeAngle = glm::radians(5.6f);
   sun.outerConeAngle = glm::radians(6.1f);
   b.scene.lights.push_back(sun);
   b.camera({1.6f, 1.30f, 2.2f}, {-0.6f, 0.72f, -0.9f}, 60);
-  b.scene.environment = {0.55f, 0.70f, 0.90f};
-  return b.finish(6.0f, {0.5f, 0.6f});
+  b.scene.environment = {0.06f, 0.095f, 0.15f};
+  return b.finish(6.5f, {0.5f, 0.6f});
 }
 
 }  // namespace fovea::scene

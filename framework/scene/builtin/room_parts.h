@@ -21,6 +21,7 @@ inline constexpr glm::vec2 kRug{2.36f, 1.72f};
 inline constexpr float kRugHeight = 0.014f;
 
 // Furniture.
+model::Shape knob(float radius);
 model::MeshBuilder closet(const Palette& p);  // back at z = 0; its right door stands open
 model::MeshBuilder bookcase(const Palette& p);
 model::MeshBuilder daybed(const Palette& p);  // lies along x, back at z = 0
@@ -58,6 +59,7 @@ model::MeshBuilder basket(const Palette& p);
 model::MeshBuilder castle(const Palette& p);  // of building blocks
 model::MeshBuilder stackingRings(const Palette& p);
 model::MeshBuilder pottedPlant(const Palette& p, uint32_t seed);
+model::MeshBuilder openBook(const Palette& p);
 model::MeshBuilder bunting(const Palette& p, float width, float sag);  // from the origin along +x
 
 // The oval of the track: two straights of 2 * kHalfStraight along x, two half circles. `distance` along it

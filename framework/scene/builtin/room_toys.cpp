@@ -445,6 +445,31 @@ MeshBuilder pottedPlant(const Palette& p, uint32_t seed) {
   return m;
 }
 
+MeshBuilder openBook(const Palette& p) {
+  MeshBuilder m;
+  for (const float side : {-1.0f, 1.0f}) {
+    m.add(p.book[0], box({0, 0, -0.152f}, {0.218f, 0.003f, 0.152f}, {.bevel = 0.001f}), scaled(side, 1, 1));
+    // Half of the pages: a bowed block, and a leaf that will not lie.
+    const auto page = [&](float low, float thick) {
+      return bent(box({0.001f, low, -0.145f}, {0.210f, low + thick, 0.145f}, {.cells = {14, 1, 1}}),
+                  [=](glm::vec3 q) {
+                    const float t = q.x / 0.21f;
+                    return q + glm::vec3(
+                                   0, (q.y - 0.003f) * (1.1f * std::sin(kPi * std::sqrt(t)) - 0.55f * t), 0);
+                  });
+    };
+    m.add(p.paper, page(0.003f, 0.016f), scaled(side, 1, 1));
+    const Sheet leaf = sheet(16, 2, {1, 1}, [&](float u, float v) {
+      const float t = side > 0 ? u : 1 - u, lift = side > 0 ? 0.034f * t * t : 0.0015f;
+      return glm::vec3(side * (0.002f + 0.206f * t),
+                       0.0195f + lift + 0.016f * (1.1f * std::sin(kPi * std::sqrt(t)) - 0.55f * t),
+                       0.29f * (v - 0.5f));
+    });
+    m.add(p.picture[side > 0 ? 2 : 1], surface(leaf, 0.0007f));
+  }
+  return m;
+}
+
 MeshBuilder bunting(const Palette& p, float width, float sag) {
   MeshBuilder m;
   const auto hang = [&](float t) { return glm::vec3(width * t, -sag * 4 * t * (1 - t), 0); };
