@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/resources.h"
@@ -27,6 +28,49 @@ glm::vec3 octDecode(glm::vec2 e) {
   n.x += n.x >= 0 ? -t : t;
   n.y += n.y >= 0 ? -t : t;
   return glm::normalize(n);
+}
+
+// Runs `body` once per query: it reads vec4 q and writes vec4 r[3].
+std::vector<glm::vec4> runShader(GpuScene& scene, uint32_t slot, const std::vector<glm::vec4>& queries,
+                                 const std::string& body) {
+  gpu::Device& device = testDevice();
+  const std::string source = R"(#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "common/scene.glsl"
+layout(local_size_x = 64) in;
+layout(std430) readonly buffer Queries { vec4 queries[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
+layout(push_constant) uniform Constants { uint count; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  vec4 q = queries[i];
+  vec4 r[3];
+)" + body + R"(
+  for (int k = 0; k < 3; ++k) results[3u * i + k] = r[k];
+}
+)";
+  gpu::Buffer in(device, {"queries", queries.size() * 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::Buffer out(device, {"results", queries.size() * 48, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::upload(device, in, std::as_bytes(std::span(queries)));
+  const gpu::Pipeline pipeline(
+      device,
+      gpu::ComputePipelineDesc{device.shaders().compileSource("attach.comp", source), scene.setLayout()});
+  device.runOnce([&](VkCommandBuffer cmd) {
+    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
+                                             {out.handle(), 0, VK_WHOLE_SIZE}};
+    VkWriteDescriptorSet writes[2] = {test::write(pipeline, "Queries"), test::write(pipeline, "Results")};
+    writes[0].pBufferInfo = &infos[0];
+    writes[1].pBufferInfo = &infos[1];
+    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+    const VkDescriptorSet set = scene.set(slot);
+    const uint32_t offset = scene.viewOffset(0), count = uint32_t(queries.size());
+    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
+    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
+    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
+  });
+  return as<glm::vec4>(gpu::download(device, out));
 }
 
 struct Vertices {
@@ -202,6 +246,66 @@ TEST(Animate, WithoutPosesThingsRest) {
   const Vertices v = evaluate(gpu, Frame{}, 0);
   for (size_t i = 0; i < g.positions.size(); ++i)
     ASSERT_LT(glm::distance(glm::vec3(v.positions[i]), g.positions[i]), 1e-5f) << i;
+}
+
+// ---- Points that keep their place in a triangle (common/scene.glsl)
+
+// What attach() and its like give for points around the triangles past the static ones.
+TEST(Attach, FindsTheNearestPointAndFollows) {
+  Scene s;
+  test::addMaterial(s, glm::vec3(0.5f));
+  test::addQuad(s, 0, {-3, 0, -3}, {0, 0, 6}, {6, 0, 0});
+  Primitive p;
+  p.positions = {{0, 0, 0}, {1, 0, 0.2f}, {0.3f, 0.9f, 0}, {2, 1, 0.5f}};
+  p.normals.assign(4, {0, 0, 1});
+  p.uvs.assign(4, {0, 0});
+  p.indices = {0, 1, 2, 2, 1, 3};
+  MorphTarget bend;
+  bend.positions = {{0, 0, 1}, {0.2f, 0.1f, 0}, {0, 0, -0.5f}, {0.5f, 0.5f, 0.5f}};
+  p.targets = {bend};
+  test::addPrimitive(s, p);
+  Animation a;
+  a.plays = true;
+  a.channels = {{1, Path::Weights, Interpolation::Linear, {0, 1}, {0, 1}}};
+  s.animations = {a};
+  const Geometry g = flatten(s);
+  ASSERT_EQ(g.objects.size(), 2u);
+  Frame frame = makeFrame(s, g, {8, 8}, 20, 1);
+  Geometry now = g;
+  moveObjects(frame, now);
+  GpuScene gpu(testDevice(), s, g, 1);
+  gpu.update(frame, 0);
+  testDevice().runOnce([&](VkCommandBuffer cmd) { gpu.recordMoves(cmd, 0); });
+  std::vector<glm::vec4> queries;
+  for (int i = 0; i < 400; ++i)
+    queries.emplace_back(std::fmod(0.37f * float(i), 4.0f) - 1, std::fmod(0.73f * float(i), 3.0f) - 1,
+                         std::fmod(0.91f * float(i), 2.0f) - 1, float(i % 2));
+  const auto results = runShader(gpu, 0, queries, R"(
+    uint triangle = uint(q.w);
+    vec3 place = attach(triangle, q.xyz);
+    r[0] = vec4(place, objectDeforms(1u) && !objectDeforms(0u) ? 1.0 : 0.0);
+    r[1] = vec4(attachedPosition(place), 0.0);
+    mat3 axes = triangleAxes(triangle);
+    r[2] = vec4(axes[2], length(transpose(axes) * axes[0] - vec3(1.0, 0.0, 0.0)));
+  )");
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Triangle& t = now.triangles[now.staticTriangles + uint32_t(queries[i].w)];
+    const glm::vec3 a0 = now.positions[t.v[0]], b = now.positions[t.v[1]], c = now.positions[t.v[2]];
+    const glm::vec3 place(results[3 * i]), at(results[3 * i + 1]), point(queries[i]);
+    EXPECT_EQ(results[3 * i].w, 1.0f);
+    EXPECT_EQ(place.x, queries[i].w);
+    EXPECT_TRUE(place.y >= 0 && place.z >= 0 && place.y + place.z <= 1 + 1e-5f) << i;
+    EXPECT_LT(glm::distance(at, a0 + place.y * (b - a0) + place.z * (c - a0)), 1e-5f);
+    float nearest = 1e9f;  // of a fine net of points in the triangle
+    for (int u = 0; u <= 50; ++u)
+      for (int v = 0; v + u <= 50; ++v)
+        nearest =
+            std::min(nearest, glm::distance(point, a0 + float(u) / 50 * (b - a0) + float(v) / 50 * (c - a0)));
+    EXPECT_LT(glm::distance(point, at), nearest + 1e-5f) << i;
+    EXPECT_LT(glm::distance(glm::vec3(results[3 * i + 2]), glm::normalize(glm::cross(b - a0, c - a0))),
+              1e-5f);
+    EXPECT_LT(results[3 * i + 2].w, 1e-5f);
+  }
 }
 
 }  // namespace

@@ -207,6 +207,7 @@ TEST_P(Movers, Voxels) {
     const auto sides = test.values<scene::VoxelSide>("voxels.surface");
     EXPECT_EQ(info.voxels > info.staticVoxels, index != kAway) << "frame " << index;
     glm::vec3 low(1e9f), high(-1e9f), moved(0);
+    const float cell = scene::voxelGrid(g.boundsMin, g.boundsMax, 24).cell;
     for (uint32_t v = g.staticVertices(); v < g.positions.size(); ++v)
       low = glm::min(low, g.positions[v]), high = glm::max(high, g.positions[v]);
     double area = 0, expected = 0;
@@ -221,6 +222,16 @@ TEST_P(Movers, Voxels) {
       EXPECT_GT(sides[i].object, 0);
       moved = glm::min(sides[i].position - low + 1e-3f, high + 1e-3f - sides[i].position);
       EXPECT_TRUE(moved.x >= 0 && moved.y >= 0 && moved.z >= 0) << "frame " << index;
+      if (!GetParam()) {
+        EXPECT_EQ(sides[i].triangle, 0);
+        continue;
+      }
+      // The triangle that a VPL here holds on to is one of the object's, and passes through the cell.
+      const scene::Triangle& t = g.triangles.at(g.staticTriangles + size_t(sides[i].triangle));
+      EXPECT_EQ(float(t.object()), sides[i].object);
+      const glm::vec3 n = glm::normalize(
+          glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
+      EXPECT_LT(std::abs(glm::dot(n, sides[i].position - g.positions[t.v[0]])), cell) << "frame " << index;
     }
     EXPECT_NEAR(area, expected, 0.01) << "frame " << index;
   });

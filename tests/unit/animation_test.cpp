@@ -135,6 +135,39 @@ TEST(Animation, LargeModels) {
   compareWithReference(root / "neko_diorama/neko_diorama.gltf", {0.7, 5.3}, 4);
 }
 
+// A cage in a file, whose morph target an animation moves.
+TEST(Animation, ACageOfAFileDeforms) {
+  test::TriangleDocument d;
+  test::appendBytes<float>(d.bytes, {0, 1, 0, 1});  // 44: times, then weights
+  d.accessors = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+      {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
+      {"bufferView":2,"componentType":5126,"count":2,"type":"SCALAR"},
+      {"bufferView":3,"componentType":5126,"count":2,"type":"SCALAR"}])";
+  d.views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6},
+      {"buffer":0,"byteOffset":44,"byteLength":8},{"buffer":0,"byteOffset":52,"byteLength":8}])";
+  d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0}],
+      "extras":{"fovea_subdivision":{"scheme":"loop","level":1}}})";
+  d.extra = R"(,"animations":[{"samplers":[{"input":2,"output":3}],
+      "channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}])";
+  test::TemporaryFolder folder;
+  Diagnostics warnings;
+  Scene s;
+  try {
+    s = test::loadText(folder, d.json(), warnings);
+  } catch (const Error& e) {
+    if (std::string(e.what()).find("OpenSubdiv") == std::string::npos) throw;
+    GTEST_SKIP() << e.what();
+  }
+  Geometry g = flatten(s);
+  const Geometry rest = g;
+  ASSERT_EQ(g.objects.size(), 2u) << warnings.format();
+  EXPECT_TRUE(g.objects[1].stencils);
+  // The target displaces by the position itself: at weight 0.5 all is half as large again.
+  moveObjects(makeFrame(s, g, {8, 8}, 1, 1, 2.0), g);
+  for (size_t v = 0; v < g.positions.size(); ++v)
+    EXPECT_LT(glm::distance(g.positions[v], 1.5f * rest.positions[v]), 1e-6f);
+}
+
 // What the file's first target does is known: its twelve displaced vertices rise by the weight.
 TEST(Animation, SparseMorphInClosedForm) {
   FOVEA_NEED_SCENES(root);
