@@ -138,7 +138,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   MeshBuilder m;
   m.add(closet(p), at(-kX, 0, -0.15f) * turnY(90));
   m.add(bookcase(p), at(-1.55f, 0, kBack));
-  m.add(daybed(p), at(0.67f, 0, kBack + 0.26f));
+  m.add(daybed(p), at(0.75f, 0, kBack + 0.26f));
   m.add(floorLamp(p), at(-0.84f, 0, -1.72f) * turnY(20));
   m.add(pendant(p), at(-0.35f, kHeight - 0.03f, 0.1f));
   m.add(table(p), at(0.98f, 0, -0.42f) * turnY(12));
@@ -176,11 +176,11 @@ void furnish(SceneBuilder& b, const Palette& p) {
 // The curtains: the left one takes the draught, billows and ripples; the right one is tied back.
 void addCurtains(SceneBuilder& b, const Palette& p) {
   CurtainForm f;
-  f.width = 0.58f;
+  f.width = 0.52f;
   f.height = 2.36f;
   f.folds = 6;
   f.seed = 621;
-  f.billow = 0.05f;
+  f.billow = 0.17f;
   const auto shape = [&](float billow, float wave, float phase) {
     CurtainForm g = f;
     g.billow = billow;
@@ -188,11 +188,11 @@ void addCurtains(SceneBuilder& b, const Palette& p) {
     g.phase = phase;
     return curtain(g, 44, 20);
   };
-  const uint32_t mesh =
-      b.mesh("curtain in the draught",
-             cage(shape(0.05f, 0, 0), 2,
-                  {shape(0.36f, 0, 0), shape(0.05f, 0.05f, 0), shape(0.05f, 0.05f, 0.5f * glm::pi<float>())}),
-             p.curtain);
+  const uint32_t mesh = b.mesh(
+      "curtain in the draught",
+      cage(shape(0.17f, 0, 0), 2,
+           {shape(0.32f, 0, 0), shape(0.17f, 0.085f, 0), shape(0.17f, 0.085f, 0.5f * glm::pi<float>())}),
+      p.curtain);
   const glm::vec3 rod(kWindow.x, 2.405f, kBack + 0.12f);
   const uint32_t node = b.place("curtain in the draught", mesh, rod + glm::vec3(-1.42f, 0, 0));
   b.swing(node,
@@ -212,7 +212,7 @@ void addCurtains(SceneBuilder& b, const Palette& p) {
   for (const float side : {-1.0f, 1.0f})
     for (int i = 0; i < 7; ++i)
       m.add(p.brass, torus(0.020f, 0.0035f, 24, 8),
-            at(rod + glm::vec3(side * (1.42f - 0.58f * (float(i) + 0.02f) / 6.1f), 0.020f, 0)) * turnZ(90));
+            at(rod + glm::vec3(side * (1.42f - 0.52f * (float(i) + 0.02f) / 6.1f), 0.020f, 0)) * turnZ(90));
   b.place("curtain, tied back", b.mesh("curtain, tied back", std::move(m)));
 }
 
@@ -256,7 +256,7 @@ Scene roomScene() {
   b.scene.lights.push_back(sun);
   b.camera({1.6f, 1.30f, 2.2f}, {-0.6f, 0.72f, -0.9f}, 60);
   b.scene.environment = {0.06f, 0.095f, 0.15f};
-  return b.finish(6.5f, {0.5f, 0.6f});
+  return b.finish(7.5f, {0.5f, 0.6f});
 }
 
 }  // namespace fovea::scene

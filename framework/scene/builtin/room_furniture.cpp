@@ -20,7 +20,7 @@ float smoothstep(float low, float high, float x) {
 
 // Posts, rails and a raised panel in the x-y plane from (0, 0), standing out along +z by 0.022.
 void addPanelled(MeshBuilder& m, uint32_t paint, float width, float height, int panels) {
-  constexpr float kStile = 0.065f, kThick = 0.022f;
+  constexpr float kStile = 0.065f, kThick = 0.028f;
   const BoxOptions soft = {.bevel = 0.003f, .bevelSteps = 2};
   m.add(paint, box({0, 0, 0}, {kStile, height, kThick}, soft));
   m.add(paint, box({width - kStile, 0, 0}, {width, height, kThick}, soft));
@@ -29,13 +29,14 @@ void addPanelled(MeshBuilder& m, uint32_t paint, float width, float height, int 
     m.add(paint, box({kStile - 0.002f, pitch * float(i), 0.0005f},
                      {width - kStile + 0.002f, pitch * float(i) + kStile, kThick - 0.0005f}, soft));
   for (int i = 0; i < panels; ++i) {
-    const glm::vec3 low(kStile - 0.004f, pitch * float(i) + kStile - 0.004f, 0.007f),
-        high(width - kStile + 0.004f, pitch * float(i + 1) + 0.004f, 0.015f);
+    const glm::vec3 low(kStile - 0.004f, pitch * float(i) + kStile - 0.004f, 0.009f),
+        high(width - kStile + 0.004f, pitch * float(i + 1) + 0.004f, 0.017f);
     m.add(paint, box(low, high));
     m.add(paint, box(low + glm::vec3(0.03f, 0.03f, -0.006f), high + glm::vec3(-0.03f, -0.03f, 0.006f),
                      {.bevel = 0.006f, .bevelSteps = 2}));
   }
 }
+
 // A turned leg.
 Shape leg(float height, float radius) {
   const float h = height, r = radius;
@@ -141,17 +142,17 @@ MeshBuilder closet(const Palette& p) {
       .curve({0.014f, 0.03f}, {0.04f, 0.03f}, {0.045f, 0.055f}, 6)
       .line(0.05f, 0.075f)
       .line(0, 0.075f);
-  m.add(p.red, sweep({{-w, h, 0}, {-w, h, d + 0.022f}, {w, h, d + 0.022f}, {w, h, 0}},
+  m.add(p.red, sweep({{-w, h, 0}, {-w, h, d + 0.029f}, {w, h, d + 0.029f}, {w, h, 0}},
                      crown.moved({-0.001f, 0}), {.up = glm::vec3(0, 1, 0)}));
-  m.add(p.red, box({-w, h + 0.004f, 0}, {w, h + 0.07f, d + 0.021f}));
+  m.add(p.red, box({-w, h + 0.004f, 0}, {w, h + 0.07f, d + 0.0285f}));
   // Doors: the left one closed, the right one open.
   MeshBuilder door;
   addPanelled(door, p.red, w - 0.003f, h - foot - 0.006f, 3);
   m.add(door, at(-w, foot + 0.003f, d + 0.001f));
-  m.add(p.brass, knob(0.016f), at(-0.035f, 1.02f, d + 0.022f) * turnX(90));
+  m.add(p.brass, knob(0.016f), at(-0.035f, 1.02f, d + 0.029f) * turnX(90));
   const glm::mat4 hinge = at(w, foot + 0.003f, d + 0.001f) * turnY(108) * at(-(w - 0.003f), 0, 0);
   m.add(door, hinge);
-  m.add(p.brass, knob(0.016f), hinge * at(0.033f, 0.93f, 0.022f) * turnX(90));
+  m.add(p.brass, knob(0.016f), hinge * at(0.033f, 0.93f, 0.028f) * turnX(90));
   m.add(p.brass, knob(0.016f), hinge * at(0.033f, 0.93f, 0.0f) * turnX(-90));
   for (const float y : {0.30f, 1.0f, 1.75f})
     m.add(p.brass, cylinder(0.007f, 0.07f, 12), at(w + 0.004f, y, d + 0.006f));
@@ -255,9 +256,9 @@ MeshBuilder floorLamp(const Palette& p) {
       .line(0.210f, 0.09f)
       .line(0.230f, 0);
   m.add(p.shade,
-        lathe(shade, {.segments = 288,
+        lathe(shade, {.segments = 360,
                       .closed = true,
-                      .swell = [](float a, float) { return 1 + 0.022f * std::cos(72 * a); }}),
+                      .swell = [](float a, float) { return 1 + 0.013f * std::cos(60 * a); }}),
         at(0, 1.24f, 0));
   m.add(p.brass, torus(0.238f, 0.004f, 64, 6), at(0, 1.241f, 0))
       .add(p.brass, torus(0.156f, 0.004f, 48, 6), at(0, 1.529f, 0));

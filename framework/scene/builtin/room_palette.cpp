@@ -120,7 +120,7 @@ Palette makePalette(SceneBuilder& b) {
   p.paint = b.material("white paint", {0.80f, 0.79f, 0.76f});
   p.outside = b.material("outside", {0.45f, 0.43f, 0.40f});
   p.floor =
-      b.material("floor", {0.68f, 0.44f, 0.25f}, {.texture = planks, .metres = 0.70f, .metresHigh = 2.4f});
+      b.material("floor", {0.74f, 0.50f, 0.30f}, {.texture = planks, .metres = 0.70f, .metresHigh = 2.4f});
   p.gap = b.material("below the floor", {0.08f, 0.05f, 0.035f});
   p.red = b.material("red paint", {0.84f, 0.07f, 0.05f}, {.texture = patch, .metres = 2});
   p.redDeep = b.material("inside of the closet", {0.66f, 0.50f, 0.34f},

@@ -232,7 +232,7 @@ Sheet curtain(const CurtainForm& f, uint32_t columns, uint32_t rows) {
                     f.wave * free * std::sin(2 * kPi * (0.9f * v + 0.55f * u) - f.phase);
     const float y = -f.height * v + 0.5f * std::abs(f.billow) * f.billow * free +
                     0.02f * std::cos(turn) * smoothstep(0.9f, 1, v);
-    return glm::vec3(x + 0.3f * f.wave * free * std::cos(2 * kPi * v - f.phase) + 0.25f * f.billow * free, y,
+    return glm::vec3(x + 0.3f * f.wave * free * std::cos(2 * kPi * v - f.phase) + 0.42f * f.billow * free, y,
                      z);
   });
 }
