@@ -18,6 +18,7 @@ void addSchema(CLI::App& program, Action& action);
 void addDevices(CLI::App& program, Action& action);
 void addScene(CLI::App& program, Action& action);
 void addCompare(CLI::App& program, Action& action);
+void addBench(CLI::App& program, Action& action);
 void addCompareSequence(CLI::App& program, Action& action);
 void addSceneExport(CLI::App& sceneCommand, Action& action);
 

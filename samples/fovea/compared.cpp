@@ -185,17 +185,14 @@ std::optional<image::Picture> perfectIndirect(const Source& image, const Source&
   return image::fromRadiance(combined(combined(*radiance, *exact, -1), *own, 1), exposure);
 }
 
-}  // namespace
-
-Compared loadCompared(const std::string& imageName, const std::string& referenceName,
-                      const std::vector<std::string>& halves, const CompareOptions& options) {
-  const Source image = open(imageName), reference = open(referenceName);
+Compared prepared(const Source& image, const Source& reference, const std::vector<std::string>& halves,
+                  const CompareOptions& options) {
   Compared compared;
   std::string layer;
   const image::Image& shown = layerOf(image, options, compared.layer);
   const image::Image& wanted = layerOf(reference, options, layer);
-  image::checkComparable(image::toRgb(shown), "`" + imageName + "`", image::toRgb(wanted),
-                         "`" + referenceName + "`");
+  image::checkComparable(image::toRgb(shown), "`" + image.name + "`", image::toRgb(wanted),
+                         "`" + reference.name + "`");
   warnAboutScenes(image, reference);
   compared.exposure = exposureOf(image, reference, options);
   compared.image = toPicture(image, shown, compared.exposure);
@@ -205,6 +202,19 @@ Compared loadCompared(const std::string& imageName, const std::string& reference
   compared.halves = halvesOf(reference, halves, options, layer, compared.exposure);
   compared.perfectIndirect = perfectIndirect(image, reference, layer, compared.exposure);
   return compared;
+}
+
+}  // namespace
+
+Compared loadCompared(const std::string& imageName, const std::string& referenceName,
+                      const std::vector<std::string>& halves, const CompareOptions& options) {
+  return prepared(open(imageName), open(referenceName), halves, options);
+}
+
+Compared compareRadiance(const std::string& imageName, image::File image, const std::string& referenceName,
+                         image::File reference, const CompareOptions& options) {
+  return prepared({imageName, std::move(image), true}, {referenceName, std::move(reference), true}, {},
+                  options);
 }
 
 nlohmann::ordered_json describe(const Compared& c) {

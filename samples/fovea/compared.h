@@ -44,6 +44,10 @@ struct Compared {
 Compared loadCompared(const std::string& image, const std::string& reference,
                       const std::vector<std::string>& halves, const CompareOptions& options);
 
+// The same of pictures in memory, all of whose layers hold radiance; the names are for messages.
+Compared compareRadiance(const std::string& imageName, image::File image, const std::string& referenceName,
+                         image::File reference, const CompareOptions& options);
+
 // What both commands say of how they compared, and their numbers: null where they are not known.
 nlohmann::ordered_json describe(const Compared& compared);
 std::string describeInWords(const Compared& compared);

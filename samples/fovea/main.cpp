@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Exit codes: 0 done, 1 a defect of fovea, 2 wrong command line, 3 a graph, scene, image or shader
 that cannot be used, 4 no usable Vulkan device, 5 out of memory, 6 device lost, 7 a file could not be
-written, 130 interrupted.)";
+written, 8 passes became slower than the baseline (bench passes), 130 interrupted.)";
 
 ExitCode report(ExitCode code, const std::string& text) {
   std::fflush(stdout);
@@ -53,8 +53,8 @@ void refuseUnknownCommand(const CLI::App& program, const std::string& word) {
 
 ExitCode parseAndRun(int argc, char** argv) {
   CLI::App program(
-      "Renders a scene with a render graph, shows what graphs, passes, scenes and devices there are, and "
-      "compares pictures.",
+      "Renders a scene with a render graph, shows what graphs, passes, scenes and devices there are, "
+      "compares pictures, and measures.",
       "fovea");
   program.set_version_flag("--version", "fovea " FOVEA_VERSION, "Print the version");
   program.footer(kFooter);
@@ -69,6 +69,7 @@ ExitCode parseAndRun(int argc, char** argv) {
   addScene(program, action);
   addCompare(program, action);
   addCompareSequence(program, action);
+  addBench(program, action);
   if (argc > 1) refuseUnknownCommand(program, argv[1]);
   try {
     program.parse(argc, argv);

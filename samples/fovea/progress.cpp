@@ -12,7 +12,7 @@ Progress::Progress(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO)) {}
 
 void Progress::show(const std::string& line) {
   if (!enabled_) return;
-  std::fprintf(stderr, "\r\x1b[K%s", line.c_str());
+  std::fprintf(stderr, "\r\x1b[K%s%s", prefix_.c_str(), line.c_str());
   std::fflush(stderr);
   shown_ = true;
 }

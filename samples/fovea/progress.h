@@ -17,6 +17,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void stage(const std::string& what);  // "loading sponza"
+  // Stands before everything that follows: "job 3/40 (12 min left), ".
+  void setPrefix(const std::string& prefix) { prefix_ = prefix; }
   // Frames done so far; the remaining time follows from those done.
   void frames(uint64_t done, uint64_t total);
   // Share of its work that a pass of the frame under way has done.
@@ -26,7 +28,7 @@ class Progress {
  private:
   bool enabled_ = false, shown_ = false;
   std::chrono::steady_clock::time_point start_, passStart_;
-  std::string framesLine_, pass_;  // what frames() said last; the pass that was heard last
+  std::string prefix_, framesLine_, pass_;  // what frames() said last; the pass that was heard last
   double passShare_ = 0;
   void show(const std::string& line);
 };

@@ -5,22 +5,15 @@
 #include <memory>
 #include <optional>
 
-#include "framework/base/paths.h"
-#include "framework/gpu/device.h"
-#include "framework/gpu/shader.h"
-#include "framework/graph/compile.h"
-#include "framework/graph/execute.h"
-#include "framework/graph/registry.h"
 #include "framework/graph/report.h"
 #include "framework/image/overlay.h"
 #include "framework/scene/fovea.h"
-#include "framework/scene/frame.h"
-#include "framework/scene/gpu_scene.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 #include "samples/fovea/files.h"
+#include "samples/fovea/graph_run.h"
 #include "samples/fovea/interrupt.h"
 #include "samples/fovea/outputs.h"
 #include "samples/fovea/progress.h"
@@ -75,7 +68,6 @@ class Render {
   void report() const;
   scene::Frame frame(uint64_t index) const;
   void submit(uint64_t index, bool readOutputs);
-  double parameterOr(const char* name, double otherwise) const;
   void showFovea();
   image::Metadata metadata(uint64_t index) const;
 
@@ -84,18 +76,14 @@ class Render {
   glm::uvec2 size_;
   std::optional<glm::vec2> gaze_;
   std::unique_ptr<OutputFiles> outputs_;
-  std::vector<std::string> readback_;
   Diagnostics messages_;
   graph::Description description_;
   scene::Scene scene_;
   scene::Geometry geometry_;
   std::unique_ptr<gpu::Device> device_;
-  std::shared_ptr<const graph::Plan> plan_;
-  std::unique_ptr<scene::GpuScene> gpuScene_;
-  std::unique_ptr<graph::Executor> executor_;
+  std::unique_ptr<GraphRun> run_;
   std::unique_ptr<Timings> timings_;
   RunInfo info_;
-  uint32_t inFlight_ = 2;
   uint64_t finished_ = 0;
   double lastWallMs_ = 2 * kSlowFrameMs;       // of the first frame nothing is known
   std::optional<graph::FrameResult> picture_;  // the last frame that was read back
@@ -162,48 +150,28 @@ void Render::useFoveaAngle(const graph::BoundGraph& bound) {
 }
 
 void Render::buildPlan() {
-  gpu::DeviceOptions deviceOptions;
-  deviceOptions.device = options_.device;
-  if (options_.validation) deviceOptions.validation = gpu::Validation::On;
-  device_ = std::make_unique<gpu::Device>(deviceOptions);
-  for (const auto& folder : dataFolders("shaders")) device_->shaders().addSearchPath(folder);
-  const uint32_t limit = device_->limits().maxImageDimension2D;
-  if (size_.x > limit || size_.y > limit)
-    throw Error(ExitCode::Usage,
-                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size_.x,
-                            size_.y, limit),
-                "render a smaller picture");
-  auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
-      description_,
-      graph::sceneEnvironment(device_.get(), scene_, geometry_, graph::frameViews({size_.x, size_.y})),
-      messages_));
-  readback_ = outputs_->outputsOf(*bound, size_);
-  plan_ = std::make_shared<const graph::Plan>(
-      graph::compile(bound, graph::deviceCompileOptions(*device_, bound)));
-  graph::warnAboutPlan(*plan_, messages_);
+  device_ = openDevice(options_.device, options_.validation);
+  GraphRun::Options run;
+  run.size = size_;
+  run.seed = options_.seed;
+  run.readback = [this](const graph::BoundGraph& graph) { return outputs_->outputsOf(graph, size_); };
+  run.hostProgress = [this](const std::string& pass, double share) {
+    progress_.pass(pass, share);
+    return !interrupted();
+  };
+  run_ = std::make_unique<GraphRun>(*device_, description_, scene_, geometry_, std::move(run), messages_);
   progress_.clear();
   printWarnings(messages_);
 }
 
 void Render::buildExecutor() {
   progress_.stage("preparing " + description_.name);
-  // On a CPU device two frames at once only take each other's cores.
-  inFlight_ = device_->isCpu() ? 1 : 2;
-  gpuScene_ = std::make_unique<scene::GpuScene>(*device_, scene_, geometry_, inFlight_);
-  graph::ExecutorOptions executorOptions;
-  executorOptions.framesInFlight = inFlight_;
-  executorOptions.readback = readback_;
-  executorOptions.hostProgress = [this](const std::string& pass, double share) {
-    progress_.pass(pass, share);
-    return !interrupted();
-  };
-  executor_ = std::make_unique<graph::Executor>(*device_, plan_, graph::Registry::global(), *gpuScene_,
-                                                executorOptions);
-  timings_ = std::make_unique<Timings>(plan_);
+  run_->prepare();
+  timings_ = std::make_unique<Timings>(run_->plan());
   showFovea();
   info_ = {device_->name(),
            description_.name,
-           formatHash(plan_->graph->hash),
+           formatHash(run_->graph().hash),
            scene_.name,
            size_.x,
            size_.y,
@@ -215,7 +183,7 @@ void Render::buildExecutor() {
 }
 
 scene::Frame Render::frame(uint64_t index) const {
-  scene::Frame f = scene::makeFrame(scene_, geometry_, size_, index, options_.seed);
+  scene::Frame f = run_->frame(index);
   if (!options_.gazeTrace.empty() && options_.gazeGapMs != 1000 * scene::kGazeGap) {
     const scene::GazeSample sample = scene::gazeAt(scene_.gaze, f.time, 0.001 * options_.gazeGapMs);
     const glm::vec2 eyes[] = {sample.position, sample.left.value_or(sample.position),
@@ -224,22 +192,13 @@ scene::Frame Render::frame(uint64_t index) const {
   }
   if (gaze_)
     for (scene::View& view : f.views) view.gaze = *gaze_;
-  f.gpu = gpuScene_.get();
   return f;
-}
-
-// As the graph's passes have it; the last of them decides.
-double Render::parameterOr(const char* name, double otherwise) const {
-  double value = otherwise;
-  for (const graph::BoundPass& pass : plan_->graph->passes)
-    if (pass.parameters.find(name)) value = pass.parameters.real(name);
-  return value;
 }
 
 // Gaze of the eye whose picture `image` is.
 void Render::showFovea() {
   if (!options_.showFovea) return;
-  const graph::BoundGraph& graph = *plan_->graph;
+  const graph::BoundGraph& graph = run_->graph();
   std::string eye = graph.views[0];
   for (const graph::BoundOutput& output : graph.outputs)
     for (const graph::BoundPass& pass : graph.passes)
@@ -248,17 +207,14 @@ void Render::showFovea() {
           eye = graph.views[pass.view];
   outputs_->setOverlay([this, eye](image::Image& picture, uint64_t index) {
     const scene::Frame shown = frame(index);
-    const scene::Fovea fovea = scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
-                                                float(parameterOr("fovea_radius", kFoveaRadius)));
+    const scene::Fovea fovea =
+        scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
+                         float(parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
     image::drawFovea(picture, {fovea.centre.x, fovea.centre.y, fovea.radius});
   });
 }
 
-void Render::submit(uint64_t index, bool readOutputs) {
-  const scene::Frame f = frame(index);
-  if (executor_->readsGeometry()) scene::moveObjects(f, geometry_);
-  executor_->submit(f, readOutputs);
-}
+void Render::submit(uint64_t index, bool readOutputs) { run_->submit(frame(index), readOutputs); }
 
 image::Metadata Render::metadata(uint64_t index) const {
   const scene::Frame shown = frame(index);
@@ -273,8 +229,8 @@ image::Metadata Render::metadata(uint64_t index) const {
                           {"seed", std::to_string(info_.seed)},
                           {"size", fmt::format("{}x{}", size_.x, size_.y)}};
   data["gaze"] = fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y);
-  data["fovea_radius"] = fmt::format("{}", float(parameterOr("fovea_radius", kFoveaRadius)));
-  const float exposure = float(parameterOr("exposure", 0));  // of tonemap; 0: the scene's
+  data["fovea_radius"] = fmt::format("{}", float(parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
+  const float exposure = float(parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0: the scene's
   data["exposure"] = fmt::format("{}", exposure > 0 ? exposure : shown.exposure);
   if (!set.empty()) data["set"] = set;
   return data;
@@ -292,16 +248,16 @@ void Render::take(graph::FrameResult result) {
 }
 
 void Render::takeFinished() {
-  if (inFlight_ == 1) {
-    while (auto result = executor_->next()) take(std::move(*result));
+  if (run_->inFlight() == 1) {
+    while (auto result = run_->executor().next()) take(std::move(*result));
   } else {
-    while (auto result = executor_->poll()) take(std::move(*result));
+    while (auto result = run_->executor().poll()) take(std::move(*result));
   }
 }
 
 void Render::renderFrames() {
   const uint64_t total = uint64_t(options_.warmup) + options_.frames;
-  const bool pictures = !readback_.empty();
+  const bool pictures = !run_->readback().empty();
   progress_.frames(0, total);
   uint64_t index = 0;  // since the first frame of the run
   for (; index < total && !interrupted(); ++index) {
@@ -309,10 +265,10 @@ void Render::renderFrames() {
     submit(options_.first + index, pictures && keep && index >= options_.warmup);
     takeFinished();
   }
-  while (auto result = executor_->next()) take(std::move(*result));
+  while (auto result = run_->executor().next()) take(std::move(*result));
   if (interrupted() && pictures && !picture_ && index >= options_.warmup) {
     submit(options_.first + index, true);
-    while (auto result = executor_->next()) take(std::move(*result));
+    while (auto result = run_->executor().next()) take(std::move(*result));
   }
   progress_.clear();
 }

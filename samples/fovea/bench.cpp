@@ -1,0 +1,317 @@
+// fovea bench: a suite of measurements, job after job, to results, tables and a report.
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <set>
+
+#include "framework/base/paths.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/bench_folder.h"
+#include "samples/fovea/bench_job.h"
+#include "samples/fovea/bench_passes.h"
+#include "samples/fovea/bench_suite.h"
+#include "samples/fovea/bench_tables.h"
+#include "samples/fovea/commands.h"
+#include "samples/fovea/interrupt.h"
+#include "samples/fovea/progress.h"
+
+namespace fovea::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string suite, folder, only, shard, size, device;
+  std::optional<uint32_t> seeds;
+  std::vector<std::string> plugins;
+  bool resume = false, replace = false, report = false, list = false, quiet = false;
+  PassBenchOptions passes;
+};
+
+struct Shard {
+  uint32_t index = 0, count = 1;
+};
+
+Shard parseShard(const std::string& text) {
+  Shard shard;
+  if (text.empty()) return shard;
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%u/%u%n", &shard.index, &shard.count, &used) != 2 ||
+      size_t(used) != text.size() || shard.count < 1 || shard.count > 100'000 || shard.index < 1 ||
+      shard.index > shard.count)
+    throw Error(ExitCode::Usage, "--shard `" + text + "` is not I/N with I from 1 to N", "e.g. --shard 2/8");
+  --shard.index;
+  return shard;
+}
+
+// Room that the suite's files take at most.
+uint64_t bytesOf(const std::vector<Job>& jobs) {
+  uint64_t bytes = 0;
+  std::set<std::string> references;
+  for (const Job& job : jobs) {
+    const uint64_t pixels = uint64_t(job.size.x) * job.size.y;
+    bytes += 32 << 10;
+    if (job.pictures) bytes += 4 * 3 * pixels;
+    if (!job.needsReference()) continue;
+    for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
+      if (references
+              .insert(fmt::format("{} {} {} {} {} {}", job.scene, job.first + f, job.size.x, job.size.y,
+                                  job.frameRate, job.spp))
+              .second)
+        bytes += 5 * 3 * sizeof(float) * pixels;
+  }
+  return bytes;
+}
+
+class Bench {
+ public:
+  explicit Bench(const Options& options)
+      : options_(options),
+        shard_(parseShard(options.shard)),
+        folder_(options.folder),
+        progress_(options.quiet) {}
+  ExitCode run();
+
+ private:
+  void chooseJobs();
+  void identify();
+  void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
+  void measure();
+  void finish();
+  void makePage() const;
+  template <class... Args>
+  void say(fmt::format_string<Args...> format, Args&&... args) const {
+    if (options_.quiet) return;
+    fmt::print(format, std::forward<Args>(args)...);
+    std::fflush(stdout);
+  }
+
+  const Options& options_;
+  Shard shard_;
+  BenchFolder folder_;
+  Progress progress_;
+  Suite suite_;
+  std::unique_ptr<BenchRunner> runner_;
+  struct Task {
+    const Job* job = nullptr;
+    Fingerprint fingerprint;
+  };
+  std::vector<Task> tasks_;                     // of this shard, not done yet
+  std::map<std::string, std::string> missing_;  // scene -> why
+  size_t done_ = 0;
+};
+
+void Bench::chooseJobs() {
+  SuiteOverrides overrides;
+  if (!options_.size.empty()) overrides.size = parseSize(options_.size);
+  overrides.seeds = options_.seeds;
+  suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
+  if (!options_.only.empty())
+    std::erase_if(suite_.jobs, [&](const Job& job) { return !matchesGlob(options_.only, job.name()); });
+  if (suite_.jobs.empty())
+    throw Error(ExitCode::Usage,
+                fmt::format("no job of suite `{}` is named like --only `{}`", suite_.name, options_.only),
+                "see its jobs with --list");
+}
+
+// A result that was measured with something else must not stand in a table beside today's.
+void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const {
+  for (const StoredResult& old : folder_.results(job)) {
+    if (old.json["key"] == key) continue;
+    if (options_.replace) {
+      std::error_code ignored;
+      fs::remove(old.file, ignored);
+      continue;
+    }
+    std::string difference = firstDifference(old.json["job"], job.json());
+    if (difference.empty()) difference = firstDifference(old.json["made_with"], now.parts);
+    throw Error(ExitCode::BadInput,
+                fmt::format("`{}` cannot be compared with what would be measured now: {}", old.file.string(),
+                            difference),
+                "choose another folder with -o, or measure it anew with --replace");
+  }
+}
+
+// Finds what is wrong with any job, and what is done already, before anything is rendered.
+void Bench::identify() {
+  for (size_t i = 0; i < suite_.jobs.size(); ++i) {
+    const Job& job = suite_.jobs[i];
+    std::string why;
+    const auto fingerprint = runner_->fingerprint(job, why);
+    if (!fingerprint) {
+      if (missing_.try_emplace(job.scene, why).second)
+        std::fprintf(stderr, "fovea: warning: the scene `%s` is left out: %s\n", job.scene.c_str(),
+                     why.c_str());
+      continue;
+    }
+    const std::string key = fingerprint->key(job);
+    refuseOrRemove(job, key, *fingerprint);
+    if (!folder_.results(job).empty()) {
+      ++done_;
+    } else if (i % shard_.count == shard_.index) {
+      tasks_.push_back({&job, *fingerprint});
+    }
+    if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted before the first job");
+  }
+}
+
+void Bench::measure() {
+  const Clock::time_point start = Clock::now();
+  const auto since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
+  for (size_t i = 0; i < tasks_.size(); ++i) {
+    const Task& task = tasks_[i];
+    const std::string left =
+        i == 0 ? "" : ", " + formatDuration(since(start) / double(i) * double(tasks_.size() - i)) + " left";
+    progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left));
+    const Clock::time_point jobStart = Clock::now();
+    try {
+      nlohmann::ordered_json result = runner_->measure(*task.job, task.fingerprint);
+      result["seconds"] = since(jobStart);
+      folder_.write(*task.job, task.fingerprint.key(*task.job), result);
+    } catch (const Error& e) {
+      if (e.code() != ExitCode::Interrupted) throw;
+      throw Error(ExitCode::Interrupted, fmt::format("interrupted; {} of {} jobs are done", i, tasks_.size()),
+                  "the same command goes on from there");
+    }
+    progress_.clear();
+    const double remaining = since(start) / double(i + 1) * double(tasks_.size() - i - 1);
+    say("[{}/{}] {}: {}{}\n", i + 1, tasks_.size(), task.job->name(), formatDuration(since(jobStart)),
+        i + 1 < tasks_.size() ? ", " + formatDuration(remaining) + " left" : "");
+  }
+  progress_.setPrefix("");
+}
+
+// The page needs Python and matplotlib; without them there are the tables.
+void Bench::makePage() const {
+  fs::path script;
+  for (const fs::path& folder : dataFolders("benchmarks"))
+    if (script.empty() && fs::exists(folder / "report.py")) script = folder / "report.py";
+  if (script.empty()) {
+    std::fprintf(
+        stderr,
+        "fovea: warning: benchmarks/report.py is not installed: there are tables, but no report.html\n");
+    return;
+  }
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    execlp("python3", "python3", script.c_str(), folder_.path().c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    std::fprintf(stderr,
+                 "fovea: warning: no report.html: it needs python3 with matplotlib (apt-get install "
+                 "python3-matplotlib); the tables are there\n");
+}
+
+void Bench::finish() {
+  const std::vector<StoredResult> results = mergedResults(folder_, suite_.jobs);
+  if (results.empty())
+    throw Error(ExitCode::BadInput,
+                fmt::format("`{}` has no results of suite `{}`", folder_.path().string(), suite_.name),
+                "run it without --report");
+  writeTables(folder_, suite_, results, missing_);
+  say("{} of {} jobs have results\nwrote {}/tables\n", results.size(), suite_.jobs.size(),
+      folder_.path().string());
+  makePage();
+  std::error_code ignored;
+  if (fs::exists(folder_.path() / "report.html", ignored))
+    say("wrote {}/report.html\n", folder_.path().string());
+}
+
+ExitCode Bench::run() {
+  chooseJobs();
+  if (options_.list) {
+    for (const Job& job : suite_.jobs) fmt::print("{}\n", job.name());
+    return ExitCode::Ok;
+  }
+  if (options_.folder.empty()) throw Error(ExitCode::Usage, "where to? -o is missing", "e.g. -o results");
+  std::error_code ignored;
+  if (options_.report) {
+    if (!fs::is_directory(folder_.path() / "results", ignored))
+      throw Error(ExitCode::BadInput, "`" + options_.folder + "` has no results",
+                  "run the suite without --report first");
+    folder_.prepare(0);
+    finish();
+    return ExitCode::Ok;
+  }
+  if (options_.resume && !fs::is_directory(folder_.path() / "results", ignored))
+    throw Error(ExitCode::BadInput, "there is nothing to resume in `" + options_.folder + "`",
+                "leave out --resume");
+  folder_.prepare(bytesOf(suite_.jobs));
+  catchInterrupts();
+  loadPlugins(options_.plugins);
+  runner_ = std::make_unique<BenchRunner>(folder_, openDevice(options_.device), progress_);
+  identify();
+  if (done_ > 0) say("{} of {} jobs are done already\n", done_, suite_.jobs.size());
+  measure();
+  finish();
+  return ExitCode::Ok;
+}
+
+void addSuiteOptions(CLI::App& command, Options& options) {
+  command
+      .add_option("SUITE", options.suite,
+                  "Suite: a .json file, or a bare name (quick, table1, table2, ..); or `passes` with --graph")
+      ->required()
+      ->type_name("");
+  command
+      .add_option("-o,--output", options.folder,
+                  "Folder of results, pictures, tables and report; may be shared")
+      ->type_name("DIR");
+  command.add_option("--only", options.only, "Only jobs whose name matches (*, ?) or contains this")
+      ->type_name("GLOB");
+  command
+      .add_option("--shard", options.shard,
+                  "Only the I-th of N parts of the jobs, for job arrays; DIR is shared")
+      ->type_name("I/N");
+  command.add_flag("--resume", options.resume,
+                   "Go on in DIR, which must exist; without it, too, what is done is not done again");
+  command.add_flag(
+      "--replace", options.replace,
+      "Measure anew what was measured with other code, device or parameters,\ninstead of refusing to go on");
+  command.add_flag("--report", options.report, "Only tables and report, from the results that are there");
+  command.add_flag("--list", options.list, "Print the names of the jobs and stop");
+  command.add_option("--size", options.size, "Picture size instead of the suite's, where that does not vary")
+      ->type_name("WxH");
+  command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")
+      ->type_name("N")
+      ->check(CLI::Range(1u, 1000u).description(""));
+  command
+      .add_option("--device", options.device,
+                  "Vulkan device by number or part of its name; see `fovea devices`")
+      ->type_name("D");
+  addPluginOption(command, options.plugins);
+  command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
+}
+
+}  // namespace
+
+void addBench(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand(
+      "bench", "Run a suite of measurements to tables and a report, or measure the passes of a graph");
+  auto options = std::make_shared<Options>();
+  addSuiteOptions(*command, *options);
+  addPassBenchOptions(*command, options->passes);
+  command->callback([options, &action] {
+    action = [options] {
+      if (options->passes.graph.empty()) return Bench(*options).run();
+      if (options->suite != "passes")
+        throw Error(ExitCode::Usage,
+                    "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
+      PassBenchOptions& passes = options->passes;
+      passes.output = options->folder, passes.size = options->size, passes.device = options->device;
+      passes.plugins = options->plugins, passes.quiet = options->quiet;
+      return benchPasses(passes);
+    };
+  });
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,195 @@
+#include "samples/fovea/bench_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+
+#include "framework/base/paths.h"
+#include "samples/fovea/files.h"
+
+namespace fovea::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// 97.5% points of Student's t for 1, 2, .. degrees of freedom.
+constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
+                               2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131};
+
+// The paper's numbers: {"scenes": {"atrium": "Sponza"}, "tables": {"table1": {"Sponza": {"ours": {NAME:
+// x}}}}}.
+Json readPaper() {
+  for (const auto& folder : dataFolders("benchmarks")) {
+    std::ifstream in(folder / "paper.json", std::ios::binary);
+    if (!in) continue;
+    Json paper = Json::parse(in, nullptr, false);
+    if (paper.is_object() && paper.contains("tables") && paper.contains("scenes")) return paper;
+    throw Error(ExitCode::BadInput, "`" + (folder / "paper.json").string() + "` is not the paper's numbers",
+                "restore it");
+  }
+  return Json::object();
+}
+
+std::optional<double> paperNumber(const Json& paper, const std::string& table, const std::string& scene,
+                                  const std::string& graph, const std::string& measure) {
+  if (table.empty() || !paper.contains("scenes") || !paper["scenes"].contains(scene)) return {};
+  const std::string path[] = {table, paper["scenes"][scene].get<std::string>(), graph, measure};
+  const Json* at = &paper["tables"];
+  for (const std::string& key : path) {
+    if (!at->is_object() || !at->contains(key)) return {};
+    at = &(*at)[key];
+  }
+  return at->is_number() ? std::optional(at->get<double>()) : std::nullopt;
+}
+
+// RFC 4180.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+
+struct Row {
+  std::string scene, graph;
+  std::vector<std::string> axes;
+  std::vector<std::string> order;  // of the numbers
+  std::map<std::string, std::vector<double>> values;
+};
+
+struct Table {
+  std::vector<std::string> axes;
+  std::vector<Row> rows;
+};
+
+Table tableOf(const std::string& sweep, const std::vector<StoredResult>& results) {
+  Table table;
+  for (const StoredResult& result : results) {
+    const Json& job = result.json["job"];
+    if (job["sweep"] != sweep) continue;
+    for (const auto& [name, value] : job["varied"].items())
+      if (std::find(table.axes.begin(), table.axes.end(), name) == table.axes.end())
+        table.axes.push_back(name);
+  }
+  for (const StoredResult& result : results) {
+    const Json& job = result.json["job"];
+    if (job["sweep"] != sweep) continue;
+    std::vector<std::string> axes;
+    for (const std::string& name : table.axes) axes.push_back(job["varied"].value(name, std::string()));
+    const std::string scene = job["scene"], graph = job["label"];
+    auto row = std::find_if(table.rows.begin(), table.rows.end(), [&](const Row& r) {
+      return r.scene == scene && r.graph == graph && r.axes == axes;
+    });
+    if (row == table.rows.end()) row = table.rows.insert(row, Row{scene, graph, axes, {}, {}});
+    for (const auto& [name, value] : numbersOf(result.json)) {
+      if (!row->values.contains(name)) row->order.push_back(name);
+      row->values[name].push_back(value);
+    }
+  }
+  return table;
+}
+
+// Ratios of frame times, seed by seed.
+void addSpeedUps(const SpeedUp& wanted, Table& table) {
+  const std::string time = "time.wall_ms";
+  for (Row& row : table.rows) {
+    if (row.graph != wanted.of) continue;
+    for (const std::string& over : wanted.over) {
+      const auto other = std::find_if(table.rows.begin(), table.rows.end(), [&](const Row& r) {
+        return r.graph == over && r.scene == row.scene && r.axes == row.axes;
+      });
+      if (other == table.rows.end() || other->values[time].size() != row.values[time].size()) continue;
+      const std::string name = "speed_up." + over;
+      row.order.push_back(name);
+      for (size_t i = 0; i < row.values[time].size(); ++i)
+        row.values[name].push_back(other->values[time][i] / row.values[time][i]);
+    }
+  }
+}
+
+std::string csvOf(const Table& table, const Json& paper, const std::string& paperTable) {
+  std::string text = "scene,graph";
+  for (const std::string& axis : table.axes) text += "," + cell(axis);
+  text += ",measure,mean,half_width,seeds,paper,ratio\n";
+  for (const Row& row : table.rows)
+    for (const std::string& name : row.order) {
+      const Mean mean = meanOf(row.values.at(name));
+      text += cell(row.scene) + "," + cell(row.graph);
+      for (const std::string& axis : row.axes) text += "," + cell(axis);
+      const auto known = paperNumber(paper, paperTable, row.scene, row.graph, name);
+      text += fmt::format(",{},{},{},{},{},{}\n", cell(name), cell(mean.mean), cell(mean.halfWidth),
+                          mean.count, known ? cell(*known) : "", known ? cell(mean.mean / *known) : "");
+    }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> numbersOf(const Json& result) {
+  std::vector<std::pair<std::string, double>> list;
+  const auto add = [&](const std::string& name, const Json& value) {
+    if (value.is_number()) list.emplace_back(name, value.get<double>());
+  };
+  for (const char* part : {"error", "temporal"})
+    if (result.contains(part))
+      for (const auto& [region, measures] : result[part].items())
+        if (measures.is_object())
+          for (const auto& [name, value] : measures.items())
+            add(fmt::format("{}.{}.{}", part, region, name), value);
+  if (result.contains("match")) add("match.value", result["match"].value("value", Json()));
+  if (!result.contains("time")) return list;
+  const Json& time = result["time"];
+  for (const auto& [name, spread] : time["frame"].items())
+    add("time." + name, spread.value("median", Json()));
+  for (const Json& pass : time["passes"])
+    for (const char* clock : {"gpu_ms", "cpu_ms"})
+      add(fmt::format("pass.{}.{}", pass["name"].get<std::string>(), clock),
+          pass[clock].value("median", Json()));
+  for (const auto& [name, value] : time["counters"].items()) add("counter." + name, value);
+  if (time.contains("second_eye"))
+    for (const auto& [name, value] : time["second_eye"].items()) add("second_eye." + name, value);
+  return list;
+}
+
+Mean meanOf(const std::vector<double>& values) {
+  Mean result{0, std::numeric_limits<double>::quiet_NaN(), values.size()};
+  for (double v : values) result.mean += v / double(values.size());
+  if (values.size() < 2) return result;
+  double squares = 0;
+  for (double v : values) squares += (v - result.mean) * (v - result.mean);
+  const size_t freedom = values.size() - 1;
+  const double t = freedom <= std::size(kStudent) ? kStudent[freedom - 1] : 1.96 + 2.5 / double(freedom);
+  result.halfWidth = t * std::sqrt(squares / double(freedom) / double(values.size()));
+  return result;
+}
+
+void writeTables(const BenchFolder& folder, const Suite& suite, const std::vector<StoredResult>& results,
+                 const std::map<std::string, std::string>& missingScenes) {
+  const Json paper = readPaper();
+  std::vector<std::string> sweeps;
+  for (const Job& job : suite.jobs)
+    if (std::find(sweeps.begin(), sweeps.end(), job.sweep) == sweeps.end()) sweeps.push_back(job.sweep);
+  Json written = Json::array();
+  for (const std::string& sweep : sweeps) {
+    Table table = tableOf(sweep, results);
+    for (const SpeedUp& wanted : suite.speedUps)
+      if (wanted.sweep == sweep) addSpeedUps(wanted, table);
+    writeText(folder.table(sweep), csvOf(table, paper, suite.paper));
+    written.push_back({{"sweep", sweep}, {"axes", table.axes}});
+  }
+  Json files = Json::array();
+  for (const StoredResult& result : results) files.push_back(result.file.filename().string());
+  const Json report = {{"suite", suite.name},       {"description", suite.description},
+                       {"paper", suite.paper},      {"paper_scenes", paper.value("scenes", Json::object())},
+                       {"jobs", suite.jobs.size()}, {"missing_scenes", missingScenes},
+                       {"sweeps", written},         {"results", files}};
+  writeText(folder.path() / "report.json", report.dump(1) + "\n");
+}
+
+}  // namespace fovea::cli

@@ -1,0 +1,30 @@
+// The tables of a benchmark: means over seeds, beside the paper's numbers.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "samples/fovea/bench_folder.h"
+#include "samples/fovea/bench_suite.h"
+
+namespace fovea::cli {
+
+// Every number of a result by name, in its order: "error.fovea.mse", "time.wall_ms" (median),
+// "pass.deferred.gpu_ms", "counter.deferred.pairs", "second_eye.ms", "match.value".
+std::vector<std::pair<std::string, double>> numbersOf(const nlohmann::ordered_json& result);
+
+struct Mean {
+  double mean = 0, halfWidth = 0;  // of the 95% interval (Student's t); NaN for a single value
+  size_t count = 0;
+};
+Mean meanOf(const std::vector<double>& values);
+
+// tables/SWEEP.csv: a row per scene, graph, combination of the varied parameters, and number; `paper` and
+// `ratio` (ours / the paper's) where benchmarks/paper.json has that number. Also writes report.json, which
+// the report is made from. Throws Error(CannotWrite).
+void writeTables(const BenchFolder& folder, const Suite& suite, const std::vector<StoredResult>& results,
+                 const std::map<std::string, std::string>& missingScenes);
+
+}  // namespace fovea::cli
