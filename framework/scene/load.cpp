@@ -130,7 +130,7 @@ struct Generator {
   Scene (*make)();
 };
 constexpr Generator kGenerators[] = {
-    {"cornellbox", cornellBox}, {"atrium", atriumScene}, {"room", roomScene}};
+    {"cornellbox", cornellBox}, {"atrium", atriumScene}, {"balcony", balconyScene}, {"room", roomScene}};
 
 }  // namespace
 

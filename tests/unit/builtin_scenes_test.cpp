@@ -127,7 +127,8 @@ TEST_P(BuiltinScenes, IsClosedAroundTheViewer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
-                         testing::Values(Expected{"atrium", 279000}, Expected{"room", 476000}),
+                         testing::Values(Expected{"atrium", 279000}, Expected{"balcony", 192000},
+                                         Expected{"room", 476000}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace fovea::scene {
 
 Scene cornellBox();
 Scene atriumScene();
+Scene balconyScene();
 Scene roomScene();
 
 }  // namespace fovea::scene

@@ -177,4 +177,60 @@ Plant trailing(int strands, float length, float spread, const Leaf& leaf, uint32
   return plant;
 }
 
+Plant climber(const std::vector<glm::vec3>& stem, glm::vec3 out, float reach, int twigs, int leavesPerTwig,
+              const Leaf& leaf, float bloom, uint32_t seed) {
+  Draws draw(seed);
+  Plant plant;
+  const std::vector<glm::vec3> path = smoothPath(stem, 5);
+  append(plant.wood, tube(
+                         path, [&](float t) { return reach * (0.055f - 0.042f * t); }, 7));
+  const Shape blade = leafBlade(leaf);
+  Shape bract;
+  for (int i = 0; i < 3; ++i)
+    append(bract, leafBlade({.length = 0.9f * leaf.length, .width = 0.75f * leaf.length, .fold = 0.5f}),
+           turnY(120.0f * float(i)) * turnX(-40));
+  for (int i = 0; i < twigs; ++i) {
+    const float at = float(path.size() - 1) * (0.12f + 0.88f * (float(i) + draw()) / float(twigs));
+    const size_t k = std::min(size_t(at), path.size() - 2);
+    const glm::vec3 root = glm::mix(path[k], path[k + 1], at - float(k));
+    glm::vec3 side = draw.direction();
+    side -= out * std::min(0.0f, 1.6f * glm::dot(side, out));  // away from the wall
+    const glm::vec3 direction = glm::normalize(side + 0.25f * out + glm::vec3(0, 0.3f, 0));
+    const float length = reach * draw(0.45f, 1.0f);
+    const glm::vec3 end = root + length * direction - glm::vec3(0, 0.25f * length, 0);
+    const std::vector<glm::vec3> twig =
+        smoothPath({root, root + 0.55f * length * direction + glm::vec3(0, 0.05f * length, 0), end}, 2);
+    append(plant.wood, sweep(twig, circle(0.004f, 3), {.caps = false, .creaseDegrees = 180}));
+    addLeaves(plant.leaves, twig, leavesPerTwig, blade, draw);
+    if (draw() > bloom) continue;
+    for (int n = 0; n < 5; ++n)
+      append(plant.fruits, bract,
+             facing(end + 0.22f * reach * draw.direction(), draw.direction(), glm::vec3(0.1f, 1, 0.05f)) *
+                 model::scaled(draw(0.8f, 1.2f)));
+  }
+  return plant;
+}
+
+Plant flowers(glm::vec3 dome, int stems, float headRadius, int petals, uint32_t seed) {
+  Draws draw(seed);
+  Plant plant;
+  const Shape petal = leafBlade({.length = 0.75f * headRadius, .width = 0.6f * headRadius, .fold = 0.4f});
+  for (int i = 0; i < stems; ++i) {
+    const float y = 1 - 0.7f * (float(i) + draw()) / float(stems), r = std::sqrt(std::max(0.0f, 1 - y * y));
+    const float a = float(i) * 2.39996f + draw(-0.4f, 0.4f);
+    const glm::vec3 end = dome * glm::vec3(r * std::cos(a), y, r * std::sin(a)) * draw(0.92f, 1.12f);
+    append(plant.wood,
+           sweep(smoothPath(
+                     {0.2f * end * glm::vec3(1, 0, 1), 0.6f * end + glm::vec3(0, 0.1f * dome.y, 0), end}, 3),
+                 circle(0.0025f, 4), {.caps = false, .creaseDegrees = 180}));
+    for (int k = 0; k < petals; ++k) {
+      glm::vec3 d = draw.direction();
+      d.y = 0.75f * d.y + 0.2f;
+      append(plant.fruits, petal,
+             facing(end + 0.5f * headRadius * d, glm::normalize(d + 0.6f * draw.direction()), {0.1f, 1, 0}));
+    }
+  }
+  return plant;
+}
+
 }  // namespace fovea::scene::model

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "framework/scene/builtin/model.h"
 
@@ -41,5 +42,13 @@ Plant bush(glm::vec3 dome, int stems, int leavesPerStem, const Leaf& leaf, uint3
 
 // Leaves and stems that hang over an edge, from the origin down to about -length; a climber when turned.
 Plant trailing(int strands, float length, float spread, const Leaf& leaf, uint32_t seed);
+
+// A climber along `stem`: twigs to every side of it but most along `out` (the wall's normal), `reach` long,
+// flowers (three bracts each) at the ends of the share `bloom` of them, as `fruits`.
+Plant climber(const std::vector<glm::vec3>& stem, glm::vec3 out, float reach, int twigs, int leavesPerTwig,
+              const Leaf& leaf, float bloom, uint32_t seed);
+
+// Stems from one root with a ball of petals (`fruits`) on each: geraniums, hydrangeas.
+Plant flowers(glm::vec3 dome, int stems, float headRadius, int petals, uint32_t seed);
 
 }  // namespace fovea::scene::model
