@@ -129,8 +129,11 @@ struct Generator {
   const char* name;
   Scene (*make)();
 };
-constexpr Generator kGenerators[] = {
-    {"cornellbox", cornellBox}, {"atrium", atriumScene}, {"balcony", balconyScene}, {"room", roomScene}};
+constexpr Generator kGenerators[] = {{"cornellbox", cornellBox},
+                                     {"atrium", atriumScene},
+                                     {"balcony", balconyScene},
+                                     {"room", roomScene},
+                                     {"yard", yardScene}};
 
 }  // namespace
 

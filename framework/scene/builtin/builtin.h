@@ -13,5 +13,6 @@ Scene cornellBox();
 Scene atriumScene();
 Scene balconyScene();
 Scene roomScene();
+Scene yardScene();
 
 }  // namespace fovea::scene
