@@ -18,7 +18,7 @@ using namespace model;
 // Plan: the house's wall is x = kWall and looks along +x, the balustrade stands on x = kRail and z = kEnd.
 constexpr float kWall = -1.7f, kRail = 1.45f, kEnd = -4.9f, kBack = 3.3f;
 constexpr float kStreet = -4.2f, kOpposite = 6.6f, kFar = -10.0f, kNear = 5.2f, kTop = 4.7f;
-constexpr float kAwningFront = -2.95f, kAwningTop = 2.62f;
+constexpr float kAwningFront = -2.95f, kAwningTop = 2.62f, kLanternZ = -2.3f;
 
 // ---- Houses ----
 
@@ -150,6 +150,19 @@ void addFloor(MeshBuilder& m, const Palette& p) {
       if (i > 0 && j > 0) lay(p.tileBlue, square, x0 + kCell * float(i), z0 + kCell * float(j), index++);
     }
   const float x1 = x0 + kCell * float(columns), z1 = z0 + kCell * float(rows);
+  // Halves of them along the frame.
+  const Shape halves[4] = {extrude({{0, -d}, {d, 0}, {0, d}}, 0.03f, chamfered),
+                           extrude({{0, d}, {-d, 0}, {0, -d}}, 0.03f, chamfered),
+                           extrude({{-d, 0}, {0, -d}, {d, 0}}, 0.03f, chamfered),
+                           extrude({{d, 0}, {0, d}, {-d, 0}}, 0.03f, chamfered)};
+  for (int j = 1; j < rows; ++j) {
+    lay(p.tileBlue, halves[0], x0 + 0.5f * kGap, z0 + kCell * float(j), index++);
+    lay(p.tileBlue, halves[1], x1 - 0.5f * kGap, z0 + kCell * float(j), index++);
+  }
+  for (int i = 1; i < columns; ++i) {
+    lay(p.tileBlue, halves[2], x0 + kCell * float(i), z0 + 0.5f * kGap, index++);
+    lay(p.tileBlue, halves[3], x0 + kCell * float(i), z1 - 0.5f * kGap, index++);
+  }
   const auto slab = [&](float w, float h, float x, float z) {
     lay(p.tile, extrude(rectangle(w - kGap, h - kGap), 0.03f, chamfered), x, z, index++);
   };
@@ -194,7 +207,7 @@ void addBalustrade(MeshBuilder& m, const Palette& p) {
       .line(-0.12f, kCap);
   cap.line(-0.14f, 0.105f).arc(-0.14f, 0.045f, 0.9f, 6).arc(-0.10f, 0.025f, -0.4142f, 3);
   m.add(p.stone, placed(sweep(way, cap, {.up = glm::vec3(0, 1, 0)}), at(0, kHeight - kCap, 0)));
-  const Shape near = baluster(kHeight - kCap - kFoot, 16), far = baluster(kHeight - kCap - kFoot, 10);
+  const Shape near = baluster(kHeight - kCap - kFoot, 14), far = baluster(kHeight - kCap - kFoot, 10);
   const Shape pier = block(0.23f, kHeight - kCap - kFoot + 0.01f, 0.23f, {.bevel = 0.008f});
   const auto run = [&](glm::vec3 a, glm::vec3 b, int balusters) {
     m.add(p.stone, pier, at(a.x, kFoot - 0.004f, a.z));
@@ -243,8 +256,8 @@ void addMovingAwning(SceneBuilder& b, const Palette& p) {
   const Sheet rest = shape(0.10f, 0, 0, 0);
   const uint32_t mesh = b.mesh("awning",
                                cage(rest, 2,
-                                    {shape(0.24f, 0, 0, 0), shape(0.10f, 0.075f, 0, 0),
-                                     shape(0.10f, 0.075f, quarter, 0), shape(0.10f, 0, 0, 0.06f)}),
+                                    {shape(0.24f, 0, 0, 0), shape(0.10f, 0.10f, 0, 0),
+                                     shape(0.10f, 0.10f, quarter, 0), shape(0.10f, 0, 0, 0.06f)}),
                                p.awning);
   const uint32_t node = b.place("awning", mesh, {kWall + 0.04f, kAwningTop + 0.03f, kAwningFront});
   b.swing(node,
@@ -264,12 +277,12 @@ void addPlants(MeshBuilder& m, const Palette& p) {
     if (!plant.fruits.indices.empty()) m.add(fruits, plant.fruits, where);
   };
   {  // an olive between the doors
-    const glm::mat4 where = at(-1.28f, 0, -1.95f);
+    const glm::mat4 where = at(-1.28f, 0, -1.8f);
     m.add(pot(p.clay, p.soil, PotShape::Belly, 0.27f, 0.46f), where);
     TreeForm f;
-    f.trunkHeight = 0.62f;
+    f.trunkHeight = 0.55f;
     f.trunkRadius = 0.035f;
-    f.crown = {0.36f, 0.46f, 0.38f};
+    f.crown = {0.35f, 0.40f, 0.36f};
     f.twigs = 150;
     f.leavesPerTwig = 12;
     f.twigLength = 0.2f;
@@ -284,7 +297,7 @@ void addPlants(MeshBuilder& m, const Palette& p) {
     f.trunkHeight = 0.48f;
     f.trunkRadius = 0.030f;
     f.crown = {0.37f, 0.36f, 0.37f};
-    f.twigs = 130;
+    f.twigs = 115;
     f.leavesPerTwig = 9;
     f.twigLength = 0.18f;
     f.leaf = {.length = 0.095f, .width = 0.046f, .fold = 0.35f, .droop = 0.25f, .steps = 2};
@@ -303,7 +316,7 @@ void addPlants(MeshBuilder& m, const Palette& p) {
           rosette(34, {.length = 0.40f, .width = 0.03f, .fold = 0.4f, .droop = 0.55f, .steps = 5}, 78, 52),
           at(1.02f, 0.27f, -4.1f));
     m.add(pot(p.clay, p.soil, PotShape::Rim, 0.14f, 0.22f), at(-0.92f, 0, -2.35f));
-    put(bush({0.17f, 0.22f, 0.17f}, 36, 10, {.length = 0.035f, .width = 0.018f, .steps = 1}, 53), p.bark,
+    put(bush({0.17f, 0.22f, 0.17f}, 30, 10, {.length = 0.035f, .width = 0.018f, .steps = 1}, 53), p.bark,
         p.leaf, p.leaf, at(-0.92f, 0.19f, -2.35f));
     m.add(pot(p.glaze, p.soil, PotShape::Rim, 0.11f, 0.17f), at(0.80f, 0, -0.05f));
     put(flowers({0.14f, 0.22f, 0.14f}, 9, 0.035f, 16, 54), p.leaf, p.leaf, p.bloom, at(0.80f, 0.15f, -0.05f));
@@ -331,10 +344,10 @@ void addPlants(MeshBuilder& m, const Palette& p) {
     const glm::mat4 where = at(-1.42f, 0, 0.62f);
     m.add(pot(p.clay, p.soil, PotShape::Rim, 0.2f, 0.36f), where);
     const Leaf leaf = {.length = 0.06f, .width = 0.038f, .fold = 0.3f, .droop = 0.2f, .steps = 1};
-    const std::vector<glm::vec3> up = {{-1.42f, 0.3f, 0.62f},  {-1.56f, 0.9f, 0.68f},  {-1.62f, 1.7f, 0.52f},
-                                       {-1.60f, 2.45f, 0.42f}, {-1.58f, 2.78f, -0.1f}, {-1.58f, 2.86f, -0.8f},
-                                       {-1.58f, 2.78f, -1.5f}, {-1.57f, 2.62f, -2.1f}};
-    put(climber(up, {1, 0, 0}, 0.36f, 150, 9, leaf, 0.55f, 90), p.bark, p.leaf, p.bract, glm::mat4(1));
+    const std::vector<glm::vec3> up = {
+        {-1.42f, 0.3f, 0.62f},  {-1.56f, 0.9f, 0.68f},  {-1.62f, 1.7f, 0.52f},   {-1.60f, 2.45f, 0.42f},
+        {-1.58f, 2.78f, -0.1f}, {-1.58f, 2.86f, -0.8f}, {-1.58f, 2.76f, -1.35f}, {-1.57f, 2.62f, -1.75f}};
+    put(climber(up, {1, 0, 0}, 0.36f, 150, 8, leaf, 0.55f, 90), p.bark, p.leaf, p.bract, glm::mat4(1));
   }
 }
 
@@ -346,16 +359,16 @@ void furnish(SceneBuilder& b, const Palette& p) {
   const glm::mat4 chairs[2] = {at(-0.42f, 0, -2.85f) * turnY(50), at(0.78f, 0, -1.72f) * turnY(-128)};
   for (const glm::mat4& chair : chairs) m.add(bistroChair(p), chair);
   // A bracket for the lantern.
-  m.add(p.iron, cylinder(0.05f, 0.016f, 20, 0.004f), at(kWall - 0.002f, 2.36f, -1.32f) * turnZ(-90));
-  m.add(p.iron, tube(smoothPath({{kWall, 2.36f, -1.32f},
-                                 {kWall + 0.2f, 2.42f, -1.32f},
-                                 {kWall + 0.42f, 2.40f, -1.32f},
-                                 {kWall + 0.47f, 2.33f, -1.32f}},
+  m.add(p.iron, cylinder(0.05f, 0.016f, 20, 0.004f), at(kWall - 0.002f, 2.55f, kLanternZ) * turnZ(-90));
+  m.add(p.iron, tube(smoothPath({{kWall, 2.55f, kLanternZ},
+                                 {kWall + 0.2f, 2.61f, kLanternZ},
+                                 {kWall + 0.42f, 2.59f, kLanternZ},
+                                 {kWall + 0.47f, 2.52f, kLanternZ}},
                                 6),
                      0.010f, 8));
-  m.add(p.iron, tube(smoothPath({{kWall + 0.005f, 2.15f, -1.32f},
-                                 {kWall + 0.14f, 2.22f, -1.32f},
-                                 {kWall + 0.27f, 2.40f, -1.32f}},
+  m.add(p.iron, tube(smoothPath({{kWall + 0.005f, 2.34f, kLanternZ},
+                                 {kWall + 0.14f, 2.41f, kLanternZ},
+                                 {kWall + 0.27f, 2.59f, kLanternZ}},
                                 6),
                      0.007f, 7));
   // Washing across the street.
@@ -383,7 +396,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
 
   MeshBuilder lamp;
   lamp.add(lantern(p), glm::mat4(1));
-  b.place("lantern", b.mesh("lantern", std::move(lamp)), {kWall + 0.47f, 2.335f, -1.32f});
+  b.place("lantern", b.mesh("lantern", std::move(lamp)), {kWall + 0.47f, 2.525f, kLanternZ});
 }
 
 }  // namespace
@@ -402,7 +415,7 @@ Scene balconyScene() {
   addMovingAwning(b, p);
   b.sun("sun", {1.0f, 0.93f, 0.82f}, 20, {-0.44f, -0.46f, -0.77f});
   b.camera({0.45f, 1.58f, 1.75f}, {-0.12f, 1.12f, -3.0f}, 55);
-  b.scene.environment = {0.19f, 0.34f, 0.58f};
+  b.scene.environment = {0.50f, 0.85f, 1.45f};
   return b.finish(0.38f, {0.55f, 0.68f});
 }
 
