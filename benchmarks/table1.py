@@ -152,7 +152,7 @@ def table(scene, result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=str(ROOT / "build" / "release"))
-    parser.add_argument("--scenes", default="cornellbox_path,sponza_plane", help="default: %(default)s, which move")
+    parser.add_argument("--scenes", default="cornellbox_moving,sponza_plane", help="default: %(default)s, which move")
     parser.add_argument("--graphs", default="ir_1000,ir_v,ours_r,ours")
     parser.add_argument("--size", default="1024x1024")
     parser.add_argument("--first", type=int, default=40, help="number of the first frame that counts; default %(default)s")

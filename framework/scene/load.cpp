@@ -130,6 +130,7 @@ struct Generator {
   Scene (*make)();
 };
 constexpr Generator kGenerators[] = {{"cornellbox", cornellBox},
+                                     {"cornellbox_moving", cornellBoxMoving},
                                      {"atrium", atriumScene},
                                      {"balcony", balconyScene},
                                      {"room", roomScene},

@@ -344,7 +344,6 @@ TEST(Load, NamesAndFiles) {
 TEST(Load, MovingScenesKeepTheBoundsOfTheirStillOnes) {
   const bool sponza = !test::sharedScenes().empty();
   for (const auto& [name, still] : {std::pair("cornellbox_moving", "cornellbox"),
-                                    {"cornellbox_path", "cornellbox"},
                                     {"sponza_plane", "sponza"}}) {
     if (std::string(still) == "sponza" && !sponza) continue;
     Diagnostics warnings;

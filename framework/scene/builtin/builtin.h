@@ -10,6 +10,7 @@
 namespace fovea::scene {
 
 Scene cornellBox();
+Scene cornellBoxMoving();
 Scene atriumScene();
 Scene balconyScene();
 Scene roomScene();

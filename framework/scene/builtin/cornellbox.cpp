@@ -1,12 +1,14 @@
 // The paper's Cornell box: 5.5 m a side, about 5.8k triangles, a yellow cube close to the white back wall,
 // and one spot light under the ceiling that reaches only the middle of the floor and the objects, so that
-// walls and ceiling live on indirect light and the cube's yellow on the wall shows.
+// walls and ceiling live on indirect light and the cube's yellow on the wall shows. As a scene that moves it
+// has a violet cloth more, which hangs before the back wall and waves.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
 #include "framework/scene/builtin/builtin.h"
+#include "framework/scene/builtin/model.h"
 
 namespace fovea::scene {
 namespace {
@@ -178,6 +180,39 @@ void place(Scene& scene, const char* name, uint32_t mesh, glm::vec3 position, gl
   scene.nodes.push_back(n);
 }
 
+constexpr float kClothWidth = 1.5f, kClothHeight = 2.75f;
+
+// The cloth in the space of its rod. It sways as a whole, and two waves a quarter of a period apart run down
+// it; both grow with the distance from the rod.
+model::Sheet cloth(float sway, float wave, float phase) {
+  return model::sheet(7, 8, {kClothWidth, kClothHeight}, [&](float u, float v) {
+    const float folds = 0.06f * std::sin(3.0f * glm::two_pi<float>() * u + 1.5f * v);
+    const float running = wave * v * std::sin(6.5f * v + 2.0f * u - phase);
+    return glm::vec3(kClothWidth * (u - 0.5f) * (1.0f - 0.08f * v),
+                     -kClothHeight * (v - 0.10f * sway * sway * v * v),
+                     folds + sway * v * v * (0.8f + 0.4f * u) + running);
+  });
+}
+
+void hangCloth(model::SceneBuilder& b) {
+  const uint32_t violet =
+      b.material("violet cloth", {0.52f, 0.24f, 0.66f}, model::MaterialOptions{.doubleSided = true});
+  const glm::vec3 where(1.35f, 4.65f, -2.3f);
+  const std::vector<model::Sheet> shapes = {cloth(0.38f, 0, 0), cloth(0.1f, 0.20f, 0),
+                                            cloth(0.1f, 0.20f, glm::half_pi<float>())};
+  const uint32_t node =
+      b.place("cloth", b.mesh("cloth", model::cage(cloth(0.1f, 0, 0), 1, shapes), violet), where);
+  b.swing(node,
+          {{.amplitude = 0.9f, .period = 4},
+           {.amplitude = 1, .period = 2},
+           {.amplitude = 1, .period = 2, .phase = 0.25f}},
+          8);
+  model::MeshBuilder rod;
+  const float end = 0.5f * kClothWidth + 0.1f;
+  rod.add(kGrey, model::tube({{-end, 0, 0}, {end, 0, 0}}, 0.03f, 6));
+  b.place("rod", b.mesh("rod", std::move(rod)), where);
+}
+
 }  // namespace
 
 Scene cornellBox() {
@@ -216,6 +251,16 @@ Scene cornellBox() {
   s.exposure = 1.25f;
   s.hash = contentHash(s);
   return s;
+}
+
+Scene cornellBoxMoving() {
+  model::SceneBuilder b("cornellbox_moving");
+  b.scene = cornellBox();
+  b.scene.name = b.scene.source = "cornellbox_moving";
+  hangCloth(b);
+  const glm::vec2 gaze = b.scene.gaze.front().position;
+  b.scene.gaze.clear();
+  return b.finish(b.scene.exposure, gaze);
 }
 
 }  // namespace fovea::scene
