@@ -207,7 +207,8 @@ class SuiteReader {
   }
 
   void readSettings(ObjectReader& r, Settings& s) {
-    if (r.has("scenes")) s.scenes = texts(r, "scenes");
+    Texts scenes = texts(r, "scenes");
+    if (r.has("scenes")) s.scenes = std::move(scenes);
     if (const Value* graphs = r.array("graphs")) {
       s.graphs.clear();
       for (size_t i = 0; i < graphs->items.size(); ++i)
@@ -229,7 +230,7 @@ class SuiteReader {
       s.depth = uint32_t(rr.integer("depth", s.depth, 1, 64));
       rr.finish();
     }
-    if (r.has("measures")) readMeasures(r, s);
+    readMeasures(r, s);
     if (const Value* speed = r.object("speed_up")) {
       ObjectReader rr(*speed, r.pathOf("speed_up"), messages_);
       SpeedUp wanted;
@@ -242,8 +243,9 @@ class SuiteReader {
 
   void readMeasures(ObjectReader& r, Settings& s) {
     static const std::vector<std::string> kKnown = {"error", "temporal", "pictures", "time"};
-    s.measures.clear();
-    for (const auto& name : texts(r, "measures")) {
+    const Texts names = texts(r, "measures");
+    if (r.has("measures")) s.measures.clear();
+    for (const auto& name : names) {
       if (std::find(kKnown.begin(), kKnown.end(), name.value) == kKnown.end()) {
         const std::string nearest = nearestName(name.value, kKnown);
         messages_.error(

@@ -1,6 +1,5 @@
 #include "samples/fovea/pass_code.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,20 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names and contents of all files of a folder, wherever the folder is.
-void addFolder(graph::detail::Hasher& hash, const fs::path& folder) {
+using Files = std::map<std::string, fs::path>;  // name as shaders include it -> the first such file
+
+void findFiles(const fs::path& shaders, const std::string& part, Files& files) {
   std::error_code ignored;
-  std::vector<fs::path> files;
-  for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored))
-    if (entry->is_regular_file(ignored)) files.push_back(entry->path());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    hash.add(std::string_view(file.lexically_relative(folder).string()));
-    hash.add(std::string_view(text.str()));
-  }
+  for (fs::recursive_directory_iterator entry(shaders / part, ignored), end; entry != end;
+       entry.increment(ignored))
+    if (entry->is_regular_file(ignored))
+      files.try_emplace(entry->path().lexically_relative(shaders).string(), entry->path());
+}
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
 }  // namespace
@@ -40,10 +40,12 @@ std::string passCode(const std::string& type) {
   graph::detail::Hasher hash;
   for (const auto& [name, sources] : kPassSources)
     if (name == type) hash.add(sources);
-  for (const fs::path& folder : dataFolders("shaders")) {
-    std::error_code ignored;
-    for (const fs::path& part : {folder / type, folder / "common"})
-      if (fs::is_directory(part, ignored)) addFolder(hash, part);
+  Files files;
+  for (const fs::path& folder : dataFolders("shaders"))
+    for (const std::string& part : {type, std::string("common")}) findFiles(folder, part, files);
+  for (const auto& [name, file] : files) {
+    hash.add(std::string_view(name));
+    hash.add(std::string_view(contentOf(file)));
   }
   return code = formatHash(hash.value());
 }

@@ -1,0 +1,280 @@
+"""fovea bench from outside. Usage: bench_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from cli_test import BAD_INPUT, CANNOT_WRITE, INTERRUPTED, PROGRAM, SOURCE, USAGE, CliTest
+
+SLOWER = 8
+SUITE = {
+    "description": "two scenes, two graphs",
+    "paper": "table1",
+    "scenes": ["cornellbox", "cornellbox_moving"],
+    "graphs": ["direct", "ir_1000"],
+    "size": "32x32", "first": 3, "frames": 2, "warmup": 1, "reference": {"spp": 4, "depth": 3},
+    "measures": ["error", "temporal", "pictures"],
+    "sweeps": [{"name": "all", "graphs": [{"graph": "direct"}, {"graph": "ir_1000", "set": {"vpl_count": 16, "map_size": 16}}],
+                "speed_up": {"of": "direct", "over": ["ir_1000"]}}],
+}
+
+
+class Suites(CliTest):
+    def suite(self, **changes):
+        return self.write("tiny.json", {**SUITE, **changes})
+
+    def results(self, folder="out"):
+        return {p.name: json.loads(p.read_text()) for p in (self.folder / folder / "results").glob("*.json")}
+
+    def rows(self, sweep="all", folder="out"):
+        with open(self.folder / folder / "tables" / f"{sweep}.csv", newline="") as file:
+            return {(r["scene"], r["graph"], r["measure"]): r for r in csv.DictReader(file)}
+
+    def test_from_suite_to_report(self):
+        """Results, references that jobs share, tables beside the paper's numbers, a page that needs nothing else."""
+        self.suite(graphs=["ours", "ir_1000"], set={"vpl_count": 16, "map_size": 16, "shadow_map_size": 256}, sweeps=[{"name": "all"}])
+        run = self.succeeds("bench", "tiny.json", "-o", "out")
+        self.assertIn("[4/4] all-cornellbox_moving-ir_1000-s1", run.stdout)
+        self.assertIn("4 of 4 jobs have results", run.stdout)
+        results = self.results()
+        self.assertEqual(len(results), 4)
+        for result in results.values():
+            self.assertGreater(result["error"]["fovea"]["noise_floor"], 0)
+            self.assertIsInstance(result["temporal"]["periphery"]["excess"], float)
+            self.assertGreater(result["time"]["frame"]["wall_ms"]["median"], 0)
+            self.assertGreater(result["time"]["counters"]["deferred.pixels"], 0)
+        self.assertEqual(len(list((self.folder / "out/references").iterdir())), 4)  # two scenes, two frames
+        self.assertEqual(len(list((self.folder / "out/pictures").iterdir())), 16)
+        row = self.rows()["cornellbox", "ours", "error.fovea.mse"]
+        self.assertAlmostEqual(float(row["paper"]), 0.74e-3)
+        self.assertAlmostEqual(float(row["ratio"]), float(row["mean"]) / 0.74e-3, delta=1e-4 * abs(float(row["ratio"])))
+        page = self.folder / "out/report.html"
+        if not page.exists():
+            self.assertIn("matplotlib", run.stderr)
+            self.skipTest("no report without matplotlib (apt: python3-matplotlib)")
+        text = page.read_text()
+        self.assertGreaterEqual(text.count("data:image/png;base64,"), 16)
+        self.assertNotIn("src='pictures", text)
+        for word in ("Sponza", "Cornellbox"):
+            self.assertEqual(word in text, word == "Cornellbox")
+        # Nothing is measured twice, and the errors are what `compare` says.
+        again = self.succeeds("bench", "tiny.json", "-o", "out", "--resume")
+        self.assertIn("4 of 4 jobs are done already", again.stdout)
+        self.assertEqual(self.results(), results)
+
+    def test_same_as_render_and_compare(self):
+        self.suite()
+        self.succeeds("bench", "tiny.json", "-o", "out", "--only", "*-cornellbox-ir*")
+        (result,) = self.results().values()
+        (last,) = (self.folder / "out/references").glob("*-f4-*.exr")
+        self.succeeds("render", "ir_1000", "--scene", "cornellbox", "--size", "32x32", "--first", 2, "--warmup", 2, "--frames", 1,
+                      "--set", "vpl_count=16", "--set", "map_size=16", "-o", "a.exr")
+        m = json.loads(self.succeeds("compare", "a.exr", last, "--json").stdout)
+        for region in ("fovea", "periphery", "whole"):
+            self.assertAlmostEqual(m[region]["mse"], result["error"][region]["mse"], delta=1e-9)
+            self.assertAlmostEqual(m[region]["direct_floor"], result["error"][region]["direct_floor"], delta=1e-9)
+
+    def test_two_shards_at_once(self):
+        """Two processes share the folder and its references; together they have done what one does alone."""
+        self.suite()
+        shards = [subprocess.Popen(self.command("bench", "tiny.json", "-o", "out", "--shard", f"{i}/2"), cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for i in (1, 2)]
+        for shard in shards:
+            out, err = shard.communicate(timeout=120)
+            self.assertEqual(shard.returncode, 0, err)
+        self.assertEqual(len(self.results()), 4)
+        self.assertIn("4 of 4", self.succeeds("bench", "tiny.json", "-o", "out", "--report").stdout)
+        self.succeeds("bench", "tiny.json", "-o", "alone", "-q")
+        merged, alone = self.rows(), self.rows(folder="alone")
+        self.assertEqual(merged.keys(), alone.keys())
+        for key, row in alone.items():
+            if not key[2].startswith(("time.", "pass.", "speed_up.")):
+                self.assertEqual(merged[key], row)
+        self.assertFalse([p for p in (self.folder / "out").rglob("*") if "claim" in p.name or "partial" in p.name])
+
+    def test_goes_on_after_a_kill(self):
+        """What was finished stays, also when the process had no time to say good-bye and leaves a claim behind."""
+        self.suite(reference={"spp": 2000, "depth": 3})
+        run = subprocess.Popen(self.command("bench", "tiny.json", "-o", "out"), cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.assertIn("[1/4]", run.stdout.readline())
+        while not list(self.folder.glob("out/references/*.claim")) and run.poll() is None:
+            time.sleep(0.001)
+        run.kill()
+        run.communicate()
+        before = self.results()
+        self.assertTrue(1 <= len(before) < 4)
+        self.suite(reference={"spp": 2000, "depth": 3})
+        out = self.succeeds("bench", "tiny.json", "-o", "out", "--resume").stdout
+        self.assertIn(f"{len(before)} of 4 jobs are done already", out)
+        after = self.results()
+        self.assertEqual(len(after), 4)
+        self.assertTrue(before.items() <= after.items())
+
+    def test_ctrl_c(self):
+        self.suite(reference={"spp": 200000, "depth": 3})
+        run = subprocess.Popen(self.command("bench", "tiny.json", "-o", "out"), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not list(self.folder.glob("out/references/*.claim")) and run.poll() is None:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        _, err = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, INTERRUPTED, err)
+        self.assertIn("0 of 4 jobs are done", err)
+        self.assertEqual(self.results(), {})
+        self.assertEqual(list((self.folder / "out/references").iterdir()), [])
+
+    def test_refuses_to_mix(self):
+        """Sizes, scenes, graphs and passes that are not the same any more."""
+        self.suite(measures=["time"])
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q")
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--size", "16x16", says=["size", "32", "16", "--replace"])
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--size", "16x16", "--report", says=["size"])
+        # Results of another device, and of a pass with other code, brought here from elsewhere.
+        name, result = next((n, r) for n, r in self.results().items() if "-direct-" in n)
+        other = json.loads(json.dumps(result))
+        other["made_with"]["device"] = "another"
+        (self.folder / "out/results" / name).write_text(json.dumps(other))
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["another", "device", name])
+        other = json.loads(json.dumps(result))
+        other["made_with"]["passes"]["gbuffer"] = "0" * 16
+        (self.folder / "out/results" / name).write_text(json.dumps(other))
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["gbuffer"])
+        other["key"] = "0" * 16
+        (self.folder / "out/results" / name).unlink()
+        stale = self.folder / "out/results" / (name[:-21] + "0" * 16 + ".json")
+        stale.write_text(json.dumps(other))
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", says=["gbuffer", "0" * 16, "--replace"])
+        self.succeeds("bench", "tiny.json", "-o", "out", "--replace")
+        self.assertFalse(stale.exists())
+        stale.write_text("{")
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", says=[stale.name, "no result"])
+
+    def test_changed_shader(self):
+        """What depends on it is no longer comparable; what does not, is."""
+        self.suite(measures=["time"])
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q")
+        shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
+        with open(self.folder / "data/shaders/deferred/blocks.glsl", "a") as file:
+            file.write("// changed\n")
+        data = {"FOVEA_DATA": str(self.folder / "data")}
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--only", "ir_1000", says=["passes.deferred"], env=data)
+        self.assertIn("2 of 2 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", "--only", "direct", env=data).stdout)
+
+    def test_match(self):
+        """Bisection: as many VPLs as it takes to be as good as another graph."""
+        self.suite(scenes=["cornellbox"], measures=["error"], frames=1, reference={"spp": 32, "depth": 3}, sweeps=[
+            {"name": "eq", "set": {"map_size": 16}, "graphs": [
+                {"graph": "ir_1000", "label": "wanted", "set": {"vpl_count": 6}},
+                {"graph": "ir_1000", "label": "found", "match": {"like": "wanted", "from": 2, "to": 256, "measure": "error.whole.mse"}}]}])
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q")
+        found = next(r for n, r in self.results().items() if "found" in n)
+        wanted = next(r for n, r in self.results().items() if "wanted" in n)
+        self.assertTrue(found["match"]["reached"])
+        self.assertEqual(found["match"]["target"], wanted["error"]["whole"]["mse"])
+        self.assertLessEqual(found["error"]["whole"]["mse"], wanted["error"]["whole"]["mse"])
+        self.assertEqual(float(self.rows("eq")["cornellbox", "found", "match.value"]["mean"]), found["match"]["value"])
+
+    def test_mistakes_before_anything_runs(self):
+        self.suite(scenes=["cornellbox", "cornelbox"])
+        self.located("tiny.json:", "cornelbox")
+        self.suite(sweeps=[{"name": "a"}, {"name": "b", "graphs": ["direct", "iir_1000"]}])
+        self.located("tiny.json:", "iir_1000")
+        self.suite(set={"vpl_cout": 3}, sweeps=[{"name": "a", "graphs": ["ir_1000"]}])
+        self.located("tiny.json:", "vpl_cout", "vpl_count")
+        self.suite(size="0x3")
+        self.located("tiny.json:", "size")
+        self.suite()
+        for arguments, words in ((["tiny.json"], ["-o"]), (["tiny.json", "-o", "o", "--shard", "3/2"], ["3/2"]),
+                                 (["tiny.json", "-o", "o", "--only", "x*y"], ["x*y"]), (["tiny.json", "-o", "o", "--graph", "ours"], ["passes"])):
+            self.fails(USAGE, "bench", *arguments, says=words)
+        self.fails(BAD_INPUT, "bench", "quik", "-o", "o", says=["quik", "`quick`"])
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "o", "--resume", says=["nothing to resume"])
+
+    def located(self, *says):
+        run = self.call("bench", "tiny.json", "-o", "out")
+        self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
+        for text in says:
+            self.assertIn(text, run.stderr)
+        self.assertEqual(self.results(), {})
+
+    def test_missing_scene(self):
+        """An optional scene is left out, and it is said, on the page, too."""
+        self.suite(scenes=["cornellbox", "nowhere"], optional_scenes=["nowhere"], measures=["time"])
+        run = self.succeeds("bench", "tiny.json", "-o", "out")
+        self.assertIn("`nowhere` is left out", run.stderr)
+        self.assertIn("2 of 4 jobs have results", run.stdout)
+        self.assertIn("nowhere", json.loads((self.folder / "out/report.json").read_text())["missing_scenes"])
+
+    def test_read_only_folder(self):
+        self.suite()
+        (self.folder / "file").write_text("")
+        self.fails(CANNOT_WRITE, "bench", "tiny.json", "-o", "file/out", says=["file/out"])
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        (self.folder / "out").mkdir(mode=0o500)
+        self.fails(CANNOT_WRITE, "bench", "tiny.json", "-o", "out", says=["out"])
+
+    def test_full_disk(self):
+        """Too small a disk is found before anything is rendered; one that fills up meanwhile is an error, not a broken result."""
+        self.suite()
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=100k", "tmpfs", str(disk)], capture_output=True).returncode != 0:
+            self.skipTest("no right to mount a small file system")
+        self.addCleanup(subprocess.run, ["umount", str(disk)], check=True)
+        run = self.call("bench", "tiny.json", "-o", "disk/out", "--size", "512x512")
+        self.assertEqual(run.returncode, CANNOT_WRITE, run.stderr)
+        self.assertIn("needs about", run.stderr)
+        (disk / "filler").write_bytes(b"x" * 80000)
+        run = self.call("bench", "tiny.json", "-o", "disk/out", "--size", "8x8")
+        self.assertEqual(run.returncode, CANNOT_WRITE, run.stderr)
+        self.assertFalse(list(disk.glob("out/results/*")))
+
+
+class Passes(CliTest):
+    COMMON = ["bench", "passes", "--graph", "direct", "--scene", "cornellbox", "--size", "32x32", "--frames", "3", "--warmup", "1", "--repeats", "3"]
+
+    def test_table_and_baseline(self):
+        out = self.succeeds(*self.COMMON, "-o", "base.json").stdout
+        for word in ("gbuffer", "p95", "wall time of a frame"):
+            self.assertIn(word, out)
+        base = json.loads((self.folder / "base.json").read_text())
+        self.assertEqual(len(base["repeats"]), 3)
+        self.assertEqual(len(base["repeats"][0]["passes"]["gbuffer"]["gpu_ms"]), 3)
+        # The same is neither slower nor faster by a factor of 4; what is a hundred times as fast, or slow, is.
+        self.assertNotIn("SLOWER", self.succeeds(*self.COMMON, "--baseline", "base.json", "--threshold", "300").stdout)
+        for factor, code, word in ((0.01, SLOWER, "SLOWER"), (100, 0, "faster")):
+            changed = json.loads(json.dumps(base))
+            for repeat in changed["repeats"]:
+                for times in (*repeat["passes"].values(), repeat["frame"]):
+                    for clock in ("gpu_ms", "cpu_ms", "wall_ms"):
+                        if clock in times:
+                            times[clock] = [factor * t for t in times[clock]]
+            self.write("changed.json", changed)
+            run = self.call(*self.COMMON, "--baseline", "changed.json")
+            self.assertEqual(run.returncode, code, run.stderr + run.stdout)
+            self.assertIn(word, run.stdout)
+
+    def test_against_another_build(self):
+        """The repeats of both take turns."""
+        run = self.call(*self.COMMON, "--baseline", PROGRAM, "--threshold", "400")
+        self.assertEqual(run.returncode, 0, run.stderr + run.stdout)
+        self.assertIn("99% interval", run.stdout)
+
+    def test_mistakes(self):
+        self.fails(USAGE, "bench", "passes", "--graph", "direct", says=["--scene"])
+        self.fails(BAD_INPUT, *self.COMMON, "--baseline", "nothing.json", says=["nothing.json"])
+        self.succeeds(*self.COMMON, "-q", "-o", "base.json")
+        run = self.call(*self.COMMON[:7], "16x16", "--baseline", "base.json")
+        self.assertEqual(run.returncode, BAD_INPUT)
+        self.assertIn("size is 32x32 there and 16x16 here", run.stderr)
+        self.fails(CANNOT_WRITE, *self.COMMON, "-o", "no/where.json", says=["no/where.json"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
