@@ -35,7 +35,8 @@ class Candidates : public Pass {
              Usage::StorageWrite,
              "one an attempt; those that met nothing have no side and are zero otherwise");
     d.parameter("count", integer(1000, 1, 65536), "attempts: one pixel and one ray each");
-    d.parameter("region", choice("fovea", {"fovea", "image"}), "pixels to start from");
+    d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
+                "pixels to start from; mixed: four in five from the fovea, one from the whole image");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "of the disc around the gaze");
     d.parameter("per_frame", flag(true), "new random numbers every frame; false: the same ones");
     d.parameter("second_view", text("right"),

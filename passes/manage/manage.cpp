@@ -74,7 +74,19 @@ PassDeclaration Manage::declaration() {
       "the first candidates of this frame, as they come");
   d.parameter("keep", integer(0, 0, kMost),
               "candidates left by thinning (K): each stays with probability min(1, K I / sum I); 0: as many "
-              "as `limit`");
+              "as `limit` (of `placement` `light`: as free slots)");
+  d.parameter(
+      "placement", choice("importance", {"importance", "light"}),
+      "who comes in. importance: Algorithm 2; light: of the candidates as many as slots are free, in "
+      "proportion to their direct light (systematic resampling). Eye paths find them in proportion to "
+      "importance already; `order` and thinning by importance do not apply then, nor do VPLs that failed Eq. "
+      "1 come back");
+  d.parameter("light_floor", real(0.25, 0, 16, "means of the candidates' light"),
+              "of `placement` `light`: light that every candidate counts with besides its own, for what "
+              "further bounces bring to it");
+  d.parameter("turnover", real(1, 0, 1, "slots' share"),
+              "most VPLs that go in a frame for failing Eq. 1 (rounded up): of more, the least important. "
+              "Those spared are tested against their former importance again");
   d.parameter("order", choice("literal", {"literal", "fixed"}),
               "Algorithm 2. literal: as printed; fixed: when more old VPLs failed Eq. 1 than there are "
               "candidates, the best "
@@ -141,13 +153,17 @@ Commands Manage::use(RecordContext& ctx, Kernel kernel) {
   const float diagonal = empty ? 1.0f : std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
   const uint32_t slots = uint32_t(ctx.count("list"));
   const uint32_t limit = p.integer("limit") > 0 ? std::min(uint32_t(p.integer("limit")), slots) : slots;
+  const bool light = p.text("placement") == "light";
+  const uint32_t keep = p.integer("keep") > 0 ? uint32_t(p.integer("keep")) : light ? 0u : limit;
   Commands commands = ctx.use(kernel);
   commands.constant("gridOrigin", origin)
       .constant("cellsPerMetre", 1.0f / (float(p.real("cell")) * diagonal))
       .constant("slots", slots)
       .constant("candidateCount", uint32_t(ctx.count("candidates")))
       .constant("listLimit", limit)
-      .constant("keepCount", p.integer("keep") > 0 ? uint32_t(p.integer("keep")) : limit)
+      .constant("keepCount", keep)
+      .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
+      .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
       .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
   return commands;
 }
@@ -162,7 +178,8 @@ void Manage::record(RecordContext& ctx) {
   if (none_) {
     use(ctx, refill_).dispatch(1);
   } else {
-    use(ctx, reuse_).dispatch(1);  // together: neither needs the other
+    use(ctx, reuse_).dispatch(1);  // together: neither needs the other, but for `light`
+    if (ctx.parameters().text("placement") == "light") ctx.barrier();
     use(ctx, thin_).dispatch(1);
     ctx.barrier();
     use(ctx, order_).dispatch(2);

@@ -71,7 +71,7 @@ PassDeclaration Weights::declaration() {
               "the density of eye paths from the region; `area` the surface nearest to the VPL (Voronoi); "
               "`importance-area` n / (M p), n of M eye paths ending nearest to the VPL, with the light found "
               "there: however the VPLs were chosen, the region gets the light that its eye paths find");
-  d.parameter("region", choice("fovea", {"fovea", "image"}),
+  d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
               "where the eye paths start: as in pass candidates");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("points", integer(2048, 64, 4096),
@@ -82,6 +82,10 @@ PassDeclaration Weights::declaration() {
               "does not see");
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths that `importance-area` gives to the VPLs nearest to their ends (M)");
+  d.parameter(
+      "fade_frames", integer(0, 0, 1000),
+      "in which the share that `importance-area` gives to a new VPL grows from nothing to its own; its "
+      "neighbours give it up as slowly, so that nothing pops");
   d.parameter(
       "kernel", choice("disc", {"disc", "clamp"}),
       "what `importance-area` takes the VPLs to be shaded with, as in pass deferred: with `clamp` the "
@@ -176,10 +180,9 @@ void Weights::prepare(PrepareContext& ctx) {
 void Weights::recordDensities(RecordContext& ctx) {
   const Parameters& p = ctx.parameters();
   const bool shared = strategy_ == "importance-area";
-  const uint32_t region = p.text("region") == "image" ? 1u : 0u;  // kRegionFovea, kRegionImage
   const uint32_t points = uint32_t(p.integer("points"));
   const uint32_t tried = shared ? uint32_t(p.integer("paths")) : std::min(points, kEscapePoints);
-  ctx.use(points_).constant("region", region).dispatchThreads(points);
+  ctx.use(points_).dispatchThreads(points);
   ctx.barrier();
   if (shared)
     ctx.use(paths_).dispatchThreads(tried);

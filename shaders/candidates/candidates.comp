@@ -43,9 +43,9 @@ struct Seen {  // the surface that a pixel shows
   bool background;
 };
 
-Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uint stream) {
+Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uint stream, uint from) {
   ivec2 size = textureSize(position, 0);
-  ivec2 pixel = regionSample(region, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
+  ivec2 pixel = regionSample(from, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
   vec4 place = texelFetch(position, pixel, 0);
   return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
 }
@@ -55,14 +55,15 @@ void main() {
   if (i >= count) return;
   Candidate candidate = Candidate(vec4(vec3(0.0), uintBitsToFloat(kNoSide)), vec4(0.0), vec4(0.0), vec4(0.0));
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
+  uint from = regionOf(region, TWO_EYES != 0 ? i / 2u : i);
 #if TWO_EYES
   Seen seen;
   if ((i & 1u) == 0u)
-    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream);
+    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream, from);
   else
-    seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream);
+    seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream, from);
 #else
-  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream);
+  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream, from);
 #endif
   if (seen.background) {
     atomicAdd(counters[kBackground], 1u);

@@ -27,6 +27,12 @@ float foveaWeight(Fovea fovea, vec2 position) {
 // Parameter `region`.
 const uint kRegionFovea = 0u;
 const uint kRegionImage = 1u;
+const uint kRegionMixed = 2u;  // every fifth sample from the image: METHOD section 3
+
+// Of sample i: kRegionFovea or kRegionImage.
+uint regionOf(uint region, uint i) {
+  return region != kRegionMixed ? region : i % 5u == 4u ? kRegionImage : kRegionFovea;
+}
 
 // Numbers [0, kRegionDraws) of a random stream belong to regionSample: at most two a try.
 const uint kRegionTries = 32u;

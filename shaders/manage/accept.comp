@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One slot and one candidate an invocation: importance in fixed point, Eq. 1, cells of the density grid.
+#include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/vpl.glsl"
 #include "manage/acceptance.glsl"
@@ -33,6 +34,7 @@ void testSlot(uint slot) {
   // `random` reuses as many as `linear` would.
   bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
   uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
+  if (reuse != kReuseRandom && mostRejected < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // spared last
   uint cell = cellOf(texelFetch(vpls, texel).xyz);
   slotRecords.list[slot] = SlotRecord(importance, kAlive | (accepted ? kAccepted : 0u), cell, key);
   occupy(cell);
@@ -47,7 +49,10 @@ void readCandidate(uint i) {
     return;
   }
   uint cell = cellOf(uintBitsToFloat(positionSide.xyz));
-  candidateRecords.list[i] = uvec2(quantiseImportance(texelFetch(candidateImportance, int(i)).r), cell);
+  uint value = placement == kPlacementLight
+                   ? quantiseLight(uintBitsToFloat(texelFetch(candidates, 4 * int(i) + 2).w), frame.exposure)
+                   : quantiseImportance(texelFetch(candidateImportance, int(i)).r);
+  candidateRecords.list[i] = uvec2(value, cell);
   occupy(cell);
   atomicAdd(counters.candidates, 1u);
 }

@@ -10,6 +10,12 @@ uint quantiseImportance(float importance) {
   return importance > 0.0 ? min(uint(min(importance, 1.0) * 16777216.0), kImportanceMax) : 0u;
 }
 
+// Light in 24 bits: up to 64 times what a screen shows as white.
+uint quantiseLight(float luminance, float exposure) {
+  precise float shown = luminance * exposure;
+  return quantiseImportance(shown * 0.015625);
+}
+
 // floor(2^24 a / b) for a < b < 2^24.
 uint ratio24(uint a, uint b) {
   uint quotient = 0u;

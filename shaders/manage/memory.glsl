@@ -9,9 +9,12 @@ layout(push_constant) uniform Constants {
   uint slots;            // N, entries of the list
   uint candidateCount;   // M, candidates and failed attempts
   uint listLimit;        // N_MAX <= slots
-  uint keepCount;        // K of the thinning
+  uint keepCount;        // K of the thinning; 0: the slots that are free (placement `light`)
+  uint mostRejected;     // VPLs that Eq. 1 takes away at most
+  uint lightFloor64ths;  // of the mean light
+  uint placement;        // parameters of these names
   uint densityConstant64ths;  // CONST
-  uint reuse;            // parameters of these names
+  uint reuse;
   uint order;
   uint maxDensity;
   uint seed;
@@ -20,6 +23,7 @@ layout(push_constant) uniform Constants {
 
 const uint kReuseLinear = 0u, kReuseCosine = 1u, kReuseRandom = 2u;  // as the choices are declared
 const uint kOrderFixed = 1u;
+const uint kPlacementLight = 1u;
 
 layout(set = 0, std430) buffer StateBlock {
   uint occupied;        // cells that hold a VPL or a candidate
@@ -39,7 +43,7 @@ struct SlotRecord {
 const uint kAlive = 1u, kAccepted = 2u;
 layout(set = 0, std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
 
-// x: importance, 24 bits; kNoCandidate: an attempt that hit nothing; y: cell of the density grid.
+// x: importance, 24 bits, or direct light (placement `light`); kNoCandidate: an attempt that hit nothing; y: cell of the density grid.
 const uint kNoCandidate = 0xffffffffu;
 layout(set = 0, std430) buffer CandidateRecordsBlock { uvec2 list[]; } candidateRecords;
 

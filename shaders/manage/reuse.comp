@@ -11,7 +11,7 @@
 layout(local_size_x = GROUP) in;
 
 bool eligible(uint slot) {
-  return (slotRecords.list[slot].flags & (reuse == kReuseRandom ? kAlive : kAccepted)) != 0u;
+  return (slotRecords.list[slot].flags & (reuse == kReuseRandom || mostRejected < slots ? kAlive : kAccepted)) != 0u;
 }
 bool failed(uint slot) {
   return (slotRecords.list[slot].flags & kAlive) != 0u && sources.list[slot] != kKept;
@@ -27,7 +27,8 @@ void main() {
     if (eligible(slot)) lists.entries[place++] = uvec2(slotRecords.list[slot].key, slot);
   groupBarrier();
 
-  uint reused = min(state.accepted, listLimit), first = oldList();
+  uint spared = state.alive - min(state.alive, mostRejected);
+  uint reused = min(max(state.accepted, spared), listLimit), first = oldList();
   if (reused < total) first = radixSort(first, slots, total, 24u);
   for (uint i = lane; i < reused; i += GROUP) {
     uint slot = lists.entries[first + i].y;
@@ -43,6 +44,6 @@ void main() {
     if (failed(slot)) lists.entries[place++] = uvec2(0u, slot);
   if (lane == 0u) {
     state.reused = reused;
-    state.oldCount = total;
+    state.oldCount = placement == kPlacementLight ? 0u : total;
   }
 }

@@ -14,11 +14,15 @@ layout(local_size_x = GROUP) in;
 
 const uint kThinStream = 0x7468696eu;  // keeps the random numbers of this kernel apart from others
 
+// Placement `light`: the same with light instead of importance, after reuse.comp, for the slots that are free. The candidates
+// lie as densely as eye paths end, in proportion to their importance; so I B / p leaves the light B, direct, plus a share
+// of the mean for what further bounces bring.
 shared uint64_t groupSums[GROUP];
+uint lightFloor = 0u;
 
 uint importanceOf(uint i) {
   uint importance = candidateRecords.list[i].x;
-  return importance == kNoCandidate ? 0u : importance;
+  return importance == kNoCandidate ? 0u : importance + lightFloor;
 }
 
 // Sum of the importances before this invocation's run, and of all.
@@ -39,23 +43,30 @@ void main() {
   Run run = runOf(candidateCount);
   uint64_t total;
   uint64_t before = importanceBefore(run, total);
+  uint samplesWanted = keepCount > 0u ? keepCount : listLimit - state.reused;
+  if (placement == kPlacementLight && counters.candidates > 0u) {
+    lightFloor = uint(total * uint64_t(lightFloor64ths) / (64ul * uint64_t(counters.candidates)));
+    if (total == 0ul) lightFloor = 1u;  // no light: all alike
+    groupBarrier();
+    before = importanceBefore(run, total);
+  }
   uint64_t start = (total * uint64_t(randomStream(seed, frameIndex, kThinStream, 0u) >> 8)) >> 24;
   uint64_t spacing = max(total, 1ul);
 
   uint count = 0u, all;
-  uint64_t sum = before, samples = (keepCount * sum + start) / spacing;  // in front of the candidate
+  uint64_t sum = before, samples = (samplesWanted * sum + start) / spacing;  // in front of the candidate
   for (uint i = run.begin; i < run.end; ++i) {
     sum += uint64_t(importanceOf(i));
-    uint64_t next = (keepCount * sum + start) / spacing;
+    uint64_t next = (samplesWanted * sum + start) / spacing;
     if (next > samples) ++count;
     samples = next;
   }
   uint place = candidateList() + sumBefore(count, all);
   sum = before;
-  samples = (keepCount * sum + start) / spacing;
+  samples = (samplesWanted * sum + start) / spacing;
   for (uint i = run.begin; i < run.end; ++i) {
     sum += uint64_t(importanceOf(i));
-    uint64_t next = (keepCount * sum + start) / spacing;
+    uint64_t next = (samplesWanted * sum + start) / spacing;
     if (next > samples) lists.entries[place++] = uvec2(0u, i);
     samples = next;
   }

@@ -44,5 +44,8 @@ void main() {
   }
   for (uint t = 0u; t < 5u; ++t)
     list.texels[5u * slot + t] = source == kKept ? texelFetch(vpls, int(5u * slot + t)) : uvec4(0u);
-  if (source == kKept) list.texels[5u * slot].w = texelFetch(vplImportance, int(slot)).r;
+  // One that failed Eq. 1 and is spared is compared with the same importance in the next frame.
+  bool spared = mostRejected < slots && (slotRecords.list[slot].flags & kAccepted) == 0u;
+  if (source == kKept)
+    list.texels[5u * slot].w = spared ? texelFetch(vpls, int(5u * slot + 4u)).w : texelFetch(vplImportance, int(slot)).r;
 }

@@ -23,7 +23,7 @@ layout(set = 0, std430) writeonly buffer DensitiesBlock { float list[]; } densit
 
 #if SHARED
 layout(set = 0) uniform samplerBuffer radiance;
-layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: kind; normal, w: luminance
+layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: handicap; normal, w: luminance
 #endif
 #if ONCE
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
@@ -33,6 +33,9 @@ layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
   float nearest;  // m; above 0: nothing counts as nearer, as for the kernel `clamp`
+#if SHARED
+  uint fadeFrames;
+#endif
 };
 
 shared float sums[64];
@@ -84,7 +87,10 @@ void main() {
 #if SHARED
   int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
   float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
-  sites.list[2u * slot] = vec4(position, sums[0] > 0.0 ? siteKind(light) : 0.0);
+  // A new VPL is put at a disadvantage, at first of the area that there would be to each, so that it grows from nothing.
+  float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
+  float handicap = sums[0] > 0.0 ? min(young * float(points) / (sums[0] * float(vplCount)), 1e10) : -1.0;
+  sites.list[2u * slot] = vec4(position, handicap);
   sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
 #endif
 }

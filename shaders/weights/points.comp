@@ -23,10 +23,16 @@ vec2 sequencePoint(uint i) {
   return vec2(uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u));
 }
 
+// Which part of the region a point lies in, and its number there.
+uint partOf(uint i, out uint number) {
+  number = region != kRegionMixed ? i : i % 5u == 4u ? i / 5u : i - i / 5u;
+  return regionOf(region, i);
+}
+
 // Point i of the region takes points i, i + points, i + 2 points.. of the sequence until one lies inside.
-ivec2 regionPoint(uint i, Fovea fovea, ivec2 size) {
+ivec2 regionPoint(uint part, uint i, Fovea fovea, ivec2 size) {
   vec2 high = vec2(size);
-  if (region == kRegionImage) return clamp(ivec2(high * sequencePoint(i)), ivec2(0), size - 1);
+  if (part == kRegionImage) return clamp(ivec2(high * sequencePoint(i)), ivec2(0), size - 1);
   vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));
   vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));
   vec2 boxLow = max(vec2(0.0), fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);
@@ -35,14 +41,15 @@ ivec2 regionPoint(uint i, Fovea fovea, ivec2 size) {
       vec2 position = mix(boxLow, boxHigh, sequencePoint(i + k * points)), d = position - fovea.centre;
       if (dot(d, d) <= fovea.radius * fovea.radius) return clamp(ivec2(position), ivec2(0), size - 1);
     }
-  return regionSample(region, fovea, size, randomStream(0u, 0u, kPointsStream, i));
+  return regionSample(part, fovea, size, randomStream(0u, 0u, kPointsStream, i));
 }
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= points) return;
   ivec2 size = textureSize(gbufferPosition, 0);
-  ivec2 pixel = regionPoint(i, makeFovea(view.gaze.xy, vec2(size), foveaRadius), size);
+  uint number, part = partOf(i, number);
+  ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze.xy, vec2(size), foveaRadius), size);
   vec4 position = texelFetch(gbufferPosition, pixel, 0);
   bool there = position.w > 0.0;
   screen.list[3u * i] = vec4(position.xyz, there ? 1.0 : 0.0);

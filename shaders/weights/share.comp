@@ -32,10 +32,10 @@ void main() {
   float best = 1e38;
   uint owner = kNoSide;
   for (uint i = 0u; i < vplCount; ++i) {
-    vec4 site = texelFetch(sites, int(2u * i));
+    vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
     vec3 d = site.xyz - end.xyz;
-    precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, texelFetch(sites, int(2u * i + 1u)).xyz));
-    cost = site.w > 0.0 ? cost + (site.w == end.w ? 0.0 : kOtherKind) : 2e38;
+    precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, siteNormal.xyz)) + site.w;
+    cost = site.w >= 0.0 ? cost + (siteKind(siteNormal.w) == end.w ? 0.0 : kOtherKind) : 2e38;
     bool nearer = cost < best;
     owner = nearer ? i : owner;
     best = nearer ? cost : best;
