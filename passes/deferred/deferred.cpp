@@ -38,7 +38,7 @@ class Deferred : public Pass {
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
              member("face", image2D(), Usage::Sampled),
-             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
             "light sources; empty slots have no intensity");
@@ -120,11 +120,11 @@ class Deferred : public Pass {
 
  private:
   static void addMask(PassDeclaration& d) {
-    d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled,
+    d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi where `shade` leaves pixels out (of pass reproject); with `shade` only")
         .makeOptional();
     d.input("shade", "shade-mask",
-            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::Sampled, "1: in a listed block"),
+            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead, "1: in a listed block"),
              member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead,
                     "x | y << 16, in blocks of `interleave` pixels"),
              member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect,

@@ -24,19 +24,20 @@ class Reproject : public Pass {
         "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
              member("face", image2D(), Usage::Sampled)},
             "surfaces seen by the second eye");
     d.input("source_gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the first eye");
-    d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled,
+    d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: what is warped, of the first eye: `irradiance` of pass deferred");
-    d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
-             "rgb: the source's, warped; a: 1 where it is known, 0 where there is no source, and in the "
-             "background");
+    d.output(
+        "irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
+        "rgb: the source's, warped; a: 1 where it is known, 0.5 where it is that of pixels nearby, 0 where "
+        "there is neither, and in the background");
     const SizeExpr blocks =
         ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
     d.output(
@@ -55,7 +56,9 @@ class Reproject : public Pass {
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("new_pixels", "of these, pixels without a source");
-    d.counter("shaded_pixels", "pixels with a surface in blocks that hold one without a source");
+    d.counter("filled_pixels", "of these, pixels that take the light of their surface nearby");
+    d.counter("shaded_pixels",
+              "pixels with a surface in blocks that hold one with neither a source nor such light");
     return d;
   }
 
@@ -66,7 +69,9 @@ class Reproject : public Pass {
                   "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
                   "use 1, 2, 4 or 8, the same as for the shading");
     const gpu::Defines defines{{"INTERLEAVE", std::to_string(n)}};
-    warp_ = ctx.compute("reproject/warp.comp", defines);
+    gpu::Defines filling = defines;
+    filling["FILL"] = std::to_string(ctx.parameters().integer("fill"));
+    warp_ = ctx.compute("reproject/warp.comp", filling);
     scan_ = ctx.compute("reproject/scan.comp", defines);
     compact_ = ctx.compute("reproject/compact.comp", defines);
   }
@@ -90,6 +95,10 @@ class Reproject : public Pass {
     d.parameter("interleave", integer(4, 1, 8),
                 "pixels without a source make the whole block of n x n pixels be shaded: 1, 2, 4 or 8, as "
                 "for the shading");
+    d.parameter("fill", integer(0, 0, 4),
+                "a pixel without a source takes the light of pixels of its surface at most so many pixels "
+                "away, in its "
+                "tile of 16 x 16 pixels, that have one; 0: none, it is shaded");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "distance of a source from the tangent plane of a pixel, in parts of the pixel's distance to "
                 "the eye, that "

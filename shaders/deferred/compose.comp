@@ -6,9 +6,9 @@
 layout(local_size_x = 16, local_size_y = 4) in;
 
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0) uniform texture2D gbufferAlbedo;
-layout(set = 0) uniform texture2D base;
-layout(set = 0) uniform texture2D shadeMask;
+layout(set = 0, rgba16f) uniform readonly image2D gbufferAlbedo;
+layout(set = 0, rgba16f) uniform readonly image2D base;
+layout(set = 0, r8) uniform readonly image2D shadeMask;
 layout(set = 0, rgba16f) uniform writeonly image2D irradiance;
 layout(set = 0, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, rgba16f) uniform writeonly image2D radiance;
@@ -23,9 +23,9 @@ void main() {
   bool surface = inImage && imageLoad(gbufferPosition, min(p, size - 1)).w > 0.0;
   uint surfaces = subgroupBallotBitCount(subgroupBallot(surface));
   if (subgroupElect() && surfaces > 0u) atomicAdd(counters[0], surfaces);
-  if (!inImage || texelFetch(shadeMask, p, 0).r > 0.5) return;
-  vec3 e = surface ? texelFetch(base, p, 0).rgb : vec3(0.0);
-  vec3 reflected = texelFetch(gbufferAlbedo, p, 0).rgb * e, total = reflected;
+  if (!inImage || imageLoad(shadeMask, p).r > 0.5) return;
+  vec3 e = surface ? imageLoad(base, p).rgb : vec3(0.0);
+  vec3 reflected = imageLoad(gbufferAlbedo, p).rgb * e, total = reflected;
   if (!surface) total = reflected = vec3(0.0);
 #if HAS_DIRECT
   total += texelFetch(direct, p, 0).rgb;

@@ -29,7 +29,7 @@ layout(local_size_x = 16, local_size_y = 4) in;
 // Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, binding = 2) uniform texture2D gbufferAlbedo;
+layout(set = 0, binding = 2, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D partial;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
@@ -40,8 +40,8 @@ layout(set = 0, binding = 12) uniform texture2D direct;
 #endif
 
 #if MASKED
-layout(set = 0, binding = 10) uniform texture2D base;
-layout(set = 0, binding = 11) uniform texture2D shadeMask;
+layout(set = 0, binding = 10, rgba16f) uniform readonly image2D base;
+layout(set = 0, binding = 11, r8) uniform readonly image2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -60,7 +60,7 @@ struct Centre {
 };
 
 #if MASKED
-bool isShaded(ivec2 p) { return texelFetch(shadeMask, p, 0).r > 0.5; }
+bool isShaded(ivec2 p) { return imageLoad(shadeMask, p).r > 0.5; }
 #else
 bool isShaded(ivec2 p) { return true; }
 #endif
@@ -144,7 +144,7 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
       vec3 value = imageLoad(partial, inside).rgb;
 #if MASKED
       bool shaded = isShaded(inside);
-      vec4 known = vec4(texelFetch(base, inside, 0).rgb, 1.0);
+      vec4 known = vec4(imageLoad(base, inside).rgb, 1.0);
 #endif
       for (int k = 0; k < kPixels; ++k) {
         int dy = row - k;
@@ -224,7 +224,7 @@ void resolve(ivec2 first, ivec2 size, inout uvec2 counted) {
     counted.x += subgroupBallotBitCount(subgroupBallot(surface));
     counted.y += subgroupBallotBitCount(subgroupBallot(incomplete));
     if (any(greaterThanEqual(p, size))) continue;
-    vec3 reflected = surface ? texelFetch(gbufferAlbedo, p, 0).rgb * e : vec3(0.0);
+    vec3 reflected = surface ? imageLoad(gbufferAlbedo, p).rgb * e : vec3(0.0);
     vec3 total = reflected;
 #if HAS_DIRECT
     total += texelFetch(direct, p, 0).rgb;

@@ -257,6 +257,62 @@ TEST(Reproject, SilhouettesKeepTheirOwnLight) {
     }
 }
 
+// A pixel without a source takes the mean of its surface's light at most two pixels away in its tile, nearer
+// pixels with more weight; only blocks with a pixel that has none around are shaded.
+TEST(Reproject, NarrowHolesAreFilledFromTheirSurface) {
+  const Pillar scene;
+  const Eye first = scene.eye(0), second = scene.eye(-0.25f);
+  const auto source = sample(first.seen, [](glm::vec3 p) { return glm::vec3(2) + glm::sin(3.0f * p); });
+  const auto run = [&](int fill) {
+    PassTest test("reproject");
+    test.param("fill", fill);
+    wire(test, first, second.seen, source);
+    Result result(test);
+    return std::pair(std::move(result), test.counter("filled_pixels"));
+  };
+  const auto [open, none] = run(0);
+  const auto [result, counted] = run(2);
+  EXPECT_EQ(none, 0);
+  size_t filled = 0, left = 0;
+  std::vector<float> mask(open.mask.size());
+  for (int y = 0; y < second.seen.height; ++y)
+    for (int x = 0; x < second.seen.width; ++x) {
+      const size_t i = size_t(y * second.seen.width + x);
+      const SurfacePixel& p = second.seen.pixels[i];
+      if (p.distance <= 0 || open.known(i)) {
+        ASSERT_EQ(result.color(i), open.color(i));
+        continue;
+      }
+      double weights = 0;
+      glm::dvec3 sum(0);
+      for (int v = std::max(y - 2, y / 16 * 16); v <= std::min(y + 2, y / 16 * 16 + 15); ++v)
+        for (int u = std::max(x - 2, x / 16 * 16); u <= std::min(x + 2, x / 16 * 16 + 15); ++u) {
+          if (u >= second.seen.width || v >= second.seen.height) continue;
+          const size_t k = size_t(v * second.seen.width + u);
+          const SurfacePixel& q = second.seen.pixels[k];
+          if (!open.known(k) || glm::dot(q.normal, p.normal) < 0.9f ||
+              std::abs(glm::dot(q.position - p.position, p.normal)) > 0.005f * p.distance)
+            continue;
+          const double w = 1.0 / ((u - x) * (u - x) + (v - y) * (v - y));
+          weights += w;
+          sum += w * glm::dvec3(open.color(k));
+        }
+      ASSERT_EQ(result.irradiance[4 * i + 3], weights > 0 ? 0.5f : 0.0f) << x << "," << y;
+      ++(weights > 0 ? filled : left);
+      if (weights > 0) {
+        ASSERT_NEAR(glm::length(glm::dvec3(result.color(i)) - sum / weights), 0, 5e-3) << x << "," << y;
+        continue;
+      }
+      for (int v = y / 4 * 4; v < std::min(y / 4 * 4 + 4, second.seen.height); ++v)
+        for (int u = x / 4 * 4; u < std::min(x / 4 * 4 + 4, second.seen.width); ++u)
+          mask[size_t(v * second.seen.width + u)] = 1;
+    }
+  EXPECT_EQ(result.mask, mask);
+  EXPECT_EQ(counted, double(filled));
+  EXPECT_GT(filled, 20u);
+  EXPECT_GT(left, 20u);
+}
+
 TEST(Reproject, WithoutASourceEverythingIsShaded) {
   const Pillar scene;
   const Eye second = scene.eye(0);
