@@ -27,6 +27,7 @@ except ImportError:
 # name -> (heading, factor, explanation); the paper gives its errors times 1000.
 MEASURES = {
     "error.fovea.mse": ("MSE fovea ×10⁻³", 1e3, "mean square error of the displayed picture inside the foveal circle, reference noise subtracted"),
+    "error.fovea.mse_over_ours": ("more than ours ×10⁻³", 1e3, "MSE in the fovea less that of ours, seed by seed: above its ±, ours is better"),
     "error.periphery.mse": ("MSE periphery ×10⁻³", 1e3, "the same outside it"),
     "error.fovea.relmse": ("relMSE indirect fovea", 1, "relative square error of the indirect radiance alone"),
     "error.periphery.relmse": ("relMSE indirect periphery", 1, "the same outside the fovea"),
@@ -35,6 +36,7 @@ MEASURES = {
     "temporal.fovea.mse_prime": ("MSE' fovea ×10⁻³", 1e3, "mean square change between consecutive frames (the paper's Eq. 4); contains the scene's own motion"),
     "temporal.periphery.mse_prime": ("MSE' periphery ×10⁻³", 1e3, "the same outside the fovea"),
     "temporal.fovea.excess": ("excess fovea ×10⁻³", 1e3, "mean square of (change of the sequence - change of the reference): flicker without the scene's motion"),
+    "temporal.fovea.excess_over_ours": ("excess more than ours ×10⁻³", 1e3, "excess in the fovea less that of ours, seed by seed"),
     "temporal.periphery.excess": ("excess periphery ×10⁻³", 1e3, "the same outside the fovea"),
     "temporal.fovea.mse": ("MSE fovea, all frames ×10⁻³", 1e3, "mean over the frames of the sequence"),
     "time.wall_ms": ("frame ms", 1, "wall time of a frame, median"),
