@@ -131,7 +131,7 @@ TEST_P(BuiltinScenes, IsClosedAroundTheViewer) {
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                          testing::Values(Expected{"cornellbox_moving", 5800, false},
                                          Expected{"atrium", 279000}, Expected{"balcony", 192000},
-                                         Expected{"room", 476000}),
+                                         Expected{"room", 476000}, Expected{"yard", 516000}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -18,7 +18,7 @@ using namespace model;
 // Faces of the walls around the yard, and the edge between lawn and paving.
 constexpr float kLeft = -7.0f, kRight = 6.5f, kBack = -5.6f, kFront = 6.2f, kEdge = -0.20f;
 constexpr float kStoreFront = -3.6f, kStoreLeft = 0.6f, kStoreWidth = 5.0f, kStoreHeight = 2.35f;
-constexpr float kFence = 2.1f;
+constexpr float kFence = 2.25f;
 constexpr glm::vec3 kSwing{-3.7f, 0, -1.9f}, kTower{-2.4f, 0, -4.1f}, kSandbox{-1.6f, 0, -0.2f},
     kTree{-6.0f, 0, -2.4f}, kMast{-0.5f, 0, -4.5f};
 constexpr float kSwingTurn = 22;
@@ -179,7 +179,7 @@ void addPlants(SceneBuilder& b, const Palette& p) {
             .leavesPerTwig = 10,
             .twigLength = 0.42f,
             .leaf = {.length = 0.095f, .width = 0.055f, .fold = 0.3f, .droop = 0.2f, .steps = 1},
-            .fruits = 60,
+            .fruits = 36,
             .fruitRadius = 0.036f,
             .seed = 861});
   m.add(p.bark, apple.wood, at(kTree))
@@ -251,11 +251,44 @@ void furnish(SceneBuilder& b, const Palette& p) {
   works.add(barrier(p, 1.1f, true), at(0.10f, -0.001f, -1.10f) * turnY(35));
   works.add(wheelbarrow(p), at(0.75f, 0, 0.55f) * turnY(-28));
   works.add(shovel(p), at(1.05f, 0.20f, -1.92f) * turnY(50) * turnX(-14));
-  works.add(slabStack(p), at(3.05f, 0, -2.55f) * turnY(24));
-  works.add(bicycle(p), at(3.25f, -0.002f, -3.28f) * turnY(3) * turnX(-9));
+  works.add(slabStack(p), at(3.62f, 0, -2.45f) * turnY(24));
+  works.add(bicycle(p), at(3.08f, -0.002f, -3.28f) * turnY(3) * turnX(-9));
   works.add(bench(p), at(5.0f, 0, 5.6f) * turnY(180));
   works.add(bucket(p, p.steel, 0.27f), at(2.85f, 0, -1.85f) * turnY(40));
   b.place("works", b.mesh("works", std::move(works)));
+}
+
+// A game of hopscotch in chalk, fallen leaves.
+void addTraces(SceneBuilder& b, const Palette& p) {
+  MeshBuilder m;
+  const glm::mat4 game = at(4.25f, 0, 1.05f) * turnY(14);
+  constexpr float kCell = 0.37f, kLow = -0.004f, kHigh = 0.0055f, kLine = 0.014f;
+  const auto line = [&](float x0, float z0, float x1, float z1) {
+    m.add(p.reflex,
+          box({x0 - kLine, kLow, z0 - kLine}, {x1 + kLine, kHigh, z1 + kLine},
+              {.bevel = 0.002f, .bottom = false}),
+          game);
+  };
+  float z = 0;
+  for (const bool pair : {false, true, false, true, false}) {
+    const float half = kCell * (pair ? 1.0f : 0.5f), end = z - kCell;
+    line(-half, z, half, z);
+    line(-half, end, -half, z);
+    line(half, end, half, z);
+    if (pair) line(0, end, 0, z);
+    z = end;
+  }
+  m.add(p.reflex,
+        sweep({{-0.5f * kCell, 0, z}, {0.5f * kCell, 0, z}}, rectangle(2 * kLine, 0.010f),
+              {.up = glm::vec3(0, 1, 0)}),
+        game);
+  const Shape blade =
+      leafBlade({.length = 0.085f, .width = 0.06f, .fold = 0.35f, .droop = -0.2f, .steps = 1});
+  for (uint32_t i = 0; i < 110; ++i)
+    m.add(i % 3 == 0 ? p.leaf[2] : p.fallen, blade,
+          at(random(891, i, 0.0f, 6.3f), 0.008f, random(892, i, -3.4f, 4.5f)) *
+              turnY(random(893, i, 0, 360)) * scaled(random(894, i, 0.7f, 1.2f)));
+  b.place("traces", b.mesh("traces", std::move(m)));
 }
 
 void addMovers(SceneBuilder& b, const Palette& p) {
@@ -299,11 +332,12 @@ Scene yardScene() {
   b.place("ground", b.mesh("ground", std::move(ground)));
   furnish(b, p);
   addPlants(b, p);
+  addTraces(b, p);
   addMovers(b, p);
   b.sun("sun", {1.0f, 0.90f, 0.76f}, 20, {-0.82f, -0.42f, 0.12f});
-  b.camera({5.2f, 1.5f, 2.4f}, {0.2f, 0.95f, -2.4f}, 58);
-  b.scene.environment = {0.26f, 0.42f, 0.66f};
-  return b.finish(1.0f, {0.62f, 0.6f});
+  b.camera({5.2f, 1.68f, 2.4f}, {0.35f, 0.95f, -2.4f}, 58);
+  b.scene.environment = {0.30f, 0.50f, 0.80f};
+  return b.finish(0.8f, {0.62f, 0.6f});
 }
 
 }  // namespace fovea::scene

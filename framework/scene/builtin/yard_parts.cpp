@@ -118,7 +118,7 @@ Palette makePalette(SceneBuilder& b) {
   p.door = b.material("door", {0.10f, 0.20f, 0.15f});
   p.shutter = b.material("shutter", {0.13f, 0.27f, 0.24f});
   p.zinc = b.material("zinc", {0.36f, 0.38f, 0.39f});
-  p.orange = b.material("orange plastic", {0.88f, 0.20f, 0.012f});
+  p.orange = b.material("orange plastic", {0.86f, 0.125f, 0.008f});
   p.reflex = b.material("reflective strip", {0.82f, 0.82f, 0.80f});
   p.blue = b.material("blue paint", {0.05f, 0.20f, 0.52f});
   p.green = b.material("green paint", {0.10f, 0.33f, 0.12f});
@@ -140,6 +140,7 @@ Palette makePalette(SceneBuilder& b) {
   p.leaf[2] = b.material("young leaves", {0.25f, 0.36f, 0.07f}, {.doubleSided = true});
   p.blade[0] = b.material("grass", {0.14f, 0.29f, 0.05f}, {.doubleSided = true});
   p.blade[1] = b.material("dry grass", {0.27f, 0.32f, 0.09f}, {.doubleSided = true});
+  p.fallen = b.material("fallen leaves", {0.40f, 0.24f, 0.06f}, {.doubleSided = true});
   p.clover = b.material("blossoms", {0.72f, 0.56f, 0.62f}, {.doubleSided = true});
   return p;
 }
@@ -414,7 +415,8 @@ MeshBuilder fence(const Palette& p, float length, float height) {
     Outline cap({0, 0});
     m.add(p.zinc, block(0.15f, 0.025f, 0.28f, {.bevel = 0.008f}), at(x, height + 0.01f, -0.005f));
   }
-  // A kerb, so that nothing shines through below.
+  // Panels between the two rows of boards and a kerb, so that nothing shines through.
+  m.add(p.fence, box({-half, 0.1f, -0.02f}, {half, height - 0.08f, 0.02f}));
   m.add(p.plinth, box({-half, -0.2f, -0.09f}, {half, 0.16f, 0.075f}, {.bevel = 0.012f}));
   return m;
 }

@@ -13,7 +13,7 @@ struct Palette {
   uint32_t pale, ochre, white, brick, plinth, stone, roof, zinc, pane, inside, frame, door, shutter,
       paving[3], mortar, lawn, blade[2], sand, soil, orange, reflex, timber, timberAcross, fence, shed, felt,
       blue, green, steel, rubber, rope, teal, leather, tray, leaf[3], bark, birch, flag, mast, red, yellow,
-      cream, clay, clover;
+      cream, clay, clover, fallen;
 };
 Palette makePalette(model::SceneBuilder& builder);
 
