@@ -70,6 +70,8 @@ inline glm::vec2 sequencePoint(uint32_t i) {
   return {uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u)};
 }
 
+inline constexpr uint32_t kRegionMixed = 2u;  // four points in five from the fovea, one from the image
+
 struct WeightSettings {
   uint32_t region = scene::kRegionFovea;
   float foveaRadius = 0.25f;
@@ -88,15 +90,19 @@ inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& se
   std::vector<Seen> points;
   for (uint32_t i = 0; i < settings.points; ++i) {
     glm::ivec2 pixel(-1);
-    if (settings.region == scene::kRegionImage) pixel = glm::ivec2(high * sequencePoint(i));
+    const bool mixed = settings.region == kRegionMixed,
+               image = mixed ? i % 5 == 4 : settings.region == scene::kRegionImage;
+    const uint32_t number = !mixed ? i : image ? i / 5 : i - i / 5;
+    if (image) pixel = glm::ivec2(high * sequencePoint(number));
     for (uint32_t k = 0; pixel.x < 0 && k < scene::kRegionTries; ++k) {
-      const glm::vec2 p = glm::mix(low, up, sequencePoint(i + k * settings.points));
+      const glm::vec2 p = glm::mix(low, up, sequencePoint(number + k * settings.points));
       const bool inside =
           glm::all(glm::greaterThanEqual(up, low)) && glm::distance(p, fovea.centre) <= fovea.radius;
       if (inside) pixel = glm::ivec2(p);
     }
     if (pixel.x < 0)
-      pixel = scene::regionSample(settings.region, fovea, room.size, randomStream(0, 0, 0x77656967u, i));
+      pixel =
+          scene::regionSample(scene::kRegionFovea, fovea, room.size, randomStream(0, 0, 0x77656967u, number));
     pixel = glm::clamp(pixel, glm::ivec2(0), room.size - 1);
     points.push_back(room.pixels[size_t(pixel.y) * room.size.x + pixel.x]);
   }

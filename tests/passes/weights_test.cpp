@@ -88,7 +88,9 @@ void wire(PassTest& test, const Inputs& in, const char* strategy, const WeightSe
   }
   const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
   test.param("strategy", strategy)
-      .param("region", settings.region == scene::kRegionImage ? "image" : "fovea");
+      .param("region", settings.region == kRegionMixed          ? "mixed"
+                       : settings.region == scene::kRegionImage ? "image"
+                                                                : "fovea");
   test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
   test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
   test.param("sides", settings.litOnly ? "lit" : "all").param("offset", settings.offset);
@@ -303,6 +305,53 @@ TEST(Weights, ImportanceAreasEqualTheReference) {
               int(got.size() / 20));  // a path, or one of 64 rays of a density, falls to the other side
     EXPECT_LT(want.doubtful, 80);
   }
+}
+
+// The whole view's share of the points counts in the densities and in the paths.
+TEST(Weights, ImportanceAreasOfTheMixedRegion) {
+  const Room room = closedRoom(true);
+  WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
+  for (uint32_t i = 0; i < in.vpls.size(); ++i)
+    in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+  settings.region = kRegionMixed;
+  const auto points = screenPoints(room, settings);
+  const auto p = densities(room, in.vpls, points);
+  const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, p, 8192, settings);
+  const auto got = weigh(in, "importance-area", settings);
+  double off = 0, all = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    off += std::abs(got[i].area - want.area[i]);
+    all += want.area[i];
+  }
+  EXPECT_LT(off, 0.01 * all);
+}
+
+// A VPL that comes into a list takes its share step by step, never in a jump, and all of it in the end.
+TEST(Weights, TheShareOfANewVplGrows) {
+  const Room room = closedRoom(false, 32);
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, {})));
+  for (scene::VplState& vpl : in.vpls) vpl.life = 100;
+  std::vector<double> grown;
+  for (int life = 1; life <= 10; ++life) {
+    for (size_t i = 0; i < in.vpls.size(); i += 20) in.vpls[i].life = float(life);
+    PassTest test("weights");
+    wire(test, in, "importance-area", {});
+    test.param("fade_frames", 8);
+    test.run();
+    const auto list = test.values<scene::Vpl>("emitters");
+    double sum = 0;
+    for (size_t i = 0; i < list.size(); i += 20) sum += list[i].area;
+    grown.push_back(sum);
+  }
+  const double whole = grown.back();
+  ASSERT_GT(whole, 0);
+  EXPECT_LT(grown[0], 0.35 * whole);
+  for (size_t k = 1; k < grown.size(); ++k) {
+    EXPECT_GE(grown[k], grown[k - 1]) << k;
+    EXPECT_LT(grown[k] - grown[k - 1], 0.3 * whole) << k;
+  }
+  EXPECT_EQ(grown[8], whole);
 }
 
 // Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine
