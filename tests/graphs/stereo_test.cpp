@@ -140,6 +140,43 @@ TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   EXPECT_LT(again.p95, 1e-6);
 }
 
+class BuiltinStereo : public testing::TestWithParam<const char*> {};
+
+// Thin things, curtains, leaves and the border that only the second eye sees, beside the same eye shaded
+// whole with the same VPLs.
+TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "ir_stereo_whole.json";
+  std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/ir_stereo.json",
+    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "emit", "atlas": "shadow-atlas"},
+                         "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
+    "outputs": {"whole": "whole.indirect"}})";
+  const GraphRun both = run(file.string(), scene::builtin(GetParam()), "", 1);
+  const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(both.outputs.at("whole"));
+  const auto all = std::vector<float>(size_t(kSide) * kSide, 1);
+  std::vector<float> border(all.size());  // of the right eye: what the left one's image does not hold
+  for (size_t i = 0; i < all.size(); ++i) border[i] = i % kSide >= kSide - 4;
+  for (size_t i = 0; i < image.size(); ++i) ASSERT_TRUE(std::isfinite(image[i])) << "texel " << i / 4;
+  const double pixels = counter(both, "right/reproject.pixels"),
+               fresh = counter(both, "right/reproject.new_pixels") / pixels,
+               filled = counter(both, "right/reproject.filled_pixels") / pixels,
+               shaded = counter(both, "right/reproject.shaded_pixels") / pixels;
+  const Errors errors = compare(image, want, all, true), atBorder = compare(image, want, border, true);
+  std::printf(
+      "%s: new %.2f%%, filled %.2f%%, shaded %.2f%%; mean %.4f p95 %.4f bias %.4f; border %.4f %.4f\n",
+      GetParam(), 100 * fresh, 100 * filled, 100 * shaded, errors.mean, errors.p95, errors.bias,
+      atBorder.mean, atBorder.bias);
+  EXPECT_GT(fresh, 0.005);
+  EXPECT_LT(fresh, 0.1);
+  EXPECT_GT(filled, 0.1 * fresh);
+  EXPECT_LT(shaded, 0.05);
+  EXPECT_LT(errors.mean, 0.04);
+  EXPECT_LT(std::abs(errors.bias), 0.01);
+  EXPECT_LT(atBorder.mean, 0.1);
+  EXPECT_LT(std::abs(atBorder.bias), 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stereo, BuiltinStereo, testing::Values("atrium", "room"));
+
 // Nothing to see, nothing to warp, nothing to shade.
 TEST(Stereo, EmptySceneIsBlack) {
   scene::Scene s;
