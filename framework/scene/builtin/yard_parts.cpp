@@ -55,8 +55,8 @@ void addSurfaces(SceneBuilder& b, Palette& p) {
   const MasonryLook bricks = {.columns = 8,
                               .rows = 24,
                               .joint = 0.13f,
-                              .low = {0.30f, 0.11f, 0.07f},
-                              .high = {0.46f, 0.19f, 0.11f},
+                              .low = {0.46f, 0.27f, 0.19f},
+                              .high = {0.62f, 0.40f, 0.29f},
                               .jointColor = {0.46f, 0.43f, 0.38f}};
   p.brick = b.material("brick", glm::vec3(1),
                        {.texture = b.texture(masonry("brick", bricks, 384, 384, 916)), .metres = 2.0f});
@@ -103,7 +103,7 @@ Palette makePalette(SceneBuilder& b) {
   };
   p.timber = boarded("timber", 5, {0.32f, 0.20f, 0.10f}, {0.52f, 0.36f, 0.20f}, 0.9f, 931);
   p.timberAcross = boarded("timber, lying", 5, {0.32f, 0.20f, 0.10f}, {0.52f, 0.36f, 0.20f}, 0.9f, 931, 90);
-  p.fence = boarded("fence", 6, {0.27f, 0.19f, 0.12f}, {0.47f, 0.37f, 0.26f}, 1.1f, 932);
+  p.fence = boarded("fence", 6, {0.40f, 0.32f, 0.23f}, {0.62f, 0.53f, 0.41f}, 1.1f, 932);
   p.shed = boarded("shed", 6, {0.20f, 0.31f, 0.30f}, {0.27f, 0.40f, 0.38f}, 1.1f, 933);
   p.pane = b.material("window pane", glm::vec3(1),
                       {.texture = b.texture(paneTexture()),

@@ -20,6 +20,9 @@ Palette makePalette(model::SceneBuilder& builder);
 // Straight from corner to corner, each rounded over `reach` metres to both sides: bent pipes.
 std::vector<glm::vec3> roundedPath(const std::vector<glm::vec3>& corners, float reach, int steps = 7);
 
+// A straight round bar from a to b.
+model::Shape pole(glm::vec3 a, glm::vec3 b, float radius, int sides = 16);
+
 // ---- Buildings -------------------------------------------------------------------------------------------
 
 struct Window {
