@@ -17,6 +17,8 @@ struct ManageSettings {
   std::string reuse = "linear", order = "literal";
   uint32_t keep = 0, limit = 0, maxDensity = 0;
   double densityConstant = 1, cell = 1.0 / 48;
+  std::string placement = "importance";
+  double lightFloor = 0.25, turnover = 1;
 };
 
 struct ManageInput {
@@ -26,6 +28,7 @@ struct ManageInput {
   std::vector<float> vplImportance;
   uint32_t seed = 1, frame = 0;
   glm::vec3 boundsMin{0}, boundsMax{1};
+  float exposure = 1;
 };
 
 struct ManageOutput {
@@ -74,7 +77,10 @@ class ManageReference {
 
  private:
   uint32_t oldImportance(uint32_t slot) const { return importance24(in_.vplImportance[slot]); }
-  uint32_t newImportance(uint32_t i) const { return importance24(in_.candidateImportance[i]); }
+  uint32_t newImportance(uint32_t i) const {
+    if (s_.placement == "light") return importance24(in_.candidates[i].luminance * in_.exposure * 0.015625f);
+    return importance24(in_.candidateImportance[i]);
+  }
   uint32_t random(uint32_t slot, uint32_t draw) const {
     return hashCombine(randomStream(in_.seed, in_.frame, kManageStream, slot), draw) >> 8;
   }
@@ -110,7 +116,20 @@ class ManageReference {
       out_.rejected += !passed;
       if (passed || random) order.push_back(slot);
     }
+    const size_t most = size_t(std::ceil(s_.turnover * double(alive_.size())));
+    const bool limited = most < alive_.size();
+    if (limited && !random) {  // those that failed after those that passed, the most important first
+      for (uint32_t slot = 0; slot < alive_.size(); ++slot)
+        if (alive_[slot] && !acceptedByEq1(slot)) order.push_back(slot);
+      std::stable_sort(order.begin(), order.end());
+    }
+    const auto key = [&](uint32_t slot) {
+      return (0xffffffu - oldImportance(slot)) >> 1 | (acceptedByEq1(slot) ? 0u : 0x800000u);
+    };
+    const size_t alive = size_t(std::count(alive_.begin(), alive_.end(), true));
+    accepted = uint32_t(std::max<size_t>(accepted, alive - std::min(alive, most)));
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+      if (limited && !random) return key(a) < key(b);
       return random ? this->random(a, 1) < this->random(b, 1) : oldImportance(a) > oldImportance(b);
     });
     order.resize(std::min<size_t>(accepted, limit_));
@@ -125,15 +144,20 @@ class ManageReference {
 
   // Inverse of the CDF at K equidistant points with a common random offset.
   std::vector<uint32_t> thin() const {
-    const uint64_t keep = s_.keep > 0 ? s_.keep : limit_;
+    const bool light = s_.placement == "light";
+    const uint64_t keep = s_.keep > 0 ? s_.keep : light ? limit_ - out_.kept : limit_;
     uint64_t sum = 0, cdf = 0;
     for (uint32_t i : valid_) sum += newImportance(i);
+    uint64_t floor = 0;
+    if (light && !valid_.empty())
+      floor = sum > 0 ? sum * uint64_t(std::lround(64 * s_.lightFloor)) / (64 * valid_.size()) : 1;
+    sum += floor * valid_.size();
     std::vector<uint32_t> chosen;
     if (sum == 0) return chosen;
     const uint64_t start = sum * (randomStream(in_.seed, in_.frame, kThinStream, 0) >> 8) >> 24;
     uint64_t sample = sum - start;  // next sample on [0, K sum); candidate i covers (K cdf, K (cdf + I)]
     for (uint32_t i : valid_) {
-      cdf += newImportance(i);
+      cdf += newImportance(i) + floor;
       if (sample > keep * cdf) continue;
       chosen.push_back(i);
       while (sample <= keep * cdf) sample += sum;
@@ -171,7 +195,8 @@ class ManageReference {
     std::vector<Entry> lc, lo;
     for (uint32_t i : fresh) lc.push_back({i, weight(newImportance(i), cellOfCandidate(i))});
     for (uint32_t slot = 0; slot < alive_.size(); ++slot)
-      if (alive_[slot] && !stays_[slot]) lo.push_back({slot, weight(oldImportance(slot), cellOfVpl(slot))});
+      if (s_.placement != "light" && alive_[slot] && !stays_[slot])
+        lo.push_back({slot, weight(oldImportance(slot), cellOfVpl(slot))});
     std::stable_sort(lc.begin(), lc.end(),
                      [](const Entry& a, const Entry& b) { return a.weight > b.weight; });
     std::stable_sort(lo.begin(), lo.end(),
@@ -206,7 +231,9 @@ class ManageReference {
       out_.deleted += alive_[slot] && !stays_[slot];
       if (stays_[slot]) {
         vpl = in_.vpls[slot];
-        vpl.importance = in_.vplImportance[slot];
+        const bool limited = std::ceil(s_.turnover * double(alive_.size())) < double(alive_.size());
+        vpl.importance =
+            limited && !acceptedByEq1(slot) ? in_.vpls[slot].previousImportance : in_.vplImportance[slot];
       } else if (next < added_.size()) {
         const uint32_t i = added_[next++];
         const scene::Candidate& c = in_.candidates[i];

@@ -124,6 +124,8 @@ class Manager {
     test_->param("keep", int(settings.keep)).param("limit", int(settings.limit));
     test_->param("count", int(in.vpls.size())).param("max_density", int(settings.maxDensity));
     test_->param("density_constant", settings.densityConstant).param("cell", settings.cell);
+    test_->param("placement", settings.placement.c_str()).param("light_floor", settings.lightFloor);
+    test_->param("turnover", settings.turnover);
     test_->buffer("candidates", in.candidates, "Candidate");
     test_->buffer("candidate_importance", in.candidateImportance, "float");
     test_->buffer("vpls", in.vpls, "VplState");
@@ -136,6 +138,7 @@ class Manager {
     test_->run(1);
     in.seed = test_->lastFrame().seed;
     in.frame = uint32_t(test_->lastFrame().index);
+    in.exposure = test_->lastFrame().exposure;
     in.boundsMin = test_->geometry().boundsMin;
     in.boundsMax = test_->geometry().boundsMax;
     const ManageOutput want = ManageReference(settings_, in).run();
@@ -241,6 +244,50 @@ TEST(Manage, LinearEqualsTheSerialAlgorithm) { compareRandomCases("linear", 100)
 TEST(Manage, CosineEqualsTheSerialAlgorithm) { compareRandomCases("cosine", 200); }
 TEST(Manage, RandomEqualsTheSerialAlgorithm) { compareRandomCases("random", 300); }
 TEST(Manage, NoneTakesTheFirstCandidates) { compareRandomCases("none", 400); }
+
+TEST(Manage, LightAndTurnoverEqualTheSerialAlgorithm) {
+  Dice dice(50);
+  for (uint32_t seed = 500; seed < 508; ++seed) {
+    SCOPED_TRACE(seed);
+    const Content content{dice.any<uint32_t>({7, 40, 300}), dice.any<uint32_t>({3, 200, 700}), 0.8f};
+    ManageSettings settings;
+    settings.placement = seed % 4 == 0 ? "importance" : "light";
+    settings.reuse = seed % 4 == 1 ? "random" : "linear";
+    settings.lightFloor = dice.any({0.0, 0.25, 2.0});
+    settings.turnover = dice.any({0.0, 0.05, 0.4});
+    ManageInput in = randomInput(dice, content);
+    if (seed == 507)
+      for (Candidate& c : in.candidates) c.luminance = 0;
+    Manager manager(settings, in, seed);
+    for (uint32_t i = 0; i < 4 && !testing::Test::HasFailure(); ++i) {
+      const ManageOutput out = manager.run(in);
+      EXPECT_LE(out.deleted, std::ceil(settings.turnover * content.slots));
+      nextFrame(in, out.vpls, dice);
+      newCandidates(in, dice, content);
+    }
+  }
+}
+
+// Two lights: VPLs in proportion to them, and to the floor.
+TEST(Manage, PlacesVplsInProportionToLight) {
+  Dice dice(51);
+  ManageInput in = randomInput(dice, {200, 2400, 0.8f, Importance::Fine, 1.0f});
+  for (size_t i = 0; i < in.candidates.size(); ++i) {
+    in.candidates[i].side = uint32_t(i);
+    in.candidates[i].luminance = i < 800 ? 6.0f : i < 1600 ? 3.0f : 0.0f;
+  }
+  ManageSettings settings;
+  settings.placement = "light";
+  settings.lightFloor = 0.5;  // of a mean of 3
+  settings.maxDensity = 1000;
+  const ManageOutput out = Manager(settings, in).run(in);
+  EXPECT_EQ(out.added, 200u);
+  int of[3] = {};
+  for (const VplState& vpl : out.vpls) ++of[vpl.side / 800];
+  EXPECT_NEAR(of[0], 200 * 7.5 / 13.5, 2);
+  EXPECT_NEAR(of[1], 200 * 4.5 / 13.5, 2);
+  EXPECT_NEAR(of[2], 200 * 1.5 / 13.5, 2);
+}
 
 TEST(Manage, CosineProbabilityIsTheCosine) {
   for (uint32_t x = 0; x < 1u << 24; x += 4093)
