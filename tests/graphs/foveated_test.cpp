@@ -348,11 +348,10 @@ FoveaError foveaError(const std::vector<float>& a, const std::vector<float>& ref
 // Errors in the fovea (METHOD section 4) where a camera arrives after some frames, five times; reference:
 // traced paths, their noise taken off. Every pixel takes all VPLs: interleaved over 64 x 64 pixels the filter
 // across edges alone makes a relMSE of 0.05. The clamp at 1.5 m is most of the error, and nearly the same
-// every time. ours gives the fovea the light back that the clamp takes: the picture's error is below that of
-// ir_1000, as in the paper; the relMSE, in which dark places count as much as bright ones, is not. With the
-// disc kernel (the ablation) light paths do better, as they lie where the light is and the Cornell box has no
-// hidden rooms to waste them in. Reuse by importance is a little better than at random, by less than five
-// walks can show: the weights make good what either has picked.
+// every time. Both errors of ours are below those of ir_1000, as in the paper. With the disc kernel (the
+// ablation) light paths do better, as they lie where the light is and the Cornell box has no hidden rooms to
+// waste them in. Reuse by importance and at random cannot be told apart in five walks: the weights make good
+// what either has picked.
 TEST(Foveated, FovealErrorByMethod) {
   const scene::Scene s = scene::builtin("cornellbox");
   const glm::vec2 gaze = gazeOf(s);
