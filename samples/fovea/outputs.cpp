@@ -23,6 +23,12 @@ bool isPicture(const graph::ResourceDesc& desc) {
 
 bool isFloat(const graph::ResourceDesc& desc) { return gpu::formatInfo(desc.format).type == Type::Float; }
 
+// Integer formats hold numbers, not colours.
+bool isColor(const graph::ResourceDesc& desc) {
+  const Type type = gpu::formatInfo(desc.format).type;
+  return type != Type::Uint && type != Type::Sint;
+}
+
 enum class Content { AllFloat, Display, Linear };
 
 Content contentOf(const std::string& extension) {
@@ -65,12 +71,23 @@ std::string OutputFiles::File::extension() const {
   return text;
 }
 
+std::string OutputFiles::File::shown() const {
+  if (!output.empty()) return output;
+  return contentOf(extension()) == Content::Linear ? kLinear : kDisplay;
+}
+
 std::string OutputFiles::File::path(uint64_t frame) const {
   return sequence ? fmt::format("{}{:0{}}{}", prefix, frame, digits, suffix) : name;
 }
 
-OutputFiles::File OutputFiles::parse(const std::string& name) {
+OutputFiles::File OutputFiles::parse(const std::string& text) {
   File file;
+  std::string name = text;
+  const size_t equals = text.find('=');
+  if (equals != std::string::npos && equals > 0 && text.find('/') > equals) {
+    file.output = text.substr(0, equals);
+    name = text.substr(equals + 1);
+  }
   file.name = name;
   const size_t percent = name.find('%');
   if (percent == std::string::npos) return file;
@@ -97,8 +114,8 @@ OutputFiles::OutputFiles(std::vector<std::string> names) {
                   fmt::format("cannot tell a picture format from the output name `{}`", name),
                   "this build writes " + quoteList(known));
     for (const File& other : files_)
-      if (other.name == name)
-        throw Error(ExitCode::Usage, "the output `" + name + "` is given twice", "name it once");
+      if (other.name == file.name)
+        throw Error(ExitCode::Usage, "the output `" + file.name + "` is given twice", "name it once");
     files_.push_back(std::move(file));
   }
 }
@@ -111,23 +128,23 @@ void OutputFiles::checkWritable() const {
   for (const File& file : files_) image::checkWritable(file.path(0));
 }
 
-std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, glm::uvec2 size) const {
-  const std::vector<std::string> all = pictureNames(graph, [](const graph::ResourceDesc&) { return true; });
-  const std::vector<std::string> layers = pictureNames(graph, [&](const graph::ResourceDesc& desc) {
+std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, glm::uvec2 size) {
+  const std::vector<std::string> all = pictureNames(graph, isColor);
+  layers_ = pictureNames(graph, [&](const graph::ResourceDesc& desc) {
     return isFloat(desc) && desc.width == size.x && desc.height == size.y;
   });
   std::set<std::string> names;
   for (const File& file : files_) {
-    if (contentOf(file.extension()) == Content::AllFloat) {
-      names.insert(layers.begin(), layers.end());
-      if (!layers.empty()) continue;
+    if (contentOf(file.extension()) == Content::AllFloat && file.output.empty()) {
+      names.insert(layers_.begin(), layers_.end());
+      if (!layers_.empty()) continue;
       throw Error(
           ExitCode::BadInput,
           fmt::format("graph `{}` has no floating-point output of {}x{} pixels for `{}`; its pictures are {}",
                       graph.name, size.x, size.y, file.name, quoteList(all)),
           "add one to \"outputs\" in the graph, e.g. \"radiance\": \"deferred.radiance\"");
     }
-    const std::string wanted = contentOf(file.extension()) == Content::Linear ? kLinear : kDisplay;
+    const std::string wanted = file.shown();
     if (std::find(all.begin(), all.end(), wanted) == all.end())
       throw Error(ExitCode::BadInput,
                   fmt::format("graph `{}` has no output `{}`, which `{}` would show; its pictures are {}",
@@ -140,16 +157,18 @@ std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, 
 
 void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Metadata metadata) {
   const Content content = contentOf(file.extension());
+  const bool allLayers = content == Content::AllFloat && file.output.empty();
   metadata["frame"] = std::to_string(frame.frame);
   std::vector<image::Layer> layers;
   for (const auto& [name, output] : frame.outputs) {
-    if (content == Content::AllFloat) {
-      if (isFloat(output.desc)) layers.push_back({name, withoutAlpha(toImage(output))});
-    } else if (name == (content == Content::Linear ? kLinear : kDisplay)) {
-      layers.push_back({"", withoutAlpha(toImage(output))});
+    if (allLayers) {
+      if (std::find(layers_.begin(), layers_.end(), name) != layers_.end())
+        layers.push_back({name, withoutAlpha(toImage(output))});
+    } else if (name == file.shown()) {
+      layers.push_back({content == Content::AllFloat ? name : "", withoutAlpha(toImage(output))});
     }
   }
-  if (overlay_ && content == Content::Display)
+  if (overlay_ && content == Content::Display && file.output.empty())
     for (image::Layer& layer : layers) overlay_(layer.image, frame.frame);
   const std::string path = file.path(frame.frame);
   image::write(path, layers, metadata);

@@ -320,9 +320,10 @@ ExitCode Render::run() {
 void addOutputOptions(CLI::App& command, RenderOptions& options) {
   addList(command, "-o,--output", options.outputs,
           "Picture, may be repeated: .png shows the graph's output `image`,\n"
-          ".exr holds every floating-point output as a layer; a name like out_%04d.exr\n"
-          "writes every frame. Default: GRAPH-SCENE.png, none with --timings or --trace")
-      ->type_name("FILE");
+          ".exr holds every floating-point output as a layer; OUTPUT=FILE shows another\n"
+          "output (image_right=right.png); a name like out_%04d.exr writes every frame.\n"
+          "Default: GRAPH-SCENE.png, none with --timings or --trace")
+      ->type_name("[OUTPUT=]FILE");
   command
       .add_option(
           "--timings", options.timings,

@@ -296,6 +296,21 @@ class Files(CliTest):
         png = (self.folder / "a.png").read_bytes()
         self.assertEqual(struct.unpack(">II", png[16:24]), (48, 32))
 
+    def test_one_output(self):
+        """OUTPUT=FILE shows any output of the graph; an EXR of everything is not touched by it."""
+        self.succeeds("render", "ir_stereo", "--scene", "cornellbox", *SMALL, "--set", "vpl_count=8", "--set",
+                      "map_size=16", "-o", "side_by_side=pair.png", "-o", "image_right=right.png", "-o", "all.exr",
+                      "-o", "direct_right=one.exr")
+        size = lambda name: struct.unpack(">II", (self.folder / name).read_bytes()[16:24])
+        self.assertEqual(size("right.png"), (48, 32))
+        self.assertEqual(size("pair.png"), (96, 32))
+        layers = lambda name: subprocess.run(["iinfo", "-v", name], cwd=self.folder, capture_output=True, text=True,
+                                             check=True).stdout
+        self.assertIn("radiance_right.R", layers("all.exr"))
+        self.assertIn("direct_right.R", layers("one.exr"))
+        self.assertNotIn("radiance", layers("one.exr"))
+        self.fails(3, *DIRECT, "-o", "image_left=a.png", says=("has no output `image_left`",))
+
     def test_gaze_of_a_trace(self):
         self.write("g.csv", "t,x,y,valid\n0,0.25,0.75,1\n0.04,0.27,0.75,1\n0.06,0.9,0.1,1\n")
         self.succeeds(*DIRECT, "-o", "a_%d.exr", "--frames", "4", "--gaze-trace", "g.csv")
