@@ -7,4 +7,4 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$top/samples/setup.sh"
 "$top/samples/build.sh" fovea
 # A frame of warm-up, so that the times are those of rendering rather than of compiling shaders.
-exec "$top/build/release/bin/fovea" render ir_1000 --scene cornellbox --warmup 1 -o fovea-demo.png "$@"
+exec "$top/build/release/bin/fovea" render ir_1000 --scene atrium --warmup 1 -o fovea-demo.png "$@"
