@@ -16,6 +16,7 @@
 #include "framework/scene/deform.h"
 #include "framework/scene/motion.h"
 #include "framework/scene/subdivider.h"
+#include "framework/scene/texel_table.h"
 
 namespace fovea::scene {
 namespace {
@@ -71,20 +72,7 @@ struct Shapes {
   }
 };
 
-template <class T>
-gpu::Buffer table(gpu::Device& device, const char* name, std::vector<T> data) {
-  const uint64_t limit = device.limits().maxTexelBufferElements;
-  if (data.size() > limit)
-    throw Error(ExitCode::OutOfMemory,
-                std::string(name) + ": " + std::to_string(data.size()) +
-                    " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
-                "let fewer vertices move, or drop morph targets");
-  if (data.empty()) data.emplace_back();  // empty buffers do not exist in Vulkan
-  gpu::Buffer buffer(device, {name, data.size() * sizeof(T), VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                              gpu::MemoryKind::Device});
-  gpu::upload(device, buffer, std::as_bytes(std::span(data)));
-  return buffer;
-}
+constexpr const char* kRemedy = "let fewer vertices move, or drop morph targets";
 
 void barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkAccessFlags2 writes, VkPipelineStageFlags2 to,
              VkAccessFlags2 accesses) {
@@ -188,11 +176,11 @@ struct Animator::Impl {
   }
 
   void upload(Shapes list) {
-    rest = table(device, "vertices at rest", std::move(list.rest));
-    shapes = table(device, "shapes that move", std::move(list.shapes));
-    skinJoints = table(device, "joints of vertices", std::move(list.skinJoints));
-    skinWeights = table(device, "weights of joints", std::move(list.skinWeights));
-    targets = table(device, "morph targets", std::move(list.targets));
+    rest = texelTable(device, "vertices at rest", std::move(list.rest), kRemedy);
+    shapes = texelTable(device, "shapes that move", std::move(list.shapes), kRemedy);
+    skinJoints = texelTable(device, "joints of vertices", std::move(list.skinJoints), kRemedy);
+    skinWeights = texelTable(device, "weights of joints", std::move(list.skinWeights), kRemedy);
+    targets = texelTable(device, "morph targets", std::move(list.targets), kRemedy);
   }
 
   uint32_t jointTexel() const { return kObjectTexels * objectCount; }

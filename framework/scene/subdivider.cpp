@@ -9,6 +9,7 @@
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/gpu/shader.h"
+#include "framework/scene/texel_table.h"
 
 namespace fovea::scene {
 namespace {
@@ -19,20 +20,7 @@ struct Constants {
   float side;
 };
 
-template <class T>
-gpu::Buffer table(gpu::Device& device, const char* name, std::vector<T> data) {
-  const uint64_t limit = device.limits().maxTexelBufferElements;
-  if (data.size() > limit)
-    throw Error(ExitCode::OutOfMemory,
-                std::string(name) + ": " + std::to_string(data.size()) +
-                    " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
-                "lower the subdivision level of the surfaces that deform");
-  if (data.empty()) data.emplace_back();  // empty buffers do not exist in Vulkan
-  gpu::Buffer buffer(device, {name, data.size() * sizeof(T), VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                              gpu::MemoryKind::Device});
-  gpu::upload(device, buffer, std::as_bytes(std::span(data)));
-  return buffer;
-}
+constexpr const char* kRemedy = "lower the subdivision level of the surfaces that deform";
 
 }  // namespace
 
@@ -58,8 +46,8 @@ struct Subdivider::Impl {
       }
       allEntries.insert(allEntries.end(), s.entries().begin(), s.entries().end());
     }
-    ranges = table(device, "stencil ranges", std::move(allRanges));
-    entries = table(device, "stencil entries", std::move(allEntries));
+    ranges = texelTable(device, "stencil ranges", std::move(allRanges), kRemedy);
+    entries = texelTable(device, "stencil entries", std::move(allEntries), kRemedy);
   }
 };
 

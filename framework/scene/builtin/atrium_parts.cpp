@@ -15,11 +15,6 @@ namespace {
 
 constexpr float kQuarter = 0.41421356f;  // bulge of a quarter circle
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 // A leaf of a capital: rises along +y from the origin, leans against +z and curls over at its tip.
 Shape capitalLeaf(float width, float height, float curl) {
   const Sheet s = sheet(4, 3, {width, height}, [&](float u, float v) {

@@ -13,11 +13,6 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 }  // namespace
 
 MeshBuilder bistroChair(const Palette& p) {

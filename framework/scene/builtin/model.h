@@ -20,6 +20,9 @@
 
 namespace fovea::scene::model {
 
+// 0 below `low`, 1 above `high`, smooth between.
+inline float smoothstep(float low, float high, float x) { return glm::smoothstep(low, high, x); }
+
 using Shape = Primitive;  // `material` is not used
 
 inline constexpr float kCrease = 35;  // degrees: edges that turn more than this stay sharp

@@ -13,11 +13,6 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 // Posts, rails and a raised panel in the x-y plane from (0, 0), standing out along +z by 0.022.
 void addPanelled(MeshBuilder& m, uint32_t paint, float width, float height, int panels) {
   constexpr float kStile = 0.065f, kThick = 0.028f;

@@ -14,11 +14,6 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 // A blue rug: a border with diamonds, stars in the field, a ring in the middle.
 Texture rugPicture() {
   const glm::vec3 ground(0.05f, 0.17f, 0.62f), dark(0.02f, 0.05f, 0.24f), pale(0.62f, 0.66f, 0.70f),

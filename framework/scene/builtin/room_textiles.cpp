@@ -13,10 +13,6 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
 }  // namespace
 
 Shape cushion(float width, float height, float thickness, uint32_t seed, uint32_t level) {

@@ -25,11 +25,6 @@ uint8_t encode(float linear) {
   return table[size_t(std::clamp(linear, 0.0f, 0.99999f) * 4096.0f)];
 }
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 float wrapped(float x) { return x - std::floor(x); }
 
 // Around 1: clouds and grain that repeat with the picture.

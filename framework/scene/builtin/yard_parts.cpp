@@ -13,11 +13,6 @@ using namespace model;
 
 namespace {
 
-float smoothstep(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 // What is seen in a window: dark, with the curtains drawn back.
 Texture paneTexture() {
   return bake("pane", 128, 176, [](float u, float v) {
