@@ -12,23 +12,17 @@
 #include "framework/scene/subdivision.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/device.h"
+#include "tests/support/octahedral.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
 namespace {
 
 using fovea::test::as;
+using fovea::test::octDecode;
 using fovea::test::testDevice;
 using Path = AnimationChannel::Path;
 using Interpolation = AnimationChannel::Interpolation;
-
-glm::vec3 octDecode(glm::vec2 e) {
-  glm::vec3 n(e, 1 - std::abs(e.x) - std::abs(e.y));
-  const float t = std::max(-n.z, 0.0f);
-  n.x += n.x >= 0 ? -t : t;
-  n.y += n.y >= 0 ? -t : t;
-  return glm::normalize(n);
-}
 
 // Runs `body` once per query: it reads vec4 q and writes vec4 r[3].
 std::vector<glm::vec4> runShader(GpuScene& scene, uint32_t slot, const std::vector<glm::vec4>& queries,

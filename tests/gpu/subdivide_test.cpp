@@ -10,10 +10,12 @@
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/cages.h"
 #include "tests/support/device.h"
+#include "tests/support/octahedral.h"
 
 namespace fovea::scene {
 namespace {
 
+using fovea::test::octDecode;
 using namespace test;  // NOLINT: cages
 using fovea::test::as;
 using fovea::test::testDevice;
@@ -21,14 +23,6 @@ using fovea::test::testDevice;
 constexpr VkBufferUsageFlags kUsage =
     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 const glm::vec4 kUntouched(7, 8, 9, 10);
-
-glm::vec3 octDecode(glm::vec2 e) {
-  glm::vec3 n(e, 1 - std::abs(e.x) - std::abs(e.y));
-  const float t = std::max(-n.z, 0.0f);
-  n.x += n.x >= 0 ? -t : t;
-  n.y += n.y >= 0 ? -t : t;
-  return glm::normalize(n);
-}
 
 gpu::Buffer buffer(const char* name, const std::vector<glm::vec4>& data) {
   gpu::Buffer b(testDevice(), {name, data.size() * sizeof(glm::vec4), kUsage});

@@ -6,6 +6,7 @@
 
 #include "framework/scene/load.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/support/octahedral.h"
 #include "tests/support/pass_test.h"
 
 namespace fovea::test {
@@ -14,14 +15,6 @@ namespace {
 constexpr uint32_t kBackground = ~0u;
 constexpr double kSnap = 0.01;      // rasterisers snap vertices to 1/256 of a pixel
 constexpr float kHair = 1.0f / 64;  // a hair off an edge, pixels
-
-glm::vec3 octDecode(glm::vec2 e) {
-  glm::vec3 n(e, 1 - std::abs(e.x) - std::abs(e.y));
-  const float t = std::max(-n.z, 0.0f);
-  n.x += n.x >= 0 ? -t : t;
-  n.y += n.y >= 0 ? -t : t;
-  return glm::normalize(n);
-}
 
 struct Pixel {
   glm::vec4 position;
