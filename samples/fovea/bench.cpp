@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <set>
 
@@ -25,10 +27,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string suite, folder, only, shard, size, device;
+  std::string suite, folder, cache, only, shard, size, device;
   std::optional<uint32_t> seeds;
   std::vector<std::string> plugins;
-  bool resume = false, replace = false, report = false, list = false, quiet = false;
+  bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
   PassBenchOptions passes;
 };
 
@@ -49,22 +51,33 @@ Shard parseShard(const std::string& text) {
 }
 
 // Room that the suite's files take at most.
-uint64_t bytesOf(const std::vector<Job>& jobs) {
-  uint64_t bytes = 0;
+struct Room {
+  uint64_t results = 0, references = 0;
+};
+
+Room roomFor(const std::vector<const Job*>& jobs) {
+  Room room;
   std::set<std::string> references;
-  for (const Job& job : jobs) {
+  for (const Job* each : jobs) {
+    const Job& job = *each;
     const uint64_t pixels = uint64_t(job.size.x) * job.size.y;
-    bytes += 32 << 10;
-    if (job.pictures) bytes += 4 * 3 * pixels;
+    room.results += 32 << 10;
+    if (job.pictures) room.results += 4 * 3 * pixels;
     if (!job.needsReference()) continue;
     for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
       if (references
               .insert(fmt::format("{} {} {} {} {} {}", job.scene, job.first + f, job.size.x, job.size.y,
                                   job.frameRate, job.spp))
               .second)
-        bytes += 5 * 3 * sizeof(float) * pixels;
+        room.references += 5 * 3 * sizeof(float) * pixels;
   }
-  return bytes;
+  return room;
+}
+
+// Where references are kept when --cache does not say.
+std::string cacheOf(const Options& options) {
+  const char* environment = std::getenv("FOVEA_BENCH_CACHE");
+  return options.cache.empty() && environment ? environment : options.cache;
 }
 
 class Bench {
@@ -72,7 +85,7 @@ class Bench {
   explicit Bench(const Options& options)
       : options_(options),
         shard_(parseShard(options.shard)),
-        folder_(options.folder),
+        folder_(options.folder, cacheOf(options)),
         progress_(options.quiet) {}
   ExitCode run();
 
@@ -81,7 +94,10 @@ class Bench {
   void identify();
   void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
   void measure();
+  void makeReferences();
   void finish();
+  std::string command() const;
+  std::map<std::string, std::string> missingScenes(const std::vector<StoredResult>& results) const;
   void makePage() const;
   template <class... Args>
   void say(fmt::format_string<Args...> format, Args&&... args) const {
@@ -95,6 +111,8 @@ class Bench {
   BenchFolder folder_;
   Progress progress_;
   Suite suite_;
+  std::vector<bool> chosen_;        // of its jobs: those that --only names, or all
+  std::vector<const Job*> wanted_;  // the same
   std::unique_ptr<BenchRunner> runner_;
   struct Task {
     const Job* job = nullptr;
@@ -110,9 +128,11 @@ void Bench::chooseJobs() {
   if (!options_.size.empty()) overrides.size = parseSize(options_.size);
   overrides.seeds = options_.seeds;
   suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
-  if (!options_.only.empty())
-    std::erase_if(suite_.jobs, [&](const Job& job) { return !matchesGlob(options_.only, job.name()); });
-  if (suite_.jobs.empty())
+  for (const Job& job : suite_.jobs) {
+    chosen_.push_back(options_.only.empty() || matchesGlob(options_.only, job.name()));
+    if (chosen_.back()) wanted_.push_back(&job);
+  }
+  if (wanted_.empty())
     throw Error(ExitCode::Usage,
                 fmt::format("no job of suite `{}` is named like --only `{}`", suite_.name, options_.only),
                 "see its jobs with --list");
@@ -138,8 +158,8 @@ void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerp
 
 // Finds what is wrong with any job, and what is done already, before anything is rendered.
 void Bench::identify() {
-  for (size_t i = 0; i < suite_.jobs.size(); ++i) {
-    const Job& job = suite_.jobs[i];
+  for (size_t i = 0; i < wanted_.size(); ++i) {
+    const Job& job = *wanted_[i];
     std::string why;
     const auto fingerprint = runner_->fingerprint(job, why);
     if (!fingerprint) {
@@ -187,6 +207,37 @@ void Bench::measure() {
   progress_.setPrefix("");
 }
 
+// The references of the chosen jobs and nothing else; a shard makes every N-th of them.
+void Bench::makeReferences() {
+  struct Entry {
+    const Job* job;
+    BenchRunner::Reference reference;
+  };
+  std::vector<Entry> list;
+  std::set<std::string> known;
+  for (const Job* job : wanted_)
+    for (const BenchRunner::Reference& r : runner_->references(*job))
+      if (known.insert(r.name).second) list.push_back({job, r});
+  if (list.empty())
+    throw Error(ExitCode::Usage, fmt::format("no job of suite `{}` needs a reference", suite_.name),
+                "leave out --references-only");
+  size_t made = 0, there = 0;
+  for (size_t i = shard_.index; i < list.size(); i += shard_.count) {
+    const Clock::time_point start = Clock::now();
+    progress_.setPrefix(fmt::format("{}/{}: ", i + 1, list.size()));
+    const bool isNew = runner_->makeReference(*list[i].job, list[i].reference);
+    progress_.clear();
+    ++(isNew ? made : there);
+    if (isNew)
+      say("[{}/{}] {}: {}\n", i + 1, list.size(), list[i].reference.name,
+          formatDuration(std::chrono::duration<double>(Clock::now() - start).count()));
+    if (interrupted())
+      throw Error(ExitCode::Interrupted, "interrupted", "the same command goes on from there");
+  }
+  progress_.setPrefix("");
+  say("{} references: {} made, {} were there\n", made + there, made, there);
+}
+
 // The page needs Python and matplotlib; without them there are the tables.
 void Bench::makePage() const {
   fs::path script;
@@ -211,13 +262,37 @@ void Bench::makePage() const {
                  "python3-matplotlib); the tables are there\n");
 }
 
+// Also those that a process before this one looked for, and this one did not.
+std::map<std::string, std::string> Bench::missingScenes(const std::vector<StoredResult>& results) const {
+  std::map<std::string, std::string> missing = missing_;
+  std::ifstream in(folder_.path() / "report.json", std::ios::binary);
+  const auto before = nlohmann::json::parse(in, nullptr, false);
+  if (!before.is_object() || before.value("suite", std::string()) != suite_.name) return missing;
+  for (const auto& [scene, why] : before.value("missing_scenes", nlohmann::json::object()).items())
+    if (why.is_string()) missing.try_emplace(scene, why.get<std::string>());
+  for (const StoredResult& result : results) missing.erase(result.json["job"].value("scene", std::string()));
+  return missing;
+}
+
+// What a reader types to get all of the tables.
+std::string Bench::command() const {
+  std::string text = "fovea bench " + options_.suite + " -o DIR";
+  if (!options_.size.empty()) text += " --size " + options_.size;
+  if (options_.seeds) text += fmt::format(" --seeds {}", *options_.seeds);
+  return text;
+}
+
+// Tables and page hold all that the folder holds and can be compared, not only what --only names.
 void Bench::finish() {
-  const std::vector<StoredResult> results = mergedResults(folder_, suite_.jobs);
+  const std::vector<StoredResult> results =
+      mergedResults(folder_, suite_.jobs, chosen_, [](const std::string& why) {
+        std::fprintf(stderr, "fovea: warning: left out of the tables: %s\n", why.c_str());
+      });
   if (results.empty())
     throw Error(ExitCode::BadInput,
                 fmt::format("`{}` has no results of suite `{}`", folder_.path().string(), suite_.name),
                 "run it without --report");
-  writeTables(folder_, suite_, results, missing_);
+  writeTables(folder_, suite_, results, missingScenes(results), command());
   say("{} of {} jobs have results\nwrote {}/tables\n", results.size(), suite_.jobs.size(),
       folder_.path().string());
   makePage();
@@ -229,7 +304,7 @@ void Bench::finish() {
 ExitCode Bench::run() {
   chooseJobs();
   if (options_.list) {
-    for (const Job& job : suite_.jobs) fmt::print("{}\n", job.name());
+    for (const Job* job : wanted_) fmt::print("{}\n", job->name());
     return ExitCode::Ok;
   }
   if (options_.folder.empty()) throw Error(ExitCode::Usage, "where to? -o is missing", "e.g. -o results");
@@ -238,19 +313,24 @@ ExitCode Bench::run() {
     if (!fs::is_directory(folder_.path() / "results", ignored))
       throw Error(ExitCode::BadInput, "`" + options_.folder + "` has no results",
                   "run the suite without --report first");
-    folder_.prepare(0);
+    folder_.prepare(0, 0);
     finish();
     return ExitCode::Ok;
   }
   if (options_.resume && !fs::is_directory(folder_.path() / "results", ignored))
     throw Error(ExitCode::BadInput, "there is nothing to resume in `" + options_.folder + "`",
                 "leave out --resume");
-  folder_.prepare(bytesOf(suite_.jobs));
+  const Room room = roomFor(wanted_);
+  folder_.prepare(options_.referencesOnly ? 0 : room.results, room.references);
   catchInterrupts();
   loadPlugins(options_.plugins);
   runner_ = std::make_unique<BenchRunner>(folder_, openDevice(options_.device), progress_);
+  if (options_.referencesOnly) {
+    makeReferences();
+    return ExitCode::Ok;
+  }
   identify();
-  if (done_ > 0) say("{} of {} jobs are done already\n", done_, suite_.jobs.size());
+  if (done_ > 0) say("{} of {} jobs are done already\n", done_, wanted_.size());
   measure();
   finish();
   return ExitCode::Ok;
@@ -266,6 +346,13 @@ void addSuiteOptions(CLI::App& command, Options& options) {
       .add_option("-o,--output", options.folder,
                   "Folder of results, pictures, tables and report; may be shared")
       ->type_name("DIR");
+  command
+      .add_option("--cache", options.cache,
+                  "Folder of path-traced references, for several suites to share; default: the\n"
+                  "environment variable FOVEA_BENCH_CACHE, else references/ in the folder of -o")
+      ->type_name("DIR");
+  command.add_flag("--references-only", options.referencesOnly,
+                   "Only render the references that are missing, for a run at another time");
   command.add_option("--only", options.only, "Only jobs whose name matches (*, ?) or contains this")
       ->type_name("GLOB");
   command

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -137,18 +138,23 @@ std::string Fingerprint::key(const Job& job) const {
   return formatHash(hash.value());
 }
 
-void BenchFolder::prepare(uint64_t bytes) const {
-  makeFolder(folder_);
-  for (const char* name : {"results", "pictures", "references", "tables"}) {
-    makeFolder(folder_ / name);
-    tryWriting(folder_ / name);
+void BenchFolder::prepare(uint64_t bytes, uint64_t referenceBytes) const {
+  for (const fs::path& folder : {folder_ / "results", folder_ / "pictures", folder_ / "tables", cache_}) {
+    makeFolder(folder);
+    tryWriting(folder);
   }
-  struct statvfs room {};
-  if (statvfs(folder_.c_str(), &room) != 0) return;
-  const uint64_t available = uint64_t(room.f_bavail) * room.f_frsize;
-  if (available < bytes)
-    cannotWrite(folder_, fmt::format("the suite needs about {} there, and {} are free",
-                                     graph::printBytes(bytes), graph::printBytes(available)));
+  struct statvfs room {
+  }, cacheRoom{};
+  if (statvfs(folder_.c_str(), &room) != 0 || statvfs(cache_.c_str(), &cacheRoom) != 0) return;
+  const auto demand = [](const fs::path& folder, const struct statvfs& there, uint64_t needed) {
+    const uint64_t available = uint64_t(there.f_bavail) * there.f_frsize;
+    if (available < needed)
+      cannotWrite(folder, fmt::format("the suite needs about {} there, and {} are free",
+                                      graph::printBytes(needed), graph::printBytes(available)));
+  };
+  const bool oneDisk = room.f_fsid == cacheRoom.f_fsid;
+  demand(folder_, room, bytes + (oneDisk ? referenceBytes : 0));
+  if (!oneDisk) demand(cache_, cacheRoom, referenceBytes);
 }
 
 std::vector<StoredResult> BenchFolder::results(const Job& job) const {
@@ -216,54 +222,81 @@ std::string firstDifference(const Json& there, const Json& here, const std::stri
 
 namespace {
 
-// What all results of one report must share: the device, and each scene and pass wherever they are used.
+// What all results of one report must share: the device, the framework, and each scene and pass wherever they
+// are used.
 class Common {
  public:
+  // "" when the result belongs to those added before.
+  std::string difference(const StoredResult& result) const {
+    for (const auto& [what, value] : facts(result))
+      if (const auto seen = known_.find(what); seen != known_.end() && seen->second.first != value)
+        return fmt::format("{} is {} in `{}` and {} in `{}`", what, seen->second.first.dump(),
+                           seen->second.second.string(), value.dump(), result.file.string());
+    return {};
+  }
   void add(const StoredResult& result) {
-    const Json &made = result.json["made_with"], &job = result.json["job"];
-    check("device", made.value("device", Json()), result.file);
-    check("scene " + job.value("scene", std::string()), made.value("scene", Json()), result.file);
-    for (const char* part : {"passes", "reference"})
-      if (made.contains(part) && made[part].is_object())
-        for (const auto& [name, code] : made[part].items())
-          check((std::string(part) == "passes" ? "pass " : "reference's ") + name, code, result.file);
+    for (const auto& [what, value] : facts(result)) known_.try_emplace(what, value, result.file);
   }
 
  private:
-  void check(const std::string& what, const Json& value, const fs::path& file) {
-    const auto [seen, isNew] = known_.try_emplace(what, value, file);
-    if (isNew || seen->second.first == value) return;
-    throw Error(
-        ExitCode::BadInput,
-        fmt::format("results that cannot be compared: {} is {} in `{}` and {} in `{}`", what,
-                    seen->second.first.dump(), seen->second.second.string(), value.dump(), file.string()),
-        "keep them in different folders, or run the suite with --replace");
+  static std::vector<std::pair<std::string, Json>> facts(const StoredResult& result) {
+    const Json &made = result.json["made_with"], &job = result.json["job"];
+    std::vector<std::pair<std::string, Json>> list;
+    for (const char* part : {"device", "framework", "measures"})
+      list.emplace_back(part, made.value(part, Json()));
+    list.emplace_back("scene " + job.value("scene", std::string()), made.value("scene", Json()));
+    for (const char* part : {"passes", "reference"})
+      if (made.contains(part) && made[part].is_object())
+        for (const auto& [name, code] : made[part].items())
+          if (!name.starts_with("parameters"))  // the suite's own: samples may differ from sweep to sweep
+            list.emplace_back((std::string(part) == "passes" ? "pass " : "reference's ") + name, code);
+    return list;
   }
   std::map<std::string, std::pair<Json, fs::path>> known_;
 };
 
+// The one result of the job that belongs to `common`, if there is any; else `why` says what is wrong.
+std::optional<StoredResult> resultOf(const BenchFolder& folder, const Job& job, const Common& common,
+                                     std::string& why) {
+  std::optional<StoredResult> found;
+  for (StoredResult& result : folder.results(job)) {
+    std::string other = firstDifference(result.json["job"], job.json());
+    if (!other.empty()) other = fmt::format("`{}` was measured otherwise: {}", result.file.string(), other);
+    if (other.empty()) other = common.difference(result);
+    if (other.empty() && found)
+      other = fmt::format("`{}` and `{}` are of one job: {}", found->file.string(), result.file.string(),
+                          firstDifference(found->json["made_with"], result.json["made_with"]));
+    if (other.empty()) {
+      found = std::move(result);
+    } else {
+      why = other;
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
-std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::vector<Job>& jobs) {
-  std::vector<StoredResult> merged;
+std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::vector<Job>& jobs,
+                                        const std::vector<bool>& chosen,
+                                        const std::function<void(const std::string&)>& leaveOut) {
+  std::vector<std::optional<StoredResult>> found(jobs.size());
   Common common;
-  for (const Job& job : jobs) {
-    std::vector<StoredResult> found = folder.results(job);
-    if (found.empty()) continue;
-    if (found.size() > 1)
-      throw Error(ExitCode::BadInput,
-                  fmt::format("two results of one job, `{}` and `{}`: {}", found[0].file.string(),
-                              found[1].file.string(),
-                              firstDifference(found[0].json["made_with"], found[1].json["made_with"])),
-                  "remove the one that no longer counts");
-    const std::string other = firstDifference(found[0].json["job"], job.json());
-    if (!other.empty())
-      throw Error(ExitCode::BadInput,
-                  fmt::format("`{}` was measured otherwise: {}", found[0].file.string(), other),
-                  "give the same --size and --seeds, another folder, or --replace");
-    common.add(found[0]);
-    merged.push_back(std::move(found[0]));
-  }
+  for (const bool choice : {true, false})
+    for (size_t i = 0; i < jobs.size(); ++i) {
+      if (chosen[i] != choice) continue;
+      std::string why;
+      found[i] = resultOf(folder, jobs[i], common, why);
+      if (!why.empty() && choice)
+        throw Error(ExitCode::BadInput, "results that cannot be compared: " + why,
+                    "give the same --size and --seeds, keep them in different folders, or run the suite with "
+                    "--replace");
+      if (!why.empty() && !found[i]) leaveOut(why);
+      if (found[i]) common.add(*found[i]);
+    }
+  std::vector<StoredResult> merged;
+  for (auto& result : found)
+    if (result) merged.push_back(std::move(*result));
   return merged;
 }
 

@@ -29,20 +29,20 @@ struct StoredResult {
 
 class BenchFolder {
  public:
-  explicit BenchFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  // `cache`: where references are, for several folders to share; empty: references/ in `folder`.
+  explicit BenchFolder(std::filesystem::path folder, std::filesystem::path cache = {})
+      : folder_(std::move(folder)), cache_(cache.empty() ? folder_ / "references" : std::move(cache)) {}
 
   const std::filesystem::path& path() const { return folder_; }
   std::filesystem::path picture(const std::string& name) const {
     return folder_ / "pictures" / (name + ".png");
   }
   std::filesystem::path table(const std::string& name) const { return folder_ / "tables" / (name + ".csv"); }
-  std::filesystem::path reference(const std::string& name) const {
-    return folder_ / "references" / (name + ".exr");
-  }
+  std::filesystem::path reference(const std::string& name) const { return cache_ / (name + ".exr"); }
 
-  // Makes the sub-folders and tries to write `bytes` more into them. Throws Error(CannotWrite) naming what is
-  // in the way: permissions, or too little room.
-  void prepare(uint64_t bytes) const;
+  // Makes the sub-folders and tries to write `bytes` of results and `referenceBytes` of references into them.
+  // Throws Error(CannotWrite) naming what is in the way: permissions, or too little room.
+  void prepare(uint64_t bytes, uint64_t referenceBytes) const;
   // All results of the job, whatever their key: one, unless something that they depend on changed. Throws
   // Error(BadInput) on a file that is no result.
   std::vector<StoredResult> results(const Job& job) const;
@@ -55,12 +55,15 @@ class BenchFolder {
                                   const std::function<bool()>& waiting) const;
 
  private:
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, cache_;
 };
 
-// The one result of each job that has any, in the order of the jobs. Throws Error(BadInput), naming files and
-// what differs, when they do not belong together: other sizes, parameters, devices, scenes or passes.
-std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::vector<Job>& jobs);
+// The one result of each job that has any, in the order of the jobs. Those of the jobs that are `chosen` must
+// belong together: Error(BadInput) names files and what differs otherwise: sizes, parameters, devices, scenes
+// or passes. Of the other jobs those are taken that belong to them; `leaveOut` is told why one does not.
+std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::vector<Job>& jobs,
+                                        const std::vector<bool>& chosen,
+                                        const std::function<void(const std::string&)>& leaveOut);
 
 // "passes.deferred: 0123.. there, 4567.. here"; "" when alike.
 std::string firstDifference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here,

@@ -9,6 +9,7 @@
 #include "framework/base/paths.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/hash.h"
+#include "framework/graph/report.h"
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
 #include "framework/scene/load.h"
@@ -55,6 +56,12 @@ Json codesOf(const graph::BoundGraph& graph) {
   Json codes = Json::object();
   for (const std::string& type : types) codes[type] = passCode(type);
   return codes;
+}
+
+std::string hashOf(std::string_view text) {
+  graph::detail::Hasher hash;
+  hash.add(text);
+  return formatHash(hash.value());
 }
 
 // null for what is not known.
@@ -159,11 +166,15 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
                 {"device", device_->name()},
                 {"scene", formatHash(scene_.hash)},
                 {"graph", formatHash(run->graph().hash)},
-                {"passes", codesOf(run->graph())}};
+                {"plan", hashOf(graph::planJson(*run->plan()))},
+                {"passes", codesOf(run->graph())},
+                {"framework", frameworkCode()},
+                {"measures", std::string(kMeasureSources)}};
   if (job.needsReference()) made.parts["reference"] = referenceParts(job);
   return made;
 }
 
+// What is stored is what the path tracer, which works on the CPU, hands over: passes after it do not count.
 Json BenchRunner::referenceParts(const Job& job) {
   Diagnostics messages;
   const auto description = describe(
@@ -172,7 +183,15 @@ Json BenchRunner::referenceParts(const Job& job) {
       description,
       graph::sceneEnvironment(nullptr, scene_, geometry_, graph::frameViews({job.size.x, job.size.y})),
       messages);
-  return codesOf(bound);
+  Json parts = Json::object();
+  for (const graph::BoundPass& pass : bound.passes) {
+    if (pass.declaration->kind != graph::PassKind::Host) continue;
+    graph::detail::Hasher parameters;
+    for (const graph::Value& value : pass.parameters.values()) parameters.addValue(value);
+    parts[pass.declaration->type] = passCode(pass.declaration->type);
+    parts["parameters of " + pass.name] = formatHash(parameters.value());
+  }
+  return parts;
 }
 
 image::File BenchRunner::toFile(const GraphRun& run, graph::FrameResult& result) const {
@@ -237,22 +256,43 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   return sequence;
 }
 
+BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame) {
+  graph::detail::Hasher hash;
+  for (const uint64_t n : {scene_.hash, frame, uint64_t(job.size.x), uint64_t(job.size.y),
+                           std::bit_cast<uint64_t>(job.frameRate), uint64_t(kReferenceSeed)})
+    hash.add(n);
+  hash.add(std::string_view(referenceParts(job).dump()));
+  return {fmt::format("{}-{}x{}-f{}-{}", std::filesystem::path(job.scene).stem().string(), job.size.x,
+                      job.size.y, frame, formatHash(hash.value())),
+          frame};
+}
+
+std::vector<BenchRunner::Reference> BenchRunner::references(const Job& job) {
+  std::vector<Reference> list;
+  std::string why;
+  if (!job.needsReference() || !useScene(job, why)) return list;
+  for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
+    list.push_back(referenceOf(job, uint64_t(job.first) + f));
+  return list;
+}
+
+bool BenchRunner::makeReference(const Job& job, const Reference& wanted) {
+  std::error_code ignored;
+  if (std::filesystem::exists(folder_.reference(wanted.name), ignored)) return false;
+  std::string why;
+  if (!useScene(job, why)) throw Error(ExitCode::BadInput, why);
+  reference(job, wanted.frame);
+  return true;
+}
+
 image::File BenchRunner::reference(const Job& job, uint64_t frame) {
   Job own = job;
-  own.graph = "reference", own.sweep = job.sweep, own.match.reset();
+  own.graph = "reference", own.match.reset();
   own.set = {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}};
   own.seed = kReferenceSeed, own.first = uint32_t(frame), own.frames = 1, own.warmup = 0;
   own.temporal = own.error = false, own.pictures = true;
-  graph::detail::Hasher hash;
-  for (const uint64_t n :
-       {scene_.hash, frame, uint64_t(job.size.x), uint64_t(job.size.y), uint64_t(job.spp),
-        uint64_t(job.depth), std::bit_cast<uint64_t>(job.frameRate), uint64_t(kBenchFormat)})
-    hash.add(n);
-  hash.add(std::string_view(referenceParts(job).dump()));
-  const std::string name = fmt::format("{}-{}x{}-f{}-{}", std::filesystem::path(job.scene).stem().string(),
-                                       job.size.x, job.size.y, frame, formatHash(hash.value()));
   return folder_.findOrMakeReference(
-      name,
+      referenceOf(job, frame).name,
       [&](const std::function<void()>& alive) {
         progress_.stage(fmt::format("reference of frame {}", frame));
         const auto run = makeRun(own, true);

@@ -26,6 +26,15 @@ class BenchRunner {
   // Throws Error(Interrupted) when Ctrl-C was pressed.
   nlohmann::ordered_json measure(const Job& job, const Fingerprint& fingerprint);
 
+  struct Reference {
+    std::string name;  // of its file, without .exr: scene, size, frame and a hash of all that it depends on
+    uint64_t frame = 0;
+  };
+  // Those that the job is compared with: of every frame, or of the last one.
+  std::vector<Reference> references(const Job& job);
+  // Makes it unless it is there; false: it was. Throws as measure() does.
+  bool makeReference(const Job& job, const Reference& wanted);
+
  private:
   struct Sequence {                   // frames of one run
     std::vector<image::File> frames;  // `frames` of the job when all were asked for, else the last
@@ -35,6 +44,7 @@ class BenchRunner {
   std::unique_ptr<GraphRun> makeRun(const Job& job, bool pictures);
   Sequence render(const Job& job);
   image::File toFile(const GraphRun& run, graph::FrameResult& result) const;
+  Reference referenceOf(const Job& job, uint64_t frame);
   image::File reference(const Job& job, uint64_t frame);
   nlohmann::ordered_json referenceParts(const Job& job);
   nlohmann::ordered_json errors(const Job& job, const image::File& last);

@@ -194,7 +194,7 @@ Mean meanOf(const std::vector<double>& values) {
 }
 
 void writeTables(const BenchFolder& folder, const Suite& suite, const std::vector<StoredResult>& results,
-                 const std::map<std::string, std::string>& missingScenes) {
+                 const std::map<std::string, std::string>& missingScenes, const std::string& command) {
   const Json paper = readPaper();
   std::vector<std::string> sweeps;
   for (const Job& job : suite.jobs)
@@ -210,10 +210,15 @@ void writeTables(const BenchFolder& folder, const Suite& suite, const std::vecto
   }
   Json files = Json::array();
   for (const StoredResult& result : results) files.push_back(result.file.filename().string());
-  const Json report = {{"suite", suite.name},       {"description", suite.description},
-                       {"paper", suite.paper},      {"paper_scenes", paper.value("scenes", Json::object())},
-                       {"jobs", suite.jobs.size()}, {"missing_scenes", missingScenes},
-                       {"sweeps", written},         {"results", files}};
+  const Json report = {{"suite", suite.name},
+                       {"description", suite.description},
+                       {"command", command},
+                       {"paper", suite.paper},
+                       {"paper_scenes", paper.value("scenes", Json::object())},
+                       {"jobs", suite.jobs.size()},
+                       {"missing_scenes", missingScenes},
+                       {"sweeps", written},
+                       {"results", files}};
   writeText(folder.path() / "report.json", report.dump(1) + "\n");
 }
 

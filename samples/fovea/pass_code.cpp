@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
+#include <regex>
 #include <sstream>
 
 #include "framework/base/paths.h"
@@ -14,21 +16,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Files = std::map<std::string, fs::path>;  // name as shaders include it -> the first such file
+using Shaders = std::map<std::string, std::string>;  // name as others include it -> its text
 
-void findFiles(const fs::path& shaders, const std::string& part, Files& files) {
-  std::error_code ignored;
-  for (fs::recursive_directory_iterator entry(shaders / part, ignored), end; entry != end;
-       entry.increment(ignored))
-    if (entry->is_regular_file(ignored))
-      files.try_emplace(entry->path().lexically_relative(shaders).string(), entry->path());
+std::optional<std::string> readShader(const std::string& name) {
+  for (const fs::path& folder : dataFolders("shaders")) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(folder / name, ignored)) continue;
+    std::ifstream in(folder / name, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  return {};
 }
 
-std::string contentOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+std::string withoutComments(const std::string& text) {
+  static const std::regex kComment("//[^\n]*"), kSpace("[ \t\r\n]+");
+  return std::regex_replace(std::regex_replace(text, kComment, ""), kSpace, " ");
+}
+
+// A shader and all that it includes, directly or not.
+void addShader(const std::string& name, Shaders& shaders) {
+  if (shaders.contains(name)) return;
+  const std::optional<std::string> text = readShader(name);
+  if (!text) return;
+  shaders[name] = withoutComments(*text);
+  static const std::regex kInclude("#include \"([^\"]+)\"");
+  for (std::sregex_iterator found(text->begin(), text->end(), kInclude), end; found != end; ++found)
+    addShader((*found)[1], shaders);
+}
+
+void addShadersIn(const std::string& part, Shaders& shaders) {
+  std::error_code ignored;
+  for (const fs::path& folder : dataFolders("shaders"))
+    for (fs::recursive_directory_iterator entry(folder / part, ignored), end; entry != end;
+         entry.increment(ignored))
+      if (entry->is_regular_file(ignored))
+        addShader(entry->path().lexically_relative(folder).string(), shaders);
+}
+
+std::string codeOf(std::string_view sources, const Shaders& shaders) {
+  graph::detail::Hasher hash;
+  hash.add(sources);
+  for (const auto& [name, text] : shaders) hash.add(std::string_view(name)), hash.add(std::string_view(text));
+  return formatHash(hash.value());
 }
 
 }  // namespace
@@ -37,17 +68,18 @@ std::string passCode(const std::string& type) {
   static std::map<std::string, std::string> known;
   std::string& code = known[type];
   if (!code.empty()) return code;
-  graph::detail::Hasher hash;
-  for (const auto& [name, sources] : kPassSources)
-    if (name == type) hash.add(sources);
-  Files files;
-  for (const fs::path& folder : dataFolders("shaders"))
-    for (const std::string& part : {type, std::string("common")}) findFiles(folder, part, files);
-  for (const auto& [name, file] : files) {
-    hash.add(std::string_view(name));
-    hash.add(std::string_view(contentOf(file)));
-  }
-  return code = formatHash(hash.value());
+  std::string_view sources;
+  for (const auto& [name, hash] : kPassSources)
+    if (name == type) sources = hash;
+  Shaders shaders;
+  addShadersIn(type, shaders);
+  return code = codeOf(sources, shaders);
+}
+
+std::string frameworkCode() {
+  Shaders shaders;
+  for (const char* part : {"animate", "subdivide"}) addShadersIn(part, shaders);
+  return codeOf(kFrameworkSources, shaders);
 }
 
 }  // namespace fovea::cli

@@ -160,10 +160,77 @@ class Suites(CliTest):
         self.succeeds("bench", "tiny.json", "-o", "out", "-q")
         shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
         with open(self.folder / "data/shaders/deferred/blocks.glsl", "a") as file:
-            file.write("// changed\n")
+            file.write("// a remark\n")
+        with open(self.folder / "data/shaders/common/scene.glsl", "a") as file:
+            file.write("\n")
         data = {"FOVEA_DATA": str(self.folder / "data")}
+        self.assertIn("4 of 4 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", env=data).stdout)
+        with open(self.folder / "data/shaders/deferred/blocks.glsl", "a") as file:
+            file.write("#define CHANGED\n")
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--only", "ir_1000", says=["passes.deferred"], env=data)
         self.assertIn("2 of 2 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", "--only", "direct", env=data).stdout)
+
+    def test_what_a_result_is_made_with(self):
+        """The code of its passes, of the framework and of the measures, its plan; references: of the path tracer alone."""
+        self.suite(scenes=["cornellbox"], size="16x16")
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "direct")
+        (result,) = self.results().values()
+        made = result["made_with"]
+        for part in ("scene", "graph", "plan", "framework", "measures"):
+            self.assertRegex(made[part], "^[0-9a-f]{16}$")
+        self.assertEqual(set(made["passes"]), {"gbuffer", "shadow-map", "direct", "tonemap"})
+        self.assertEqual(set(made["reference"]), {"path-trace", "parameters of path-trace"})
+        # A shader that the path tracer does not use makes no new reference.
+        references = sorted((self.folder / "out/references").iterdir())
+        shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
+        for name in ("tonemap/tonemap.comp", "gbuffer/resolve.comp", "animate/animate.comp"):
+            with open(self.folder / "data/shaders" / name, "a") as file:
+                file.write("#define CHANGED\n")
+        data = {"FOVEA_DATA": str(self.folder / "data")}
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--only", "direct", says=["passes.gbuffer"], env=data)
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "direct", "--replace", env=data)
+        (again,) = self.results().values()
+        self.assertNotEqual(again["made_with"]["framework"], made["framework"])
+        self.assertEqual(again["made_with"]["reference"], made["reference"])
+        self.assertEqual(sorted((self.folder / "out/references").iterdir()), references)
+
+    def test_only_keeps_the_other_rows(self):
+        """Tables hold what the folder holds, whichever jobs a run was about; what does not fit is left out, and that is said."""
+        self.suite(measures=["time"])
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "*-cornellbox-*")
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "*_moving-direct*")
+        out = self.succeeds("bench", "tiny.json", "-o", "out", "--only", "*_moving-ir*").stdout
+        self.assertIn("4 of 4 jobs have results", out)
+        self.assertEqual({key[:2] for key in self.rows()}, {(s, g) for s in SUITE["scenes"] for g in SUITE["graphs"]})
+        name, result = next((n, r) for n, r in self.results().items() if "-cornellbox-direct-" in n)
+        result["made_with"]["framework"] = "0" * 16
+        (self.folder / "out/results" / name).write_text(json.dumps(result))
+        run = self.succeeds("bench", "tiny.json", "-o", "out", "--only", "*_moving-ir*")
+        self.assertIn("3 of 4 jobs have results", run.stdout)
+        self.assertIn("left out of the tables", run.stderr)
+        self.assertIn("framework", run.stderr)
+        self.assertNotIn(("cornellbox", "direct", "time.wall_ms"), self.rows())
+        self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["framework", name])
+
+    def test_shared_references(self):
+        """One cache for several suites, filled at any time; the jobs then make none."""
+        self.suite(scenes=["cornellbox"])
+        self.write("other.json", {**SUITE, "scenes": ["cornellbox"], "frames": 3, "measures": ["error"]})
+        out = self.succeeds("bench", "tiny.json", "-o", "a", "--cache", "cache", "--references-only", "--shard", "1/2").stdout
+        self.assertIn("1 references: 1 made, 0 were there", out)
+        out = self.succeeds("bench", "tiny.json", "-o", "a", "--cache", "cache", "--references-only").stdout
+        self.assertIn("2 references: 1 made, 1 were there", out)
+        self.assertEqual(self.results("a"), {})
+        made = {p.name: p.stat().st_mtime_ns for p in (self.folder / "cache").iterdir()}
+        self.assertEqual(len(made), 2)
+        self.succeeds("bench", "tiny.json", "-o", "a", "--cache", "cache", "-q")
+        self.assertEqual({p.name: p.stat().st_mtime_ns for p in (self.folder / "cache").iterdir()}, made)
+        # Another suite, elsewhere: its only new reference is that of its last frame.
+        self.succeeds("bench", "other.json", "-o", "b", "-q", env={"FOVEA_BENCH_CACHE": str(self.folder / "cache")})
+        self.assertEqual(len(list((self.folder / "cache").iterdir())), 3)
+        self.assertFalse((self.folder / "b/references").exists())
+        self.suite(measures=["time"])
+        self.fails(USAGE, "bench", "tiny.json", "-o", "a", "--references-only", says=["no job", "reference"])
 
     def test_match(self):
         """Bisection: as many VPLs as it takes to be as good as another graph."""
