@@ -95,12 +95,13 @@ float sobol(uint32_t index, uint32_t dimension, uint32_t seed) {
   return uniformFloat(sobolBits(index, dimension, seed));
 }
 
-std::array<float, 4> sobolGroup(uint32_t index, uint32_t group, uint32_t seed) {
+std::array<float, 2> sobolPair(uint32_t index, uint32_t dimension, uint32_t seed) {
+  const uint32_t group = dimension / 4, within = dimension % 4;
   const uint32_t groupSeed = hashCombine(seed, group), bits = nestedScramble(index, groupSeed);
-  std::array<float, 4> u;
-  for (uint32_t d = 0; d < 4; ++d)
-    u[d] = uniformFloat(nestedScramble(unscrambledPoint(bits, d), hashCombine(groupSeed, d + 1)));
-  return u;
+  const auto at = [&](uint32_t d) {
+    return uniformFloat(nestedScramble(unscrambledPoint(bits, d), hashCombine(groupSeed, d + 1)));
+  };
+  return {at(within), at(within + 1)};
 }
 
 }  // namespace fovea

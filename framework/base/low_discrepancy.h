@@ -16,7 +16,7 @@ uint32_t sobolBits(uint32_t index, uint32_t dimension, uint32_t seed);
 // The same in [0, 1) with 24 bits.
 float sobol(uint32_t index, uint32_t dimension, uint32_t seed);
 
-// All four coordinates of a group, sobol(index, 4 * group + k, seed), at less than the price of two.
-std::array<float, 4> sobolGroup(uint32_t index, uint32_t group, uint32_t seed);
+// Two coordinates of the same group, `dimension` and the next one, at less than the price of two.
+std::array<float, 2> sobolPair(uint32_t index, uint32_t dimension, uint32_t seed);
 
 }  // namespace fovea

@@ -48,20 +48,33 @@ float tame(float texels) { return std::isfinite(texels) ? std::min(std::max(texe
 
 }  // namespace
 
+TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse& use, glm::vec2 uv) {
+  const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
+  const float u = tame(p.x * float(width) - 0.5f), v = tame(p.y * float(height) - 0.5f);
+  const float u0 = std::floor(u), v0 = std::floor(v);
+  const int64_t x = int64_t(u0), y = int64_t(v0);
+  TexelSquare s;
+  for (int i = 0; i < 2; ++i) {
+    s.column[i] = uint32_t(wrapTexel(x + i, width, use.wrapU));
+    s.row[i] = uint32_t(wrapTexel(y + i, height, use.wrapV));
+  }
+  s.right = u - u0;
+  s.lower = v - v0;
+  return s;
+}
+
 TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
   TextureTaps taps;
   if (!use || use.texture >= scene.textures.size()) return taps;
   const Texture& t = scene.textures[use.texture];
   if (t.width == 0 || t.height == 0) return taps;
-  const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
-  // Texel centres lie at half-integers; LOD 0, bilinear, each texel decoded before it is filtered.
-  const float u = tame(p.x * float(t.width) - 0.5f), v = tame(p.y * float(t.height) - 0.5f);
-  const float u0 = std::floor(u), v0 = std::floor(v);
-  const int64_t w = t.width, h = t.height;
-  const int64_t x0 = wrapTexel(int64_t(u0), w, use.wrapU), x1 = wrapTexel(int64_t(u0) + 1, w, use.wrapU);
-  const int64_t y0 = wrapTexel(int64_t(v0), h, use.wrapV), y1 = wrapTexel(int64_t(v0) + 1, h, use.wrapV);
-  const auto at = [&](int64_t x, int64_t y) { return t.rgba.data() + size_t(y * w + x) * 4; };
-  return {{at(x0, y0), at(x1, y0), at(x0, y1), at(x1, y1)}, u - u0, v - v0, t.srgb};
+  const TexelSquare s = texelSquare(t.width, t.height, use, uv);
+  const auto at = [&](uint32_t x, uint32_t y) { return t.rgba.data() + (size_t(y) * t.width + x) * 4; };
+  return {{at(s.column[0], s.row[0]), at(s.column[1], s.row[0]), at(s.column[0], s.row[1]),
+           at(s.column[1], s.row[1])},
+          s.right,
+          s.lower,
+          t.srgb};
 }
 
 glm::vec4 sample(const TextureTaps& taps) {

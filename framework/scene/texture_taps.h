@@ -8,6 +8,15 @@
 
 namespace fovea::scene {
 
+// Where a look-up finds its four texels: columns left and right, rows upper and lower, and the weights of the
+// right and the lower ones. LOD 0, bilinear, texel centres at half-integers.
+struct TexelSquare {
+  uint32_t column[2] = {}, row[2] = {};
+  float right = 0, lower = 0;
+};
+// width, height: of use's texture, at least 1.
+TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse& use, glm::vec2 uv);
+
 // The four texels around a point and the weights of the right and the lower ones. Valid as long as the
 // texture.
 struct TextureTaps {
@@ -16,8 +25,7 @@ struct TextureTaps {
   float right = 0, lower = 0;
   bool srgb = true;
   void prefetch() const {
-    __builtin_prefetch(texel[0]);
-    __builtin_prefetch(texel[2]);
+    for (const uint8_t* t : texel) __builtin_prefetch(t);
   }
 };
 

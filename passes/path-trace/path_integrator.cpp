@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/constants.hpp>
 
 #include "framework/base/low_discrepancy.h"
@@ -25,6 +26,10 @@ glm::vec3 cosineDirection(glm::vec3 normal, float u, float v) {
   return toWorld(orthonormalFrame(normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - u)});
 }
 
+glm::vec3 reflectanceOf(const Material& material, glm::vec4 texture) {
+  return glm::vec3(material.baseColor) * glm::vec3(texture) * (1.0f - material.metallic);
+}
+
 // Distance along a ray, in lengths of its direction, to where clip-space depth is 0 (near plane) or w (far
 // plane).
 Ray clipped(const View& view, glm::vec3 direction) {
@@ -40,11 +45,13 @@ Ray clipped(const View& view, glm::vec3 direction) {
 
 }  // namespace
 
-std::array<float, 4> PathSampler::group(uint32_t number) const {
-  if (!independent) return sobolGroup(index, number, stream);
-  std::array<float, 4> u;
-  for (uint32_t k = 0; k < 4; ++k) u[k] = uniformFloat(hashCombine(stream, 4 * number + k));
-  return u;
+float PathSampler::number(uint32_t k) const {
+  return independent ? uniformFloat(hashCombine(stream, k)) : sobol(index, k, stream);
+}
+
+std::array<float, 2> PathSampler::pair(uint32_t k) const {
+  if (independent) return {number(k), number(k + 1)};
+  return sobolPair(index, k, stream);
 }
 
 // One path under way.
@@ -55,6 +62,7 @@ struct PathIntegrator::Path {
   RayHit hit;
   SurfaceHit surface;
   TextureTaps texture;
+  glm::vec3 irradiance{0};  // of the last surface
 };
 
 PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RayScene& rays, uint32_t depth)
@@ -65,22 +73,33 @@ PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RaySc
   copyTexels();
 }
 
+// Squares of 32 texels fill one page, squares of 4 one cache line: a look-up rarely needs more than one of
+// either.
+size_t PathIntegrator::TexelBlocks::at(uint32_t x, uint32_t y) const {
+  const size_t block = size_t(y / 32) * blocksPerRow + x / 32;
+  const uint32_t tile = y / 4 % 8 * 8 + x / 4 % 8, texel = y % 4 * 4 + x % 4;
+  return first + 4 * (block * 1024 + tile * 16 + texel);
+}
+
 void PathIntegrator::copyTexels() {
   const Scene& scene = *frame_.scene;
-  firstTexel_.assign(scene.textures.size(), 0);
-  std::vector<bool> used(scene.textures.size());
+  blocks_.resize(scene.textures.size());
   size_t size = 0;
   for (const Material& m : scene.materials) {
-    const uint32_t texture = m.baseColorTexture.texture;
-    if (texture >= scene.textures.size() || used[texture]) continue;
-    used[texture] = true;
-    firstTexel_[texture] = size;
-    size += scene.textures[texture].rgba.size();
+    const uint32_t i = m.baseColorTexture.texture;
+    if (i >= scene.textures.size() || blocks_[i].width != 0) continue;
+    const Texture& t = scene.textures[i];
+    if (t.width == 0 || t.height == 0) continue;
+    blocks_[i] = {t.width, t.height, (t.width + 31) / 32, t.srgb, size};
+    size += size_t(4096) * blocks_[i].blocksPerRow * ((t.height + 31) / 32);
   }
   texels_.resize(size);
-  for (size_t i = 0; i < used.size(); ++i)
-    if (used[i])
-      std::copy(scene.textures[i].rgba.begin(), scene.textures[i].rgba.end(), &texels_[firstTexel_[i]]);
+  for (size_t i = 0; i < blocks_.size(); ++i) {
+    const TexelBlocks& blocks = blocks_[i];
+    const uint8_t* from = scene.textures[i].rgba.data();
+    for (uint32_t y = 0; y < blocks.height; ++y)
+      for (uint32_t x = 0; x < blocks.width; ++x, from += 4) std::memcpy(&texels_[blocks.at(x, y)], from, 4);
+  }
 }
 
 RayHit PathIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
@@ -95,8 +114,7 @@ bool PathIntegrator::occluded(const Ray& ray, uint64_t& rays) const {
   return rays_.occluded(ray);
 }
 
-PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, const Material& material, glm::vec3 direction,
-                                    glm::vec3 texture) const {
+PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, glm::vec3 direction) const {
   const float side = glm::dot(s.geometricNormal, direction) < 0 ? 1.0f : -1.0f;
   PathVertex v;
   v.normal = side * s.shadingNormal;
@@ -105,7 +123,6 @@ PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, const Material& materia
   // Off the surface and back along the ray, where there is nothing: also where two walls meet, whose seam a
   // step away from one of them would not leave.
   v.origin = s.position + (v.face - direction) * rays_.epsilon();
-  v.reflectance = glm::vec3(material.baseColor) * texture * (1.0f - material.metallic);
   return v;
 }
 
@@ -121,8 +138,9 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
       continue;
     }
     point.surface = true;
-    point.vertex = vertexAt(s, material, glm::normalize(ray.direction),
-                            glm::vec3(sampleTexture(*frame_.scene, material.baseColorTexture, s.uv)));
+    point.vertex = vertexAt(s, glm::normalize(ray.direction));
+    point.vertex.reflectance =
+        reflectanceOf(material, sampleTexture(*frame_.scene, material.baseColorTexture, s.uv));
     point.direct = emission(*frame_.scene, material, s.uv);
     if (depth_ >= 2) point.direct += point.vertex.reflectance * kInversePi * allLights(point.vertex, rays);
     return point;
@@ -153,10 +171,11 @@ glm::vec3 PathIntegrator::allLights(const PathVertex& v, uint64_t& rays) const {
 
 // One of the lights, in proportion to what it would do if nothing were in between; the random number is
 // stretched over the outcome of each decision, so that one is enough.
-glm::vec3 PathIntegrator::oneLight(const PathVertex& v, float u, uint64_t& rays) const {
+glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& random, uint32_t k,
+                                   uint64_t& rays) const {
   glm::vec3 chosen(0);
   Ray shadowRay;
-  float sum = 0, chosenWeight = 0;
+  float u = frame_.lights.size() > 1 ? random.number(k) : 0.0f, sum = 0, chosenWeight = 0;
   for (const Light& light : frame_.lights) {
     Ray ray;
     const glm::vec3 e = unshadowed(light, v, ray);
@@ -198,17 +217,18 @@ glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float 
 }
 
 // Light that arrives at the vertex, as far as it is asked for directly; then the ray to the next one. `edges`
-// join the vertex to the eye; the light that it reflects has come along one more at least.
+// join the vertex to the eye; the light that it reflects has come along one more at least. Random numbers of
+// a vertex: two for the direction, one for the light, one unused; two for the point on an emitter, one for
+// which.
 bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const {
   const PathVertex& v = path.vertex;
-  const std::array<float, 4> u = random.group(2 * edges);
-  if (edges > 1) path.light += path.throughput * kInversePi * oneLight(v, u[2], rays);
+  const uint32_t k = 8 * edges;
+  if (edges > 1) path.light += path.throughput * kInversePi * oneLight(v, random, k + 2, rays);
   if (!emitters_.empty()) {
-    const std::array<float, 4> w = random.group(2 * edges + 1);
-    path.light += path.throughput * emitterLight(v, w[2], w[0], w[1], rays);
-  } else if (edges + 1 == depth_) {
-    return false;  // nothing a further hit could add
+    const std::array<float, 2> u = random.pair(k + 4);
+    path.light += path.throughput * emitterLight(v, random.number(k + 6), u[0], u[1], rays);
   }
+  const std::array<float, 2> u = random.pair(k);
   path.ray.origin = v.origin;
   path.ray.direction = cosineDirection(v.normal, u[0], u[1]);
   if (glm::dot(path.ray.direction, v.face) <= 0) return false;
@@ -220,20 +240,26 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   return true;
 }
 
-// What was hit, and where its texture lies.
+// What was hit.
 bool PathIntegrator::arrive(Path& path) const {
   path.surface = surfaceAt(triangles_[path.hit.triangle], path.hit.u, path.hit.v);
   const bool front = glm::dot(path.surface.geometricNormal, path.ray.direction) < 0;
-  const Material& material = frame_.scene->materials[path.surface.material];
-  if (!front && !material.doubleSided) return false;
-  path.texture = textureTaps(*frame_.scene, material.baseColorTexture, path.surface.uv);
-  if (path.texture.texel[0] != nullptr) {
-    const uint32_t texture = material.baseColorTexture.texture;
-    const uint8_t *from = frame_.scene->textures[texture].rgba.data(), *to = &texels_[firstTexel_[texture]];
-    for (const uint8_t*& texel : path.texture.texel) texel = to + (texel - from);
-    path.texture.prefetch();
-  }
-  return true;
+  return front || frame_.scene->materials[path.surface.material].doubleSided;
+}
+
+// Where its texture lies; what is there will be needed soon.
+void PathIntegrator::findTexture(Path& path) const {
+  const TextureUse& use = frame_.scene->materials[path.surface.material].baseColorTexture;
+  path.texture = {};
+  if (use.texture >= blocks_.size() || blocks_[use.texture].width == 0) return;
+  const TexelBlocks& blocks = blocks_[use.texture];
+  const TexelSquare square = texelSquare(blocks.width, blocks.height, use, path.surface.uv);
+  for (uint32_t i = 0; i < 4; ++i)
+    path.texture.texel[i] = &texels_[blocks.at(square.column[i % 2], square.row[i / 2])];
+  path.texture.right = square.right;
+  path.texture.lower = square.lower;
+  path.texture.srgb = blocks.srgb;
+  path.texture.prefetch();
 }
 
 bool PathIntegrator::reflect(Path& path, uint32_t edges) const {
@@ -247,9 +273,25 @@ bool PathIntegrator::reflect(Path& path, uint32_t edges) const {
     path.light += path.throughput * emission(*frame_.scene, material, s.uv) * (own / (own + other));
   }
   if (edges + 1 == depth_) return false;
-  path.vertex = vertexAt(s, material, path.ray.direction, glm::vec3(sample(path.texture)));
+  path.vertex = vertexAt(s, path.ray.direction);
+  path.vertex.reflectance = reflectanceOf(material, sample(path.texture));
   path.throughput *= path.vertex.reflectance;
   return path.throughput != glm::vec3(0);
+}
+
+// The last reflection of a path that no emitter can add to: many of these surfaces lie in shadow, and their
+// textures need not be asked for.
+bool PathIntegrator::lightLast(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const {
+  path.irradiance = oneLight(vertexAt(path.surface, path.ray.direction), random, 8 * edges + 2, rays);
+  if (path.irradiance == glm::vec3(0)) return false;
+  findTexture(path);
+  return true;
+}
+
+void PathIntegrator::reflectLast(Path& path) const {
+  const Material& material = frame_.scene->materials[path.surface.material];
+  path.throughput *= reflectanceOf(material, sample(path.texture));
+  path.light += path.throughput * kInversePi * path.irradiance;
 }
 
 void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampler> random,
@@ -268,10 +310,34 @@ void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampl
       if (that(alive[i])) alive[kept++] = alive[i];
     count = kept;
   };
-  for (uint32_t edges = 1; edges < depth_ && count > 0; ++edges) {
-    keepThose([&](uint8_t i) { return leave(paths[i], edges, random[i], rays); });
-    keepThose([&](uint8_t i) { return arrive(paths[i]); });
-    keepThose([&](uint8_t i) { return reflect(paths[i], edges); });
+  // Without emitters the last edge is a shadow ray.
+  const uint32_t others = emitters_.empty() ? 2 : 1, bounces = std::max(depth_, others) - others;
+  for (uint32_t edges = 1; edges <= bounces && count > 0; ++edges) {
+    const bool last = emitters_.empty() && edges == bounces;
+    const auto look = [&](uint8_t i) {
+      if (!arrive(paths[i])) return false;
+      if (!last) findTexture(paths[i]);
+      return true;
+    };
+    // Each path looks at what it hit while the next one's ray is under way.
+    size_t kept = 0;
+    bool waits = false;
+    uint8_t latest = 0;
+    for (size_t n = 0; n < count; ++n) {
+      const uint8_t i = alive[n];
+      if (!leave(paths[i], edges, random[i], rays)) continue;
+      if (waits && look(latest)) alive[kept++] = latest;
+      latest = i;
+      waits = true;
+    }
+    if (waits && look(latest)) alive[kept++] = latest;
+    count = kept;
+    if (last) {
+      keepThose([&](uint8_t i) { return lightLast(paths[i], edges + 1, random[i], rays); });
+      for (size_t n = 0; n < count; ++n) reflectLast(paths[alive[n]]);
+    } else {
+      keepThose([&](uint8_t i) { return reflect(paths[i], edges); });
+    }
   }
   for (size_t i = 0; i < random.size(); ++i) light[i] = paths[i].light;
 }

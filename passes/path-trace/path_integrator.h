@@ -14,12 +14,13 @@
 
 namespace fovea::passes {
 
-// Random numbers of one path, in groups of four.
+// Random numbers of one path: number k.
 struct PathSampler {
   bool independent = false;  // else Owen-scrambled Sobol' points
   uint32_t stream = 0;       // independent: of the path; else: the scramble
   uint32_t index = 0;        // of the point in its scramble
-  std::array<float, 4> group(uint32_t number) const;
+  float number(uint32_t k) const;
+  std::array<float, 2> pair(uint32_t k) const;  // k and k + 1; k: a multiple of 4
 };
 
 // A surface as the path that reached it sees it.
@@ -67,20 +68,31 @@ class PathIntegrator {
 
  private:
   struct Path;
+  // Where texels_ has those of a texture; width 0: nowhere.
+  struct TexelBlocks {
+    uint32_t width = 0, height = 0, blocksPerRow = 0;
+    bool srgb = true;
+    size_t first = 0;
+    size_t at(uint32_t x, uint32_t y) const;
+  };
   scene::RayHit intersect(const scene::Ray& ray, uint64_t& rays) const;
   bool occluded(const scene::Ray& ray, uint64_t& rays) const;
   // `direction`: unit, of the ray that hit.
-  PathVertex vertexAt(const scene::SurfaceHit& s, const scene::Material& material, glm::vec3 direction,
-                      glm::vec3 texture) const;
+  PathVertex vertexAt(const scene::SurfaceHit& s, glm::vec3 direction) const;  // all but the reflectance
   void copyTexels();
-  // The three steps of a path from one vertex to the next; false: it ends.
+  // The steps of a path from one vertex to the next; false: it ends.
   bool leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
   bool arrive(Path& path) const;
+  void findTexture(Path& path) const;
   bool reflect(Path& path, uint32_t edges) const;
+  // Those of the last one, instead of reflect().
+  bool lightLast(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
+  void reflectLast(Path& path) const;
   // Irradiance of one light on a vertex where nothing is in between.
   glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
-  glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;          // irradiance
-  glm::vec3 oneLight(const PathVertex& v, float u, uint64_t& rays) const;  // the same on average
+  glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;  // irradiance
+  // The same on average; takes random number k where there is a choice.
+  glm::vec3 oneLight(const PathVertex& v, const PathSampler& random, uint32_t k, uint64_t& rays) const;
   glm::vec3 emitterLight(const PathVertex& v, float choice, float u1, float u2,
                          uint64_t& rays) const;  // / pi
 
@@ -91,7 +103,7 @@ class PathIntegrator {
   // What hits look up, side by side in few pages: the geometry's triangles, and the texels of base colours.
   HugeVector<scene::TriangleVertices> triangles_;
   HugeVector<uint8_t> texels_;
-  std::vector<size_t> firstTexel_;  // of each texture of the scene, in texels_
+  std::vector<TexelBlocks> blocks_;  // of each texture of the scene
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;
 };

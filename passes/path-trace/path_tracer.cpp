@@ -140,7 +140,7 @@ void Tracer::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, ui
                    hashCombine(stream, settings_.independent ? s + i : (s + i) % slotCount_),
                    (s + i) / slotCount_};
     if (settings_.box) {
-      const auto u = random[0].group(0);
+      const auto u = random[0].pair(0);
       eye = integrator_.look(corner + glm::vec2(u[0], u[1]), rays);
     }
     std::fill_n(indirect.begin(), count, glm::vec3(0));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -35,8 +36,15 @@ TEST(LowDiscrepancy, EveryDimensionIsStratified) {
   }
 }
 
-// Any two dimensions, also of different groups: pairs must not fall on lines. 1024 points in 16 x 16 cells; the points of one
-// seed are no independent draws (single seeds reach 450), so the mean over seeds is what is tested.
+TEST(LowDiscrepancy, APairIsTwoDimensions) {
+  for (const uint32_t index : {0u, 5u, 70000u})
+    for (const uint32_t d : {0u, 1u, 2u, 8u, 13u})
+      EXPECT_EQ(sobolPair(index, d, 9), (std::array<float, 2>{sobol(index, d, 9), sobol(index, d + 1, 9)}));
+}
+
+// Any two dimensions, also of different groups: pairs must not fall on lines. 1024 points in 16 x 16 cells;
+// the points of one seed are no independent draws (single seeds reach 450), so the mean over seeds is what is
+// tested.
 TEST(LowDiscrepancy, PairsOfDimensionsCoverTheSquare) {
   constexpr uint32_t kSeeds = 32;
   for (uint32_t a = 0; a < 12; ++a) {
@@ -53,7 +61,8 @@ TEST(LowDiscrepancy, PairsOfDimensionsCoverTheSquare) {
   }
 }
 
-// Owen scrambling leaves each single point uniform: the mean over seeds of any point is 1/2, its variance 1/12.
+// Owen scrambling leaves each single point uniform: the mean over seeds of any point is 1/2, its variance
+// 1/12.
 TEST(LowDiscrepancy, SeedsMakeASinglePointUniform) {
   constexpr int kSeeds = 20000;
   for (const uint32_t index : {0u, 1u, 1000u}) {
@@ -71,7 +80,8 @@ TEST(LowDiscrepancy, SeedsMakeASinglePointUniform) {
   }
 }
 
-// What it is for: 1024 points integrate a smooth function far better than random numbers (error about 1 / sqrt(12 n) = 0.009).
+// What it is for: 1024 points integrate a smooth function far better than random numbers (error about 1 /
+// sqrt(12 n) = 0.009).
 TEST(LowDiscrepancy, IntegratesBetterThanRandomNumbers) {
   double worst = 0;
   for (uint32_t seed = 0; seed < 20; ++seed) {
