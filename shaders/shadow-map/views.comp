@@ -52,6 +52,27 @@ ShadowView orthographic(mat3 axes) {
   return v;
 }
 
+// Axes around a direction that the box of the scene fits into most tightly: the least rectangle around a convex outline
+// has a side along one of its edges, and those of a box run along the axes of the world.
+mat3 tightAxes(vec3 direction) {
+  vec3 extent = frame.boundsMax.xyz - frame.boundsMin.xyz;
+  mat3 best = orthonormalFrame(direction);
+  float least = 3e38;
+  for (int i = 0; i < 3; ++i) {
+    vec3 edge = vec3(equal(ivec3(i), ivec3(0, 1, 2)));
+    vec3 right = edge - direction * dot(edge, direction);
+    if (dot(right, right) < 1e-6) continue;  // seen from its end
+    right = normalize(right);
+    vec3 up = cross(direction, right);
+    float area = dot(abs(right), extent) * dot(abs(up), extent);
+    if (area < least) {
+      least = area;
+      best = mat3(right, up, direction);
+    }
+  }
+  return best;
+}
+
 mat3 cubeAxes(uint face) {
   vec3 axis = vec3(equal(uvec3(face / 2u), uvec3(0u, 1u, 2u))) * ((face & 1u) == 0u ? 1.0 : -1.0);
   return mat3(axis.yzx, axis.zxy, axis);
@@ -66,7 +87,7 @@ void main() {
   // Near enough to the light to lose nothing that could matter; costs no precision (depth is reversed).
   float near = 1e-4 * max(distance(frame.boundsMin.xyz, frame.boundsMax.xyz), 1e-3);
   if (type == kLightDirectional) {
-    mapsViews.view[layer] = orthographic(orthonormalFrame(light.direction.xyz));
+    mapsViews.view[layer] = orthographic(tightAxes(light.direction.xyz));
   } else if (type == kLightSpot) {
     float angle = min(acos(clamp(light.cone.y, -1.0, 1.0)), kMaxSpotAngle);
     mapsViews.view[layer] = perspective(light.position.xyz, orthonormalFrame(light.direction.xyz), tan(angle), near);

@@ -122,6 +122,15 @@ TEST_F(ShadowMapTest, SunSeesTheWholeSceneTightly) {
   const double guarded = 1 - 12.0 / kSize;  // a few texels of margin for the filter
   EXPECT_GT(most.x, guarded);
   EXPECT_GT(most.y, guarded);
+  // No map turned about the light's direction would be smaller.
+  const glm::dvec3 extent(g.boundsMax - g.boundsMin), x(glm::vec3(views_[0].right)),
+      y(glm::vec3(views_[0].up));
+  const auto areaAt = [&](double angle) {
+    const glm::dvec3 right = std::cos(angle) * x + std::sin(angle) * y,
+                     up = std::cos(angle) * y - std::sin(angle) * x;
+    return glm::dot(glm::abs(right), extent) * glm::dot(glm::abs(up), extent);
+  };
+  for (int i = 1; i < 180; ++i) EXPECT_LT(areaAt(0), 1.0001 * areaAt(glm::radians(double(i)))) << i;
 }
 
 TEST_F(ShadowMapTest, SpotSeesItsConeTightly) {
