@@ -33,8 +33,10 @@ MEASURES = {
     "error.periphery.relmse": ("relMSE indirect periphery", 1, "the same outside the fovea"),
     "error.fovea.flip": ("FLIP fovea", 1, "visible difference when one picture replaces the other, 0 to 1"),
     "error.fovea.direct_floor": ("direct floor fovea ×10⁻³", 1e3, "the MSE that would remain with perfect indirect light"),
-    "temporal.fovea.mse_prime": ("MSE' fovea ×10⁻³", 1e3, "mean square change between consecutive frames (the paper's Eq. 4); contains the scene's own motion"),
+    "temporal.fovea.mse_prime": ("MSE' fovea ×10⁻³", 1e3, "mean square change between consecutive frames (the paper's Eq. 4); contains the scene's own motion, so the best value is the reference's"),
+    "temporal.fovea.reference_mse_prime": ("MSE' fovea of the reference ×10⁻³", 1e3, "the same of the reference, less its noise: the scene's motion alone"),
     "temporal.periphery.mse_prime": ("MSE' periphery ×10⁻³", 1e3, "the same outside the fovea"),
+    "temporal.periphery.reference_mse_prime": ("MSE' periphery of the reference ×10⁻³", 1e3, "of the reference, outside the fovea"),
     "temporal.fovea.excess": ("excess fovea ×10⁻³", 1e3, "mean square of (change of the sequence - change of the reference): flicker without the scene's motion"),
     "temporal.fovea.excess_over_ours": ("excess more than ours ×10⁻³", 1e3, "excess in the fovea less that of ours, seed by seed"),
     "temporal.periphery.excess": ("excess periphery ×10⁻³", 1e3, "the same outside the fovea"),
@@ -46,11 +48,18 @@ MEASURES = {
     "second_eye.ms": ("second eye ms", 1, "passes of the second eye"),
     "second_eye.new_pixels": ("new pixels", 1, "share of the second eye's pixels that the first one has not seen"),
 }
+NOTES = {"error.fovea.mse": "error.fovea.mse_over_ours", "temporal.fovea.excess": "temporal.fovea.excess_over_ours"}  # told inside the other's cell
+HIGHER = {"speed_up.ir_1000", "speed_up.ir_eq", "match.value"}
+NEUTRAL = {"error.fovea.direct_floor", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime", "temporal.fovea.reference_mse_prime",
+           "temporal.periphery.reference_mse_prime", "match.value", "second_eye.ms", "second_eye.new_pixels"}
+CSV_COLUMNS = {"scene", "graph", "measure", "mean", "half_width", "seeds", "paper", "ratio"}
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1180px;padding:0 1em;color:#1b1b1f}
 table{border-collapse:collapse;margin:1em 0;font-size:13px}th,td{border-bottom:1px solid #ddd;padding:.3em .7em;text-align:right;vertical-align:top}
 th{background:#f3f3f6}td:first-child,td:nth-child(2),th:first-child,th:nth-child(2){text-align:left}small{color:#667;display:block}
-figure{display:inline-block;margin:.4em;vertical-align:top}figcaption{font-size:12px;color:#556;max-width:256px}.pixels{image-rendering:pixelated}
-img{max-width:100%}.grid{overflow-x:auto;white-space:nowrap}.warn{background:#fff3d6;padding:.6em 1em;border-radius:6px}code{background:#f3f3f6;padding:0 .3em}"""
+figure{display:inline-block;margin:.4em;vertical-align:top;max-width:100%}figcaption{font-size:13px;color:#445}.pixels{image-rendering:pixelated}
+img{max-width:100%}.grid{overflow-x:auto}.num td{white-space:nowrap}.num th{vertical-align:bottom;max-width:7.5em}.best{font-weight:bold}
+.first td{border-top:2px solid #889}.pics td{border:0;padding:.15em;text-align:left;white-space:normal}.pics td:first-child{max-width:7em;color:#445}.pics img{display:block}
+td.text{text-align:left;white-space:normal}.warn{background:#fff3d6;padding:.6em 1em;border-radius:6px}code{background:#f3f3f6;padding:0 .3em}"""
 
 
 def data_url(data):
@@ -79,22 +88,38 @@ class Report:
         self.add(f"<h1>Benchmark <code>{html.escape(self.head['suite'])}</code></h1><p>{html.escape(self.head['description'])}</p>")
         cpu = any("llvmpipe" in d for d in devices)
         self.add("<p>Device: " + html.escape("; ".join(devices)) + (
-            ". This is lavapipe, Vulkan in software on the processor: its absolute times say nothing about a graphics card, "
-            "ratios between methods say little; errors and counters are the same everywhere." if cpu else ".") +
-            f"<br>Built from commit {html.escape(', '.join(commits))}, version {html.escape(first['version'])}; "
-            f"{len(self.results)} of {self.head['jobs']} jobs measured, {sum(r.get('seconds', 0) for r in self.results) / 60:.1f} minutes of work.</p>")
+            ". This is lavapipe, Vulkan in software on the processor: its times, and the ratios between them, "
+            "are not those of a graphics card; errors and counters are the same everywhere." if cpu else ".") +
+            f"<br>Made by <code>{html.escape(self.head.get('command', ''))}</code>; built from commit {html.escape(', '.join(commits))}, version {html.escape(first['version'])}; "
+            f"{len(self.results)} of {self.head['jobs']} jobs measured, {sum(r.get('seconds', 0) for r in self.results) / 60:.1f} minutes of work. "
+            "Times hold only as far as the machine had nothing else to do.</p>")
         for scene, why in self.head["missing_scenes"].items():
             self.add(f"<p class=warn>Scene <b>{html.escape(scene)}</b> was left out: {html.escape(why)}</p>")
         if len(self.results) < self.head["jobs"]:
             self.add("<p class=warn>Not every job has a result yet: means are over what is there.</p>")
 
+    def graphs(self):
+        """What the labels in the tables stand for, in the words of the graph files."""
+        rows = {}
+        for job in (r["job"] for r in self.results):
+            file = pathlib.Path(job["graph"])
+            file = file if file.suffix else pathlib.Path(__file__).resolve().parent.parent / "graphs" / f"{file}.json"
+            text = json.loads(file.read_text()).get("description", "") if file.exists() else ""
+            if job["label"] != pathlib.Path(job["graph"]).stem:
+                text = f"graph {job['graph']}: {text}"
+            rows.setdefault(job["label"], text)
+        self.add("<h2>What is compared</h2><table>" + "".join(
+            f"<tr><td><b>{html.escape(k)}</b></td><td class=text>{html.escape(v)}</td></tr>" for k, v in rows.items()) + "</table>")
+
     def explanation(self, names):
-        rows = "".join(f"<tr><td>{html.escape(MEASURES[n][0])}</td><td style='text-align:left'>{html.escape(MEASURES[n][2])}</td></tr>"
-                       for n in MEASURES if n in names)
+        rows = "".join(f"<tr><td><b>{html.escape(MEASURES[n][0])}</b></td><td class=text>{html.escape(MEASURES[n][2])}"
+                       f"{'' if n in NEUTRAL else '; higher is better' if n in HIGHER else '; lower is better'}</td></tr>" for n in MEASURES if n in names and n not in NOTES.values())
         self.add("<h2>What the numbers mean</h2><p>Displayed picture: sRGB(clamp(exposure × radiance)). The fovea is a circle around where the "
                  "eye looks; references are path-traced, and their own noise is measured from two halves and subtracted, which can leave a "
-                 "small error slightly below 0. <b>±</b>: half width of the 95% interval over seeds. <i>Paper</i>: the paper's number, with "
-                 "ours ÷ the paper's in brackets; its models, camera paths and machine (RTX 2080 Ti, 1024×1024) are others.</p>"
+                 "small error slightly below 0. Errors have no unit; ×10⁻³: the table's number is 1000 times the value. <b>±</b>: half width of the "
+                 "95% interval over seeds, wide where there are two or three. <b>Bold</b>: best of its scene and setting. <i>ours better by</i>: difference "
+                 "to ours, seed by seed; it decides only where it is larger than its ±. <i>Paper</i>: the paper's number, with measured here ÷ the paper's in "
+                 "brackets; its models, camera paths and machine (RTX 2080 Ti, 1024×1024) are others.</p>"
                  f"<table>{rows}</table>")
 
     # ---- Tables
@@ -107,36 +132,62 @@ class Report:
         jobs = [r["job"] for r in self.results if r["job"]["sweep"] == sweep]
         one = jobs[0]
         sizes = sorted({tuple(j["size"]) for j in jobs})
-        text = f"{', '.join(f'{w}×{h}' for w, h in sizes)} pixels; {one['frames']} frame{'s' if one['frames'] > 1 else ''} from number {one['first']}, " \
-               f"after {one['warmup']} to warm up; {len({j['seed'] for j in jobs})} seed(s)"
+        last, seeds = one["first"] + one["frames"] - 1, len({j["seed"] for j in jobs})
+        frames = f"frames {one['first']} to {last}" if one["frames"] > 1 else f"frame {last}"
+        text = "Errors are those of the last frame. " if "error" in one["measures"] and one["frames"] > 1 else ""
+        text += f"{', '.join(f'{w}×{h}' for w, h in sizes)} pixels; {frames} of the scene's animation at {one['frame_rate']:g} frames a second, " \
+                f"after {one['warmup']} frames to warm up; {seeds} seed{'s' if seeds > 1 else ''}"
         if "reference" in one:
             text += f"; reference: {one['reference']['spp']} samples a pixel, depth {one['reference']['depth']}"
         fixed = {k: v for k, v in one["set"].items() if k not in one["varied"]}
-        if fixed:
-            text += "; " + ", ".join(f"{k} = {v}" for k, v in fixed.items())
+        shared = {k: v for k, v in fixed.items() if all(j["set"].get(k) == v for j in jobs)}
+        if shared:
+            text += "; " + ", ".join(f"{k} = {v}" for k, v in shared.items())
         return text + ". The same for every graph."
 
-    def cell(self, row, name):
+    def cell(self, row, name, best, note):
         factor = MEASURES[name][1]
         number = lambda text: f"{factor * float(text):.3g}" if abs(factor * float(text)) < 1000 else f"{factor * float(text):.0f}"
         if not row or not row["mean"]:
             return "<td>-</td>"
-        text = number(row["mean"]) + (f" ± {number(row['half_width'])}" if row["half_width"] else "")
+        spread = lambda r: f" ± {number(r['half_width'])}" if float(r["half_width"] or 0) > 0 else ""
+        text = f"<span{' class=best' if best else ''}>{number(row['mean'])}</span><small>{spread(row)}</small>"
+        if note and note["mean"]:
+            text += f"<small>ours {'better' if float(note['mean']) > 0 else 'worse'} by {number(note['mean'].lstrip('-'))}{spread(note)}</small>"
         if row["paper"]:
-            text += f"<small>Paper {number(row['paper'])} (×{float(row['ratio']):.2g})</small>"
+            ratio = float(row["ratio"])
+            text += f"<small>Paper {number(row['paper'])} (×{f'{ratio:.2g}' if ratio < 100 else f'{ratio:.0f}'})</small>"
         return f"<td>{text}</td>"
 
+    @staticmethod
+    def best(name, rows):
+        """Of each scene and setting: the rows with the best mean, where there is something to compare."""
+        groups = {}
+        for r in rows:
+            if r["measure"] == name and r["mean"] and name not in NEUTRAL:
+                groups.setdefault(tuple(v for k, v in r.items() if k == "scene" or k not in CSV_COLUMNS), []).append(r)
+        pick = max if name in HIGHER else min
+        return [pick(g, key=lambda r: float(r["mean"])) for g in groups.values() if len(g) > 1]
+
     def table(self, sweep, axes, rows):
-        names = [n for n in MEASURES if any(r["measure"] == n for r in rows)]
+        names = [n for n in MEASURES if any(r["measure"] == n and r["mean"] for r in rows)]
+        shown = [n for n in names if n not in NOTES.values()]
+        best = {n: self.best(n, rows) for n in shown}
         keys = list(dict.fromkeys((r["scene"], r["graph"], *(r[a] for a in axes)) for r in rows))
         cells = {((r["scene"], r["graph"], *(r[a] for a in axes)), r["measure"]): r for r in rows}
-        text = "<div class=grid><table><tr><th>scene</th><th>graph</th>" + "".join(f"<th>{html.escape(a)}</th>" for a in axes)
-        text += "".join(f"<th>{html.escape(MEASURES[n][0])}</th>" for n in names) + "</tr>"
+        text = "<div class=grid><table class=num><tr><th>scene</th><th>graph</th>" + "".join(f"<th>{html.escape(a)}</th>" for a in axes)
+        text += "".join(f"<th>{html.escape(MEASURES[n][0])}</th>" for n in shown) + "</tr>"
+        scene = None
         for key in keys:
             paper = self.paper_name(key[0])
-            text += f"<tr><td>{html.escape(key[0])}" + (f"<small>paper: {html.escape(paper)}</small>" if self.head["paper"] and paper else "") + "</td>"
+            text += "<tr>" if key[0] == scene else "<tr class=first>"
+            scene = key[0]
+            text += f"<td>{html.escape(key[0])}" + (f"<small>paper: {html.escape(paper)}</small>" if self.head["paper"] and paper else "") + "</td>"
             text += "".join(f"<td>{html.escape(k)}</td>" for k in key[1:])
-            text += "".join(self.cell(cells.get((key, n)), n) for n in names) + "</tr>"
+            for n in shown:
+                row = cells.get((key, n))
+                text += self.cell(row, n, any(row is b for b in best[n]), cells.get((key, NOTES.get(n))))
+            text += "</tr>"
         self.add(text + "</table></div>")
         return set(names)
 
@@ -150,7 +201,7 @@ class Report:
         plt.savefig(memory, format="png", dpi=110)
         plt.close()
         (plots / f"{name}.png").write_bytes(memory.getvalue())
-        self.add(f"<figure><img src='{data_url(memory.getvalue())}' alt='{html.escape(title)}'></figure>")
+        self.add(f"<figure><img src='{data_url(memory.getvalue())}' alt='{html.escape(title)}'><figcaption>{html.escape(title)}</figcaption></figure>")
 
     def line_plots(self, sweep, axis, rows, names):
         scenes = list(dict.fromkeys(r["scene"] for r in rows))
@@ -170,7 +221,7 @@ class Report:
                 plt.legend(fontsize=7)
                 if i == 0:
                     plt.ylabel(MEASURES[name][0], fontsize=9)
-            self.figure(f"{sweep}-{axis}-{name}", f"{MEASURES[name][0]} over {axis}")
+            self.figure(f"{sweep}-{axis}-{name}", f"{MEASURES[name][0]} over {axis}; lower is better")
 
     @staticmethod
     def number(text):
@@ -185,12 +236,15 @@ class Report:
                 xs = [s + (i - (len(graphs) - 1) / 2) * 0.8 / len(graphs) for s, scene in enumerate(scenes) if (scene, graph) in found]
                 mine = [found[scene, graph] for scene in scenes if (scene, graph) in found]
                 factor = MEASURES[name][1]
-                plt.bar(xs, [factor * float(r["mean"]) for r in mine], 0.8 / len(graphs), label=graph,
-                        yerr=[factor * float(r["half_width"] or 0) for r in mine], capsize=2)
+                spread = [factor * float(r["half_width"] or 0) if int(r["seeds"]) > 2 else 0 for r in mine]
+                plt.bar(xs, [factor * float(r["mean"]) for r in mine], 0.8 / len(graphs), label=graph, yerr=spread if any(spread) else None, capsize=2)
             plt.xticks(range(len(scenes)), scenes, fontsize=8)
+            plt.xlim(-0.6, len(scenes) - 0.4)
+            plt.ylim(min(0, 1.2 * min(factor * float(r["mean"]) for r in found.values())), None)
             plt.ylabel(MEASURES[name][0], fontsize=9)
             plt.legend(fontsize=7)
-            self.figure(f"{sweep}-{name}", MEASURES[name][0])
+            self.figure(f"{sweep}-{name}", f"{MEASURES[name][0]}; lower is better" +
+                        ("; lines: 95% interval over seeds" if any(int(r["seeds"]) > 2 for r in found.values()) else ""))
 
     def step_plot(self, sweep, axes):
         """Stacked times of the passes, on the device or, for host passes, on the host."""
@@ -215,11 +269,12 @@ class Report:
         plt.xticks(range(len(bars)), bars, fontsize=7)
         plt.ylabel("ms a frame, by pass", fontsize=9)
         plt.legend(fontsize=7, bbox_to_anchor=(1, 1), loc="upper left")
-        self.figure(f"{sweep}-steps", "time of every pass")
+        self.figure(f"{sweep}-steps", "time of every pass, median; seed 1")
 
     # ---- Pictures
 
-    def picture(self, name, caption, zoom=None):
+    def picture(self, name, width, zoom=None):
+        """An <img>, or "": of the file, or of the part around `zoom` = (x, y, radius)."""
         file = self.folder / "pictures" / f"{name}.png"
         if not file.exists():
             return ""
@@ -233,32 +288,36 @@ class Report:
             memory = io.BytesIO()
             plt.imsave(memory, pixels[y0:y0 + 2 * half, x0:x0 + 2 * half], format="png")
             data = memory.getvalue()
-        return f"<figure><img class=pixels width=256 src='{data_url(data)}' alt='{html.escape(caption)}'><figcaption>{html.escape(caption)}</figcaption></figure>"
+        return f"<img class=pixels width={width} src='{data_url(data)}' alt='{html.escape(name)}'>"
 
     def pictures(self, sweep):
+        """Per scene a grid: a column for the reference and each graph, a row for each kind of picture."""
         jobs = [r for r in self.results if r["job"]["sweep"] == sweep and r["job"]["seed"] == 1 and "pictures" in r["job"]["measures"]]
         for scene in dict.fromkeys(r["job"]["scene"] for r in jobs):
             mine = [r for r in jobs if r["job"]["scene"] == scene]
-            self.add(f"<h4>{html.escape(scene)}</h4>")
-            rows = {"": "", "-error": "", "zoom": "", "-temporal": ""}
-            for r in mine:
-                job = r["job"]
+            disc = mine[0].get("error", {}).get("disc")
+            labels = ["reference"] if disc else []
+            names = []
+            for job in (r["job"] for r in mine):
                 name = f"{sweep}-{pathlib.Path(scene).stem}-{job['label']}" + "".join(f"-{k}={v}" for k, v in job["varied"].items()) + "-s1"
-                name = name.replace("/", "_").replace(" ", "_")
-                label = " ".join([job["label"], *(f"{k} = {v}" for k, v in job["varied"].items())])
-                disc = r.get("error", {}).get("disc")
-                if r is mine[0]:
-                    rows[""] += self.picture(name + "-reference", "reference")
-                    if disc:
-                        rows["zoom"] += self.picture(name + "-reference", "reference, where the eye looks", disc)
-                rows[""] += self.picture(name, label)
-                if disc:
-                    rows["zoom"] += self.picture(name, label + ", where the eye looks", disc)
-                rows["-error"] += self.picture(name + "-error", label + ": error (scale below), circle: fovea")
-                rows["-temporal"] += self.picture(name + "-temporal", label + ": change that is not the reference's, last two frames")
-            for text in rows.values():
-                if text:
-                    self.add(f"<div class=grid>{text}</div>")
+                names.append(name.replace("/", "_").replace(" ", "_"))
+                labels.append(", ".join([job["label"], *(f"{k} = {v}" for k, v in job["varied"].items())]))
+            width = max(240, min(420, 1040 // len(labels)))
+            discs = [r.get("error", {}).get("disc") for r in mine]
+            rows = {"picture": [self.picture(n, width) for n in names],
+                    "half of the fovea, enlarged": [self.picture(n, width, d) if d else "" for n, d in zip(names, discs)],
+                    "error against the reference, its noise included; circle: fovea": [self.picture(n + "-error", width) for n in names],
+                    "change between the last two frames that is not the reference's, its noise included": [self.picture(n + "-temporal", width) for n in names]}
+            if disc:
+                truths = [self.picture(names[0] + "-reference", width), self.picture(names[0] + "-reference", width, disc), "", ""]
+                for truth, row in zip(truths, rows.values()):
+                    row.insert(0, truth)
+            self.add(f"<h3>{html.escape(scene)}</h3><div class=grid><table class=pics><tr><td></td>" +
+                     "".join(f"<td><b>{html.escape(label)}</b></td>" for label in labels) + "</tr>")
+            for caption, row in rows.items():
+                if any(row):
+                    self.add(f"<tr><td>{html.escape(caption)}</td>" + "".join(f"<td>{p}</td>" for p in row) + "</tr>")
+            self.add("</table></div>")
 
     def sweep(self, sweep, axes):
         rows = self.rows(sweep)
@@ -285,6 +344,7 @@ class Report:
 
     def write(self):
         self.introduction()
+        self.graphs()
         place = len(self.parts)
         used = set()
         for sweep in self.head["sweeps"]:
