@@ -1,4 +1,6 @@
 // What the eye sees: the nearest surface through the centre of every pixel.
+#include <algorithm>
+
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/draw_clusters.h"
@@ -52,7 +54,8 @@ class GBuffer : public Pass {
            .depth = "gbuffer.depth",
            .cull =
                cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
-    resolve_ = ctx.compute("gbuffer/resolve.comp");
+    resolve_[0] = ctx.compute("gbuffer/resolve.comp", {{"EMISSION_TEXTURES", "0"}});
+    resolve_[1] = ctx.compute("gbuffer/resolve.comp", {{"EMISSION_TEXTURES", "1"}});
   }
 
   void record(RecordContext& ctx) override {
@@ -60,6 +63,9 @@ class GBuffer : public Pass {
     const scene::Geometry& geometry = *ctx.frame().geometry;
     if (gpu_ != &gpu) {
       clusters_ = scene::drawClusters(gpu.drawRuns(), geometry);
+      const std::vector<scene::Material>& materials = ctx.frame().scene->materials;
+      emissionTextures_ = std::any_of(materials.begin(), materials.end(),
+                                      [](const scene::Material& m) { return bool(m.emissionTexture); });
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -75,11 +81,13 @@ class GBuffer : public Pass {
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
     ctx.barrier();
-    ctx.use(resolve_).dispatchOver("gbuffer.position");
+    ctx.use(resolve_[emissionTextures_]).dispatchOver("gbuffer.position");
   }
 
  private:
-  Kernel draw_[3], resolve_;
+  Kernel draw_[3];
+  Kernel resolve_[2];  // where no emission is textured, as in most scenes, and with its textures
+  bool emissionTextures_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // whose clusters these are
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

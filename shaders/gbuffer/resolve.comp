@@ -36,24 +36,12 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   return w / max(w.x + w.y, 1.0);
 }
 
-void storeBackground(ivec2 p) {
-  imageStore(gbufferPosition, p, vec4(0.0));
-  imageStore(gbufferNormal, p, vec4(0.0));
-  imageStore(gbufferFace, p, vec4(0.0));
-  imageStore(gbufferAlbedo, p, vec4(0.0));
-  imageStore(gbufferEmission, p, vec4(min(frame.environment.rgb, kMaxHalf), 0.0));
-  imageStore(gbufferId, p, uvec4(kNothing));
-}
-
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(p, imageSize(gbufferPosition)))) return;
   uint index = texelFetch(seen, p, 0).r;
-  if (index == kNothing) {
-    storeBackground(p);
-    return;
-  }
-  uvec4 triangle = sceneTriangle(index);
+  bool background = index == kNothing;  // worked out as if it were triangle 0: a CPU device runs both sides of a branch
+  uvec4 triangle = sceneTriangle(background ? 0u : index);
   vec3 a = scenePosition(triangle.x), edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
   vec2 w = barycentrics(pixelRay(p), a, edgeB, edgeC);
   vec3 weights = vec3(1.0 - w.x - w.y, w);
@@ -65,12 +53,19 @@ void main() {
   normal = dot(normal, normal) > 1e-12 ? normalize(normal) : face;
   if (dot(normal, face) < 0.0) normal = -normal;
   vec2 uv = mat3x2(sceneUv(triangle.x), sceneUv(triangle.y), sceneUv(triangle.z)) * weights;
-  SurfacePoint surface = surfaceAt(materialOf(triangle), uv);
+  uint material = materialOf(triangle);
+  vec3 albedo = materialReflectance(material, uv).rgb;
+#if EMISSION_TEXTURES
+  vec3 emission = materialEmission(material, uv);
+#else
+  vec3 emission = loadMaterial(material).emission;
+#endif
+  if (background) emission = frame.environment.rgb;
 
-  imageStore(gbufferPosition, p, vec4(position, distance(position, view.eye.xyz)));
-  imageStore(gbufferNormal, p, vec4(normal, 0.0));
-  imageStore(gbufferFace, p, vec4(octEncode(face), 0.0, 0.0));
-  imageStore(gbufferAlbedo, p, vec4(surface.reflectance, 0.0));
-  imageStore(gbufferEmission, p, vec4(min(surface.emission, kMaxHalf), 0.0));
-  imageStore(gbufferId, p, uvec4(triangle.w));
+  imageStore(gbufferPosition, p, background ? vec4(0.0) : vec4(position, distance(position, view.eye.xyz)));
+  imageStore(gbufferNormal, p, background ? vec4(0.0) : vec4(normal, 0.0));
+  imageStore(gbufferFace, p, background ? vec4(0.0) : vec4(octEncode(face), 0.0, 0.0));
+  imageStore(gbufferAlbedo, p, background ? vec4(0.0) : vec4(albedo, 0.0));
+  imageStore(gbufferEmission, p, vec4(min(emission, kMaxHalf), 0.0));
+  imageStore(gbufferId, p, uvec4(background ? kNothing : triangle.w));
 }
