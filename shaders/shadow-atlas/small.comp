@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation.
+// Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation. With
+// TINY those of the fewest.
 #include "shadow-atlas/pair.glsl"
 
 layout(local_size_x = 64) in;  // kSmallPerGroup
@@ -14,9 +15,14 @@ layout(push_constant) uniform Constants {
 };
 
 void main() {
-#ifdef MASKED
+#if defined(TINY)
+  const uint list = kTiny;
+  uint count = steps.list[step_].tiny.count;
+#elif defined(MASKED)
+  const uint list = kMaskedSmall;
   uint count = steps.list[step_].maskedSmall.count;
 #else
+  const uint list = kSmall;
   uint count = steps.list[step_].small.count;
 #endif
   uint entry = (gl_WorkGroupID.y * kGroupsPerRow + gl_WorkGroupID.x) * kSmallPerGroup + gl_LocalInvocationIndex;
@@ -25,7 +31,7 @@ void main() {
     else atomicAdd(counters.small, count);
   }
   if (entry >= count) return;
-  Pair pair = loadPair(pairs.list[smallPlace(entry, capacity, kMasked)], size, planeEpsilon, false);
+  Pair pair = loadPair(pairs.list[pairPlace(list, entry, capacity)], size, planeEpsilon, false);
 
   vec2 texel = pair.box.lo;
   float toMap = 2.0 / float(size);
