@@ -132,6 +132,11 @@ std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagn
                {"exposure", shortest(scene.exposure)},
                {"environment", vector(scene.environment)},
                {"ipd", shortest(scene.ipd)}};
+  if (scene.lens)
+    root["lens"] = {{"outward_deg", shortest(glm::degrees(scene.lens->outward))},
+                    {"inward_deg", shortest(glm::degrees(scene.lens->inward))},
+                    {"up_deg", shortest(glm::degrees(scene.lens->up))},
+                    {"down_deg", shortest(glm::degrees(scene.lens->down))}};
   if (!scene.cameraPath.empty()) root["camera"] = cameraJson(scene.cameraPath);
   if (!scene.gaze.empty()) root["gaze"] = gazeJson(scene.gaze);
   if (Json movers = moversJson(scene, names, warnings); !movers.empty()) root["movers"] = std::move(movers);

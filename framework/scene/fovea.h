@@ -16,10 +16,10 @@ struct Fovea {
   float radius = 0;     // r_f, pixels
 };
 
-// In image widths: of a fovea of `angle` (radians, from the line of sight) in the middle of the picture.
-inline float foveaRadiusOfAngle(float angle, float verticalFov, glm::uvec2 imageSize) {
-  const float halfWidth = std::tan(0.5f * verticalFov) * float(imageSize.x) / float(imageSize.y);
-  return 0.5f * std::tan(angle) / halfWidth;
+// In image widths: of a fovea of `angle` (radians, from the line of sight) where that meets the picture of a
+// view (View::viewToClip).
+inline float foveaRadiusOfAngle(float angle, const glm::mat4& viewToClip) {
+  return 0.5f * std::tan(angle) * viewToClip[0][0];
 }
 
 // gaze: normalised; foveaRadius: in image widths.

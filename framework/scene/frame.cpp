@@ -30,14 +30,19 @@ Camera eyeOf(Camera camera, float side, float ipd) {
 }  // namespace
 
 glm::vec3 View::rayDirection(glm::vec2 p) const {
-  const float tanY = std::tan(0.5f * verticalFov);
-  const float tanX = tanY * float(size.x) / float(size.y);
   const glm::vec2 ndc = 2.0f * p / glm::vec2(size) - 1.0f;  // y down
-  const glm::vec3 inView(ndc.x * tanX, -ndc.y * tanY, -1.0f);
+  const glm::vec3 inView((ndc.x + viewToClip[2][0]) / viewToClip[0][0],
+                         (ndc.y + viewToClip[2][1]) / viewToClip[1][1], -1.0f);
   return glm::transpose(glm::mat3(worldToView)) * inView;
 }
 
-View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, glm::vec2 gaze) {
+Frustum frustumOf(const Lens& lens, bool left) {
+  const float outward = std::tan(lens.outward), inward = std::tan(lens.inward);
+  return {left ? outward : inward, left ? inward : outward, std::tan(lens.up), std::tan(lens.down)};
+}
+
+View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, glm::vec2 gaze,
+              const std::optional<Frustum>& frustum) {
   View v;
   v.size = glm::max(size, glm::uvec2(1));
   v.eye = camera.position;
@@ -47,8 +52,16 @@ View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, g
   const glm::mat3 rotation = glm::transpose(glm::mat3_cast(q));
   v.worldToView = glm::mat4(rotation);
   v.worldToView[3] = glm::vec4(-(rotation * camera.position), 1.0f);
-  v.viewToClip = glm::perspectiveRH_ZO(camera.verticalFov, float(v.size.x) / float(v.size.y), camera.zNear,
-                                       farPlane(camera, geometry));
+  const float zNear = camera.zNear, zFar = farPlane(camera, geometry);
+  if (frustum) {
+    const Frustum& f = *frustum;
+    v.viewToClip =
+        glm::frustumRH_ZO(-f.left * zNear, f.right * zNear, -f.down * zNear, f.up * zNear, zNear, zFar);
+    v.viewToClip[2][1] *= -1.0f;  // with [1][1] below
+    v.verticalFov = std::atan(f.up) + std::atan(f.down);
+  } else {
+    v.viewToClip = glm::perspectiveRH_ZO(camera.verticalFov, float(v.size.x) / float(v.size.y), zNear, zFar);
+  }
   v.viewToClip[1][1] *= -1.0f;  // Vulkan's y points down
   v.worldToClip = v.viewToClip * v.worldToView;
   v.clipToWorld = glm::mat4(glm::inverse(glm::dmat4(v.worldToClip)));
@@ -80,11 +93,13 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
                              gaze.right.value_or(gaze.position)};
   const float sides[] = {0, -1, 1};
   for (size_t i = 0; i < std::size(kViewNames); ++i) {
-    View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i]);
+    std::optional<Frustum> frustum;
+    if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
+    View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i], frustum);
     view.name = kViewNames[i];
     if (index > 0)
       view.previousWorldToClip =
-          makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry).worldToClip;
+          makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry, gazes[i], frustum).worldToClip;
     f.views.push_back(std::move(view));
   }
   ObjectPoses poses = objectsAt(scene, geometry, f.time, before);

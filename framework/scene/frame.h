@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,15 +22,23 @@ struct View {
   glm::vec3 eye{0};
   glm::uvec2 size{0};        // pixels
   glm::vec2 gaze{0.5f};      // normalised image coordinates, origin top-left
-  float verticalFov = 0.8f;  // radians
+  float verticalFov = 0.8f;  // radians, from the lower to the upper edge
   // World-space direction (not normalised) of the ray through image position p in pixels; pixel centres are
   // at +0.5.
   glm::vec3 rayDirection(glm::vec2 p) const;
 };
 
+// What a view sees, where that is not a camera's field of view: tangents of the angles between the line of
+// sight and the edges of the picture. Pixels need not be square.
+struct Frustum {
+  float left = 1, right = 1, up = 1, down = 1;
+};
+// Of one eye of a display, the left or the right one.
+Frustum frustumOf(const Lens& lens, bool left);
+
 // zFar 0 in the camera: taken from the scene's bounds.
 View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry,
-              glm::vec2 gaze = glm::vec2(0.5f));
+              glm::vec2 gaze = glm::vec2(0.5f), const std::optional<Frustum>& frustum = {});
 
 // Where an object (index into Geometry::objects) is. An object's own space is that of its node's mesh; what
 // is known of a point in it (VplState::localPosition) stays true while the object moves. Object 0 is all that
@@ -73,7 +82,7 @@ struct Frame {
 };
 
 // The views of every frame: the camera, and the two eyes half of Scene::ipd to its left and right, looking
-// the same way.
+// the same way, through Scene::lens where there is one.
 inline constexpr const char* kViewNames[] = {"main", "left", "right"};
 
 // Camera, eyes, gaze, lights and objects at frame `index` of a sequence at `framesPerSecond` (42 Hz is the

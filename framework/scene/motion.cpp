@@ -121,10 +121,34 @@ void move(Light& light, const LightMotion& motion, double time) {
   if (glm::length(direction) > 1e-6f) light.direction = glm::normalize(direction);
 }
 
+bool anyPlays(const Scene& scene) {
+  return std::any_of(scene.animations.begin(), scene.animations.end(),
+                     [](const Animation& a) { return a.plays; });
+}
+
+// The first camera, where the node that it hangs on is.
+Camera carriedCamera(const Scene& scene, double time) {
+  Camera camera = scene.cameras.front();
+  if (scene.movers.empty() && !anyPlays(scene)) return camera;
+  const auto node =
+      std::find_if(scene.nodes.begin(), scene.nodes.end(), [](const Node& n) { return n.camera == 0; });
+  if (node == scene.nodes.end()) return camera;
+  const NodePoses poses(scene);
+  const uint32_t index = uint32_t(node - scene.nodes.begin());
+  if (!poses.animated(index) && !poses.moverOf(index)) return camera;
+  const glm::mat4 toWorld = poses.at(index, time).toWorld;
+  camera.position = glm::vec3(toWorld[3]);
+  // A node's scale does not touch its camera; a mirrored one still has its right hand on the right.
+  const glm::vec3 back(toWorld[2]), up(toWorld[1]), right = glm::cross(up, back);
+  if (glm::length(right) > 1e-12f * glm::length(up) * glm::length(back))
+    camera.orientation = glm::quat_cast(
+        glm::mat3(glm::normalize(right), glm::normalize(glm::cross(back, right)), glm::normalize(back)));
+  return camera;
+}
+
 // Lights that hang on nodes of playing animations go where these go.
 void carryLights(const Scene& scene, double time, std::vector<Light>& lights) {
-  const auto plays = [](const Animation& a) { return a.plays; };
-  if (std::none_of(scene.animations.begin(), scene.animations.end(), plays)) return;
+  if (!anyPlays(scene)) return;
   const NodePoses poses(scene);
   std::vector<glm::mat4> rest;
   for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
@@ -144,7 +168,7 @@ void carryLights(const Scene& scene, double time, std::vector<Light>& lights) {
 
 Camera cameraAt(const Scene& scene, double time) {
   if (!scene.cameraPath.empty()) return cameraOnPath(scene.cameraPath, float(time));
-  return scene.cameras.empty() ? Camera{} : scene.cameras.front();
+  return scene.cameras.empty() ? Camera{} : carriedCamera(scene, time);
 }
 
 GazeSample gazeAt(const std::vector<GazeSample>& gaze, double time, double gap) {

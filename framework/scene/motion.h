@@ -10,6 +10,7 @@
 
 namespace fovea::scene {
 
+// The camera path; without one the first camera, which goes where its node goes.
 Camera cameraAt(const Scene& scene, double time);
 
 // Samples of an eye tracker that lie further apart, in time or in the picture, are not joined.

@@ -162,6 +162,10 @@ void hashMotion(Hasher& h, const Scene& scene) {
         h.floats(&(*eye)[0], 2);
       }
   if (scene.ipd != Scene{}.ipd) h.value(scene.ipd);
+  if (scene.lens) {
+    const float angles[] = {scene.lens->outward, scene.lens->inward, scene.lens->up, scene.lens->down};
+    h.floats(angles, 4);
+  }
 }
 
 }  // namespace

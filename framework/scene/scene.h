@@ -118,6 +118,14 @@ struct Camera {
   float zNear = 0.05f, zFar = 0;      // zFar 0: from the scene's size
 };
 
+// What a display behind a lens shows one eye: angles between the line of sight and the edges of its picture,
+// radians. Inward is the side of the nose.
+struct Lens {
+  float outward = 0, inward = 0, up = 0, down = 0;
+};
+inline constexpr double kLeastLensAngle = 1,
+                        kMostLensAngle = 80;  // degrees; beyond, a flat picture is all edge
+
 struct CameraKey {
   float time = 0;
   Camera camera;
@@ -205,6 +213,7 @@ struct Scene {
   std::vector<Animation> animations;  // their nodes, what hangs on them and what they bend is dynamic, too
   std::vector<LightMotion> lightMotions;
   float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), m
+  std::optional<Lens> lens;  // of these views; none: they have the camera's field of view
   float exposure = 1;        // display = sRGB(exposure * radiance)
   glm::vec3 environment{0};  // radiance where nothing is hit
   uint64_t hash = 0;         // of all content, for caches and reports

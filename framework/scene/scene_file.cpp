@@ -49,6 +49,7 @@ class Parser {
     hasEnvironment_ = r.has("environment");
     scene_.environment = readColor(r, "environment", glm::vec3(0));
     scene_.ipd = float(r.number("ipd", scene_.ipd, 0, 10));
+    if (const Value* l = r.find("lens")) lens(*l);
     gaze(r);
     motion_.read(r);
     r.finish();
@@ -179,6 +180,16 @@ class Parser {
     const glm::vec3 forward = target - camera.position;
     if (glm::length(forward) <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
     camera.orientation = lookAlong(forward, up);
+  }
+
+  void lens(const Value& v) {
+    ObjectReader r(v, "lens", errors_);
+    const auto angle = [&](const char* key) {
+      r.require(key);
+      return float(glm::radians(r.number(key, 45, kLeastLensAngle, kMostLensAngle)));
+    };
+    scene_.lens = Lens{angle("outward_deg"), angle("inward_deg"), angle("up_deg"), angle("down_deg")};
+    r.finish();
   }
 
   // An array of samples, or the name of a table.

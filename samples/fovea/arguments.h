@@ -9,10 +9,11 @@
 
 #include "framework/base/diagnostic.h"
 #include "framework/graph/compile.h"
+#include "framework/scene/scene.h"
 
 namespace fovea::cli {
 
-inline constexpr uint32_t kMaxSize = 16384;  // pixels a side: what Vulkan devices promise at most
+inline constexpr uint32_t kMaxSize = 16384;   // pixels a side: what Vulkan devices promise at most
 inline constexpr double kFoveaRadius = 0.25;  // image widths, where nothing says otherwise
 
 struct GraphOptions {
@@ -30,6 +31,8 @@ CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std
 glm::uvec2 parseSize(std::string_view text);
 // "0.5,0.4": normalised image coordinates, origin top-left. Throws Error(Usage).
 glm::vec2 parseGaze(std::string_view text);
+// "55,45,50,52": degrees outwards, inwards, up, down. Throws Error(Usage).
+scene::Lens parseLens(std::string_view text);
 
 void loadPlugins(const std::vector<std::string>& plugins);
 // The plug-ins, then the graph with its overrides; mistakes inside the file go to `messages`, and bind()

@@ -29,7 +29,7 @@ constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
   GraphOptions graph;
-  std::string scene, size = "1024x1024", gaze, gazeTrace, device, timings, trace;
+  std::string scene, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
   double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0;
   std::vector<std::string> outputs;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
@@ -75,6 +75,7 @@ class Render {
   Progress progress_;
   glm::uvec2 size_;
   std::optional<glm::vec2> gaze_;
+  std::optional<scene::Lens> lens_;
   std::unique_ptr<OutputFiles> outputs_;
   Diagnostics messages_;
   graph::Description description_;
@@ -93,6 +94,7 @@ class Render {
 Render::Render(const RenderOptions& options)
     : options_(options), progress_(options.quiet), size_(parseSize(options.size)) {
   if (!options.gaze.empty()) gaze_ = parseGaze(options.gaze);
+  if (!options.lens.empty()) lens_ = parseLens(options.lens);
   outputs_ = std::make_unique<OutputFiles>(options.outputs);
 }
 
@@ -127,6 +129,10 @@ void Render::loadInputs() {
   if (!options_.gazeTrace.empty()) trace = scene::readGazeCsv(options_.gazeTrace);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
+  if (lens_) {
+    scene_.lens = lens_;
+    scene_.hash = scene::contentHash(scene_);
+  }
   geometry_ = scene::flatten(scene_);
   if (!options_.gazeTrace.empty()) scene_.gaze = std::move(trace);
   if (options_.foveaDegrees > 0) useFoveaAngle(bound);
@@ -134,14 +140,16 @@ void Render::loadInputs() {
   stopIfInterrupted();
 }
 
-// Passes know the radius in image widths: what the angle is in the first frame's picture.
+// Passes know the radius in image widths: what the angle is in the first frame's picture of their view.
 void Render::useFoveaAngle(const graph::BoundGraph& bound) {
-  const float radius = scene::foveaRadiusOfAngle(glm::radians(float(options_.foveaDegrees)),
-                                                 scene::cameraAt(scene_, 0).verticalFov, size_);
+  const scene::Frame first = scene::makeFrame(scene_, geometry_, size_, 0, 0);
+  const float angle = glm::radians(float(options_.foveaDegrees));
   GraphOptions changed = options_.graph;
   for (const graph::BoundPass& pass : bound.passes)
     if (pass.parameters.find("fovea_radius"))
-      changed.set.push_back(fmt::format("{}.fovea_radius={:.6f}", pass.name, radius));
+      changed.set.push_back(
+          fmt::format("{}.fovea_radius={:.6f}", pass.name,
+                      scene::foveaRadiusOfAngle(angle, first.findView(bound.views[pass.view])->viewToClip)));
   if (changed.set.size() == options_.graph.set.size())
     throw Error(ExitCode::Usage,
                 "graph " + description_.name + " has no fovea that --fovea-degrees could size");
@@ -389,6 +397,12 @@ void addRender(CLI::App& program, Action& action) {
           "camera; default: the graph's fovea_radius, in image widths")
       ->type_name("DEG")
       ->check(CLI::Range(0.1, 60.0).description(""));
+  command
+      ->add_option(
+          "--lens", options->lens,
+          "What each eye of stereo graphs sees: degrees from the line of sight outwards,\ninwards, up "
+          "and down (55,45,50,52); default: the scene's, else its camera's")
+      ->type_name("O,I,U,D");
   command->add_flag("--show-fovea", options->showFovea,
                     "Draw the foveal circle and a cross where the eye looks onto .png pictures");
   command

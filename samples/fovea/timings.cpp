@@ -95,6 +95,35 @@ std::vector<Timings::Row> Timings::rows() const {
   return rows;
 }
 
+// Passes of the second eye and of whatever else has a view of its own: their time where they do their work.
+// The passes of a part of a graph (right/direct) have the view that the part was given.
+std::vector<Timings::ViewTotal> Timings::viewTotals() const {
+  const graph::BoundGraph& graph = *plan_->graph;
+  std::vector<ViewTotal> totals = {{"none", 0, {}}};
+  std::vector<size_t> slot(graph.views.size(), 0);  // of each view, in `totals`
+  const auto slotOf = [&](uint32_t pass) {
+    if (pass == kAnimate) return size_t(0);
+    const graph::BoundPass& p = graph.passes[pass];
+    if (p.view == 0 && !p.declaration->usesView) return size_t(0);
+    if (slot[p.view] == 0) slot[p.view] = totals.size(), totals.push_back({graph.views[p.view], 0, {}});
+    return slot[p.view];
+  };
+  const std::vector<Row> all = rows();
+  for (const Row& row : all) ++totals[slotOf(row.pass)].passes;
+  if (totals.size() < 3) return {};
+  std::vector<std::vector<double>> times(totals.size());
+  for (const graph::FrameResult& frame : frames_) {
+    std::vector<double> sums(totals.size(), 0.0);
+    for (const graph::PassTiming& t : frame.passes) {
+      const bool host = t.pass != kAnimate && graph.passes[t.pass].declaration->kind == graph::PassKind::Host;
+      sums[slotOf(t.pass)] += host ? t.cpuMs : t.gpuMs;
+    }
+    for (size_t i = 0; i < sums.size(); ++i) times[i].push_back(sums[i]);
+  }
+  for (size_t i = 0; i < totals.size(); ++i) totals[i].time = spreadOf(times[i]);
+  return totals;
+}
+
 std::vector<std::pair<std::string, double>> Timings::counters() const {
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> values;
@@ -150,7 +179,16 @@ std::string Timings::table() const {
               ? fmt::format("wall time of the frame: {} ms\n", formatMs(wall.median))
               : fmt::format("wall time of a frame: {} ms (min {}, p95 {}) over {} frames\n",
                             formatMs(wall.median), formatMs(wall.min), formatMs(wall.p95), frames_.size());
-  return text + counterTable();
+  return text + viewTable() + counterTable();
+}
+
+std::string Timings::viewTable() const {
+  const std::vector<ViewTotal> totals = viewTotals();
+  std::string text = totals.empty() ? "" : "\nby view, ms a frame (median, min, p95)\n";
+  for (const ViewTotal& t : totals)
+    text += fmt::format("  {:<8} {:>10} {:>10} {:>10}  {} passes\n", t.view, formatMs(t.time.median),
+                        formatMs(t.time.min), formatMs(t.time.p95), t.passes);
+  return text;
 }
 
 std::string Timings::counterTable() const {
@@ -170,6 +208,10 @@ std::string Timings::json(const RunInfo& run) const {
                       {"type", type(row.pass)},
                       {"gpu_ms", toJson(row.gpu)},
                       {"cpu_ms", toJson(row.cpu)}});
+  Json views = Json::object();
+  for (const ViewTotal& t : viewTotals()) {
+    views[t.view] = {{"passes", t.passes}, {"ms", toJson(t.time)}};
+  }
   Json counted = Json::object();
   for (const auto& [name, value] : counters()) counted[name] = value;
   Json frames = Json::array();
@@ -182,7 +224,7 @@ std::string Timings::json(const RunInfo& run) const {
     for (const auto& [name, value] : f.counters) one["counters"][name] = value;
     frames.push_back(std::move(one));
   }
-  const Json document = {
+  Json document = {
       {"device", run.device},
       {"graph", run.graph},
       {"graph_hash", run.graphHash},
@@ -199,6 +241,7 @@ std::string Timings::json(const RunInfo& run) const {
       {"frames", frames},
       {"peak_bytes", {{"device", run.peakDeviceBytes}, {"host", run.peakHostBytes}}},
   };
+  if (!views.empty()) document["views"] = views;
   return document.dump(2) + '\n';
 }
 

@@ -50,8 +50,15 @@ class Timings {
     Spread gpu, cpu;
     double time() const { return host ? cpu.median : gpu.median; }  // where the pass does its work
   };
+  struct ViewTotal {   // of all passes of one view, ms a frame
+    std::string view;  // "none": of the passes that are given none, the first eye's shading among them
+    uint32_t passes = 0;
+    Spread time;
+  };
+  std::string viewTable() const;
   std::string counterTable() const;
   std::vector<Row> rows() const;                                 // in order of execution
+  std::vector<ViewTotal> viewTotals() const;                     // none of graphs with a single view
   std::vector<std::pair<std::string, double>> counters() const;  // medians, in order of first appearance
   template <class Get>
   Spread frameSpread(Get get) const;

@@ -32,7 +32,7 @@ void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(image);
   if (any(greaterThanEqual(p, size))) return;
   vec2 ndc = 2.0 * (vec2(p) + 0.5) / vec2(size) - 1.0;
-  vec3 inView = vec3(ndc.x / view.viewToClip[0][0], ndc.y / view.viewToClip[1][1], -1.0);
+  vec3 inView = vec3((ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]), -1.0);
   vec3 direction = normalize(transpose(mat3(view.worldToView)) * inView);
   VoxelHit hit = traceVoxels(voxelsGrid(), view.eye.xyz, direction, direction);
 #ifdef RADIANCE

@@ -175,7 +175,26 @@ TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
   EXPECT_LT(std::abs(atBorder.bias), 0.03);
 }
 
-INSTANTIATE_TEST_SUITE_P(Stereo, BuiltinStereo, testing::Values("atrium", "room"));
+INSTANTIATE_TEST_SUITE_P(Stereo, BuiltinStereo, testing::Values("atrium", "room", "yard", "balcony"));
+
+// Each eye sees further outwards than inwards: what only the right one sees is a wide strip, and all of it is
+// what the eye rendered on its own has.
+TEST(Stereo, ThroughALens) {
+  scene::Scene s = scene::builtin("cornellbox");
+  s.lens = scene::Lens{0.5f, 0.35f, 0.4f, 0.4f};
+  const GraphRun both = run("ir_stereo", s, "", 1), own = run("ir_1000", s, "right", 1);
+  EXPECT_EQ(both.outputs.at("direct_right").bytes, own.outputs.at("direct").bytes);
+  const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(own.outputs.at("indirect"));
+  const auto mask = toFloats(both.outputs.at("mask"));
+  const Errors warped = compare(image, want, mask, false), again = compare(image, want, mask, true);
+  const double fresh = counter(both, "right/reproject.new_pixels") / counter(both, "right/reproject.pixels");
+  std::printf("new %.2f%%; warped: mean %.4f p95 %.4f\n", 100 * fresh, warped.mean, warped.p95);
+  const double strip = (std::tan(0.5) - std::tan(0.35)) / (std::tan(0.5) + std::tan(0.35));
+  EXPECT_GT(fresh, strip);
+  EXPECT_LT(fresh, strip + 0.03);
+  EXPECT_LT(warped.mean, 0.006);
+  EXPECT_LT(again.mean, 1e-6);
+}
 
 // Nothing to see, nothing to warp, nothing to shade.
 TEST(Stereo, EmptySceneIsBlack) {

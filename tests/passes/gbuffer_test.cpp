@@ -188,6 +188,24 @@ TEST(GBuffer, MaterialsAsGltfSays) {
   }
 }
 
+// Off axis, as the eyes of a display see.
+TEST(GBuffer, ThroughALens) {
+  const scene::Scene scene = materials();
+  for (const bool left : {true, false}) {
+    PassTest test("gbuffer");
+    test.viewSize(96, 80).scene(scene);
+    test.beforeFrame([&](PassTest&, scene::Frame& frame) {
+      const scene::Lens lens{0.8f, 0.5f, 0.5f, 0.6f};
+      frame.views[0] = scene::makeView(scene.cameras[0], frame.views[0].size, *frame.geometry,
+                                       glm::vec2(0.5f), scene::frustumOf(lens, left));
+    });
+    test.run();
+    Comparison comparison(test, scene, true);
+    EXPECT_LT(comparison.run(), 0.02) << "left " << left;
+    EXPECT_GT(comparison.hits(), 1000u);
+  }
+}
+
 // A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle to
 // the horizon.
 TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {

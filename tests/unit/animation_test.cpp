@@ -249,6 +249,44 @@ TEST(Animation, ALightGoesWithItsNode) {
   EXPECT_TRUE(moved);
 }
 
+// A camera on a turned child of a node that flies and turns: without a path, and only as the first one.
+TEST(Animation, ACameraGoesWithItsNode) {
+  Scene s;
+  s.nodes.resize(2);
+  s.nodes[1].parent = 0;
+  s.nodes[1].translation = {0, 1, 0};
+  s.nodes[1].camera = 0;
+  s.cameras.resize(2);
+  s.cameras[0].position = {0, 1, 0};
+  s.cameras[0].verticalFov = 0.7f;
+  const float half = std::sqrt(0.5f);
+  Animation fly;
+  fly.plays = true;
+  fly.repeat = Repeat::Once;
+  fly.channels = {{0,
+                   AnimationChannel::Path::Translation,
+                   AnimationChannel::Interpolation::Linear,
+                   {0, 2},
+                   {0, 0, 0, 4, 0, 0}},
+                  {0,
+                   AnimationChannel::Path::Rotation,
+                   AnimationChannel::Interpolation::Linear,
+                   {0, 2},
+                   {0, 0, 0, 1, 0, half, 0, half}}};
+  s.animations = {fly};
+  const Camera c = cameraAt(s, 1);
+  EXPECT_LT(glm::distance(c.position, glm::vec3(2, 1, 0)), 1e-5f);
+  const glm::vec3 ahead =
+      c.orientation * glm::vec3(0, 0, -1);  // a quarter turn to the left in all, half of it now
+  EXPECT_LT(glm::distance(ahead, glm::vec3(-half, 0, -half)), 1e-5f);
+  EXPECT_EQ(c.verticalFov, 0.7f);
+  s.nodes[1].camera = 1;
+  EXPECT_EQ(cameraAt(s, 1).position, s.cameras[0].position);
+  s.nodes[1].camera = 0;
+  s.cameraPath = {{0, s.cameras[1]}};
+  EXPECT_EQ(cameraAt(s, 1).position, s.cameras[1].position);
+}
+
 // ---- Errors ----
 
 test::TriangleDocument animatedTriangle() {

@@ -52,6 +52,34 @@ TEST(View, RaysHitWhatIsProjectedThere) {
   }
 }
 
+// The edges of each eye's picture are where the lens has them, mirrored from eye to eye; rays agree with clip
+// space, and what lies in the line of sight is not in the middle.
+TEST(View, ALensSeesFurtherOutThanIn) {
+  const Lens lens{glm::radians(60.0f), glm::radians(40.0f), glm::radians(50.0f), glm::radians(55.0f)};
+  Camera c;
+  c.position = {1, 2, 3};
+  for (const bool left : {true, false}) {
+    const View v = makeView(c, {320, 300}, bounds(glm::vec3(-50), glm::vec3(50)), glm::vec2(0.5f),
+                            frustumOf(lens, left));
+    const auto angles = [&](glm::vec2 pixel) {
+      const glm::vec3 d = v.rayDirection(pixel);
+      return glm::degrees(glm::vec2(std::atan2(d.x, -d.z), std::atan2(d.y, -d.z)));
+    };
+    EXPECT_NEAR(angles({0, 150}).x, left ? -60 : -40, 1e-3f);
+    EXPECT_NEAR(angles({320, 150}).x, left ? 40 : 60, 1e-3f);
+    EXPECT_NEAR(angles({160, 0}).y, 50, 1e-3f);
+    EXPECT_NEAR(angles({160, 300}).y, -55, 1e-3f);
+    EXPECT_NEAR(v.verticalFov, glm::radians(105.0f), 1e-5f);
+    EXPECT_NEAR(project(v, {1, 2, -4}).x, left ? 0.3473f : -0.3473f,
+                1e-4f);  // (tan 60 - tan 40) / (tan 60 + tan 40)
+    for (const glm::vec2 pixel : {glm::vec2(0.5f), glm::vec2(100.5f, 20.5f), glm::vec2(319.5f, 299.5f)}) {
+      const glm::vec3 ndc = project(v, v.eye + 7.0f * v.rayDirection(pixel));
+      EXPECT_NEAR((ndc.x * 0.5f + 0.5f) * 320, pixel.x, 2e-3f);
+      EXPECT_NEAR((ndc.y * 0.5f + 0.5f) * 300, pixel.y, 2e-3f);
+    }
+  }
+}
+
 TEST(View, FarPlaneHoldsTheWholeScene) {
   Camera c;
   c.position = {100, 0, 0};
@@ -165,6 +193,20 @@ TEST(Frame, EyesAreHalfTheirDistanceFromTheCamera) {
   EXPECT_EQ(f.views[0].gaze, glm::vec2(0.25f, 0.5f));
   EXPECT_EQ(f.findView("left")->gaze, glm::vec2(0.3f, 0.5f));
   EXPECT_EQ(f.findView("right")->gaze, glm::vec2(0.25f, 0.5f));
+}
+
+TEST(Frame, OnlyTheEyesLookThroughTheLens) {
+  Scene s = sceneWithPath();
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const Frame without = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
+  s.lens = Lens{1.0f, 0.8f, 0.9f, 0.9f};
+  const Frame last = makeFrame(s, g, {64, 64}, 14, 0, 10.0), f = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
+  EXPECT_EQ(f.views[0].worldToClip, without.views[0].worldToClip);
+  EXPECT_EQ(f.findView("left")->worldToView, without.findView("left")->worldToView);
+  EXPECT_NEAR(f.findView("left")->viewToClip[2][0], -f.findView("right")->viewToClip[2][0], 1e-6f);
+  EXPECT_NE(f.findView("left")->viewToClip[2][0], 0);
+  for (const View& v : f.views)
+    EXPECT_EQ(v.previousWorldToClip, last.findView(v.name)->worldToClip) << v.name;
 }
 
 TEST(Frame, FindsViewsByName) {

@@ -84,7 +84,7 @@ TEST(Gaze, FoveaAsAnAngle) {
     camera.verticalFov = 0.9f;
     const View view = makeView(camera, size, {});
     const float angle = glm::radians(12.0f);
-    const float radius = foveaRadiusOfAngle(angle, camera.verticalFov, size) * float(size.x);
+    const float radius = foveaRadiusOfAngle(angle, view.viewToClip) * float(size.x);
     const glm::vec2 middle = 0.5f * glm::vec2(size);
     for (const glm::vec2 rim :
          {glm::vec2(radius, 0), glm::vec2(0, radius), -glm::vec2(0.6f, 0.8f) * radius}) {

@@ -200,6 +200,7 @@ TEST(Motion, HashSeesEveryPartOfIt) {
   EXPECT_TRUE(differs([](Scene& s) { s.movers[0].smooth = false; }));
   EXPECT_TRUE(differs([](Scene& s) { s.movers[0].repeat = Repeat::Loop; }));
   EXPECT_TRUE(differs([](Scene& s) { s.ipd = 0; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.lens = Lens{1, 1, 1, 1}; }));
   EXPECT_TRUE(differs([](Scene& s) { s.lightMotions.push_back({0, true, Repeat::Once, {{}}}); }));
 }
 

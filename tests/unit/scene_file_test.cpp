@@ -107,6 +107,7 @@ TEST(SceneFile, MoversAndMovingLights) {
   Diagnostics warnings;
   const Scene box = builtin("cornellbox");
   const Scene s = loadJson(folder, R"({"models": [{"builtin": "cornellbox"}], "ipd": 0.07,
+    "lens": { "outward_deg": 55, "inward_deg": 45, "up_deg": 50, "down_deg": 52 },
     "movers": [
       {"node": "yellow cube", "repeat": "loop", "keys": [{"t": 0}, {"t": 2, "translation": [1, 0, 0], "visible": false}]},
       {"name": "plane", "shape": "paper_plane", "size": 0.4, "color": [0.9, 0.9, 0.8], "interpolation": "linear",
@@ -118,6 +119,11 @@ TEST(SceneFile, MoversAndMovingLights) {
     "gaze": [{"t": 0, "x": 0.5, "y": 0.5, "left": [0.4, 0.5]}]})",
                            warnings);
   EXPECT_FLOAT_EQ(s.ipd, 0.07f);
+  ASSERT_TRUE(s.lens.has_value());
+  EXPECT_FLOAT_EQ(s.lens->outward, glm::radians(55.0f));
+  EXPECT_FLOAT_EQ(s.lens->inward, glm::radians(45.0f));
+  EXPECT_FLOAT_EQ(s.lens->up, glm::radians(50.0f));
+  EXPECT_FLOAT_EQ(s.lens->down, glm::radians(52.0f));
   ASSERT_EQ(s.movers.size(), 4u);
   const Mover& cube = s.movers[0];
   EXPECT_EQ(s.nodes[cube.node].name, "yellow cube");
