@@ -55,9 +55,9 @@ NEUTRAL = {"error.fovea.direct_floor", "temporal.fovea.mse_prime", "temporal.per
 CSV_COLUMNS = {"scene", "graph", "measure", "mean", "half_width", "seeds", "paper", "ratio"}
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1180px;padding:0 1em;color:#1b1b1f}
 table{border-collapse:collapse;margin:1em 0;font-size:13px}th,td{border-bottom:1px solid #ddd;padding:.3em .7em;text-align:right;vertical-align:top}
-th{background:#f3f3f6}td:first-child,td:nth-child(2),th:first-child,th:nth-child(2){text-align:left}small{color:#667;display:block}
+th{background:#f3f3f6}td:first-child,th:first-child,.names td:nth-child(2),.names th:nth-child(2){text-align:left}small{color:#667;display:block}
 figure{display:inline-block;margin:.4em;vertical-align:top;max-width:100%}figcaption{font-size:13px;color:#445}.pixels{image-rendering:pixelated}
-img{max-width:100%}.grid{overflow-x:auto}.num td{white-space:nowrap}.num th{vertical-align:bottom;max-width:7.5em}.best{font-weight:bold}
+img{max-width:100%}.grid{overflow-x:auto}.num td{white-space:nowrap}.num th{vertical-align:bottom;max-width:7.5em}.steps th{max-width:none}.best{font-weight:bold}
 .first td{border-top:2px solid #889}.pics td{border:0;padding:.15em;text-align:left;white-space:normal}.pics td:first-child{max-width:7em;color:#445}.pics img{display:block}
 td.text{text-align:left;white-space:normal}.warn{background:#fff3d6;padding:.6em 1em;border-radius:6px}code{background:#f3f3f6;padding:0 .3em}"""
 
@@ -175,7 +175,7 @@ class Report:
         best = {n: self.best(n, rows) for n in shown}
         keys = list(dict.fromkeys((r["scene"], r["graph"], *(r[a] for a in axes)) for r in rows))
         cells = {((r["scene"], r["graph"], *(r[a] for a in axes)), r["measure"]): r for r in rows}
-        text = "<div class=grid><table class=num><tr><th>scene</th><th>graph</th>" + "".join(f"<th>{html.escape(a)}</th>" for a in axes)
+        text = "<div class=grid><table class='num names'><tr><th>scene</th><th>graph</th>" + "".join(f"<th>{html.escape(a)}</th>" for a in axes)
         text += "".join(f"<th>{html.escape(MEASURES[n][0])}</th>" for n in shown) + "</tr>"
         scene = None
         for key in keys:
@@ -258,6 +258,10 @@ class Report:
         for times in bars.values():
             for step, ms in times.items():
                 steps[step] = max(steps.get(step, 0), ms / max(sum(times.values()), 1e-9))
+        head = "".join(f"<th>{html.escape(b)}</th>" for b in bars)
+        rows = "".join(f"<tr><td>{html.escape(s)}</td>" + "".join(f"<td>{f'{t[s]:.3g}' if s in t else '-'}</td>" for t in bars.values()) + "</tr>" for s in steps)
+        self.add(f"<p>Milliseconds of every pass, median over frames, on the device or, for passes that work there, on the host; seed 1.</p>"
+                 f"<div class=grid><table class='num steps'><tr><th>pass</th>{head}</tr>{rows}</table></div>")
         shown = [s for s in steps if steps[s] > 0.02]
         plt.figure(figsize=(2.5 + 1.0 * len(bars), 4.2))
         bottom = [0.0] * len(bars)
