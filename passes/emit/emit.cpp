@@ -26,6 +26,9 @@ class Emit : public Pass {
     d.parameter("per_frame", flag(true), "new light paths every frame; false: the same ones (a fixed seed)");
     d.parameter("emissive", flag(true), "emissive triangles send out light, too, as VPLs on themselves and as paths");
     d.parameter("neighbours", integer(8, 1, 64), "how many VPLs around one the area it stands for is estimated from");
+    d.parameter("averaged_frames", integer(1, 1, 65536),
+                "frames whose mean is the picture: VPLs stand for so much less area each (kernel `disc`), as if all "
+                "were in one frame");
     d.counter("paths", "light paths traced that count");
     d.counter("rays", "rays traced");
     d.counter("vpls", "slots filled");
@@ -45,6 +48,7 @@ class Emit : public Pass {
     EmitResult result;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
       result = traceLightPaths(frame, *scene::RayScene::cached(*frame.scene, *frame.geometry), settings);
+    for (scene::Vpl& v : result.vpls) v.area /= float(p.integer("averaged_frames"));
     const auto out = ctx.outputAs<scene::Vpl>("vpls");
     const auto end = std::copy(result.vpls.begin(), result.vpls.end(), out.begin());
     std::fill(end, out.end(), scene::Vpl{});

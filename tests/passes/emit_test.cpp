@@ -261,6 +261,14 @@ TEST(Emit, AreasAddUpToTheLitSurface) {
   }
   EXPECT_GT(sum, 95);
   EXPECT_LT(sum, 125);
+  // In the mean of four frames there are four times as many.
+  PassTest sharing("emit");
+  sharing.param("count", 1000).param("bounces", 1).param("averaged_frames", 4);
+  const auto shared = emitted(sharing, s);
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    ASSERT_EQ(shared[i].position, vpls[i].position);
+    ASSERT_FLOAT_EQ(shared[i].area, vpls[i].area / 4);
+  }
 }
 
 // Each interleave subset must be a sample of the whole scene: its flux and its centre are those of all.
