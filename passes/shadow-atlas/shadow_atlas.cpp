@@ -30,8 +30,8 @@ using namespace graph;
 constexpr uint32_t kBatch = 16;                  // VPLs that share one reading of the triangles
 constexpr uint32_t kViewBytes = 64;              // VplView in shaders/shadow-atlas/step.glsl
 constexpr uint32_t kListBytes = 16;              // WorkList, likewise
-constexpr uint32_t kStepBytes = 6 * kListBytes;  // Step: cull, tiny, small, large, maskedSmall, maskedLarge
-constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 96 MiB
+constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
+constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
 constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
 constexpr uint32_t kGroupsPerRow = 4096;         // likewise
 constexpr uint32_t kSliceTexels =
@@ -45,7 +45,7 @@ class ShadowAtlas : public Pass {
 
  private:
   struct Kernels {
-    Kernel cull, tiny, small, large, maskedSmall,
+    Kernel cull, small, large, maskedSmall,
         maskedLarge;  // the masked ones only with the parameter `alpha_mask`
   };
   struct Range {  // triangles of one step
@@ -95,9 +95,8 @@ PassDeclaration ShadowAtlas::declaration() {
             "VPLs whose maps are drawn, packed");
   d.scratch("steps", buffer("AtlasStep", kStepBytes, batches * (ceilDiv(triangles, kRangeTriangles) + 2)),
             Usage::StorageRead | Usage::StorageWrite | Usage::Indirect, "dispatches and lengths of lists");
-  d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (3 * kBatch)),
-            Usage::StorageRead | Usage::StorageWrite,
-            "pairs to rasterise; three arrays as long as every pair of a step");
+  d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
+            Usage::StorageRead | Usage::StorageWrite, "pairs to rasterise; as long as every pair of a step");
   d.scratch("simplified", buffer("SimplifiedTriangle", 48, max(1, triangles * parameter("technique"))),
             Usage::TexelRead | Usage::TransferWrite, "simplified mesh")
       .keep(Lifetime::Scene);
@@ -138,9 +137,6 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
   Kernels k;
   k.cull = ctx.compute("shadow-atlas/cull.comp", defines);
   k.small = ctx.compute("shadow-atlas/small.comp", defines);
-  gpu::Defines tiny = defines;
-  tiny["TINY"] = "1";
-  k.tiny = ctx.compute("shadow-atlas/small.comp", tiny);
   k.large = ctx.compute("shadow-atlas/large.comp", defines);
   if (!ctx.parameters().flag("alpha_mask")) return k;
   defines["MASKED"] = "1";
@@ -198,7 +194,7 @@ std::vector<ShadowAtlas::Range> ShadowAtlas::ranges(RecordContext& ctx) {
 
 void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
   const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes;
-  const uint32_t capacity = uint32_t(ctx.count("pairs") / 3),
+  const uint32_t capacity = uint32_t(ctx.count("pairs") / 2),
                  size = uint32_t(ctx.parameters().integer("size"));
   auto use = [&](Kernel kernel) {
     Commands commands = ctx.use(kernel);
@@ -215,10 +211,10 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
   dispatch(cull, 0);
   ctx.barrier();
 
-  const Kernel lists[] = {range.kernels->tiny, range.kernels->small, range.kernels->large,
-                          range.kernels->maskedSmall, range.kernels->maskedLarge};
-  for (uint32_t list = 0; list < std::size(lists) && lists[list]; ++list) {
-    const bool large = list == 2 || list == 4;
+  const Kernel lists[] = {range.kernels->small, range.kernels->large, range.kernels->maskedSmall,
+                          range.kernels->maskedLarge};
+  for (uint32_t list = 0; list < 4 && lists[list]; ++list) {
+    const bool large = list % 2 == 1;
     const uint32_t slices = large ? (size * size + kSliceTexels - 1) / kSliceTexels : 1;
     for (uint32_t slice = 0; slice < slices; ++slice) {
       Commands raster = use(lists[list]);

@@ -24,28 +24,27 @@ layout(push_constant) uniform Constants {
   uint alphaMask;
 };
 
-// Adds a pair to one of the lists. One atomic whatever the list, since a CPU device runs every branch.
-void append(uint pair, uint list) {
-  uint words = kStepWords * step_ + kListWords * (1u + list);  // step_'s WorkList
-  uint entry = atomicAdd(steps.words[words + 3u], 1u);
-  pairs.list[pairPlace(list, entry, capacity)] = pair;
+// Adds a pair to one of the four lists. One atomic whatever the list, since a CPU device runs every branch.
+void append(uint pair, uint large, uint masked) {
+  uint list = kStepWords * step_ + kListWords * (1u + large + 2u * masked);  // step_'s WorkList
+  uint entry = atomicAdd(steps.words[list + 3u], 1u);
+  pairs.list[large != 0u ? largePlace(entry, capacity, masked != 0u) : smallPlace(entry, capacity, masked != 0u)] = pair;
   // The indirect dispatch gets another group with a group's first entry.
-  bool large = list == kLarge || list == kMaskedLarge;
-  uint perGroup = large ? kLargePerGroup : kSmallPerGroup, group = entry / perGroup;
+  uint perGroup = large != 0u ? kLargePerGroup : kSmallPerGroup, group = entry / perGroup;
   bool inFirstRow = group < kGroupsPerRow;
   if (entry % perGroup == 0u && (inFirstRow || group % kGroupsPerRow == 0u))
-    atomicAdd(steps.words[words + (inFirstRow ? 0u : 1u)], 1u);
+    atomicAdd(steps.words[list + (inFirstRow ? 0u : 1u)], 1u);
 }
 
 void main() {
   if (gl_GlobalInvocationID.x >= triangleCount) return;
   uint index = firstTriangle + gl_GlobalInvocationID.x;
   Triangle triangle = loadTriangle(index);
-  bool masked = alphaMask != 0u && isMasked(index);
+  uint masked = alphaMask != 0u && isMasked(index) ? 1u : 0u;
 
   // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant
   // places of a uniform buffer are read once for all lanes.
-  uint covered = 0u, tiny = 0u, large = 0u;
+  uint covered = 0u, large = 0u;
   [[unroll]] for (uint v = 0u; v < kBatch; ++v) {
     vec3 a = seenFrom(batch.views[v], triangle.a);
     vec3 b = seenFrom(batch.views[v], triangle.b);
@@ -54,16 +53,13 @@ void main() {
     TexelBox box = projectedBox(a, b, c, float(size), tight);
     bool above = max(max(a.z, b.z), c.z) > 0.0;
     covered |= above && !(tight && isEmpty(box)) ? 1u << v : 0u;
-    float texels = tight ? texelCount(box) : 1e9;
-    tiny |= texels <= float(kTinyTexels) ? 1u << v : 0u;
-    large |= texels > float(kSmallTexels) ? 1u << v : 0u;
+    large |= tight && texelCount(box) <= float(kSmallTexels) ? 0u : 1u << v;
   }
 
   do {
     if (covered != 0u) {
       uint v = uint(findLSB(covered));
-      uint isLarge = large >> v & 1u, isTiny = tiny >> v & 1u;
-      append(v << kTriangleBits | index, masked ? kMaskedSmall + isLarge : kSmall + isLarge - isTiny);
+      append(v << kTriangleBits | index, large >> v & 1u, masked);
       covered &= covered - 1u;
     }
   } while (covered != 0u);

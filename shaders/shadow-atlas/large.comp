@@ -27,7 +27,7 @@ void main() {
     else atomicAdd(counters.large, count);
   }
   if (entry >= count) return;
-  Pair pair = loadPair(pairs.list[pairPlace(kMasked ? kMaskedLarge : kLarge, entry, capacity)], size, planeEpsilon, true);
+  Pair pair = loadPair(pairs.list[largePlace(entry, capacity, kMasked)], size, planeEpsilon, true);
   if (isEmpty(pair.box)) return;
 
   int width = int(pair.box.hi.x - pair.box.lo.x) / 8 + 1;

@@ -45,6 +45,6 @@ void main() {
   uint batches = padded / kBatch;
   for (uint s = i; s < batches * ranges; s += 256u) {
     uint groups = (s / ranges) * kBatch < count ? cullGroups : 0u;
-    steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none, none);
+    steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none);
   }
 }

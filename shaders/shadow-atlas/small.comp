@@ -1,8 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation. With
-// TINY those of the fewest.
+// Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation.
 #include "shadow-atlas/pair.glsl"
 
 layout(local_size_x = 64) in;  // kSmallPerGroup
@@ -15,14 +14,9 @@ layout(push_constant) uniform Constants {
 };
 
 void main() {
-#if defined(TINY)
-  const uint list = kTiny;
-  uint count = steps.list[step_].tiny.count;
-#elif defined(MASKED)
-  const uint list = kMaskedSmall;
+#ifdef MASKED
   uint count = steps.list[step_].maskedSmall.count;
 #else
-  const uint list = kSmall;
   uint count = steps.list[step_].small.count;
 #endif
   uint entry = (gl_WorkGroupID.y * kGroupsPerRow + gl_WorkGroupID.x) * kSmallPerGroup + gl_LocalInvocationIndex;
@@ -31,7 +25,7 @@ void main() {
     else atomicAdd(counters.small, count);
   }
   if (entry >= count) return;
-  Pair pair = loadPair(pairs.list[pairPlace(list, entry, capacity)], size, planeEpsilon, false);
+  Pair pair = loadPair(pairs.list[smallPlace(entry, capacity, kMasked)], size, planeEpsilon, false);
 
   vec2 texel = pair.box.lo;
   float toMap = 2.0 / float(size);

@@ -28,25 +28,21 @@ struct WorkList {
 };
 const uint kGroupsPerRow = 4096u;
 
-// Work on one batch over a range of triangles. A pair is in one of the five lists.
+// Work on one batch over a range of triangles. A pair is in one of the four lists.
 struct Step {
   WorkList cull;
-  WorkList tiny;   // boxes of up to kTinyTexels: an invocation a pair
-  WorkList small;  // of up to kSmallTexels, likewise: on a CPU device eight pairs take as long as their largest
+  WorkList small;  // boxes of up to kSmallTexels: an invocation a pair
   WorkList large;  // eight invocations a pair
-  WorkList maskedSmall, maskedLarge;  // where the material has holes
+  WorkList maskedSmall, maskedLarge;  // likewise, where the material has holes
 };
-const uint kListWords = 4u, kStepWords = 24u;  // sizes of WorkList and Step
-const uint kTiny = 0u, kSmall = 1u, kLarge = 2u, kMaskedSmall = 3u, kMaskedLarge = 4u;  // the lists
-const uint kTinyTexels = 4u, kSmallTexels = 64u;
+const uint kListWords = 4u, kStepWords = 20u;  // sizes of WorkList and Step
+const uint kSmallTexels = 64u;
 const uint kSmallPerGroup = 64u;
 const uint kLargePerGroup = 8u;
 
-// Where entry i of a list stands in the buffer of pairs: three arrays, each as long as all pairs of a step; large ones
-// from the back.
-uint pairPlace(uint list, uint i, uint capacity) {
-  uint first = list == kSmall ? capacity : list >= kMaskedSmall ? 2u * capacity : 0u;
-  return list == kLarge || list == kMaskedLarge ? first + capacity - 1u - i : first + i;
-}
+// Where entry i of a list stands in the buffer of pairs: two arrays, each as long as all pairs of a step,
+// opaque and masked; small ones from the front, large ones from the back.
+uint smallPlace(uint i, uint capacity, bool masked) { return masked ? capacity + i : i; }
+uint largePlace(uint i, uint capacity, bool masked) { return (masked ? 2u * capacity : capacity) - 1u - i; }
 
 #endif
