@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "framework/base/small_vector.h"
+#include "framework/graph/scratch.h"
+
 namespace fovea::graph {
 namespace {
 
@@ -13,23 +16,21 @@ struct Range {
 // are placed side by side melt into one range, so that a level with hundreds of them still has few ranges.
 class Occupancy {
  public:
-  void grow(uint32_t levels) {
-    if (levels_.size() < levels) levels_.resize(levels);
-  }
+  Occupancy(detail::Scratch& scratch, uint32_t levels) : levels_(levels, scratch), merged_(scratch) {}
 
   // Tightest gap for `bytes` that is free in all levels of the interval; aligned.
   uint64_t findGap(const Interval& interval, uint64_t bytes, uint64_t alignment) {
-    const std::vector<Range>* taken = &levels_[interval.first];
+    std::span<const Range> taken = levels_[interval.first];
     if (interval.last > interval.first) {
       merged_.clear();
       for (uint32_t l = interval.first; l <= interval.last; ++l)
         merged_.insert(merged_.end(), levels_[l].begin(), levels_[l].end());
       std::sort(merged_.begin(), merged_.end(),
                 [](const Range& a, const Range& b) { return a.begin < b.begin; });
-      taken = &merged_;
+      taken = merged_;
     }
     uint64_t end = 0, best = 0, bestRoom = ~0ull;
-    for (const Range& range : *taken) {
+    for (const Range& range : taken) {
       const uint64_t at = alignUp(end, alignment);
       if (range.begin >= at && range.begin - at >= bytes && range.begin - at < bestRoom) {
         best = at;
@@ -42,7 +43,7 @@ class Occupancy {
 
   void take(const Interval& interval, Range range) {
     for (uint32_t l = interval.first; l <= interval.last; ++l) {
-      std::vector<Range>& taken = levels_[l];
+      SmallVector<Range, 2>& taken = levels_[l];
       auto next = std::lower_bound(taken.begin(), taken.end(), range,
                                    [](const Range& a, const Range& b) { return a.begin < b.begin; });
       const bool joinsNext = next != taken.end() && next->begin == range.end;
@@ -65,8 +66,8 @@ class Occupancy {
   }
 
  private:
-  std::vector<std::vector<Range>> levels_;
-  std::vector<Range> merged_;
+  detail::ScratchVector<SmallVector<Range, 2>> levels_;
+  detail::ScratchVector<Range> merged_;
 };
 
 }  // namespace
@@ -75,8 +76,9 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
   AliasResult result;
   result.placements.resize(requests.size());
   if (requests.empty()) return result;
-  std::vector<Occupancy> heaps;
-  std::vector<uint32_t> order(requests.size());
+  detail::Scratch scratch;
+  detail::ScratchVector<Occupancy> heaps(scratch);
+  detail::ScratchVector<uint32_t> order(requests.size(), scratch);
   uint32_t levels = 0;
   for (uint32_t i = 0; i < requests.size(); ++i) {
     order[i] = i;
@@ -93,7 +95,7 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
     while (h < result.heaps.size() && result.heaps[h].memoryTypeBits != requests[i].need.memoryTypeBits) ++h;
     if (h == result.heaps.size()) {
       result.heaps.push_back({0, requests[i].need.memoryTypeBits});
-      heaps.emplace_back().grow(alias ? levels : 1);
+      heaps.emplace_back(scratch, alias ? levels : 1);
     }
     result.placements[i].heap = h;
   }

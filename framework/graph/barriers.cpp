@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/graph/scratch.h"
 #include "framework/graph/validate.h"
 
 namespace fovea::graph {
@@ -97,30 +98,33 @@ class Planner {
   const Schedule& schedule_;
   Plan& plan_;
   const uint32_t levels_;
-  std::vector<Touch> touches_;
-  std::vector<uint32_t> touchFirst_;  // per level
-  std::vector<ReadGroup> groups_;     // per resource: versions 0.., then last frame's copy
-  std::vector<uint32_t> groupFirst_;
-  std::vector<State> current_, previous_;
-  std::vector<uint32_t> placementOf_;                             // per resource, kNone
-  std::vector<std::pair<uint32_t, uint32_t>> placementSegments_;  // per placement: [first, last)
-  std::vector<Segment> segments_;
-  std::vector<uint32_t> leaving_, leavingFirst_;  // resources by the last level of their life
+  detail::Scratch scratch_;
+  detail::ScratchVector<Touch> touches_{scratch_};
+  detail::ScratchVector<uint32_t> touchFirst_{scratch_};  // per level
+  detail::ScratchVector<ReadGroup> groups_{scratch_};  // per resource: versions 0.., then last frame's copy
+  detail::ScratchVector<uint32_t> groupFirst_{scratch_};
+  detail::ScratchVector<State> current_{scratch_}, previous_{scratch_};
+  detail::ScratchVector<uint32_t> placementOf_{scratch_};  // per resource, kNone
+  detail::ScratchVector<std::pair<uint32_t, uint32_t>> placementSegments_{
+      scratch_};  // per placement: [first, last)
+  detail::ScratchVector<Segment> segments_{scratch_};
+  detail::ScratchVector<uint32_t> leaving_{scratch_},
+      leavingFirst_{scratch_};  // resources by the last level of their life
 };
 
 void Planner::collectTouches() {
   const size_t resources = graph_.resources.size();
-  groupFirst_.assign(resources + 1, 3);
+  groupFirst_.assign(resources + 1, 2);
   for (const uint32_t p : schedule_.order)
     for (const Access& a : graph_.passes[p].accesses)
-      groupFirst_[a.resource] = std::max(groupFirst_[a.resource], a.version + 3);
+      groupFirst_[a.resource] = std::max(groupFirst_[a.resource], a.version + 2);
   uint32_t sum = 0;
   for (uint32_t& first : groupFirst_) sum += std::exchange(first, sum);
   groups_.assign(sum, {});
   struct Seen {
     uint32_t pass = kNone, touch = 0;
   };
-  std::vector<Seen> seen(resources * 2);
+  detail::ScratchVector<Seen> seen(resources * 2, scratch_);
   touchFirst_.assign(levels_ + 1, 0);
   touches_.reserve(schedule_.order.size() * 2);
   for (uint32_t l = 0; l < levels_; ++l) {
@@ -157,7 +161,8 @@ void Planner::collectTouches() {
 
 void Planner::makeSegments() {
   placementOf_.assign(graph_.resources.size(), kNone);
-  std::vector<std::pair<uint64_t, uint32_t>> edges;  // heap and offset, placement * 2 + end
+  detail::ScratchVector<std::pair<uint64_t, uint32_t>> edges(
+      scratch_);  // heap and offset, placement * 2 + end
   edges.reserve(plan_.placements.size() * 2);
   for (uint32_t i = 0; i < plan_.placements.size(); ++i) {
     const Placement& p = plan_.placements[i];
@@ -179,7 +184,7 @@ void Planner::makeSegments() {
   const std::vector<Interval> intervals = lifetimes(graph_, schedule_);
   for (const Placement& p : plan_.placements) ++leavingFirst_[intervals[p.resource].last + 1];
   for (uint32_t l = 1; l < levels_ + 2; ++l) leavingFirst_[l] += leavingFirst_[l - 1];
-  std::vector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end());
+  detail::ScratchVector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end(), scratch_);
   leaving_.resize(plan_.placements.size());
   for (const Placement& p : plan_.placements) leaving_[at[intervals[p.resource].last]++] = p.resource;
 }
@@ -216,7 +221,7 @@ void Planner::frame(bool record) {
   }
   batch = {};
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};
-  std::vector<uint8_t> done(graph_.resources.size(), 0);
+  detail::ScratchVector<uint8_t> done(graph_.resources.size(), 0, scratch_);
   for (const BoundOutput& output : graph_.outputs) {
     if (std::exchange(done[output.resource], 1)) continue;
     Touch t{output.resource, 0, {}, true, false, false};

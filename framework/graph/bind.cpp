@@ -60,8 +60,9 @@ void Binder::declare() {
   const size_t count = description_.passes.size();
   graph_.passes.resize(count);
   firstPort_.resize(count + 1);
+  ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
   passBySymbol_.assign(description_.symbols.size(), kNone);
-  std::vector<const PassDeclaration*> types(description_.symbols.size(), nullptr);
+  ScratchVector<const PassDeclaration*> types(description_.symbols.size(), nullptr, scratch_);
   if (environment_.views.empty()) {
     graph_.views.push_back("main");
     viewExtents_.push_back({1, 1});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/graph/compile.h"
+#include "framework/graph/scratch.h"
 
 namespace fovea::graph::detail {
 
@@ -67,7 +68,7 @@ class Binder {
 
   // order.cpp: order, versions, hazards that no order can avoid
   void orderPasses();
-  void reportCycle(const std::vector<uint32_t>& waiting);
+  void reportCycle(const ScratchVector<uint32_t>& waiting);
   void makeVersions();
   void checkInPlace();
   uint32_t versionSeen(const PortState& port, uint32_t resource) const;
@@ -101,17 +102,18 @@ class Binder {
   Diagnostics& diagnostics_;
   const Registry& registry_;
   BoundGraph graph_;
-  std::vector<uint32_t> passBySymbol_;
-  std::vector<uint32_t> firstPort_;  // per pass, and one past the last
-  std::vector<PortState> ports_;
-  std::vector<uint32_t> versions_;
-  std::vector<uint32_t> lastVersion_;    // per resource
-  std::vector<uint32_t> order_;          // passes, producers first; incomplete after a cycle
-  std::vector<uint32_t> externalFirst_;  // first resource of each external
-  std::vector<VkExtent2D> viewExtents_;  // per BoundGraph::views
-  std::vector<uint32_t> resourcePass_;   // producing pass, kNone for externals
-  std::vector<uint32_t> chain_;          // followValue's
-  std::vector<uint8_t> sized_;           // per pass: 0 not yet, 1 being done, 2 done, 3 failed
+  Scratch scratch_;
+  ScratchVector<uint32_t> passBySymbol_{scratch_};
+  ScratchVector<uint32_t> firstPort_{scratch_};  // per pass, and one past the last
+  ScratchVector<PortState> ports_{scratch_};
+  ScratchVector<uint32_t> versions_{scratch_};
+  ScratchVector<uint32_t> lastVersion_{scratch_};    // per resource
+  ScratchVector<uint32_t> order_{scratch_};          // passes, producers first; incomplete after a cycle
+  ScratchVector<uint32_t> externalFirst_{scratch_};  // first resource of each external
+  ScratchVector<VkExtent2D> viewExtents_{scratch_};  // per BoundGraph::views
+  ScratchVector<uint32_t> resourcePass_{scratch_};   // producing pass, kNone for externals
+  ScratchVector<uint32_t> chain_{scratch_};          // followValue's
+  ScratchVector<uint8_t> sized_{scratch_};           // per pass: 0 not yet, 1 being done, 2 done, 3 failed
   bool inPlace_ = false, history_ = false;
 };
 

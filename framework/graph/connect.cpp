@@ -192,7 +192,7 @@ void Binder::followValues() {
 
 // An in-out port offers what it is wired to: walk up to a port whose value is known, then down again.
 void Binder::followValue(uint32_t port) {
-  std::vector<uint32_t>& chain = chain_;
+  ScratchVector<uint32_t>& chain = chain_;
   chain.clear();
   uint32_t at = port;
   while (at != kNone && ports_[at].state == 0) {

@@ -11,14 +11,14 @@ namespace fovea::graph::detail {
 // Kahn's algorithm; among ready passes the order is the declaration's as far as a queue keeps it.
 void Binder::orderPasses() {
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
-  std::vector<uint32_t> first(count + 2, 0), waits(count, 0);
+  ScratchVector<uint32_t> first(count + 2, 0, scratch_), waits(count, 0, scratch_);
   for (const PortState& port : ports_) {
     if (port.source == kNone || port.previous) continue;
     ++first[ports_[port.source].pass + 2];
     ++waits[port.pass];
   }
   for (uint32_t p = 2; p < count + 2; ++p) first[p] += first[p - 1];
-  std::vector<uint32_t> readers(first[count + 1]);
+  ScratchVector<uint32_t> readers(first[count + 1], scratch_);
   for (const PortState& port : ports_)
     if (port.source != kNone && !port.previous) readers[first[ports_[port.source].pass + 1]++] = port.pass;
   order_.reserve(count);
@@ -31,7 +31,7 @@ void Binder::orderPasses() {
 }
 
 // Every pass that still waits has a producer that still waits: walking up must come round.
-void Binder::reportCycle(const std::vector<uint32_t>& waits) {
+void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
   std::vector<uint32_t> producer(graph_.passes.size(), kNone), wire(graph_.passes.size(), kNone);
   for (const PortState& port : ports_) {
     if (port.source == kNone || port.previous || waits[port.pass] == 0) continue;
@@ -180,12 +180,13 @@ void Binder::chooseLayouts() {
     bool reads = false, writes = false;
   };
   const size_t resources = graph_.resources.size();
-  std::vector<uint32_t> firstVersion(resources + 1, 0);
+  ScratchVector<uint32_t> firstVersion(resources + 1, 0, scratch_);
   for (size_t r = 0; r < resources; ++r) firstVersion[r + 1] = firstVersion[r] + lastVersion_[r] + 2;
   // Per version, and in the last slot of each resource for last frame's copy.
-  std::vector<VkImageLayout> readLayout(firstVersion[resources], VK_IMAGE_LAYOUT_UNDEFINED);
-  std::vector<Seen> seen(resources * 2);
-  for (int round = 0; round < 2; ++round) {
+  ScratchVector<VkImageLayout> readLayout(firstVersion[resources], VK_IMAGE_LAYOUT_UNDEFINED, scratch_);
+  ScratchVector<Seen> seen(resources * 2, scratch_);
+  bool mixed = false;  // some version's readers want different layouts: a second round tells them all
+  for (int round = 0; round < (mixed ? 2 : 1); ++round) {
     for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
       BoundPass& pass = graph_.passes[p];
       if (round == 0) {
@@ -211,7 +212,7 @@ void Binder::chooseLayouts() {
           if (shared == VK_IMAGE_LAYOUT_UNDEFINED)
             shared = a.layout;
           else if (shared != a.layout)
-            shared = VK_IMAGE_LAYOUT_GENERAL;
+            shared = VK_IMAGE_LAYOUT_GENERAL, mixed = true;
         } else if (!a.writes) {
           a.layout = shared;
         }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/random.h"
+#include "framework/graph/scratch.h"
 
 namespace fovea::graph {
 namespace {
@@ -111,7 +112,7 @@ class Scheduler {
   }
 
   void earliestLevels() {
-    std::vector<uint32_t>& queue = work_;
+    detail::ScratchVector<uint32_t>& queue = work_;
     queue.clear();
     for (uint32_t p = 0; p < passCount_; ++p) {
       if (!result_.passLive[p] || waits_[p] != 0) continue;
@@ -167,7 +168,7 @@ class Scheduler {
     for (const uint32_t l : result_.level)
       if (l != kNone) ++first[l + 1];
     for (uint32_t l = 1; l <= levels; ++l) first[l] += first[l - 1];
-    std::vector<uint32_t> at(first.begin(), first.end());
+    detail::ScratchVector<uint32_t> at(first.begin(), first.end(), scratch_);
     result_.order.resize(live);
     for (uint32_t p = 0; p < passCount_; ++p)
       if (result_.level[p] != kNone) result_.order[at[result_.level[p]]++] = p;
@@ -176,8 +177,10 @@ class Scheduler {
   const BoundGraph& graph_;
   const uint32_t passCount_;
   Schedule result_;
-  std::vector<uint32_t> firstVersion_, writers_, work_, edgeFirst_, edges_, waits_;
-  std::vector<uint8_t> allWriters_;
+  detail::Scratch scratch_;
+  detail::ScratchVector<uint32_t> firstVersion_{scratch_}, writers_{scratch_}, work_{scratch_},
+      edgeFirst_{scratch_}, edges_{scratch_}, waits_{scratch_};
+  detail::ScratchVector<uint8_t> allWriters_{scratch_};
 };
 
 }  // namespace

@@ -1,0 +1,106 @@
+// A list whose first N elements lie in the object itself, for lists that are nearly always short: a graph has
+// thousands of them, and asking for memory would cost more than filling them. Elements are plain data. As in
+// std::vector, growing and moving invalidate iterators; moving the object also moves its elements.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace fovea {
+
+template <class T, uint32_t N>
+class SmallVector {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  using value_type = T;
+  using iterator = T*;
+  using const_iterator = const T*;
+
+  SmallVector() = default;
+  SmallVector(const SmallVector& other) { assign(other.begin(), other.end()); }
+  SmallVector(SmallVector&& other) noexcept { take(other); }
+  SmallVector& operator=(const SmallVector& other) {
+    if (this != &other) assign(other.begin(), other.end());
+    return *this;
+  }
+  SmallVector& operator=(SmallVector&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    take(other);
+    return *this;
+  }
+  ~SmallVector() { release(); }
+
+  T* data() { return capacity_ > N ? heap_ : reinterpret_cast<T*>(here_); }
+  const T* data() const { return capacity_ > N ? heap_ : reinterpret_cast<const T*>(here_); }
+  size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](size_t i) { return data()[i]; }
+  const T& operator[](size_t i) const { return data()[i]; }
+
+  void clear() { size_ = 0; }
+  void reserve(size_t count) {
+    if (count <= capacity_) return;
+    const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
+    T* grown = static_cast<T*>(::operator new(capacity * sizeof(T), std::align_val_t(alignof(T))));
+    std::memcpy(static_cast<void*>(grown), data(), size_ * sizeof(T));
+    release();
+    heap_ = grown;
+    capacity_ = capacity;
+  }
+  void push_back(T value) {
+    if (size_ == capacity_) reserve(size_ + 1);
+    new (data() + size_++) T(value);
+  }
+  template <class Iterator>
+  void assign(Iterator first, Iterator last) {
+    clear();
+    insert(end(), first, last);
+  }
+  T* insert(const T* where, T value) { return insert(where, &value, &value + 1); }
+  // [first, last) must not be part of this list.
+  template <class Iterator>
+  T* insert(const T* where, Iterator first, Iterator last) {
+    const size_t at = where - data(), count = last - first;
+    reserve(size_ + count);
+    T* place = data() + at;
+    std::memmove(static_cast<void*>(place + count), place, (size_ - at) * sizeof(T));
+    for (T* to = place; first != last; ++first, ++to) new (to) T(*first);
+    size_ += static_cast<uint32_t>(count);
+    return place;
+  }
+  T* erase(const T* where) {
+    T* place = data() + (where - data());
+    std::memmove(static_cast<void*>(place), place + 1, (end() - place - 1) * sizeof(T));
+    --size_;
+    return place;
+  }
+
+ private:
+  void release() {
+    if (capacity_ > N) ::operator delete(heap_, std::align_val_t(alignof(T)));
+  }
+  void take(SmallVector& other) {
+    std::memcpy(here_, other.here_, sizeof here_);  // the elements, or where they are
+    size_ = std::exchange(other.size_, 0);
+    capacity_ = std::exchange(other.capacity_, N);
+  }
+
+  union {
+    T* heap_;
+    alignas(T) std::byte here_[std::max(N * sizeof(T), sizeof(T*))];
+  };
+  uint32_t size_ = 0, capacity_ = N;
+};
+
+}  // namespace fovea
