@@ -168,7 +168,7 @@ TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
   EXPECT_GT(fresh, 0.005);
   EXPECT_LT(fresh, 0.1);
   EXPECT_GT(filled, 0.1 * fresh);
-  EXPECT_LT(shaded, 0.05);
+  EXPECT_LT(shaded, 0.07);  // leaves close to the eye
   EXPECT_LT(errors.mean, 0.04);
   EXPECT_LT(std::abs(errors.bias), 0.01);
   EXPECT_LT(atBorder.mean, 0.1);
@@ -182,6 +182,7 @@ INSTANTIATE_TEST_SUITE_P(Stereo, BuiltinStereo, testing::Values("atrium", "room"
 TEST(Stereo, ThroughALens) {
   scene::Scene s = scene::builtin("cornellbox");
   s.lens = scene::Lens{0.5f, 0.35f, 0.4f, 0.4f};
+  s.cameras[0].position.z = 2;  // in the box: no background
   const GraphRun both = run("ir_stereo", s, "", 1), own = run("ir_1000", s, "right", 1);
   EXPECT_EQ(both.outputs.at("direct_right").bytes, own.outputs.at("direct").bytes);
   const auto image = toFloats(both.outputs.at("indirect_right")), want = toFloats(own.outputs.at("indirect"));
