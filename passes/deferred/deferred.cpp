@@ -57,6 +57,12 @@ class Deferred : public Pass {
     d.output("radiance", color, Usage::StorageWrite, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
               "every pixel's estimate from its own subset");
+    d.scratch(
+        "edges", buffer("EdgeList", 16),
+        Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect | Usage::TransferWrite,
+        "dispatch for `edge_pixels`, and 1 + their number");
+    d.scratch("edge_pixels", buffer("uint", 4, width * height), Usage::StorageWrite | Usage::TexelRead,
+              "pixels whose window leaves their surface: x | y << 16");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
@@ -85,7 +91,10 @@ class Deferred : public Pass {
     }
     gpu::Defines filter = defines;
     filter.insert(composition.begin(), composition.end());
+    filter["EDGES"] = "0";
     resolve_ = ctx.compute("deferred/resolve.comp", filter);
+    filter["EDGES"] = "1";
+    edges_ = ctx.compute("deferred/resolve.comp", filter);
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);
   }
@@ -94,6 +103,7 @@ class Deferred : public Pass {
     const Parameters& p = ctx.parameters();
     const VkExtent3D size = ctx.extent("partial");
     const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
+    ctx.fill("edges", 1);
     for (uint32_t page = 0; page < pages_.size(); ++page) {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
       if (page > 0) ctx.barrier();
@@ -108,13 +118,16 @@ class Deferred : public Pass {
     }
     ctx.barrier();
     Commands resolve = ctx.use(resolve_);
-    resolve.constant("filterCos", std::cos(float(p.real("filter_angle")) * 0.017453293f));
+    const float filterCos = std::cos(float(p.real("filter_angle")) * 0.017453293f);
+    resolve.constant("filterCos", filterCos);
     if (masked_) {
       resolve.dispatchIndirect("shade.dispatch");
       ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
     } else {
       resolve.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
     }
+    ctx.barrier();
+    ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
@@ -200,7 +213,7 @@ class Deferred : public Pass {
   uint32_t count_ = 0, side_ = 1;
   bool masked_ = false;
   std::vector<Kernel> pages_;
-  Kernel resolve_, compose_;
+  Kernel resolve_, edges_, compose_;
 };
 
 FOVEA_PASS(Deferred);

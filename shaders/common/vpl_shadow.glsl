@@ -1,5 +1,5 @@
-// Is a point in the shadow of a VPL? The distance that the VPL's paraboloid map must hold for the point to be lit.
-// Needs common/paraboloid.glsl.
+// Is a point in the shadow of a VPL? What the VPL's paraboloid map holds against the distance that it must hold for the
+// point to be lit. Needs common/paraboloid.glsl.
 #ifndef FOVEA_VPL_SHADOW_GLSL
 #define FOVEA_VPL_SHADOW_GLSL
 
@@ -8,20 +8,20 @@
 // fixed slope-scaled bias would have to cover the whole footprint. Where the ray meets the plane behind the point (or runs
 // along it), something else may stand there: the point's own distance is the limit, so no shadow is invented.
 //
-// local: from the VPL to the point, in the VPL's frame; len: its length; face: unit normal of the point's triangle on the
-// side looked at, in the same frame; bias: in half widths of a texel there, 1 by default, for what is left: curvature and
-// small detail within a texel. Against traced rays with maps of 128 x 128 texels, weighted by light, this loses 0.3% in the
+// stored: of the map; height: of the point along `face`, from the VPL (negative where the face looks at it); len: its
+// distance; ahead: that plus the distance along the VPL's normal; face: unit normal of the point's triangle on the side
+// looked at, in the VPL's frame; bias: in half widths of a texel there, 1 by default, for what is left: curvature and small
+// detail within a texel. Against traced rays with maps of 128 x 128 texels, weighted by light, this loses 0.3% in the
 // Cornell box and 4.0% in Sponza to false shadows and gains 0.6% and 4.6% by leaks, so the picture's brightness is right.
 // (A bias for the whole slope: 3.1% and 7.0% in Sponza.)
-float vplShadowLimit(vec3 local, float len, vec3 face, ivec2 texel, int size, float bias) {
+bool vplSees(float stored, float height, float len, float ahead, vec3 face, ivec2 texel, int size, float bias) {
   // The centre's direction is (2q, 1 - q.q) / (1 + q.q), see paraboloidDirection; its length cancels but in one place.
   vec2 q = paraboloidTexelCentre(texel, size);
   float qq = dot(q, q);
   float facing = -(2.0 * dot(face.xy, q) + face.z * (1.0 - qq));
-  float plane = facing > 1e-3 ? -dot(face, local) * (1.0 + qq) / facing : len;
   // Angular width of a texel: (2 / size) (1 + z).
-  float footprint = (len + local.z) * (2.0 / float(size));
-  return min(plane, len) - bias * (0.5 * footprint + 1e-3);
+  float held = stored + bias * (ahead / float(size) + 1e-3);
+  return held >= len || (facing > 1e-3 && held * facing >= -height * (1.0 + qq));
 }
 
 #endif

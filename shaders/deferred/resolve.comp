@@ -3,7 +3,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only, and the composition
-// with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED.
+// with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED, EDGES.
+//
+// Pixels whose window does not hold all subsets are listed, and done by EDGES: few, and next to each other in its work groups.
 //
 // Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once; where all of it lies on the surface of the pixel, the
 // mean over it is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
@@ -18,13 +20,20 @@
 // rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
 #if MASKED
 #include "deferred/blocks.glsl"
+#endif
+#if MASKED || EDGES
 const int kPixels = 1;  // that are filtered together
 #else
 const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
 #endif
 const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
+const uint kEdgeGroup = 64u;
+#if EDGES
+layout(local_size_x = 64) in;
+#else
 layout(local_size_x = 16, local_size_y = 4) in;
+#endif
 
 // Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
@@ -35,6 +44,13 @@ layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
 layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
+#if EDGES
+layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups of EDGES x 1 x 1; 1 + pixels listed
+layout(set = 0, binding = 14) uniform usamplerBuffer edgePixels;  // x | y << 16
+#else
+layout(set = 0, binding = 13, std430) buffer Edges { uint x, y, z, end; } edges;
+layout(set = 0, binding = 14, std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
+#endif
 #if HAS_DIRECT
 layout(set = 0, binding = 12) uniform texture2D direct;
 #endif
@@ -73,46 +89,6 @@ bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least)
 uvec2 subsetBit(ivec2 d) {
   int subset = (d.y + INTERLEAVE) % INTERLEAVE * INTERLEAVE + (d.x + INTERLEAVE) % INTERLEAVE;
   return subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
-}
-
-// Adds a sample, nearer pixels with more weight; a: weight.
-void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
-  ivec2 q = p + d;
-  if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
-  if (!isShaded(q)) return;
-  if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, plane, least)) return;
-  float w = 1.0 / float(d.x * d.x + d.y * d.y);
-  sum += vec4(imageLoad(partial, q).rgb * w, w);
-}
-
-// A sample of one subset outside the window: on the other side of the pixel, where an edge has left the surface, or else
-// from anywhere in the wide window. a: whether there is one.
-vec4 wideSample(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
-  ivec2 inside = offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2)));
-  ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
-  vec4 sum = vec4(0.0);
-  addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
-  addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
-  addSample(sum, c, p, across, size, plane, least);
-  // A loop of no turns is skipped where a branch is not, on a CPU device.
-  int samples = sum.a == 0.0 ? 16 : 0;
-  for (int i = 0; i < samples; ++i) addSample(sum, c, p, offset + INTERLEAVE * (ivec2(i & 3, i >> 2) - 2), size, plane, least);
-  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
-}
-
-// Looks for the missing subsets; those found leave the mask.
-void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) {
-  uvec2 left = c.missing;
-  while ((left.x | left.y) != 0u) {
-    int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
-    uvec2 bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
-    left &= ~bit;
-    vec4 v = wideSample(c, p, ivec2(subset % INTERLEAVE, subset / INTERLEAVE), size, plane, least);
-    if (v.a == 0.0) continue;
-    c.sum += v.rgb;
-    ++c.found;
-    c.missing &= ~bit;
-  }
 }
 
 Centre centreAt(ivec2 p, ivec2 size) {
@@ -165,6 +141,47 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
   }
 }
 
+#if EDGES
+// Adds a sample, nearer pixels with more weight; a: weight.
+void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
+  ivec2 q = p + d;
+  if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
+  if (!isShaded(q)) return;
+  if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, plane, least)) return;
+  float w = 1.0 / float(d.x * d.x + d.y * d.y);
+  sum += vec4(imageLoad(partial, q).rgb * w, w);
+}
+
+// A sample of one subset outside the window: on the other side of the pixel, where an edge has left the surface, or else
+// from anywhere in the wide window. a: whether there is one.
+vec4 wideSample(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
+  ivec2 inside = offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2)));
+  ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
+  vec4 sum = vec4(0.0);
+  addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
+  addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
+  addSample(sum, c, p, across, size, plane, least);
+  // A loop of no turns is skipped where a branch is not, on a CPU device.
+  int samples = sum.a == 0.0 ? 16 : 0;
+  for (int i = 0; i < samples; ++i) addSample(sum, c, p, offset + INTERLEAVE * (ivec2(i & 3, i >> 2) - 2), size, plane, least);
+  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
+}
+
+// Looks for the missing subsets; those found leave the mask.
+void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) {
+  uvec2 left = c.missing;
+  while ((left.x | left.y) != 0u) {
+    int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
+    uvec2 bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
+    left &= ~bit;
+    vec4 v = wideSample(c, p, ivec2(subset % INTERLEAVE, subset / INTERLEAVE), size, plane, least);
+    if (v.a == 0.0) continue;
+    c.sum += v.rgb;
+    ++c.found;
+    c.missing &= ~bit;
+  }
+}
+
 #if MASKED
 // Samples of missing subsets from the pixel's own block, where each is.
 void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
@@ -210,45 +227,78 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
   }
   return c.sum / float(c.found);
 }
+#endif
 
-// Filters kPixels pixels from `first` downwards and writes them; adds to pixels, incomplete.
-void resolve(ivec2 first, ivec2 size, inout uvec2 counted) {
+void write(ivec2 p, bool surface, vec3 e) {
+  vec3 reflected = surface ? imageLoad(gbufferAlbedo, p).rgb * e : vec3(0.0);
+  vec3 total = reflected;
+#if HAS_DIRECT
+  total += texelFetch(direct, p, 0).rgb;
+#endif
+  imageStore(irradiance, p, vec4(e, 1.0));
+  imageStore(indirect, p, vec4(reflected, 1.0));
+  imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
+}
+
+#if EDGES
+void main() {
+  ivec2 size = imageSize(gbufferPosition);
+  uint item = gl_GlobalInvocationID.x;
+  bool incomplete = false;
+  if (item + 1u < texelFetch(edges, 0).w) {
+    uint where = texelFetch(edgePixels, int(item)).x;
+    ivec2 p = ivec2(where & 0xffffu, where >> 16u);
+    Centre centres[kPixels];
+    centres[0] = centreAt(p, size);
+    filterWindows(centres, p, size);
+    write(p, true, meanOfSubsets(centres[0], p, size, incomplete));
+  }
+  uint found = subgroupBallotBitCount(subgroupBallot(incomplete));
+  if (subgroupElect() && found > 0u) atomicAdd(counters[1], found);
+}
+#else
+// Filters kPixels pixels from `first` downwards and writes them, or lists them. Returns how many of the subgroup show a surface.
+uint resolve(ivec2 first, ivec2 size) {
   Centre centres[kPixels];
   for (int k = 0; k < kPixels; ++k) centres[k] = centreAt(first + ivec2(0, k), size);
   filterWindows(centres, first, size);
+  uint surfaces = 0u, total = 0u, before[kPixels];
+  for (int k = 0; k < kPixels; ++k) {
+    bool surface = centres[k].plane >= 0.0;
+    surfaces += subgroupBallotBitCount(subgroupBallot(surface));
+    uvec4 edge = subgroupBallot(surface && centres[k].found < kSubsets);
+    before[k] = total + subgroupBallotExclusiveBitCount(edge);
+    total += subgroupBallotBitCount(edge);
+  }
+  uint end = 0u;
+  if (subgroupElect() && total > 0u) end = atomicAdd(edges.end, total);
+  end = subgroupBroadcastFirst(end);
+  if (subgroupElect() && total > 0u) atomicMax(edges.x, (end + total + kEdgeGroup - 2u) / kEdgeGroup);
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = first + ivec2(0, k);
-    bool surface = centres[k].plane >= 0.0, incomplete = false;
-    vec3 e = vec3(0.0);
-    if (surface) e = meanOfSubsets(centres[k], p, size, incomplete);
-    counted.x += subgroupBallotBitCount(subgroupBallot(surface));
-    counted.y += subgroupBallotBitCount(subgroupBallot(incomplete));
-    if (any(greaterThanEqual(p, size))) continue;
-    vec3 reflected = surface ? imageLoad(gbufferAlbedo, p).rgb * e : vec3(0.0);
-    vec3 total = reflected;
-#if HAS_DIRECT
-    total += texelFetch(direct, p, 0).rgb;
-#endif
-    imageStore(irradiance, p, vec4(e, 1.0));
-    imageStore(indirect, p, vec4(reflected, 1.0));
-    imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
+    bool surface = centres[k].plane >= 0.0;
+    if (surface && centres[k].found < kSubsets)
+      edgePixels.list[end - 1u + before[k]] = uint(p.x) | uint(p.y) << 16u;
+    else if (all(lessThan(p, size)))
+      write(p, surface, surface ? centres[k].sum / float(kSubsets) : vec3(0.0));
   }
+  return surfaces;
 }
 
 void main() {
   ivec2 size = imageSize(gbufferPosition);
-  uvec2 counted = uvec2(0u);
+  uint surfaces = 0u;
 #if MASKED
-  for (int k = 0; k < kListedPixels; ++k) resolve(listedPixel(k, size), size, counted);
+  for (int k = 0; k < kListedPixels; ++k) surfaces += resolve(listedPixel(k, size), size);
 #else
-  resolve(ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
-              ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size, counted);
+  surfaces = resolve(ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
+                         ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size);
 #endif
-  if (subgroupElect()) {
+  if (subgroupElect() && surfaces > 0u) {
 #if !MASKED
-    atomicAdd(counters[0], counted.x);  // MASKED: compose.comp counts them
+    atomicAdd(counters[0], surfaces);  // MASKED: compose.comp counts them
 #endif
-    if (counted.y > 0u) atomicAdd(counters[1], counted.y);
-    atomicAdd(counters[3], counted.x);
+    atomicAdd(counters[3], surfaces);
   }
 }
+#endif

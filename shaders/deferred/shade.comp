@@ -1,6 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (METHOD Eq. 2 without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page;
@@ -10,9 +13,8 @@
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
 
-// An invocation shades kPixels pixels below each other: a VPL and its frame are loaded once for all of them, and neighbours
-// read the same lines of a map. On a CPU, where loads from uniform buffers cost as much as the rest, this is worth a factor
-// of two.
+// An invocation shades kPixels pixels below each other: a VPL is handed to it once for all of them, and neighbours read the
+// same lines of a map.
 #if MASKED
 #include "deferred/blocks.glsl"
 const int kPixels = int(kListedPixels);
@@ -39,19 +41,76 @@ layout(push_constant) uniform Constants {
 #endif
 };
 
+const uint kSubsets = INTERLEAVE * INTERLEAVE;
+
 struct Receiver {
   vec3 position, normal, face, sum;
 };
 
-// cos_s cos_l kernel, from the lengths along both normals. One division.
-float vplWeight(float alongReceiver, float alongNormal, float d2, float d, float area, float clampAt) {
-#if KERNEL_DISC
-  float denominator = d2 * (d2 + area * (1.0 / kPi));
-#else
-  float nearest = max(d, clampAt);  // in the denominator only
-  float denominator = d2 * (nearest * nearest);
+// What the receivers of a subgroup have in common. No pixels: low > high.
+struct Block {
+  vec3 centre, reach;        // box around their positions
+  vec3 normal, normalReach;  // box around their normals
+  float plane;               // least distance along its own normal of a receiver from the centre, m
+};
+
+Block blockOf(Receiver receivers[kPixels], bool valid[kPixels]) {
+  vec3 low = vec3(1e30), high = vec3(-1e30), normalLow = vec3(1e30), normalHigh = vec3(-1e30);
+  for (int k = 0; k < kPixels; ++k) {
+    low = valid[k] ? min(low, receivers[k].position) : low;
+    high = valid[k] ? max(high, receivers[k].position) : high;
+    normalLow = valid[k] ? min(normalLow, receivers[k].normal) : normalLow;
+    normalHigh = valid[k] ? max(normalHigh, receivers[k].normal) : normalHigh;
+  }
+  low = subgroupMin(low);
+  high = subgroupMax(high);
+  normalLow = subgroupMin(normalLow);
+  normalHigh = subgroupMax(normalHigh);
+  Block b = Block(0.5 * (low + high), 0.5 * (high - low), 0.5 * (normalLow + normalHigh), 0.5 * (normalHigh - normalLow), 1e30);
+  for (int k = 0; k < kPixels; ++k)
+    b.plane = valid[k] ? min(b.plane, dot(receivers[k].normal, receivers[k].position - b.centre)) : b.plane;
+  b.plane = subgroupMin(b.plane);
+  return b;
+}
+
+// Whether a VPL may light any of them: bounds of both cosines' numerators. Coplanar ones are seen through rounding.
+bool mayLight(Vpl vpl, Block b) {
+  vec3 away = b.centre - vpl.positionArea.xyz;
+  float along = dot(vpl.normal.xyz, away) + dot(abs(vpl.normal.xyz), b.reach);
+  float facing = dot(b.normalReach, abs(away)) - dot(b.normal, away) - b.plane;
+  float rounding = 1e-6 * (dot(abs(away), vec3(1.0)) + dot(b.reach, vec3(1.0)));
+  return min(along, facing) > rounding && b.reach.x >= 0.0 && vpl.intensity.rgb != vec3(0.0);
+}
+
+// A VPL as all receivers of a subgroup want it.
+struct Emitter {
+  vec3 position, intensity;
+  mat3 axes;   // its frame, see common/paraboloid.glsl
+  float area;  // m^2
+};
+
+Emitter emitterOf(Vpl vpl) {
+  mat3 axes = mat3(0.0);
+#if SHADOWED
+  axes = orthonormalFrame(vpl.normal.xyz);
 #endif
-  return max(-alongReceiver, 0.0) * max(alongNormal, 0.0) / denominator;
+  axes[2] = vpl.normal.xyz;
+  return Emitter(vpl.positionArea.xyz, vpl.intensity.rgb, axes, vpl.positionArea.w);
+}
+
+// That of another lane.
+Emitter handOver(Emitter e, uint lane) {
+  e.position = subgroupShuffle(e.position, lane);
+  e.intensity = subgroupShuffle(e.intensity, lane);
+#if SHADOWED
+  e.axes[0] = subgroupShuffle(e.axes[0], lane);
+  e.axes[1] = subgroupShuffle(e.axes[1], lane);
+#endif
+  e.axes[2] = subgroupShuffle(e.axes[2], lane);
+#if KERNEL_DISC
+  e.area = subgroupShuffle(e.area, lane);
+#endif
+  return e;
 }
 
 // All invocations of a work group share a subset, so that they read the same VPLs at the same time.
@@ -69,52 +128,84 @@ ivec2 pixelAt(int k, ivec2 size) {
 }
 #endif
 
+// cos_s cos_l Vis / d^2, with one division. slot: of the VPL in the atlas.
+float transfer(Receiver r, Emitter e, uint slot
+#if SHADOWED
+               , AtlasLayout maps, float bias
+#endif
+) {
+  vec3 toSurface = r.position - e.position;
+  float d2 = max(dot(toSurface, toSurface), 1e-12), d = sqrt(d2);
+  float alongNormal = dot(e.axes[2], toSurface);
+#if KERNEL_DISC
+  float denominator = d2 * (d2 + e.area * (1.0 / kPi));
+#else
+  float nearest = max(d, clampDistance);  // in the denominator only
+  float denominator = d2 * (nearest * nearest);
+#endif
+  float cosines = max(-dot(r.normal, toSurface), 0.0) * max(alongNormal, 0.0);
+  // |z| for z, which only those differ in that get nothing.
+  float ahead = d + abs(alongNormal), inverse = 1.0 / (ahead * denominator), result = cosines * (ahead * inverse);
+#if SHADOWED
+  vec2 local = vec2(dot(e.axes[0], toSurface), dot(e.axes[1], toSurface));
+  // |p| <= 1. Who gets nothing looks at a texel that all such look at, which stays in the cache.
+  float half_ = 0.5 * float(maps.size);
+  vec2 p = local * (denominator * inverse);
+  ivec2 texel = cosines > 0.0 ? min(ivec2(p * half_ + half_), maps.size - 1) : ivec2(0);
+#if TILED
+  ivec3 at = atlasTexel(slot, texel, maps);
+#else
+  ivec3 at = atlasTexel(slot, texel);
+#endif
+  float stored = uintBitsToFloat(imageLoad(atlas, at).x);
+  bool lit = vplSees(stored, dot(r.face, toSurface), d, ahead, toLocal(e.axes, r.face), texel, maps.size, bias);
+  return lit ? result : 0.0;
+#else
+  return result;
+#endif
+}
+
 void main() {
   uvec2 subset2 = subsetOfGroup();
   ivec2 size = imageSize(partial);
   Receiver receivers[kPixels];
-  bool any_ = false;
+  bool valid[kPixels];
   for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = min(pixelAt(k, size), size - 1);
+    ivec2 at = pixelAt(k, size), p = min(at, size - 1);
     vec4 position = imageLoad(gbufferPosition, p);
+    valid[k] = position.w > 0.0 && at == p;
     receivers[k].position = position.xyz;
     receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
 #if SHADOWED
     receivers[k].face = octDecode(texelFetch(gbufferFace, p, 0).xy);
 #endif
     receivers[k].sum = vec3(0.0);
-    any_ = any_ || position.w > 0.0;
   }
-  if (!any_) return;  // all background: never read by the filter
-  float clampAt = clampDistance;
+  Block block = blockOf(receivers, valid);
 #if SHADOWED
   AtlasLayout maps = atlasLayout(imageSize(atlas));
-  uint first = firstSlot;
-  float bias = shadowBias;
 #endif
-  for (uint i = subset2.y * INTERLEAVE + subset2.x; i < PAGE_VPLS; i += INTERLEAVE * INTERLEAVE) {
-    Vpl vpl = vpls.list[i];
+  // Each lane takes a VPL of its own, and those that may light something are handed to all lanes, one after the other. On a
+  // CPU, where every lane's load from a uniform buffer costs by itself, loading them in every lane costs as much as the rest.
+  uint lanes = subgroupBallotBitCount(subgroupBallot(true));
+  uint subset = subset2.y * INTERLEAVE + subset2.x;
+  for (uint first = 0u; first * kSubsets + subset < PAGE_VPLS; first += lanes) {
+    uint mine = (first + gl_SubgroupInvocationID) * kSubsets + subset;
+    Vpl vpl = vpls.list[min(mine, PAGE_VPLS - 1u)];
+    Emitter own = emitterOf(vpl);
+    uvec4 left = subgroupBallot(mine < PAGE_VPLS && mayLight(vpl, block));
+    while ((left.x | left.y) != 0u) {
+      uint lane = subgroupBallotFindLSB(left);
+      left.xy &= ~(lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
+      Emitter e = handOver(own, lane);
+      for (int k = 0; k < kPixels; ++k) {
 #if SHADOWED
-    mat3 frame_ = orthonormalFrame(vpl.normal.xyz);
-#endif
-    for (int k = 0; k < kPixels; ++k) {
-      vec3 toSurface = receivers[k].position - vpl.positionArea.xyz;
-      float d2 = max(dot(toSurface, toSurface), 1e-12), d = sqrt(d2);
-      float alongNormal = dot(vpl.normal.xyz, toSurface);
-      float weight = vplWeight(dot(receivers[k].normal, toSurface), alongNormal, d2, d, vpl.positionArea.w, clampAt);
-#if SHADOWED
-      vec3 local = vec3(dot(frame_[0], toSurface), dot(frame_[1], toSurface), alongNormal);
-      ivec2 texel = paraboloidTexel(paraboloidProject(local, d), maps.size);
-#if TILED
-      ivec3 at = atlasTexel(first + i, texel, maps);
+        float t = transfer(receivers[k], e, firstSlot + (first + lane) * kSubsets + subset, maps, shadowBias);
 #else
-      ivec3 at = atlasTexel(first + i, texel);
+        float t = transfer(receivers[k], e, 0u);
 #endif
-      float stored = uintBitsToFloat(imageLoad(atlas, at).x);
-      float limit = vplShadowLimit(local, d, toLocal(frame_, receivers[k].face), texel, maps.size, bias);
-      weight = stored >= limit ? weight : 0.0;
-#endif
-      receivers[k].sum += weight * vpl.intensity.rgb;
+        receivers[k].sum += t * e.intensity;
+      }
     }
   }
   for (int k = 0; k < kPixels; ++k) {
