@@ -130,6 +130,10 @@ void Render::loadInputs() {
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages_);
   if (lens_) {
+    if (bound.views.size() < 2)
+      throw Error(ExitCode::Usage,
+                  "graph " + description_.name + " has no eyes that could look through --lens",
+                  "take one for both eyes, as `stereo`");
     scene_.lens = lens_;
     scene_.hash = scene::contentHash(scene_);
   }

@@ -99,6 +99,12 @@ class Usage(CliTest):
             with self.subTest(gaze=gaze):
                 self.fails(USAGE, *DIRECT, "--gaze=" + gaze, says=["0 to 1"])
 
+    def test_lens(self):
+        for lens in ("55", "55,45,50", "55,45,50,90", "55,45,50,0", "55,45,50,nan", "a,b,c,d", "55,45,50,52,"):
+            with self.subTest(lens=lens):
+                self.fails(USAGE, *DIRECT, "--lens=" + lens, says=["1 to 80"])
+        self.fails(USAGE, *DIRECT, "--lens", "55,45,50,52", says=["direct", "no eyes"])
+
     def test_gaze_trace(self):
         self.fails(USAGE, *DIRECT, "--gaze-trace", "g.csv", "--gaze", "0.5,0.5", says=["--gaze"])
         self.fails(USAGE, *DIRECT, "--gaze-gap", "20", says=["--gaze-trace"])
