@@ -13,11 +13,11 @@ class Direct : public Pass {
         "direct",
         "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-             member("face", image2D(), Usage::Sampled),
-             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-             member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled)},
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
+             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead),
+             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
+             member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("maps", "shadow-maps",
             {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
