@@ -223,5 +223,66 @@ TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {
   EXPECT_LT(comparison.run(), 0.02);
 }
 
+// Odd sizes, repeated and mirrored dozens of times on either side of 0: the remainders of texel numbers.
+TEST(GBuffer, TexturesWrapFarFromTheirOrigin) {
+  scene::Scene s;
+  scene::Texture noise;
+  noise.width = 5;
+  noise.height = 3;
+  for (uint32_t i = 0; i < 4 * noise.width * noise.height; ++i) noise.rgba.push_back(uint8_t(i * 151 + 37));
+  s.textures.push_back(noise);
+  const scene::Wrap wraps[] = {scene::Wrap::Repeat, scene::Wrap::Mirror, scene::Wrap::Clamp};
+  for (uint32_t k = 0; k < 3; ++k) {
+    scene::Material m;
+    m.baseColorTexture.texture = 0;
+    m.baseColorTexture.wrapU = wraps[k];
+    m.baseColorTexture.wrapV = wraps[(k + 1) % 3];
+    m.baseColorTexture.transform = {24, 0, 0, 31, -11.3f, -14.7f};
+    s.materials.push_back(m);
+    const float x = float(k) - 1.5f;
+    addQuad(s, k, {x, -1, 0}, {x + 1, -1, 0}, {x + 1, 1, 0}, {x, 1, 0});
+  }
+  scene::Camera camera;
+  camera.position = {0.02f, 0.03f, 3};
+  s.cameras.push_back(camera);
+  PassTest test("gbuffer");
+  test.viewSize(96, 72).scene(s);
+  test.run();
+  Comparison comparison(test, s, true);
+  EXPECT_LT(comparison.run(), 0.02);
+}
+
+// To the precision of the half floats that hold it, also in the dark.
+TEST(GBuffer, CodesOfColoursBecomeLinearLight) {
+  scene::Scene s;
+  scene::Texture codes;
+  codes.width = 256;
+  codes.height = 1;
+  for (uint32_t i = 0; i < 256; ++i)
+    codes.rgba.insert(codes.rgba.end(), {uint8_t(i), uint8_t(255 - i), uint8_t(i / 2), 255});
+  s.textures.push_back(codes);
+  scene::Material m;
+  m.baseColorTexture.texture = 0;
+  s.materials.push_back(m);
+  addQuad(s, 0, {-1, -0.1f, 0}, {1, -0.1f, 0}, {1, 0.1f, 0}, {-1, 0.1f, 0});
+  scene::Camera camera;
+  camera.position = {0, 0, 2};
+  camera.verticalFov = 0.0078f;  // 8 pixels of 1024: the quad fills the width
+  s.cameras.push_back(camera);
+  PassTest test("gbuffer");
+  test.viewSize(1024, 8).scene(s);
+  test.run();
+  const std::vector<float> position = test.floats("gbuffer.position"), albedo = test.floats("gbuffer.albedo");
+  size_t seen = 0;
+  for (size_t i = 0; i < position.size() / 4; ++i) {
+    if (position[4 * i + 3] == 0) continue;
+    ++seen;
+    const glm::vec4 want = scene::reflectance(s, m, {0.5f + 0.5f * position[4 * i], 0.5f});
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(albedo[4 * i + c], want[c], 1e-3f * want[c] + 2e-6f) << "pixel " << i;
+  }
+  EXPECT_GT(seen, 8u * 1000);
+}
+
 }  // namespace
 }  // namespace fovea::test
