@@ -404,6 +404,19 @@ class Timings(CliTest):
         # The passes are inside the frame.
         self.assertLessEqual(sum(p["gpu_ms"]["min"] for p in t["passes"]), t["frame"]["gpu_ms"]["p95"])
 
+    def test_views(self):
+        """The cost of each eye; nothing of the kind where there is one view."""
+        self.succeeds("render", "ir_stereo", "--scene", "cornellbox", "--size", "48x32", "--set", "vpl_count=20",
+                      "--set", "map_size=16", "--timings", "t.json")
+        t = json.loads((self.folder / "t.json").read_text())
+        self.assertEqual(list(t["views"]), ["none", "left", "right"])
+        right = [p for p in t["passes"] if p["name"].startswith("right/")]
+        self.assertEqual(t["views"]["right"]["passes"], len(right))
+        self.assertAlmostEqual(t["views"]["right"]["ms"]["median"], sum(p["gpu_ms"]["median"] for p in right), 1)
+        self.assertEqual(sum(v["passes"] for v in t["views"].values()), len(t["passes"]))
+        self.succeeds(*DIRECT, "--timings", "t.json")
+        self.assertNotIn("views", json.loads((self.folder / "t.json").read_text()))
+
     def test_csv(self):
         self.succeeds(*DIRECT, "--timings", "t.csv", "--frames", "2", "--warmup", "1")
         with open(self.folder / "t.csv", newline="") as file:
