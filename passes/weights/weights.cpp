@@ -38,9 +38,9 @@ class Weights : public Pass {
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
   Kernel tally_, finish_;
   Kernel points_, escapes_, density_, pdf_,
-      constant_;                  // `pdf`; `constant` after it; not all: `importance-area`
-  Kernel paths_, share_;          // `importance-area`
-  Kernel brick_, nearest_, sum_;  // `area`
+      constant_;                         // `pdf`; `constant` after it; not all: `importance-area`
+  Kernel paths_, seen_, share_, discs_;  // `importance-area`
+  Kernel brick_, nearest_, sum_;         // `area`
 };
 
 PassDeclaration Weights::declaration() {
@@ -63,6 +63,10 @@ PassDeclaration Weights::declaration() {
            member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
            member("face", image2D(), Usage::Sampled)},
           "surfaces seen by the eye, from which eye paths start");
+  d.input("placed", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
+          "the VPLs as they were to `atlas`: where they shine from");
+  d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
+          "their shadow maps: for `importance-area` what is seen from where");
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
   addScratch(d);
@@ -74,8 +78,10 @@ PassDeclaration Weights::declaration() {
   d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
               "where the eye paths start: as in pass candidates");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-  d.parameter("points", integer(2048, 64, 4096),
-              "screen points that a density is averaged over (all but `area`); rays go to 64 of them");
+  d.parameter(
+      "points", integer(2048, 64, 4096),
+      "screen points that a density is averaged over (all but `area`); but for `importance-area`, rays "
+      "go to 64 of them");
   d.parameter("area_cap", real(4, 1, 1e6),
               "the most that A_l can be, in medians of 1 / (N p) (all but `area`); also what a VPL stands "
               "for that the region "
@@ -100,12 +106,6 @@ PassDeclaration Weights::declaration() {
               "n.n'), lambda in "
               "squared mean free paths "
               "of the scene");
-  // At 0 a VPL lies inside whatever else its voxel averages and is shadowed by it; far out it sees round what
-  // should shadow it. Mean light of ir_v with one bounce against traced paths in Sponza, 128^3: 0.96 at 0.1
-  // cells, 1.00 at 0.15, 1.08 at 0.2, 1.17 at 0.25, 1.26 at 0.5; in the Cornell box 1.00 to 1.01 whatever it
-  // is.
-  d.parameter("offset", real(0.15, 0, 10, "cells"),
-              "moves a VPL along its normal, out of the surface that its voxel averages");
   d.counter("alive", "slots that hold a VPL");
   d.counter("unseen", "VPLs that no screen point sees (`pdf`)");
   d.counter("capped", "VPLs that are seen and whose area is cut to the cap (`pdf`)");
@@ -134,6 +134,11 @@ void Weights::addScratch(PassDeclaration& d) {
             Usage::StorageWrite | Usage::TexelRead, "position, normal of the VPLs that compete for surface");
   d.scratch("ends", buffer("PathEnd", 32, max(1, parameter("paths") * shared)),
             Usage::StorageWrite | Usage::TexelRead, "where the eye paths end");
+  d.scratch("seen",
+            buffer("uint", 4, max(1, countOf("vpls") * shared * ceilDiv(parameter("points"), 2048) * 64)),
+            Usage::StorageWrite | Usage::TexelRead, "a bit for each screen point that sees a VPL");
+  d.scratch("gains", buffer("float", 4, max(1, countOf("vpls") * shared)), readWrite,
+            "how much more a VPL shines for its disc");
   d.scratch("bricks", buffer("uint", 4, bricks), readWrite | Usage::TexelRead | Usage::TransferWrite,
             "1: holds surface (for `area`: to give away)");
   d.scratch("masks", buffer("uint", 4, max(1, bricks * area * ceilDiv(countOf("vpls"), 32))),
@@ -156,8 +161,16 @@ void Weights::prepare(PrepareContext& ctx) {
                 "pass `weights`: strategy `area` takes at most " + std::to_string(kMostCompeting) +
                     " VPLs, these are " + std::to_string(vplCount_),
                 "set weights.strategy to `pdf`, or use fewer VPLs");
+  const VkExtent3D maps = ctx.extent("atlas");
+  const uint64_t mapCount = uint64_t(maps.width / std::max(maps.height, 1u)) * ctx.layers("atlas");
+  if (mapCount < vplCount_)
+    throw Error(ExitCode::BadInput,
+                "pass `weights`: the atlas holds " + std::to_string(mapCount) + " maps for " +
+                    std::to_string(vplCount_) + " VPLs",
+                "wire the same VPLs to the atlas and to the weights");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
-  finish_ = ctx.compute("weights/finish.comp", {{"SHARED", shared}});
+  const bool discs = shared == "1" && p.text("kernel") == "disc";
+  finish_ = ctx.compute("weights/finish.comp", {{"SHARED", shared}, {"GAINS", discs ? "1" : "0"}});
   if (area) {
     brick_ = ctx.compute("weights/bricks.comp");
     nearest_ = ctx.compute("weights/nearest.comp", {{"LIT_ONLY", lit}});
@@ -165,12 +178,15 @@ void Weights::prepare(PrepareContext& ctx) {
     return;
   }
   points_ = ctx.compute("weights/points.comp");
-  density_ = ctx.compute("weights/density.comp",
-                         {{"ONCE", strategy_ == "constant" ? "1" : "0"}, {"SHARED", shared}});
+  if (shared == "1")
+    seen_ = ctx.compute("weights/seen.comp");
+  else
+    density_ = ctx.compute("weights/density.comp", {{"ONCE", strategy_ == "constant" ? "1" : "0"}});
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
     paths_ = ctx.compute("weights/paths.comp");
     share_ = ctx.compute("weights/share.comp");
+    if (discs) discs_ = ctx.compute("weights/discs.comp");
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");
   }
@@ -190,10 +206,10 @@ void Weights::recordDensities(RecordContext& ctx) {
     ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);
   const bool clamped = shared && p.text("kernel") == "clamp";
   const uint32_t row = std::min(vplCount_, 32768u);
-  ctx.use(density_)
-      .constant("vplCount", vplCount_)
-      .constant("nearest", clamped ? float(p.real("clamp_distance")) : 0.0f)
-      .dispatch(row, (vplCount_ + row - 1) / row);
+  Commands density = ctx.use(shared ? seen_ : density_);
+  density.constant("vplCount", vplCount_);
+  if (shared) density.constant("nearest", clamped ? float(p.real("clamp_distance")) : 0.0f);
+  density.dispatch(row, (vplCount_ + row - 1) / row);
   ctx.barrier();
   if (shared) {
     ctx.use(share_)
@@ -204,6 +220,10 @@ void Weights::recordDensities(RecordContext& ctx) {
   }
   ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatch(1);
   ctx.barrier();
+  if (shared && !clamped) {
+    ctx.use(discs_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
+    ctx.barrier();
+  }
   if (strategy_ != "constant") return;
   ctx.use(constant_).constant("vplCount", vplCount_).dispatch(1);
   ctx.barrier();

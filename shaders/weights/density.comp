@@ -9,7 +9,8 @@
 // Most of the sum comes from the few points that are close, so many points are needed, but not a ray for each: an
 // invocation sums its share without V and traces one ray, to a point drawn in proportion to the terms, the same one as long
 // as nothing moves. Its share times V of that point has the right mean.
-// Defines: ONCE 0/1: not once the total of `constant` is known; SHARED 0/1: lists the VPLs that are seen, for share.comp.
+// V is by the voxels, as it was for the paths that found the VPLs.
+// Define: ONCE 0/1: not once the total of `constant` is known.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "weights/weights.glsl"
@@ -20,11 +21,6 @@ layout(local_size_x = 64) in;
 layout(set = 0) uniform samplerBuffer vpls;
 layout(set = 0) uniform samplerBuffer screen;
 layout(set = 0, std430) writeonly buffer DensitiesBlock { float list[]; } densities;
-
-#if SHARED
-layout(set = 0) uniform samplerBuffer radiance;
-layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: handicap; normal, w: luminance
-#endif
 #if ONCE
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 #endif
@@ -32,10 +28,6 @@ layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
-  float nearest;  // m; above 0: nothing counts as nearer, as for the kernel `clamp`
-#if SHARED
-  uint fadeFrames;
-#endif
 };
 
 shared float sums[64];
@@ -48,7 +40,7 @@ float landing(VoxelGrid grid, uint point, vec3 position, vec3 normal) {
   vec3 to = position - from.xyz;
   float d2 = dot(to, to);
   float cosines = max(dot(texelFetch(screen, int(3u * point + 1u)).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
-  float solid = nearest > 0.0 ? kPi * max(d2, nearest * nearest) : kPi * d2 + grid.cell * grid.cell;
+  float solid = kPi * d2 + grid.cell * grid.cell;
   return from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * solid) : 0.0;
 }
 
@@ -84,13 +76,4 @@ void main() {
   }
   if (lane != 0u || slot >= vplCount) return;
   densities.list[slot] = sums[0] / float(points);
-#if SHARED
-  int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
-  float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
-  // A new VPL is put at a disadvantage, at first of the area that there would be to each, so that it grows from nothing.
-  float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
-  float handicap = sums[0] > 0.0 ? min(young * float(points) / (sums[0] * float(vplCount)), 1e10) : -1.0;
-  sites.list[2u * slot] = vec4(position, handicap);
-  sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
-#endif
 }

@@ -3,8 +3,9 @@
 //
 // The light that the region gets by way of a piece of surface C is the integral of B p over C: what the eye paths that end
 // there find, summed and divided by their number M. A VPL with the flux F sends it F p_l. So F = (sum of B over its n
-// paths) / (M p_l) keeps that light, whatever picked the VPLs; p_l is the only thing that has to be estimated. It is what the region gets from the VPL as that is shaded:
-// with the clamped kernel in it, the light that the clamp takes near a VPL comes back to the region's mean.
+// paths) / (M p_l) keeps that light, whatever picked the VPLs; p_l is the only thing that has to be estimated. It has to be
+// what the region gets from the VPL as that is shaded: with the VPL's own shadow map (seen.comp), with its own disc
+// (discs.comp) or, where that is asked for, with the clamp, whose light comes back to the region's mean.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 

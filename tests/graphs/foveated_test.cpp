@@ -274,10 +274,10 @@ TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
 }
 
 // What management does to the light, for each weight and number of VPLs: printed. `importance-area` has the
-// least bias in the fovea, for it does not care what picked the VPLs; what is left is that voxels are coarse
-// (their densities miss 2 to 4% of the light that the VPLs send, and paths through them find 1% too much, in
-// the Cornell box). A list picked by importance is no sample of the eye paths, as `pdf` takes it to be, and
-// `area` and `constant` give the VPLs hidden sunlit walls.
+// least bias in the fovea, for it does not care what picked the VPLs, and takes them as the picture shows
+// them. What is left is that voxels are coarse: in Sponza the light of those that paths end at is a sixth
+// dimmer than that of the surface there. A list picked by importance is no sample of the eye paths, as `pdf`
+// takes it to be, and `area` and `constant` give the VPLs hidden sunlit walls.
 TEST(Foveated, BiasOfOursByWeight) {
   for (const EnergyScene& e : energyScenes()) {
     const bool large = e.name != "cornellbox";
@@ -309,7 +309,7 @@ TEST(Foveated, BiasOfOursByWeight) {
         EXPECT_LE(worst[weights], 0.05);
       }
     }
-    EXPECT_LE(worst["importance-area"], 0.2) << e.name;
+    EXPECT_LE(worst["importance-area"], large ? 0.35 : 0.05) << e.name;
     EXPECT_LE(worst["importance-area"], std::min({worst["pdf"], worst["area"], worst["constant"]})) << e.name;
   }
 }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
+#include <limits>
 #include <vector>
 
 #include "framework/scene/fovea.h"
@@ -76,7 +78,7 @@ struct WeightSettings {
   uint32_t region = scene::kRegionFovea;
   float foveaRadius = 0.25f;
   uint32_t points = 1024;
-  double areaCap = 4, normalWeight = 0.5, offset = 0;
+  double areaCap = 4, normalWeight = 0.5;
   bool litOnly = true;
   double clamp = 0;  // m; 0: the kernel is `disc`
   glm::vec2 gaze{0.5f};
@@ -107,6 +109,73 @@ inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& se
     points.push_back(room.pixels[size_t(pixel.y) * room.size.x + pixel.x]);
   }
   return points;
+}
+
+// Paraboloid maps of the VPLs, slot after slot, as pass shadow-atlas draws them.
+struct Maps {
+  int size = 4;
+  std::vector<uint32_t> texels;
+};
+
+// Nothing hides anything: for rooms without a block in them.
+inline Maps emptyMaps(size_t vpls) { return {4, std::vector<uint32_t>(16 * vpls, scene::kParaboloidEmpty)}; }
+
+inline Maps tracedMaps(const Room& room, const std::vector<scene::VplState>& vpls, int size = 32) {
+  Maps maps{size, {}};
+  for (const scene::VplState& vpl : vpls) {
+    const glm::mat3 frame = scene::orthonormalFrame(vpl.life > 0 ? vpl.normal : glm::vec3(0, 0, 1));
+    for (int i = 0; i < size * size; ++i) {
+      const glm::vec3 d = scene::paraboloidTexelDirection({i % size, i / size}, size);
+      RayHit hit;
+      if (d.z > 0 && vpl.life > 0)
+        hit = castRay(room.scene, room.geometry, vpl.position, scene::toWorld(frame, d), {.tMin = 1e-3});
+      const float t = hit ? float(hit.t) : std::numeric_limits<float>::infinity();
+      maps.texels.emplace_back();
+      std::memcpy(&maps.texels.back(), &t, sizeof t);
+    }
+  }
+  return maps;
+}
+
+// As pass deferred compares: the map's distance with that of the point's tangent plane along the texel's
+// centre.
+inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl, size_t slot) {
+  const glm::mat3 frame = scene::orthonormalFrame(vpl.normal);
+  const glm::vec3 local = scene::toLocal(frame, s.position - vpl.position),
+                  face = scene::toLocal(frame, s.normal);
+  const float len = glm::length(local);
+  const glm::ivec2 texel = scene::paraboloidTexel(scene::paraboloidProject(local, len), maps.size);
+  float stored;
+  std::memcpy(&stored, &maps.texels[(slot * maps.size + texel.y) * maps.size + texel.x], sizeof stored);
+  const float facing = -glm::dot(face, scene::paraboloidTexelDirection(texel, maps.size));
+  const float plane = facing > 1e-3f ? -glm::dot(face, local) / facing : len;
+  return stored >= std::min(plane, len) - (0.5f * (len + local.z) * (2.0f / float(maps.size)) + 1e-3f);
+}
+
+// What the region gets from each slot per area and radiosity, 1/m^2; areas: of the discs that the VPLs shine
+// with, without them those of a cell.
+inline std::vector<double> seenDensities(const Room& room, const std::vector<scene::VplState>& vpls,
+                                         const std::vector<Seen>& points, const Maps& maps, float clamp = 0,
+                                         const std::vector<double>* areas = nullptr) {
+  const float cell = room.voxels.grid.cell;
+  std::vector<double> result;
+  for (size_t slot = 0; slot < vpls.size(); ++slot) {
+    const scene::VplState& vpl = vpls[slot];
+    const double area = areas ? (*areas)[slot] : double(cell) * cell;
+    double sum = 0;
+    for (const Seen& s : points) {
+      if (!(vpl.life > 0) || !s.there) continue;
+      const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
+      const double d2 = glm::dot(to, to);
+      const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) *
+                             std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
+      if (!(cosines > 1e-12 * d2 && d2 > 1e-12) || !seesVpl(maps, s, vpl, slot)) continue;
+      const double pi = glm::pi<double>();
+      sum += cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
+    }
+    result.push_back(sum / double(points.size()));
+  }
+  return result;
 }
 
 // Whether no side of a voxel along the way blocks: one that faces the ray, in front of the start's tangent
@@ -142,7 +211,7 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
 // p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion
 // to the terms.
 inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
-                                     const std::vector<Seen>& points, float clamp = 0) {
+                                     const std::vector<Seen>& points) {
   const scene::Voxels voxels = room.view();
   const float cell = voxels.grid.cell;
   std::vector<double> result;
@@ -154,8 +223,7 @@ inline std::vector<double> densities(const Room& room, const std::vector<scene::
       const float cosines =
           std::max(glm::dot(s.normal, to), 0.0f) * std::max(-glm::dot(vpl.normal, to), 0.0f);
       const bool counts = vpl.life > 0 && s.there && cosines > 1e-12f * d2 && d2 > 1e-12f;
-      const float solid =
-          clamp > 0 ? glm::pi<float>() * std::max(d2, clamp * clamp) : glm::pi<float>() * d2 + cell * cell;
+      const float solid = glm::pi<float>() * d2 + cell * cell;
       return counts ? cosines / (d2 * solid) : 0.0f;
     };
     double total = 0;
@@ -194,16 +262,20 @@ inline double escaping(const Room& room, const std::vector<Seen>& points) {
 }
 
 // escaping: attempts for each that finds a surface.
+inline double leastDensity(const std::vector<double>& p, double areaCap) {
+  std::vector<double> seen;
+  for (const double x : p)
+    if (x > 0) seen.push_back(x);
+  std::sort(seen.begin(), seen.end());
+  return seen.empty() ? 0 : seen[(seen.size() + 1) / 2 - 1] / areaCap;
+}
+
 inline std::vector<double> pdfAreas(const std::vector<scene::VplState>& vpls, const std::vector<double>& p,
                                     double areaCap, double escaping) {
-  std::vector<double> seen, areas;
+  std::vector<double> areas;
   double alive = 0;
-  for (size_t i = 0; i < vpls.size(); ++i) {
-    if (p[i] > 0) seen.push_back(p[i]);
-    alive += vpls[i].life > 0;
-  }
-  std::sort(seen.begin(), seen.end());
-  const double least = seen.empty() ? 0 : seen[(seen.size() + 1) / 2 - 1] / areaCap;
+  for (const scene::VplState& vpl : vpls) alive += vpl.life > 0;
+  const double least = leastDensity(p, areaCap);
   for (size_t i = 0; i < vpls.size(); ++i)
     areas.push_back(vpls[i].life > 0 && least > 0 ? 1 / (alive * escaping * std::max(p[i], least)) : 0);
   return areas;
@@ -250,14 +322,16 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
 
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
 // VPL of its kind, by trying every one. `light`: mean direct light of the paths in units of the VPL's own.
-// doubtful: paths that two VPLs are equally near to.
+// gain: p by the disc of a cell over p by that of the VPL's own area. doubtful: paths that two VPLs are
+// equally near to.
 struct SharedAreas {
-  std::vector<double> area, light;
+  std::vector<double> area, light, gain;
   int doubtful = 0;
 };
 inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplState>& vpls,
                                const std::vector<glm::vec4>& radiance, const std::vector<Seen>& points,
-                               const std::vector<double>& p, uint32_t paths, const WeightSettings& settings) {
+                               const std::vector<double>& p, const Maps& maps, uint32_t paths,
+                               const WeightSettings& settings) {
   SharedAreas result;
   std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0);
   const double lambda = normalLambda(room, settings.normalWeight);
@@ -296,12 +370,16 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
     light[owner] += own > 0 ? std::min(radiance[s].w / own, 16.0) : 1;
   }
   result.area = pdfAreas(vpls, p, settings.areaCap, double(paths) / std::max(found, 1u));
-  double alive = 0;
-  for (const scene::VplState& vpl : vpls) alive += vpl.life > 0;
+  const double least = leastDensity(p, settings.areaCap);
   for (size_t i = 0; i < vpls.size(); ++i) {
-    if (p[i] > 0) result.area[i] *= count[i] * alive / std::max(found, 1u);  // n / (M p)
+    if (p[i] > 0) result.area[i] = count[i] / (paths * std::max(p[i], least));
     result.light.push_back(count[i] > 0 ? light[i] / count[i] : 1);
   }
+  const auto own = seenDensities(room, vpls, points, maps, float(settings.clamp), &result.area);
+  for (size_t i = 0; i < vpls.size(); ++i)
+    result.gain.push_back(p[i] > 0 && own[i] > 0 && result.area[i] > 0 && !(settings.clamp > 0)
+                              ? std::min(p[i] / own[i], settings.areaCap)
+                              : 1);
   return result;
 }
 
