@@ -45,7 +45,7 @@ layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
 layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
 #if EDGES
-layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups of EDGES x 1 x 1; 1 + pixels listed
+layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
 layout(set = 0, binding = 14) uniform usamplerBuffer edgePixels;  // x | y << 16
 #else
 layout(set = 0, binding = 13, std430) buffer Edges { uint x, y, z, end; } edges;
