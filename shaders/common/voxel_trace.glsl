@@ -96,32 +96,40 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   ivec3 cell = clamp(ivec3(floor(p + t * direction)), ivec3(0), ivec3(grid.resolution - 1));
   ivec3 stride = ivec3(sign(direction)) * ivec3(moves);
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
-  for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
-    uint voxel = imageLoad(voxelsIndex, cell).r;
+  uint voxel = imageLoad(voxelsIndex, cell).r;
+  bool inside = true;
+  for (int turn = 0; inside;) {
+    // Through what is empty in a loop of its own: a CPU device runs whatever a loop holds for all rays of a group in
+    // every turn, and most cells are empty.
+    for (; voxel == 0u && inside; ++turn) {
+      vec3 walls = (vec3(cell) + ahead - p) * inverse + never;
+      t = min(min(walls.x, walls.y), walls.z);
+      bool throughX = walls.x == t, throughY = !throughX && walls.y == t;
+      cell.x += throughX ? stride.x : 0;
+      cell.y += throughY ? stride.y : 0;
+      cell.z += throughX || throughY ? 0 : stride.z;
+      inside = turn < 3 * grid.resolution + 3 && t * grid.cell <= far &&
+               all(lessThan(uvec3(cell), uvec3(grid.resolution)));
+      voxel = imageLoad(voxelsIndex, inside ? cell : ivec3(0)).r;
+    }
+    if (!inside) break;
     vec3 walls = (vec3(cell) + ahead - p) * inverse + never;
     float next = min(min(walls.x, walls.y), walls.z);
-    if (voxel != 0u) {
-      uint side = 2u * (voxel - 1u);
-      float facing0, facing1, distance0, distance1;
-      uint met0 = meetsSide(grid, side, origin, direction, normal, next * grid.cell, facing0, distance0);
-      uint met1 = meetsSide(grid, side + 1u, origin, direction, normal, next * grid.cell, facing1, distance1);
-      uint met = max(met0, met1);
-      if (met != kNotMet) {
-        bool second = met1 > met0 || (met1 == met0 && facing1 < facing0);
-        VoxelHit hit = VoxelHit(second ? side + 1u : side,
-                                clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
-        if (met == kMet) return hit;
-        passed = hit;
-      }
+    uint side = 2u * (voxel - 1u);
+    float facing0, facing1, distance0, distance1;
+    uint met0 = meetsSide(grid, side, origin, direction, normal, next * grid.cell, facing0, distance0);
+    uint met1 = meetsSide(grid, side + 1u, origin, direction, normal, next * grid.cell, facing1, distance1);
+    uint met = max(met0, met1);
+    if (met != kNotMet) {
+      bool second = met1 > met0 || (met1 == met0 && facing1 < facing0);
+      VoxelHit hit = VoxelHit(second ? side + 1u : side,
+                              clamp(second ? distance1 : distance0, t * grid.cell, max(t, next) * grid.cell));
+      if (met == kMet) return hit;
+      passed = hit;
     }
-    bool throughX = walls.x == next, throughY = !throughX && walls.y == next;
-    cell.x += throughX ? stride.x : 0;
-    cell.y += throughY ? stride.y : 0;
-    cell.z += throughX || throughY ? 0 : stride.z;
-    t = next;
-    if (t * grid.cell > far) return miss;
-    if (any(greaterThanEqual(uvec3(cell), uvec3(grid.resolution)))) break;
+    voxel = 0u;  // on to the next cell
   }
+  if (t * grid.cell > far) return miss;
   return passed;
 }
 
