@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/small_vector.h"
 #include "framework/graph/declaration.h"
 
 namespace fovea::graph {
@@ -56,7 +57,7 @@ struct BoundPass {
   const PassDeclaration* declaration = nullptr;
   Parameters parameters;
   uint32_t view = 0;            // index into BoundGraph::views
-  std::vector<Access> accesses;  // declaration order
+  SmallVector<Access, 2> accesses;  // declaration order
 };
 
 struct BoundOutput {
@@ -86,13 +87,13 @@ struct ImageBarrier {
 struct BarrierBatch {
   VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  std::vector<ImageBarrier> images;
+  SmallVector<ImageBarrier, 1> images;
   bool empty() const { return srcStage == 0 && dstStage == 0 && images.empty(); }
 };
 
 struct Level {
   BarrierBatch before;
-  std::vector<uint32_t> passes;  // indices into BoundGraph::passes; no hazards among them
+  SmallVector<uint32_t, 2> passes;  // indices into BoundGraph::passes; no hazards among them
 };
 
 // Where a transient resource lives in the heap.

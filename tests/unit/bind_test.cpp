@@ -70,7 +70,7 @@ TEST(Bind, OnePortNeedsNoNameAndMembersAreReached) {
   EXPECT_EQ(c.graph->passes[c.pass("f")].accesses[0].resource, normal);
   EXPECT_EQ(c.graph->passes[c.pass("g")].accesses[0].resource, normal);
   // A reader of a bundle touches only the members it names.
-  const std::vector<Access>& shade = c.graph->passes[c.pass("s")].accesses;
+  const auto& shade = c.graph->passes[c.pass("s")].accesses;
   ASSERT_EQ(shade.size(), 3u);  // two members and its output; the optional lights are open
   EXPECT_EQ(shade[0].resource, c.resource("d.gbuffer.position"));
   EXPECT_EQ(shade[1].resource, c.resource("d.gbuffer.depth"));

@@ -202,7 +202,7 @@ TEST(Checker, PassesInTheWrongOrder) {
     std::swap(broken.levels[l].passes, broken.levels[l + 1].passes);
     EXPECT_THAT(checkPlan(broken), Not(IsEmpty())) << l;
     broken = c.plan;  // both in one level
-    std::vector<uint32_t>& into = broken.levels[l].passes;
+    auto& into = broken.levels[l].passes;
     into.insert(into.end(), broken.levels[l + 1].passes.begin(), broken.levels[l + 1].passes.end());
     broken.levels[l + 1].passes.clear();
     EXPECT_THAT(checkPlan(broken), Not(IsEmpty())) << l;
@@ -265,7 +265,7 @@ TEST(Checker, MutationsOfRandomPlans) {
     for (size_t l = 0; l < plan.levels.size(); ++l) {
       for (size_t i = 0; i < plan.levels[l].before.images.size(); ++i) {
         Plan broken = plan;
-        std::vector<ImageBarrier>& list = broken.levels[l].before.images;
+        auto& list = broken.levels[l].before.images;
         list.erase(list.begin() + static_cast<ptrdiff_t>(i));
         ++images;
         imagesFound += !checkPlan(broken).empty();
