@@ -9,6 +9,7 @@
 
 #include "framework/scene/animation.h"
 #include "framework/scene/deform.h"
+#include "framework/scene/movers.h"
 
 namespace fovea::scene {
 namespace {
@@ -394,11 +395,9 @@ Bounds movingBounds(const Geometry& geometry, const Frame& frame) {
     const Object& object = geometry.objects[i];
     if (!object.dynamic || object.vertexCount == 0) continue;
     const ObjectTransform& o = frame.objects[i];
-    for (int c = 0; c < 8; ++c) {
-      const glm::vec3 corner(c & 1 ? object.high.x : object.low.x, c & 2 ? object.high.y : object.low.y,
-                             c & 4 ? object.high.z : object.low.z);
-      all.include(!o.visible ? glm::vec3(o.toWorld[3]) : object.deforms ? corner : o.fromObject(corner));
-    }
+    const Bounds box = boundsOf(object, o);
+    all.include(o.visible ? box.low : glm::vec3(o.toWorld[3]));
+    all.include(o.visible ? box.high : glm::vec3(o.toWorld[3]));
   }
   return all;
 }

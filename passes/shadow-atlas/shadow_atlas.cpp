@@ -18,6 +18,7 @@
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/motion.h"
+#include "framework/scene/movers.h"
 #include "framework/scene/paraboloid.h"
 #include "framework/scene/simplify.h"
 #include "framework/scene/vpl.h"
@@ -34,6 +35,8 @@ constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, ma
 constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
 constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
 constexpr uint32_t kGroupsPerRow = 4096;         // likewise
+constexpr uint32_t kMovers = 4;  // spheres around what may have changed a map (unchanged.comp)
+constexpr uint32_t kDrawnBytes = 32 + 16 * kMovers;  // DrawnMap, likewise
 constexpr uint32_t kSliceTexels =
     1 << 18;  // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
 
@@ -59,7 +62,7 @@ class ShadowAtlas : public Pass {
   void chooseSlots(RecordContext& ctx);
   void recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range);
 
-  Kernel choose_, clear_, setup_;
+  Kernel choose_, unchanged_, clear_, setup_;
   bool hasState_ = false;
   Kernels exact_, simplified_;
   bool simplify_ = false, uploaded_ = false;
@@ -91,6 +94,9 @@ PassDeclaration ShadowAtlas::declaration() {
       .keep(Lifetime::View);
   d.scratch("chosen", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
             "what happens to each slot in this frame");
+  d.scratch("drawn", buffer("DrawnMap", kDrawnBytes, countOf("vpls")),
+            Usage::StorageRead | Usage::StorageWrite, "what each map was drawn with")
+      .keep(Lifetime::View);
   d.scratch("batch", buffer("VplView", kViewBytes, batches * kBatch), Usage::StorageWrite | Usage::Uniform,
             "VPLs whose maps are drawn, packed");
   d.scratch("steps", buffer("AtlasStep", kStepBytes, batches * (ceilDiv(triangles, kRangeTriangles) + 2)),
@@ -119,8 +125,10 @@ PassDeclaration ShadowAtlas::declaration() {
       "refresh", choice("top", {"all", "top", "split"}),
       "maps of kept VPLs that are drawn again (needs `state`): all; the most important ones; or half of "
       "the same number for those and half for the longest unchanged, first where something moves");
-  d.parameter("refresh_share", real(0.05, 0, 1),
-              "how many of the kept VPLs' maps `top` and `split` draw again");
+  d.parameter(
+      "refresh_share", real(0.05, 0, 1),
+      "how many of the kept VPLs' maps `top` and `split` draw again; those among them that would not change "
+      "are left as they are");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
@@ -128,6 +136,7 @@ PassDeclaration ShadowAtlas::declaration() {
   d.counter("new_maps", "maps drawn because there was none of that VPL");
   d.counter("refreshed_maps", "maps drawn again");
   d.counter("texels", "texels of the maps drawn");
+  d.counter("unchanged_maps", "maps that were due, but see nothing else than when they were drawn");
   return d;
 }
 
@@ -154,6 +163,9 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   choose["HAS_STATE"] = hasState_ ? "1" : "0";
   choose["REFRESH_SPLIT"] = refresh == "split" ? "1" : "0";
   choose_ = ctx.compute("shadow-atlas/choose.comp", choose);
+  if (hasState_)
+    unchanged_ = ctx.compute("shadow-atlas/unchanged.comp",
+                             {{"BATCH", std::to_string(kBatch) + "u"}, {"MOVERS", std::to_string(kMovers)}});
   clear_ = ctx.compute("shadow-atlas/clear.comp", batch);
   setup_ = ctx.compute("shadow-atlas/setup.comp", batch);
   exact_ = makeKernels(ctx, false);
@@ -241,9 +253,15 @@ void ShadowAtlas::chooseSlots(RecordContext& ctx) {
   if (hasState_) choose.constant("movers", moversOf(ctx.frame()));
   choose.dispatch(1);
   ctx.barrier();
-  ctx.use(clear_)
-      .constant("slots", slots)
-      .dispatch(std::min(slots, kGroupsPerRow), (slots + kGroupsPerRow - 1) / kGroupsPerRow);
+  const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
+  if (hasState_) {
+    ctx.use(unchanged_)
+        .constant("slots", slots)
+        .constant("movers", scene::moverSpheres<kMovers>(ctx.frame()))
+        .dispatch(columns, rows);
+    ctx.barrier();
+  }
+  ctx.use(clear_).constant("slots", slots).dispatch(columns, rows);
 }
 
 void ShadowAtlas::record(RecordContext& ctx) {

@@ -17,8 +17,8 @@ class WeightMap : public Pass {
     PassDeclaration d("weight-map", "foveated weight of every voxel side that the eye sees");
     d.view();
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-             member("face", image2D(), Usage::Sampled)},
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),

@@ -9,13 +9,14 @@
 #include "common/voxel_trace.glsl"
 
 // An invocation looks at a block of pixels, row by row and back: neighbours mostly show the same side, so a run of them
-// costs one look-up of the side and one atomic.
+// costs one look-up of the side and one atomic. A run is a loop of its own: a CPU device runs all that a loop holds in
+// every turn.
 const int kBlock = 4;
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0) uniform texture2D gbufferPosition;
-layout(set = 0) uniform texture2D gbufferFace;
+layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
+layout(set = 0, rg16_snorm) uniform readonly image2D gbufferFace;
 layout(set = 0, std430) buffer Weights { uint weights[]; };    // bits of floats, none negative: they order alike
 layout(set = 0, std430) buffer Counters { uint counters[]; };  // visible, unassigned
 
@@ -44,42 +45,51 @@ uint give(uint side, float weight) {
   return atomicMax(weights[side], floatBitsToUint(weight)) == 0u ? 1u : 0u;
 }
 
+struct Seen {
+  ivec2 pixel;
+  bool surface;  // and not the background, nor outside the image
+  ivec3 cell;
+  uint facing;
+};
+
+Seen seenAt(VoxelGrid grid, ivec2 first, int i, ivec2 size) {
+  Seen seen;
+  int row = i / kBlock, column = i % kBlock;
+  seen.pixel = first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row);
+  vec4 position = imageLoad(gbufferPosition, min(seen.pixel, size - 1));
+  seen.surface = i < kBlock * kBlock && all(lessThan(seen.pixel, size)) && position.w > 0.0;
+  seen.cell = ivec3(floor(worldToVoxel(grid, position.xyz)));
+  seen.facing = voxelSideOf(octDecode(imageLoad(gbufferFace, min(seen.pixel, size - 1)).xy));
+  return seen;
+}
+
 void main() {
-  ivec2 size = textureSize(gbufferPosition, 0);
+  ivec2 size = imageSize(gbufferPosition);
   ivec2 first = ivec2(gl_GlobalInvocationID.xy) * kBlock;
   VoxelGrid grid = voxelsGrid();
 #if !WHOLE_IMAGE
   Fovea fovea = makeFovea(view.gaze.xy, vec2(size), foveaRadius);
 #endif
-  ivec3 cell = ivec3(-1);
-  uint exact = 0u, side = kNoSide, visible = 0u, unassigned = 0u;
-  float weight = 0.0;
-  for (int i = 0; i < kBlock * kBlock; ++i) {
-    int row = i / kBlock, column = i % kBlock;
-    ivec2 p = first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row);
-    if (any(greaterThanEqual(p, size))) continue;
-    vec4 position = texelFetch(gbufferPosition, p, 0);
-    if (position.w <= 0.0) continue;  // background
-    uint facing = voxelSideOf(octDecode(texelFetch(gbufferFace, p, 0).xy));
-    ivec3 at = ivec3(floor(worldToVoxel(grid, position.xyz)));
-    if (at != cell || facing != exact || side == kNoSide) {
-      uint next = seenSide(grid, at, facing);
-      if (next != side) {
-        visible += give(side, weight);
-        side = next;
-        weight = 0.0;
-      }
-      cell = at;
-      exact = facing;
-    }
-    if (side == kNoSide) ++unassigned;
+  uint visible = 0u, unassigned = 0u;
+  Seen next = seenAt(grid, first, 0, size);
+  int i = 0;
+  do {
+    Seen run = next;
+    float weight = 0.0;
+    uint pixels = 0u;
+    do {
 #if WHOLE_IMAGE
-    weight = 1.0;
+      weight = 1.0;
 #else
-    weight = max(weight, foveaWeight(fovea, vec2(p) + 0.5));
+      weight = max(weight, foveaWeight(fovea, vec2(next.pixel) + 0.5));
 #endif
-  }
-  visible += give(side, weight);
+      ++pixels;
+      next = seenAt(grid, first, ++i, size);
+    } while (next.surface == run.surface && next.cell == run.cell && next.facing == run.facing && i < kBlock * kBlock);
+    uint side = run.surface ? seenSide(grid, run.cell, run.facing) : kNoSide;
+    visible += give(side, weight);
+    unassigned += run.surface && side == kNoSide ? pixels : 0u;
+  } while (i < kBlock * kBlock);
   visible = subgroupAdd(visible);
   unassigned = subgroupAdd(unassigned);
   if (subgroupElect()) {

@@ -551,9 +551,66 @@ TEST(ShadowAtlas, WholeBudgetDrawsAllMaps) {
     PassTest test("shadow-atlas");
     test.scene(s).param("size", 8).param("refresh", policy).param("refresh_share", 1.0);
     test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
-    test.run(3);
+    test.run();
     EXPECT_EQ(test.counter("maps"), 40) << policy;
+    test.run(2);  // nothing moves
+    const bool all = std::string(policy) == "all";
+    EXPECT_EQ(test.counter("maps"), all ? 40 : 0) << policy;
+    EXPECT_EQ(test.counter("unchanged_maps"), all ? 0 : 40) << policy;
   }
+}
+
+// A mover flies along behind a wall and out of its shadow; maps that it cannot have changed are not drawn,
+// and the atlas holds the same bits as one of which every map is drawn in every frame.
+TEST(ShadowAtlas, MapsThatWouldNotChangeAreLeft) {
+  Scene s = emptyScene();
+  addBox(s, 0, {-9, -1, -9}, {9, 9, 9});
+  addBox(s, 0, {-1, -1, -0.1f}, {1.5f, 3, 0.1f});  // the wall
+  scene::Node root;
+  root.dynamic = true;
+  s.nodes.push_back(root);
+  const size_t mover = s.nodes.size() - 1;
+  addBox(s, 0, {-0.5f, 0.5f, 1.5f}, {0.5f, 1.5f, 2.5f});
+  for (size_t i = mover + 1; i < s.nodes.size(); ++i) s.nodes[i].parent = uint32_t(mover);
+  s.movers = {{uint32_t(mover), true, scene::Repeat::Once, {{0, glm::vec3(0)}, {0.2, {6, 0, 0}}}}};
+  constexpr uint32_t kSlots = 60, kFrames = 16;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> in(-1, 1);
+  std::vector<Vpl> vpls;
+  std::vector<scene::VplState> state;
+  for (uint32_t i = 0; i < kSlots; ++i) {
+    vpls.push_back(
+        vpl({2 * in(random), 1 + in(random), -2 + in(random)}, {in(random), in(random), in(random)}));
+    state.push_back(stateOf(vpls[i], 5, 0.5f));
+  }
+  PassTest kept("shadow-atlas"), whole("shadow-atlas");
+  kept.scene(s).param("size", 16).param("refresh", "top").param("refresh_share", 1.0);
+  kept.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+  whole.scene(s).param("size", 16).param("refresh", "all").buffer("vpls", vpls, "Vpl");
+  double unchanged = 0, moved = 0;
+  std::vector<float> before;
+  for (uint32_t frame = 0; frame < kFrames; ++frame) {
+    if (frame == 5) {  // a VPL that moves needs a map
+      vpls[7].position.x += 0.1f;
+      kept.set("vpls", vpls);
+      whole.set("vpls", vpls);
+    }
+    kept.run();
+    whole.run();
+    const std::vector<float> now = whole.values<float>("atlas");
+    ASSERT_EQ(kept.values<float>("atlas"), now) << "frame " << frame;
+    EXPECT_EQ(kept.counter("maps") + kept.counter("unchanged_maps"), kSlots);
+    if (frame > 0) {
+      unchanged += kept.counter("unchanged_maps");
+      for (uint32_t i = 0; i < kSlots; ++i)
+        moved += !std::equal(now.begin() + 256 * i, now.begin() + 256 * (i + 1), before.begin() + 256 * i);
+    }
+    before = now;
+  }
+  const double all = kSlots * (kFrames - 1);
+  std::printf("of %.0f maps %.0f change, %.0f are known not to\n", all, moved, unchanged);
+  EXPECT_GT(moved, 0.1 * all);
+  EXPECT_GT(unchanged, 0.5 * (all - moved));
 }
 
 }  // namespace

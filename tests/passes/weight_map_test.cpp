@@ -53,18 +53,18 @@ struct Picture {
     return list;
   }
   void wire(PassTest& test) const {
-    std::vector<float> face;
+    std::vector<uint32_t> face;
     for (const Pixel& p : pixels) {
       const glm::vec3 n = p.face / (std::abs(p.face.x) + std::abs(p.face.y) + std::abs(p.face.z));
       const glm::vec2 folded =
           (1.0f - glm::abs(glm::vec2(n.y, n.x))) * glm::vec2(n.x < 0 ? -1 : 1, n.y < 0 ? -1 : 1);
       const glm::vec2 oct = n.z >= 0 ? glm::vec2(n) : folded;
-      face.insert(face.end(), {oct.x, oct.y});
+      face.push_back(glm::packSnorm2x16(oct));
     }
     test.viewSize(uint32_t(width), uint32_t(height));
     test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, uint32_t(width), uint32_t(height), 1,
                positions());
-    test.image("gbuffer.face", VK_FORMAT_R32G32_SFLOAT, uint32_t(width), uint32_t(height), 1, face);
+    test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, uint32_t(width), uint32_t(height), 1, face);
   }
 };
 

@@ -1,0 +1,97 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One work group a slot: a map that is due to be drawn again is left as it is where drawing would give the same bits. The
+// VPL has not moved since, and neither what might have been seen of the movers then nor what is there of them now lies
+// before what the map holds. Define: MOVERS.
+#include "common/paraboloid.glsl"
+#include "common/vpl.glsl"
+#include "shadow-atlas/step.glsl"
+
+layout(local_size_x = 64) in;
+
+struct DrawnMap {
+  vec4 position, normal;
+  vec4 movers[MOVERS];
+};
+
+layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(set = 0, std430) buffer ChosenBlock { uint list[]; } chosen;
+layout(set = 0, std430) buffer DrawnBlock { DrawnMap maps[]; } drawn;
+layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked, fresh, refreshes, texels, unchanged; } counters;
+layout(set = 0, r32ui) uniform readonly uimage2DArray atlas;
+
+layout(push_constant) uniform Constants {
+  vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects; below 0: unused
+  uint slots;
+};
+
+shared uint found;
+
+// Marks `found` where a surface within the sphere might be seen in the map. To be called by the whole group.
+void look(uint slot, Vpl v, vec4 sphere) {
+  if (sphere.w < 0.0) return;
+  vec3 to = sphere.xyz - v.positionArea.xyz;
+  float away = length(to);
+  float reach = sphere.w + 1e-4 * (away + sphere.w);  // rounding
+  if (dot(to, v.normal.xyz) < -reach) return;         // behind the VPL
+  AtlasLayout layout_ = atlasLayout(imageSize(atlas));
+  vec2 low = vec2(0.0), high = vec2(layout_.size - 1);
+  if (away > reach) {
+    // The image of the cone around a sphere is a circle: its nearest and farthest point lie on the line through the
+    // centre of the map. Past 150 degrees from the normal it may be anything.
+    vec3 local = toLocal(orthonormalFrame(v.normal.xyz), to) / away;
+    float angle = acos(clamp(local.z, -1.0, 1.0)), half_ = asin(reach / away);
+    if (angle + half_ < 2.6) {
+      float inner = tan(0.5 * (angle - half_)), outer = tan(0.5 * (angle + half_)), along = length(local.xy);
+      vec2 direction = along > 0.0 ? local.xy / along : vec2(1.0, 0.0);
+      vec2 centre = 0.5 * (inner + outer) * direction;
+      float radius = 0.5 * (outer - inner), texel = 2.0 / float(layout_.size);
+      low = max(low, floor((centre - radius + 1.0) / texel - 1.5));
+      high = min(high, ceil((centre + radius + 1.0) / texel + 0.5));
+    }
+  }
+  ivec2 first = ivec2(low), last = ivec2(high);
+  ivec3 corner = atlasTexel(slot, ivec2(0), layout_);
+  float nearest = away - reach;
+  bool seen = nearest <= 0.0;
+  for (int y = first.y + int(gl_LocalInvocationIndex) / 8; y <= last.y; y += 8)
+    for (int x = first.x + int(gl_LocalInvocationIndex) % 8; x <= last.x; x += 8) {
+      vec2 p = paraboloidTexelCentre(ivec2(x, y), layout_.size);
+      float distance_ = uintBitsToFloat(imageLoad(atlas, corner + ivec3(x, y, 0)).r);
+      seen = seen || dot(p, p) < 1.0 && distance_ >= nearest;
+    }
+  if (seen) atomicOr(found, 1u);
+}
+
+void main() {
+  uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * kGroupsPerRow;
+  if (slot >= slots) return;
+  uint choice = chosen.list[slot];
+  if (choice != kSlotNew && choice != kSlotRefreshed) return;
+  Vpl v = vpls.list[slot];
+  if (gl_LocalInvocationIndex == 0u) found = 0u;
+  barrier();
+  if (choice == kSlotRefreshed && drawn.maps[slot].position.xyz == v.positionArea.xyz &&
+      drawn.maps[slot].normal.xyz == v.normal.xyz) {
+    for (int i = 0; i < MOVERS; ++i) {
+      look(slot, v, movers[i]);
+      look(slot, v, drawn.maps[slot].movers[i]);
+    }
+  } else if (gl_LocalInvocationIndex == 0u) {
+    found = 1u;
+  }
+  barrier();
+  if (gl_LocalInvocationIndex != 0u) return;
+  if (found != 0u) {
+    drawn.maps[slot].position = vec4(v.positionArea.xyz, 0.0);
+    drawn.maps[slot].normal = vec4(v.normal.xyz, 0.0);
+    for (int i = 0; i < MOVERS; ++i) drawn.maps[slot].movers[i] = movers[i];
+  } else {
+    uint size = uint(atlasLayout(imageSize(atlas)).size);
+    chosen.list[slot] = kSlotKept;
+    atomicAdd(counters.maps, ~0u);
+    atomicAdd(counters.refreshes, ~0u);
+    atomicAdd(counters.texels, -(size * size));
+    atomicAdd(counters.unchanged, 1u);
+  }
+}
