@@ -91,8 +91,8 @@ SizeExpr widthOf(std::string port);
 SizeExpr heightOf(std::string port);
 SizeExpr layersOf(std::string port);
 SizeExpr countOf(std::string port);
-// A number about the scene, from Environment::quantities: "scene.triangles", "scene.vertices", "scene.shadow_layers",
-// "scene.lights". At least 1.
+// A number about the scene, from Environment::quantities: "scene.triangles", "scene.static_triangles", "scene.vertices",
+// "scene.shadow_layers", "scene.lights". At least 1.
 SizeExpr environment(std::string name);
 
 // ---- Resources -------------------------------------------------------------------------------------------------

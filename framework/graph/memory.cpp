@@ -170,6 +170,7 @@ Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scen
     environment.quantities.emplace_back(name, std::max<int64_t>(1, value));
   };
   add("scene.triangles", static_cast<int64_t>(geometry.triangles.size()));
+  add("scene.static_triangles", static_cast<int64_t>(geometry.staticTriangles));
   add("scene.vertices", static_cast<int64_t>(geometry.positions.size()));
   add("scene.lights", static_cast<int64_t>(scene.lights.size()));
   add("scene.shadow_layers", shadowLayers);

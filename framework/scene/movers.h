@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "framework/base/random.h"
 #include "framework/scene/motion.h"
 
 namespace fovea::scene {
@@ -38,10 +40,30 @@ inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
   return box;
 }
 
-// Spheres in which all visible dynamic objects lie: xyz centre, w radius, below 0: unused. An object has one
-// of its own while there are enough; the others share the last.
+// Spheres in which all visible dynamic objects lie. An object has one of its own while there are enough; the
+// others share the last.
 template <size_t kCount>
-std::array<glm::vec4, kCount> moverSpheres(const Frame& frame) {
+struct MoverSpheres {
+  std::array<glm::vec4, kCount> spheres;  // xyz centre, w radius, below 0: unused
+  std::array<uint32_t, kCount> poses{};   // the same number as long as what lies in the sphere keeps its pose
+};
+
+// A hash of where all points of an object are.
+inline uint32_t poseHash(const Object& object, size_t index, const Frame& frame) {
+  uint32_t hash = uint32_t(index) + 1;
+  auto add = [&](const float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i) hash = hashCombine(std::bit_cast<uint32_t>(values[i]), hash);
+  };
+  add(&frame.objects[index].toWorld[0][0], 16);
+  if (!object.deforms) return hash;
+  for (const glm::mat4& joint : frame.joints) add(&joint[0][0], 16);
+  add(frame.weights.data(), frame.weights.size());
+  return hash;
+}
+
+template <size_t kCount>
+MoverSpheres<kCount> moverSpheres(const Frame& frame) {
+  MoverSpheres<kCount> movers;
   std::array<Bounds, kCount> boxes;
   const Geometry& geometry = *frame.geometry;
   size_t used = 0;
@@ -49,16 +71,16 @@ std::array<glm::vec4, kCount> moverSpheres(const Frame& frame) {
     const Object& object = geometry.objects[i];
     if (!object.dynamic || object.vertexCount == 0 || !frame.objects[i].visible) continue;
     const Bounds box = boundsOf(object, frame.objects[i]);
-    Bounds& into = boxes[std::min(used++, kCount - 1)];
-    into.include(box.low);
-    into.include(box.high);
+    const size_t into = std::min(used++, kCount - 1);
+    boxes[into].include(box.low);
+    boxes[into].include(box.high);
+    movers.poses[into] = hashCombine(movers.poses[into], poseHash(object, i, frame));
   }
-  std::array<glm::vec4, kCount> spheres;
   for (size_t i = 0; i < kCount; ++i)
-    spheres[i] = i >= used ? glm::vec4(0, 0, 0, -1)
-                           : glm::vec4(0.5f * (boxes[i].low + boxes[i].high),
-                                       0.5f * glm::length(boxes[i].high - boxes[i].low));
-  return spheres;
+    movers.spheres[i] = i >= used ? glm::vec4(0, 0, 0, -1)
+                                  : glm::vec4(0.5f * (boxes[i].low + boxes[i].high),
+                                              0.5f * glm::length(boxes[i].high - boxes[i].low));
+  return movers;
 }
 
 }  // namespace fovea::scene

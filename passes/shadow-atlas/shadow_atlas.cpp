@@ -5,6 +5,9 @@
 // rasterising straight edges between projected vertices is not (edges are arcs), and keep the smallest
 // distance with an integer atomic, whose result no order can change.
 //
+// Where a VPL stands still and something moves in front of it, the map of what never moves can be kept
+// (parameter `static_maps`): it is copied and only what moves is drawn over it.
+//
 // The technique `simplified` runs the same rasteriser over a coarser mesh: the hardware rasteriser would be
 // bound by its front end (one layer of the image a VPL, the whole mesh each) and would bend the edges of just
 // the triangles that simplification makes large.
@@ -35,8 +38,8 @@ constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, ma
 constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
 constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
 constexpr uint32_t kGroupsPerRow = 4096;         // likewise
-constexpr uint32_t kMovers = 4;  // spheres around what may have changed a map (unchanged.comp)
-constexpr uint32_t kDrawnBytes = 32 + 16 * kMovers;  // DrawnMap, likewise
+constexpr uint32_t kMovers = 4;                  // spheres around what may have changed a map (changed.comp)
+constexpr uint32_t kDrawnBytes = 32 + 20 * kMovers;  // DrawnMap, likewise
 constexpr uint32_t kSliceTexels =
     1 << 18;  // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
 
@@ -56,16 +59,20 @@ class ShadowAtlas : public Pass {
     uint32_t first, count;
     float planeEpsilon;  // m
   };
-  static Kernels makeKernels(PrepareContext& ctx, bool simplified);
-  std::vector<Range> ranges(RecordContext& ctx);
+  struct Ranges {
+    std::vector<Range> all;      // for the maps that are drawn from nothing
+    std::vector<Range> overlay;  // over what never moves, for every map
+  };
+  static Kernels makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps);
+  Ranges ranges(RecordContext& ctx);
   void simplifyScene(RecordContext& ctx);
   void chooseSlots(RecordContext& ctx);
   void recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range);
 
-  Kernel choose_, unchanged_, clear_, setup_;
-  bool hasState_ = false;
-  Kernels exact_, simplified_;
-  bool simplify_ = false, uploaded_ = false;
+  Kernel changed_, choose_, clear_, setup_, compose_;
+  bool hasState_ = false, staticMaps_ = false, simplify_ = false, uploaded_ = false;
+  Kernels exact_, still_,
+      simplified_;  // `still_`: of exact_, what never moves, where that has maps of its own
   uint32_t simplifiedTriangles_ = 0;
   float simplifiedError_ = 0;
   gpu::Buffer staging_;  // holds the simplified mesh until its copy has run
@@ -97,9 +104,20 @@ PassDeclaration ShadowAtlas::declaration() {
   d.scratch("drawn", buffer("DrawnMap", kDrawnBytes, countOf("vpls")),
             Usage::StorageRead | Usage::StorageWrite, "what each map was drawn with")
       .keep(Lifetime::View);
-  d.scratch("batch", buffer("VplView", kViewBytes, batches * kBatch), Usage::StorageWrite | Usage::Uniform,
-            "VPLs whose maps are drawn, packed");
-  d.scratch("steps", buffer("AtlasStep", kStepBytes, batches * (ceilDiv(triangles, kRangeTriangles) + 2)),
+  d.scratch("changes", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
+            "what would be different in each map if it were drawn again");
+  // None where nothing moves.
+  const SizeExpr keeps =
+      parameter("static_maps") * min(1, max(0, triangles - environment("scene.static_triangles")));
+  d.scratch("static_maps",
+            image2DArray(VK_FORMAT_R32_UINT, max(1, parameter("size") * tiles * keeps),
+                         max(1, parameter("size") * keeps), max(1, ceilDiv(countOf("vpls"), tiles) * keeps)),
+            Usage::StorageRead | Usage::StorageWrite, "as the atlas, of what never moves")
+      .keep(Lifetime::View);
+  d.scratch("batch", buffer("VplView", kViewBytes, (batches + 1) * kBatch),
+            Usage::StorageWrite | Usage::Uniform, "VPLs whose maps are drawn, packed");
+  d.scratch("steps",
+            buffer("AtlasStep", kStepBytes, (batches + 1) * (ceilDiv(triangles, kRangeTriangles) + 2)),
             Usage::StorageRead | Usage::StorageWrite | Usage::Indirect, "dispatches and lengths of lists");
   d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
             Usage::StorageRead | Usage::StorageWrite, "pairs to rasterise; as long as every pair of a step");
@@ -122,13 +140,19 @@ PassDeclaration ShadowAtlas::declaration() {
               "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and "
               "blocks nothing");
   d.parameter(
-      "refresh", choice("top", {"all", "top", "split"}),
-      "maps of kept VPLs that are drawn again (needs `state`): all; the most important ones; or half of "
-      "the same number for those and half for the longest unchanged, first where something moves");
+      "refresh", choice("top", {"all", "top", "split", "stale"}),
+      "maps of kept VPLs that are drawn again (needs `state`): `all`; `top` the most important ones (the "
+      "paper); `split` half of the same number for those and half for the longest unchanged, first where "
+      "something moves; `stale` of those that would change, by importance times the frames since they were "
+      "drawn");
   d.parameter(
       "refresh_share", real(0.05, 0, 1),
-      "how many of the kept VPLs' maps `top` and `split` draw again; those among them that would not change "
+      "how many of the kept VPLs' maps all but `all` draw again; those among them that would not change "
       "are left as they are");
+  d.parameter(
+      "static_maps", flag(false),
+      "keeps a map of what never moves for each VPL, as much memory again: where the VPL stands still, "
+      "its map is drawn again by drawing what moves over that (needs `state`)");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
@@ -137,12 +161,14 @@ PassDeclaration ShadowAtlas::declaration() {
   d.counter("refreshed_maps", "maps drawn again");
   d.counter("texels", "texels of the maps drawn");
   d.counter("unchanged_maps", "maps that were due, but see nothing else than when they were drawn");
+  d.counter("overlaid_maps", "maps drawn again over what never moves");
   return d;
 }
 
-ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplified) {
+ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps) {
   gpu::Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
   if (simplified) defines["SIMPLIFIED"] = "1";
+  if (toStaticMaps) defines["STATIC_MAPS"] = "1";
   Kernels k;
   k.cull = ctx.compute("shadow-atlas/cull.comp", defines);
   k.small = ctx.compute("shadow-atlas/small.comp", defines);
@@ -156,20 +182,25 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
 
 void ShadowAtlas::prepare(PrepareContext& ctx) {
   simplify_ = ctx.parameters().text("technique") == "simplified";
-  const gpu::Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
   const std::string& refresh = ctx.parameters().text("refresh");
   hasState_ = ctx.has("state") && refresh != "all";
-  gpu::Defines choose = batch;
-  choose["HAS_STATE"] = hasState_ ? "1" : "0";
-  choose["REFRESH_SPLIT"] = refresh == "split" ? "1" : "0";
-  choose_ = ctx.compute("shadow-atlas/choose.comp", choose);
-  if (hasState_)
-    unchanged_ = ctx.compute("shadow-atlas/unchanged.comp",
-                             {{"BATCH", std::to_string(kBatch) + "u"}, {"MOVERS", std::to_string(kMovers)}});
-  clear_ = ctx.compute("shadow-atlas/clear.comp", batch);
+  // The maps are as small as can be where nothing moves.
+  const VkExtent3D still = ctx.extent("static_maps"), all = ctx.extent("atlas");
+  staticMaps_ = hasState_ && still.width == all.width && still.height == all.height;
+  const gpu::Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
+  gpu::Defines defines = batch;
+  defines["MOVERS"] = std::to_string(kMovers);
+  if (hasState_) changed_ = ctx.compute("shadow-atlas/changed.comp", defines);
+  defines["HAS_STATE"] = hasState_ ? "1" : "0";
+  defines["STATIC_MAPS"] = staticMaps_ ? "1" : "0";
+  clear_ = ctx.compute("shadow-atlas/clear.comp", defines);
+  defines["REFRESH"] = refresh == "split" ? "2" : refresh == "stale" ? "3" : "1";
+  choose_ = ctx.compute("shadow-atlas/choose.comp", defines);
   setup_ = ctx.compute("shadow-atlas/setup.comp", batch);
-  exact_ = makeKernels(ctx, false);
-  if (simplify_) simplified_ = makeKernels(ctx, true);
+  exact_ = makeKernels(ctx, false, false);
+  if (staticMaps_) compose_ = ctx.compute("shadow-atlas/compose.comp", batch);
+  if (staticMaps_ && !simplify_) still_ = makeKernels(ctx, false, true);
+  if (simplify_) simplified_ = makeKernels(ctx, true, staticMaps_);
 }
 
 // Once a scene: the copy is part of the first frame's commands.
@@ -189,18 +220,21 @@ void ShadowAtlas::simplifyScene(RecordContext& ctx) {
   ctx.barrier();
 }
 
-std::vector<ShadowAtlas::Range> ShadowAtlas::ranges(RecordContext& ctx) {
+ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
   const scene::Geometry& geometry = *ctx.frame().geometry;
   const float diagonal = geometry.empty() ? 0.0f : glm::length(geometry.boundsMax - geometry.boundsMin);
   const float own = float(ctx.parameters().real("self_shadow_distance")) * diagonal;
-  std::vector<Range> list;
-  auto add = [&](const Kernels& kernels, uint32_t first, uint32_t end, float epsilon) {
+  Ranges list;
+  auto add = [](std::vector<Range>& to, const Kernels& kernels, uint32_t first, uint32_t end, float epsilon) {
     for (; first < end; first += kRangeTriangles)
-      list.push_back({&kernels, first, std::min(end - first, kRangeTriangles), epsilon});
+      to.push_back({&kernels, first, std::min(end - first, kRangeTriangles), epsilon});
   };
-  const uint32_t all = uint32_t(geometry.triangles.size());
-  if (simplify_) add(simplified_, 0, simplifiedTriangles_, own + simplifiedError_);
-  add(exact_, simplify_ ? std::min(geometry.staticTriangles, all) : 0, all, own);
+  const uint32_t all = uint32_t(geometry.triangles.size()), still = std::min(geometry.staticTriangles, all);
+  if (simplify_)
+    add(list.all, simplified_, 0, simplifiedTriangles_, own + simplifiedError_);
+  else if (staticMaps_)
+    add(list.all, still_, 0, still, own);
+  add(staticMaps_ ? list.overlay : list.all, exact_, simplify_ || staticMaps_ ? still : 0, all, own);
   return list;
 }
 
@@ -248,20 +282,25 @@ glm::vec4 moversOf(const scene::Frame& frame) {
 
 void ShadowAtlas::chooseSlots(RecordContext& ctx) {
   const uint32_t slots = uint32_t(ctx.count("vpls"));
+  const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
+  const auto movers = scene::moverSpheres<kMovers>(ctx.frame());
+  if (hasState_) {
+    ctx.use(changed_)
+        .constant("slots", slots)
+        .constant("movers", movers.spheres)
+        .constant("poses", movers.poses)
+        .dispatch(columns, rows);
+    ctx.barrier();
+  }
   Commands choose = ctx.use(choose_);
   choose.constant("slots", slots).constant("frameNumber", uint32_t(ctx.frameNumber()));
   if (hasState_) choose.constant("movers", moversOf(ctx.frame()));
   choose.dispatch(1);
   ctx.barrier();
-  const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
-  if (hasState_) {
-    ctx.use(unchanged_)
-        .constant("slots", slots)
-        .constant("movers", scene::moverSpheres<kMovers>(ctx.frame()))
-        .dispatch(columns, rows);
-    ctx.barrier();
-  }
-  ctx.use(clear_).constant("slots", slots).dispatch(columns, rows);
+  Commands clear = ctx.use(clear_);
+  clear.constant("slots", slots);
+  if (hasState_) clear.constant("movers", movers.spheres).constant("poses", movers.poses);
+  clear.dispatch(columns, rows);
 }
 
 void ShadowAtlas::record(RecordContext& ctx) {
@@ -274,19 +313,33 @@ void ShadowAtlas::record(RecordContext& ctx) {
   }
   chooseSlots(ctx);
 
-  const std::vector<Range> steps = ranges(ctx);
-  uint32_t largest = 0;
-  for (const Range& r : steps) largest = std::max(largest, r.count);
-  const uint32_t slots = uint32_t(ctx.count("vpls"));
+  const Ranges triangles = ranges(ctx);
+  auto groups = [](const std::vector<Range>& list) {
+    uint32_t largest = 0;
+    for (const Range& r : list) largest = std::max(largest, r.count);
+    return (largest + kCullGroup - 1) / kCullGroup;
+  };
+  const uint32_t slots = uint32_t(ctx.count("vpls")), all = uint32_t(triangles.all.size()),
+                 steps = all + uint32_t(triangles.overlay.size()),
+                 batches = (slots + kBatch - 1) / kBatch + (staticMaps_ ? 1 : 0);
   ctx.use(setup_)
       .constant("slots", slots)
-      .constant("ranges", uint32_t(steps.size()))
-      .constant("cullGroups", (largest + kCullGroup - 1) / kCullGroup)
+      .constant("batches", batches)
+      .constant("ranges", steps)
+      .constant("allRanges", all)
+      .constant("allGroups", groups(triangles.all))
+      .constant("overlayGroups", groups(triangles.overlay))
       .dispatch(1);
   ctx.barrier();
-  for (uint32_t batch = 0; batch * kBatch < slots; ++batch)
-    for (uint32_t i = 0; i < steps.size(); ++i)
-      recordStep(ctx, batch, batch * uint32_t(steps.size()) + i, steps[i]);
+  for (uint32_t batch = 0; batch < batches; ++batch)
+    for (uint32_t i = 0; i < all; ++i) recordStep(ctx, batch, batch * steps + i, triangles.all[i]);
+  if (!staticMaps_) return;
+  const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
+  ctx.use(compose_).constant("slots", slots).dispatch(columns, rows);
+  ctx.barrier();
+  for (uint32_t batch = 0; batch < batches; ++batch)
+    for (uint32_t i = all; i < steps; ++i)
+      recordStep(ctx, batch, batch * steps + i, triangles.overlay[i - all]);
 }
 
 FOVEA_PASS(ShadowAtlas);

@@ -11,6 +11,8 @@ struct Vpl {
   vec4 intensity;      // rgb: radiant intensity along the normal, W/sr = reflected flux / pi; all 0: an empty slot
 };
 
+bool isLit(Vpl v) { return any(notEqual(v.intensity.rgb, vec3(0.0))); }
+
 const uint kVplPage = 1024u;
 
 // What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. 80 bytes; all zeros: an empty

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One work group: which slots get a new map this frame. New VPLs always do; of those kept from the frame before a budget
 // (METHOD section 2, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the VPLs every lit slot is drawn;
-// REFRESH_SPLIT 0/1.
+// REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1.
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
@@ -11,8 +11,11 @@ layout(local_size_x = 256) in;
 layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(set = 0, std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0: no map
 layout(set = 0, std430) buffer ChosenBlock { uint list[]; } chosen;
-layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked, fresh, refreshes, texels; } counters;
+layout(set = 0, std430) buffer CountersBlock {
+  uint maps, small, large, masked, fresh, refreshes, texels, unchanged, overlaid;
+} counters;
 #if HAS_STATE
+layout(set = 0, std430) readonly buffer ChangesBlock { uint list[]; } changes;
 layout(set = 0, std430) readonly buffer StateBlock { VplState list[]; } state;
 #endif
 
@@ -28,20 +31,22 @@ layout(push_constant) uniform Constants {
 
 #include "shadow-atlas/compact.glsl"
 
-bool isLit(uint slot) { return any(notEqual(vpls.list[slot].intensity.rgb, vec3(0.0))); }
-
 #if HAS_STATE
 shared uint histogram[256];
 shared uint threshold, takenAbove;
 
-const uint kByImportance = 0u, kByStaleness = 1u;
+const uint kByImportance = 0u, kByStaleness = 1u, kByUrgency = 2u;
+const float kLeastImportance = 0.05;  // so that maps nobody looks at come round, too
 
 // Order among the maps that may be drawn again; 0: not one of them.
 uint priority(uint slot, uint order) {
   if (chosen.list[slot] != kSlotKept) return 0u;
-  if (order == kByImportance) return floatBitsToUint(max(state.list[slot].positionImportance.w, 0.0)) + 1u;
-  // Frames since it was drawn; four times as pressing where something moves in front of the VPL.
-  uint age = min(frameNumber + 1u - refreshed.frames[slot], 0x3fffffffu);
+  float importance = max(state.list[slot].positionImportance.w, 0.0);
+  if (order == kByImportance) return floatBitsToUint(importance) + 1u;
+  uint age = min(frameNumber + 1u - refreshed.frames[slot], 0x3fffffffu);  // frames since it was drawn
+  if (order == kByUrgency)
+    return changes.list[slot] == kChangeNone ? 0u : floatBitsToUint((importance + kLeastImportance) * float(age));
+  // Four times as pressing where something moves in front of the VPL.
   Vpl v = vpls.list[slot];
   bool sees = movers.w >= 0.0 && dot(v.normal.xyz, movers.xyz - v.positionArea.xyz) > -movers.w;
   return (sees ? 4u : 1u) * age;
@@ -91,7 +96,7 @@ void main() {
     uint slot = base + i, total;
     uint choice = kSlotIdle;
     if (slot < slots) {
-      bool lit = isLit(slot);
+      bool lit = isLit(vpls.list[slot]);
 #if HAS_STATE
       bool isNew = state.list[slot].normalLife.w <= 1.0 || refreshed.frames[slot] == 0u;
 #else
@@ -108,20 +113,30 @@ void main() {
   barrier();
 #if HAS_STATE
   uint budget = min(uint(ceil(refreshShare * float(kept))), kept);
-#if REFRESH_SPLIT
+#if REFRESH == 2
   uint first = (budget + 1u) / 2u;
   take(first, kByImportance);
   if (budget > first) take(budget - first, kByStaleness);
 #else
-  if (budget > 0u) take(budget, kByImportance);
+  if (budget > 0u) take(budget, REFRESH == 3 ? kByUrgency : kByImportance);
 #endif
 #endif
+  uint overlaid = 0u, unchanged = 0u;
   for (uint base = 0u; base < slots; base += 256u) {
     uint slot = base + i, total, choice = slot < slots ? chosen.list[slot] : kSlotIdle;
-    bool draw = choice == kSlotNew || choice == kSlotRefreshed;
-    if (draw) refreshed.frames[slot] = frameNumber + 1u;
+    if (choice == kSlotNew || choice == kSlotRefreshed) refreshed.frames[slot] = frameNumber + 1u;
     else if (choice == kSlotEmptied) refreshed.frames[slot] = 0u;
-    compact(draw, total);
+#if HAS_STATE
+    uint change = slot < slots ? changes.list[slot] : kChangeNone;
+    bool same = choice == kSlotRefreshed && change == kChangeNone;
+    bool overlay = STATIC_MAPS != 0 && choice == kSlotRefreshed && change == kChangeMovers;
+    if (same || overlay) chosen.list[slot] = choice = same ? kSlotKept : kSlotOverlaid;
+    compact(same, total);
+    unchanged += total;
+    compact(overlay, total);
+    overlaid += total;
+#endif
+    compact(isDrawn(choice), total);
     drawn += total;
     compact(choice == kSlotNew, total);
     fresh += total;
@@ -131,5 +146,7 @@ void main() {
     counters.fresh = fresh;
     counters.refreshes = drawn - fresh;
     counters.texels = drawn * size * size;
+    counters.unchanged = unchanged;
+    counters.overlaid = overlaid;
   }
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and
-// prepares the steps' indirect dispatches.
+// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and prepares the
+// steps' indirect dispatches. Those that need the moving triangles only follow in batches of their own.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
@@ -15,19 +15,22 @@ layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
 
 layout(push_constant) uniform Constants {
   uint slots;
-  uint ranges;      // steps a batch: one for each range of triangles
-  uint cullGroups;  // of the largest range
+  uint batches;
+  uint ranges;         // steps a batch: one for each range of triangles
+  uint allRanges;      // the first of them: for the maps that are drawn from nothing
+  uint allGroups;      // of the largest of those
+  uint overlayGroups;  // of the largest of the others, which every map gets
 };
 
 #include "shadow-atlas/compact.glsl"
 
-void main() {
+// Packs the slots with `overlaid` or without from place `count` on, the rest of the last batch empty. Returns the end.
+uint pack(bool overlaid, uint count) {
   uint i = gl_LocalInvocationIndex;
-  uint count = 0u;
   for (uint base = 0u; base < slots; base += 256u) {
     uint slot = base + i;
     uint choice = slot < slots ? chosen.list[slot] : kSlotIdle;
-    bool draw = choice == kSlotNew || choice == kSlotRefreshed;
+    bool draw = isDrawn(choice) && (choice == kSlotOverlaid) == overlaid;
     uint total;
     uint place = count + compact(draw, total);
     if (draw) {
@@ -38,13 +41,18 @@ void main() {
     }
     count += total;
   }
-  uint padded = (slots + kBatch - 1u) / kBatch * kBatch;
-  for (uint place = count + i; place < padded; place += 256u)
+  uint end = (count + kBatch - 1u) / kBatch * kBatch;
+  for (uint place = count + i; place < end; place += 256u)
     batch.views[place] = VplView(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  return end;
+}
+
+void main() {
+  uint whole = pack(false, 0u) / kBatch, all = pack(true, whole * kBatch) / kBatch;
   WorkList none = WorkList(0u, 1u, 1u, 0u);
-  uint batches = padded / kBatch;
-  for (uint s = i; s < batches * ranges; s += 256u) {
-    uint groups = (s / ranges) * kBatch < count ? cullGroups : 0u;
+  for (uint s = gl_LocalInvocationIndex; s < batches * ranges; s += 256u) {
+    bool overlay = s % ranges >= allRanges;
+    uint groups = s / ranges < (overlay ? all : whole) ? (overlay ? overlayGroups : allGroups) : 0u;
     steps.list[s] = Step(WorkList(groups, 1u, 1u, 0u), none, none, none, none);
   }
 }

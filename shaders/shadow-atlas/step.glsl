@@ -12,6 +12,22 @@ const uint kSlotKept = 1u;       // its map stays as it is
 const uint kSlotNew = 2u;        // drawn: there is no map of this VPL
 const uint kSlotRefreshed = 3u;  // drawn again
 const uint kSlotEmptied = 4u;    // its VPL has gone
+const uint kSlotOverlaid = 5u;   // drawn again: what moves, over the map that is kept of what never does
+
+bool isDrawn(uint choice) { return choice == kSlotNew || choice == kSlotRefreshed || choice == kSlotOverlaid; }
+
+// What would be different in a map if it were drawn again.
+const uint kChangeNone = 0u;
+const uint kChangeMovers = 1u;
+const uint kChangeAll = 2u;  // the VPL has moved, or there is no map
+
+#ifdef MOVERS
+struct DrawnMap {  // what a map was drawn with
+  vec4 position, normal;
+  vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects; below 0: unused
+  uint poses[MOVERS];   // the same as long as those keep their pose
+};
+#endif
 
 struct VplView {
   vec4 positionSlot;  // xyz: world space, m; w: slot of the atlas

@@ -397,7 +397,7 @@ struct RefreshReference {
   std::vector<uint32_t> drawnIn;  // frame + 1, 0: no map
 
   std::vector<bool> frame(const std::vector<Vpl>& vpls, const std::vector<scene::VplState>& state,
-                          uint32_t frame, double share, bool split) {
+                          uint32_t frame, double share, const std::string& policy) {
     drawnIn.resize(vpls.size());
     std::vector<bool> draw(vpls.size());
     std::vector<uint32_t> kept;
@@ -410,14 +410,17 @@ struct RefreshReference {
         kept.push_back(i);
     }
     const size_t budget = std::min(kept.size(), size_t(std::ceil(float(share) * float(kept.size()))));
-    const size_t first = split ? (budget + 1) / 2 : budget;
+    const size_t first = policy == "split" ? (budget + 1) / 2 : budget;
     auto choose = [&](size_t count, auto higher) {
       std::stable_sort(kept.begin(), kept.end(), higher);
       for (size_t k = 0; k < count; ++k) draw[kept[k]] = true;
       kept.erase(kept.begin(), kept.begin() + long(count));
       std::sort(kept.begin(), kept.end());
     };
-    choose(first, [&](uint32_t a, uint32_t b) { return state[a].importance > state[b].importance; });
+    auto urgency = [&](uint32_t i) { return (state[i].importance + 0.05f) * float(frame + 1 - drawnIn[i]); };
+    choose(first, [&](uint32_t a, uint32_t b) {
+      return policy == "stale" ? urgency(a) > urgency(b) : state[a].importance > state[b].importance;
+    });
     choose(budget - first, [&](uint32_t a, uint32_t b) { return drawnIn[a] < drawnIn[b]; });
     for (uint32_t i = 0; i < vpls.size(); ++i)
       if (draw[i]) drawnIn[i] = frame + 1;
@@ -455,7 +458,7 @@ void checkRefresh(const char* policy, double share) {
       copy.resize(kSlots);
       return copy;
     }();
-    const std::vector<bool> draw = reference.frame(vpls, state, frame, share, std::string(policy) == "split");
+    const std::vector<bool> draw = reference.frame(vpls, state, frame, share, policy);
     for (uint32_t i = 0; i < kSlots; ++i) fresh += draw[i] && (state[i].life <= 1 || before[i] == 0);
     if (frame == 0)
       test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
@@ -492,6 +495,8 @@ void checkRefresh(const char* policy, double share) {
 
 TEST(ShadowAtlas, NewAndMostImportantMapsAreDrawn) { checkRefresh("top", 0.05); }
 TEST(ShadowAtlas, HalfOfTheBudgetGoesToStaleMaps) { checkRefresh("split", 0.1); }
+TEST(ShadowAtlas, ImportantMapsThatAreOutOfDateAreDrawn) { checkRefresh("stale", 0.1); }
+
 // `split` draws maps that see a mover first, and comes round to the others: those count as four times
 // younger.
 TEST(ShadowAtlas, StaleMapsThatSeeAMoverAreDrawnFirst) {
@@ -560,40 +565,51 @@ TEST(ShadowAtlas, WholeBudgetDrawsAllMaps) {
   }
 }
 
-// A mover flies along behind a wall and out of its shadow; maps that it cannot have changed are not drawn,
-// and the atlas holds the same bits as one of which every map is drawn in every frame.
-TEST(ShadowAtlas, MapsThatWouldNotChangeAreLeft) {
-  Scene s = emptyScene();
-  addBox(s, 0, {-9, -1, -9}, {9, 9, 9});
-  addBox(s, 0, {-1, -1, -0.1f}, {1.5f, 3, 0.1f});  // the wall
-  scene::Node root;
-  root.dynamic = true;
-  s.nodes.push_back(root);
-  const size_t mover = s.nodes.size() - 1;
-  addBox(s, 0, {-0.5f, 0.5f, 1.5f}, {0.5f, 1.5f, 2.5f});
-  for (size_t i = mover + 1; i < s.nodes.size(); ++i) s.nodes[i].parent = uint32_t(mover);
-  s.movers = {{uint32_t(mover), true, scene::Repeat::Once, {{0, glm::vec3(0)}, {0.2, {6, 0, 0}}}}};
-  constexpr uint32_t kSlots = 60, kFrames = 16;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<float> in(-1, 1);
+// A mover flies along behind a wall and out of its shadow, and stops in frame 9; VPLs that look anywhere.
+struct MoverBehindWall {
+  Scene scene = emptyScene();
   std::vector<Vpl> vpls;
   std::vector<scene::VplState> state;
-  for (uint32_t i = 0; i < kSlots; ++i) {
-    vpls.push_back(
-        vpl({2 * in(random), 1 + in(random), -2 + in(random)}, {in(random), in(random), in(random)}));
-    state.push_back(stateOf(vpls[i], 5, 0.5f));
+
+  explicit MoverBehindWall(uint32_t slots) {
+    addBox(scene, 0, {-9, -1, -9}, {9, 9, 9});
+    addBox(scene, 0, {-1, -1, -0.1f}, {1.5f, 3, 0.1f});  // the wall
+    scene::Node root;
+    root.dynamic = true;
+    scene.nodes.push_back(root);
+    const size_t mover = scene.nodes.size() - 1;
+    addBox(scene, 0, {-0.5f, 0.5f, 1.5f}, {0.5f, 1.5f, 2.5f});
+    for (size_t i = mover + 1; i < scene.nodes.size(); ++i) scene.nodes[i].parent = uint32_t(mover);
+    scene.movers = {{uint32_t(mover), true, scene::Repeat::Once, {{0, glm::vec3(0)}, {0.2, {6, 0, 0}}}}};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> in(-1, 1);
+    for (uint32_t i = 0; i < slots; ++i) {
+      vpls.push_back(
+          vpl({2 * in(random), 1 + in(random), -2 + in(random)}, {in(random), in(random), in(random)}));
+      state.push_back(stateOf(vpls[i], 5, 0.5f));
+    }
   }
+};
+
+// Maps that the mover cannot have changed are not drawn, and the atlas holds the same bits as one of which
+// every map is drawn in every frame.
+void checkUnchanged(bool staticMaps, const char* technique) {
+  SCOPED_TRACE(staticMaps ? "static maps" : "whole maps");
+  constexpr uint32_t kSlots = 60, kFrames = 16;
+  MoverBehindWall world(kSlots);
   PassTest kept("shadow-atlas"), whole("shadow-atlas");
-  kept.scene(s).param("size", 16).param("refresh", "top").param("refresh_share", 1.0);
-  kept.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
-  whole.scene(s).param("size", 16).param("refresh", "all").buffer("vpls", vpls, "Vpl");
-  double unchanged = 0, moved = 0;
+  for (PassTest* test : {&kept, &whole})
+    test->scene(world.scene).param("size", 16).param("technique", technique).param("simplify_ratio", 1.0);
+  kept.param("refresh", "top").param("refresh_share", 1.0).param("static_maps", staticMaps);
+  kept.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
+  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
+  double unchanged = 0, moved = 0, overlaid = 0;
   std::vector<float> before;
   for (uint32_t frame = 0; frame < kFrames; ++frame) {
-    if (frame == 5) {  // a VPL that moves needs a map
-      vpls[7].position.x += 0.1f;
-      kept.set("vpls", vpls);
-      whole.set("vpls", vpls);
+    if (frame == 5) {  // a VPL that moves needs a map of everything
+      world.vpls[7].position.x += 0.1f;
+      kept.set("vpls", world.vpls);
+      whole.set("vpls", world.vpls);
     }
     kept.run();
     whole.run();
@@ -601,6 +617,8 @@ TEST(ShadowAtlas, MapsThatWouldNotChangeAreLeft) {
     ASSERT_EQ(kept.values<float>("atlas"), now) << "frame " << frame;
     EXPECT_EQ(kept.counter("maps") + kept.counter("unchanged_maps"), kSlots);
     if (frame > 0) {
+      EXPECT_EQ(kept.counter("overlaid_maps"), staticMaps ? kept.counter("maps") - (frame == 5) : 0);
+      overlaid += kept.counter("overlaid_maps");
       unchanged += kept.counter("unchanged_maps");
       for (uint32_t i = 0; i < kSlots; ++i)
         moved += !std::equal(now.begin() + 256 * i, now.begin() + 256 * (i + 1), before.begin() + 256 * i);
@@ -608,9 +626,39 @@ TEST(ShadowAtlas, MapsThatWouldNotChangeAreLeft) {
     before = now;
   }
   const double all = kSlots * (kFrames - 1);
-  std::printf("of %.0f maps %.0f change, %.0f are known not to\n", all, moved, unchanged);
+  std::printf("of %.0f maps %.0f change, %.0f are known not to, %.0f drawn over what never moves\n", all,
+              moved, unchanged, overlaid);
   EXPECT_GT(moved, 0.1 * all);
   EXPECT_GT(unchanged, 0.5 * (all - moved));
+}
+
+TEST(ShadowAtlas, MapsThatWouldNotChangeAreLeft) { checkUnchanged(false, "exact"); }
+TEST(ShadowAtlas, WhatMovesIsDrawnOverMapsOfWhatNeverDoes) {
+  checkUnchanged(true, "exact");
+  checkUnchanged(true, "simplified");
+}
+
+// The budget goes to maps that would change: soon after the mover has stopped all are as if drawn anew, and
+// then none is drawn.
+TEST(ShadowAtlas, StaleSpendsNothingOnMapsThatWouldNotChange) {
+  constexpr uint32_t kSlots = 60;
+  MoverBehindWall world(kSlots);
+  PassTest stale("shadow-atlas"), whole("shadow-atlas");
+  for (PassTest* test : {&stale, &whole}) test->scene(world.scene).param("size", 16);
+  stale.param("refresh", "stale").param("refresh_share", 0.1).param("static_maps", true);
+  stale.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
+  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
+  for (uint32_t frame = 0; frame < 9 + kSlots / 6; ++frame) {
+    stale.run();
+    EXPECT_EQ(stale.counter("unchanged_maps"), 0) << "frame " << frame;
+    if (frame > 0) {
+      EXPECT_LE(stale.counter("maps"), kSlots / 10) << "frame " << frame;
+    }
+  }
+  whole.run(9 + kSlots / 6);
+  EXPECT_EQ(stale.values<float>("atlas"), whole.values<float>("atlas"));
+  stale.run();
+  EXPECT_EQ(stale.counter("maps"), 0);
 }
 
 }  // namespace

@@ -1,27 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One work group a slot: a map that is due to be drawn again is left as it is where drawing would give the same bits. The
-// VPL has not moved since, and neither what might have been seen of the movers then nor what is there of them now lies
-// before what the map holds. Define: MOVERS.
+// One work group a slot: would its map come out with other bits if it were drawn again? Not while the VPL stays where it
+// is, and each mover either keeps its pose or lies, then as now, behind what the map holds. Define: MOVERS.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
 layout(local_size_x = 64) in;
 
-struct DrawnMap {
-  vec4 position, normal;
-  vec4 movers[MOVERS];
-};
-
 layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(set = 0, std430) buffer ChosenBlock { uint list[]; } chosen;
-layout(set = 0, std430) buffer DrawnBlock { DrawnMap maps[]; } drawn;
-layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked, fresh, refreshes, texels, unchanged; } counters;
+layout(set = 0, std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0: there is no map
+layout(set = 0, std430) readonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
+layout(set = 0, std430) writeonly buffer ChangesBlock { uint list[]; } changes;
 layout(set = 0, r32ui) uniform readonly uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
   vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects; below 0: unused
+  uint poses[MOVERS];
   uint slots;
 };
 
@@ -66,32 +61,18 @@ void look(uint slot, Vpl v, vec4 sphere) {
 void main() {
   uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * kGroupsPerRow;
   if (slot >= slots) return;
-  uint choice = chosen.list[slot];
-  if (choice != kSlotNew && choice != kSlotRefreshed) return;
   Vpl v = vpls.list[slot];
+  bool stands = refreshed.frames[slot] != 0u && drawn.maps[slot].position.xyz == v.positionArea.xyz &&
+                drawn.maps[slot].normal.xyz == v.normal.xyz;
   if (gl_LocalInvocationIndex == 0u) found = 0u;
   barrier();
-  if (choice == kSlotRefreshed && drawn.maps[slot].position.xyz == v.positionArea.xyz &&
-      drawn.maps[slot].normal.xyz == v.normal.xyz) {
+  if (stands && isLit(v)) {
     for (int i = 0; i < MOVERS; ++i) {
+      if (drawn.maps[slot].movers[i] == movers[i] && drawn.maps[slot].poses[i] == poses[i]) continue;
       look(slot, v, movers[i]);
       look(slot, v, drawn.maps[slot].movers[i]);
     }
-  } else if (gl_LocalInvocationIndex == 0u) {
-    found = 1u;
   }
   barrier();
-  if (gl_LocalInvocationIndex != 0u) return;
-  if (found != 0u) {
-    drawn.maps[slot].position = vec4(v.positionArea.xyz, 0.0);
-    drawn.maps[slot].normal = vec4(v.normal.xyz, 0.0);
-    for (int i = 0; i < MOVERS; ++i) drawn.maps[slot].movers[i] = movers[i];
-  } else {
-    uint size = uint(atlasLayout(imageSize(atlas)).size);
-    chosen.list[slot] = kSlotKept;
-    atomicAdd(counters.maps, ~0u);
-    atomicAdd(counters.refreshes, ~0u);
-    atomicAdd(counters.texels, -(size * size));
-    atomicAdd(counters.unchanged, 1u);
-  }
+  if (gl_LocalInvocationIndex == 0u) changes.list[slot] = !stands ? kChangeAll : found != 0u ? kChangeMovers : kChangeNone;
 }
