@@ -11,12 +11,11 @@ constexpr uint32_t reverseBits(uint32_t x) {
   x = ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
   x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
   x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
-  return (x << 16) | (x >> 16);
+  return __builtin_bswap32(x);
 }
 
-// Random flips of each bit that depend on the lower bits only: nested uniform scrambling of a reversed fraction
-// (Laine and Karras 2011, with the constants of Vegdahl, 2021).
+// Random flips of each bit that depend on the lower bits only: nested uniform scrambling of a reversed
+// fraction (Laine and Karras 2011, with the constants of Vegdahl, 2021).
 constexpr uint32_t laineKarras(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -26,13 +25,10 @@ constexpr uint32_t laineKarras(uint32_t x, uint32_t seed) {
   return x;
 }
 
-constexpr uint32_t nestedScramble(uint32_t fraction, uint32_t seed) {
-  return reverseBits(laineKarras(reverseBits(fraction), seed));
-}
-
 using Directions = std::array<std::array<uint32_t, 32>, 4>;
 
-// Direction numbers of the first four dimensions: primitive polynomials and initial values of Joe and Kuo, 2008.
+// Direction numbers of the first four dimensions: primitive polynomials and initial values of Joe and Kuo,
+// 2008.
 constexpr Directions makeDirections() {
   struct Polynomial {
     uint32_t degree, coefficients, initial[3];
@@ -58,37 +54,55 @@ constexpr Directions makeDirections() {
 
 constexpr Directions kDirections = makeDirections();
 
-// Point from the four bytes of its index: kByteTables[d][b][x] combines the direction numbers of the bits set in byte b.
-using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, 4>;
+// Points are made with the bits of their fractions reversed, the form in which they are scrambled.
+// kByteTables[d][b][x] combines the direction numbers of dimension d + 2 for the bits set in byte b of the
+// index.
+using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, 2>;
 
 constexpr ByteTables makeByteTables() {
   ByteTables tables{};
-  for (uint32_t d = 0; d < 4; ++d)
+  for (uint32_t d = 0; d < 2; ++d)
     for (uint32_t byte = 0; byte < 4; ++byte)
       for (uint32_t x = 1; x < 256; ++x) {
         uint32_t low = 0;  // the lowest bit set; the table knows the rest
         while (!((x >> low) & 1u)) ++low;
-        tables[d][byte][x] = tables[d][byte][x & (x - 1)] ^ kDirections[d][8 * byte + low];
+        tables[d][byte][x] = tables[d][byte][x & (x - 1)] ^ reverseBits(kDirections[d + 2][8 * byte + low]);
       }
   return tables;
 }
 
 constexpr ByteTables kByteTables = makeByteTables();
 
-uint32_t unscrambledPoint(uint32_t bits, uint32_t within) {
-  const auto& t = kByteTables[within];
-  return t[0][bits & 255u] ^ t[1][bits >> 8 & 255u] ^ t[2][bits >> 16 & 255u] ^ t[3][bits >> 24];
+constexpr uint32_t unscrambledPoint(uint32_t index, uint32_t within) {
+  // The direction numbers of the first dimension are the unit matrix, those of the second one Pascal's
+  // triangle modulo 2, which is a product of five matrices that are nearly empty.
+  if (within == 0) return index;
+  if (within == 1) {
+    uint32_t x = index ^ index >> 16;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xccccccccu) >> 2;
+    return x ^ (x & 0xaaaaaaaau) >> 1;
+  }
+  const auto& t = kByteTables[within - 2];
+  return t[0][index & 255u] ^ t[1][index >> 8 & 255u] ^ t[2][index >> 16 & 255u] ^ t[3][index >> 24];
 }
+
+// A nested scramble of the index permutes aligned blocks of every power-of-two length: nets stay nets, and
+// the groups become independent of one another.
+struct Group {
+  uint32_t seed, index;
+  Group(uint32_t i, uint32_t group, uint32_t s)
+      : seed(hashCombine(s, group)), index(reverseBits(laineKarras(reverseBits(i), seed))) {}
+  uint32_t bits(uint32_t within) const {
+    return reverseBits(laineKarras(unscrambledPoint(index, within), hashCombine(seed, within + 1)));
+  }
+};
 
 }  // namespace
 
 uint32_t sobolBits(uint32_t index, uint32_t dimension, uint32_t seed) {
-  const uint32_t group = dimension / 4, within = dimension % 4;
-  // A nested scramble of the index permutes aligned blocks of every power-of-two length: nets stay nets, and the groups
-  // become independent of one another.
-  const uint32_t groupSeed = hashCombine(seed, group);
-  const uint32_t bits = nestedScramble(index, groupSeed);
-  return nestedScramble(unscrambledPoint(bits, within), hashCombine(groupSeed, within + 1));
+  return Group(index, dimension / 4, seed).bits(dimension % 4);
 }
 
 float sobol(uint32_t index, uint32_t dimension, uint32_t seed) {
@@ -96,12 +110,9 @@ float sobol(uint32_t index, uint32_t dimension, uint32_t seed) {
 }
 
 std::array<float, 2> sobolPair(uint32_t index, uint32_t dimension, uint32_t seed) {
-  const uint32_t group = dimension / 4, within = dimension % 4;
-  const uint32_t groupSeed = hashCombine(seed, group), bits = nestedScramble(index, groupSeed);
-  const auto at = [&](uint32_t d) {
-    return uniformFloat(nestedScramble(unscrambledPoint(bits, d), hashCombine(groupSeed, d + 1)));
-  };
-  return {at(within), at(within + 1)};
+  const Group group(index, dimension / 4, seed);
+  const uint32_t within = dimension % 4;
+  return {uniformFloat(group.bits(within)), uniformFloat(group.bits(within + 1))};
 }
 
 }  // namespace fovea

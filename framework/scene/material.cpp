@@ -6,9 +6,6 @@
 #include "framework/scene/texture_taps.h"
 
 namespace fovea::scene {
-namespace {
-
-// IEC 61966-2-1, tabulated for the 256 stored values.
 const std::array<float, 256>& srgbTable() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t{};
@@ -19,48 +16,6 @@ const std::array<float, 256>& srgbTable() {
     return t;
   }();
   return table;
-}
-
-int64_t wrapTexel(int64_t i, int64_t size, Wrap wrap) {
-  if (i >= 0 && i < size) return i;
-  if (wrap == Wrap::Repeat && (size & (size - 1)) == 0) return i & (size - 1);
-  switch (wrap) {
-    case Wrap::Clamp:
-      return std::min(std::max(i, int64_t(0)), size - 1);
-    case Wrap::Mirror: {
-      const int64_t period = ((i % (2 * size)) + 2 * size) % (2 * size);
-      return period < size ? period : 2 * size - 1 - period;
-    }
-    case Wrap::Repeat:
-      break;
-  }
-  return ((i % size) + size) % size;
-}
-
-glm::vec4 decode(const uint8_t* p, bool srgb, const std::array<float, 256>& table) {
-  if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
-  return {table[p[0]], table[p[1]], table[p[2]], float(p[3]) / 255.0f};
-}
-
-// Coordinates past any texture's size times this are noise in a float; they must not overflow the integer
-// conversion.
-float tame(float texels) { return std::isfinite(texels) ? std::min(std::max(texels, -1e9f), 1e9f) : 0.0f; }
-
-}  // namespace
-
-TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse& use, glm::vec2 uv) {
-  const glm::vec2 p = use.transform * glm::vec3(uv, 1.0f);
-  const float u = tame(p.x * float(width) - 0.5f), v = tame(p.y * float(height) - 0.5f);
-  const float u0 = std::floor(u), v0 = std::floor(v);
-  const int64_t x = int64_t(u0), y = int64_t(v0);
-  TexelSquare s;
-  for (int i = 0; i < 2; ++i) {
-    s.column[i] = uint32_t(wrapTexel(x + i, width, use.wrapU));
-    s.row[i] = uint32_t(wrapTexel(y + i, height, use.wrapV));
-  }
-  s.right = u - u0;
-  s.lower = v - v0;
-  return s;
 }
 
 TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
@@ -75,15 +30,6 @@ TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv)
           s.right,
           s.lower,
           t.srgb};
-}
-
-glm::vec4 sample(const TextureTaps& taps) {
-  if (taps.texel[0] == nullptr) return glm::vec4(1.0f);
-  const auto& table = srgbTable();
-  const auto texel = [&](int i) { return decode(taps.texel[i], taps.srgb, table); };
-  const glm::vec4 top = glm::mix(texel(0), texel(1), taps.right);
-  const glm::vec4 bottom = glm::mix(texel(2), texel(3), taps.right);
-  return glm::mix(top, bottom, taps.lower);
 }
 
 glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv) {

@@ -9,7 +9,6 @@
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/paraboloid.h"
-#include "framework/scene/texture_taps.h"
 
 namespace fovea::passes {
 namespace {
@@ -21,9 +20,20 @@ constexpr float kInversePi = glm::one_over_pi<float>();
 // Shadow rays end just before what they ask for.
 constexpr float kShadowEnd = 0.9999f;
 
+// (cos, sin) of (2 t - 1) pi, t in [0, 1], to 1e-6: polynomials for half the angle (Chebyshev fits), doubled.
+glm::vec2 onCircle(float t) {
+  const float y = 2.0f * t - 1.0f, z = y * y;
+  const float sine =
+      y *
+      (1.57079632f + z * (-0.64596376f + z * (0.0796899226f + z * (-0.00467415067f + z * 0.000151675118f))));
+  const float cosine =
+      1.0f + z * (-1.23370053f +
+                  z * (0.253669322f + z * (-0.0208626875f + z * (0.000917723882f - z * 2.38245355e-05f))));
+  return {cosine * cosine - sine * sine, 2.0f * sine * cosine};
+}
+
 glm::vec3 cosineDirection(glm::vec3 normal, float u, float v) {
-  const float r = std::sqrt(u), phi = glm::two_pi<float>() * v;
-  return toWorld(orthonormalFrame(normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - u)});
+  return toWorld(orthonormalFrame(normal), glm::vec3(std::sqrt(u) * onCircle(v), std::sqrt(1.0f - u)));
 }
 
 glm::vec3 reflectanceOf(const Material& material, glm::vec4 texture) {
@@ -56,51 +66,24 @@ std::array<float, 2> PathSampler::pair(uint32_t k) const {
 
 // One path under way.
 struct PathIntegrator::Path {
-  PathVertex vertex;
+  PathVertex vertex;  // its reflectance is in the throughput
   glm::vec3 light{0}, throughput{0};
-  Ray ray;  // from the vertex
+  glm::vec3 direction{0};  // of the ray from the vertex
   RayHit hit;
-  SurfaceHit surface;
+  glm::vec2 uv{0};  // of the vertex
+  uint32_t material = 0;
   TextureTaps texture;
-  glm::vec3 irradiance{0};  // of the last surface
+};
+
+struct PathIntegrator::Wave {
+  std::array<Path, kMaxPaths> paths;
+  std::span<const PathSampler> random;   // of each of them
+  std::array<uint8_t, kMaxPaths> alive;  // the numbers of those that go on, `count` of them
+  size_t count = 0;
 };
 
 PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RayScene& rays, uint32_t depth)
-    : frame_(frame), view_(view), rays_(rays), emitters_(frame), depth_(depth) {
-  triangles_.reserve(frame.geometry->triangles.size());
-  for (uint32_t t = 0; t < frame.geometry->triangles.size(); ++t)
-    triangles_.push_back(triangleVertices(*frame.geometry, t));
-  copyTexels();
-}
-
-// Squares of 32 texels fill one page, squares of 4 one cache line: a look-up rarely needs more than one of
-// either.
-size_t PathIntegrator::TexelBlocks::at(uint32_t x, uint32_t y) const {
-  const size_t block = size_t(y / 32) * blocksPerRow + x / 32;
-  const uint32_t tile = y / 4 % 8 * 8 + x / 4 % 8, texel = y % 4 * 4 + x % 4;
-  return first + 4 * (block * 1024 + tile * 16 + texel);
-}
-
-void PathIntegrator::copyTexels() {
-  const Scene& scene = *frame_.scene;
-  blocks_.resize(scene.textures.size());
-  size_t size = 0;
-  for (const Material& m : scene.materials) {
-    const uint32_t i = m.baseColorTexture.texture;
-    if (i >= scene.textures.size() || blocks_[i].width != 0) continue;
-    const Texture& t = scene.textures[i];
-    if (t.width == 0 || t.height == 0) continue;
-    blocks_[i] = {t.width, t.height, (t.width + 31) / 32, t.srgb, size};
-    size += size_t(4096) * blocks_[i].blocksPerRow * ((t.height + 31) / 32);
-  }
-  texels_.resize(size);
-  for (size_t i = 0; i < blocks_.size(); ++i) {
-    const TexelBlocks& blocks = blocks_[i];
-    const uint8_t* from = scene.textures[i].rgba.data();
-    for (uint32_t y = 0; y < blocks.height; ++y)
-      for (uint32_t x = 0; x < blocks.width; ++x, from += 4) std::memcpy(&texels_[blocks.at(x, y)], from, 4);
-  }
-}
+    : frame_(frame), view_(view), rays_(rays), emitters_(frame), surfaces_(frame), depth_(depth) {}
 
 RayHit PathIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
   ++rays;
@@ -229,117 +212,111 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
     path.light += path.throughput * emitterLight(v, random.number(k + 6), u[0], u[1], rays);
   }
   const std::array<float, 2> u = random.pair(k);
-  path.ray.origin = v.origin;
-  path.ray.direction = cosineDirection(v.normal, u[0], u[1]);
-  if (glm::dot(path.ray.direction, v.face) <= 0) return false;
-  path.hit = intersect(path.ray, rays);
+  path.direction = cosineDirection(v.normal, u[0], u[1]);
+  if (glm::dot(path.direction, v.face) <= 0) return false;
+  path.hit = intersect({v.origin, path.direction}, rays);
   if (!path.hit) return false;
-  const auto* triangle = reinterpret_cast<const char*>(&triangles_[path.hit.triangle]);
-  __builtin_prefetch(triangle);
-  __builtin_prefetch(triangle + 64);
+  surfaces_.prefetch(path.hit.triangle);
   return true;
 }
 
-// What was hit.
-bool PathIntegrator::arrive(Path& path) const {
-  path.surface = surfaceAt(triangles_[path.hit.triangle], path.hit.u, path.hit.v);
-  const bool front = glm::dot(path.surface.geometricNormal, path.ray.direction) < 0;
-  return front || frame_.scene->materials[path.surface.material].doubleSided;
-}
-
-// Where its texture lies; what is there will be needed soon.
-void PathIntegrator::findTexture(Path& path) const {
-  const TextureUse& use = frame_.scene->materials[path.surface.material].baseColorTexture;
-  path.texture = {};
-  if (use.texture >= blocks_.size() || blocks_[use.texture].width == 0) return;
-  const TexelBlocks& blocks = blocks_[use.texture];
-  const TexelSquare square = texelSquare(blocks.width, blocks.height, use, path.surface.uv);
-  for (uint32_t i = 0; i < 4; ++i)
-    path.texture.texel[i] = &texels_[blocks.at(square.column[i % 2], square.row[i / 2])];
-  path.texture.right = square.right;
-  path.texture.lower = square.lower;
-  path.texture.srgb = blocks.srgb;
-  path.texture.prefetch();
-}
-
-bool PathIntegrator::reflect(Path& path, uint32_t edges) const {
-  const SurfaceHit& s = path.surface;
-  const Material& material = frame_.scene->materials[s.material];
+// What was hit, and the vertex there, all but what its texture says. `edges` join the eye to the vertex
+// before.
+bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
+  const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
+  if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
   if (const float density = emitters_.density(path.hit.triangle); density > 0) {
-    const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.ray.direction));
+    const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.direction));
     const float other =
         density * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr
-    const float own = glm::dot(path.vertex.normal, path.ray.direction) * kInversePi;
-    path.light += path.throughput * emission(*frame_.scene, material, s.uv) * (own / (own + other));
+    const float own = glm::dot(path.vertex.normal, path.direction) * kInversePi;
+    const glm::vec3 radiance = emission(*frame_.scene, frame_.scene->materials[s.material], s.uv);
+    path.light += path.throughput * radiance * (own / (own + other));
   }
   if (edges + 1 == depth_) return false;
-  path.vertex = vertexAt(s, path.ray.direction);
-  path.vertex.reflectance = reflectanceOf(material, sample(path.texture));
-  path.throughput *= path.vertex.reflectance;
+  path.vertex = vertexAt(s, path.direction);
+  path.material = s.material;
+  path.uv = s.uv;
+  return true;
+}
+
+bool PathIntegrator::reflect(Path& path) const {
+  path.throughput *= surfaces_.reflectance(path.material, path.texture);
   return path.throughput != glm::vec3(0);
 }
 
-// The last reflection of a path that no emitter can add to: many of these surfaces lie in shadow, and their
-// textures need not be asked for.
-bool PathIntegrator::lightLast(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const {
-  path.irradiance = oneLight(vertexAt(path.surface, path.ray.direction), random, 8 * edges + 2, rays);
-  if (path.irradiance == glm::vec3(0)) return false;
-  findTexture(path);
-  return true;
+// All of them along one edge. Each path looks at what it hit while the next one's ray is under way, and at
+// the texels there while the one after that is.
+void PathIntegrator::bounce(Wave& wave, uint32_t edges, uint64_t& rays) const {
+  const bool last = lastByLight(edges + 1);
+  constexpr uint32_t kNone = kMaxPaths;
+  uint32_t arriving = kNone, reflecting = kNone;
+  size_t kept = 0;
+  const auto advance = [&](uint32_t left) {
+    if (reflecting != kNone && reflect(wave.paths[reflecting])) wave.alive[kept++] = uint8_t(reflecting);
+    reflecting = kNone;
+    if (arriving != kNone && arrive(wave.paths[arriving], edges)) {
+      Path& path = wave.paths[arriving];
+      if (last) {
+        wave.alive[kept++] = uint8_t(arriving);
+      } else {
+        surfaces_.find(path.material, path.uv, path.texture);
+        reflecting = arriving;
+      }
+    }
+    arriving = left;
+  };
+  for (size_t n = 0; n < wave.count; ++n) {
+    const uint32_t i = wave.alive[n];
+    if (leave(wave.paths[i], edges, wave.random[i], rays)) advance(i);
+  }
+  advance(kNone);
+  advance(kNone);
+  wave.count = kept;
 }
 
-void PathIntegrator::reflectLast(Path& path) const {
-  const Material& material = frame_.scene->materials[path.surface.material];
-  path.throughput *= reflectanceOf(material, sample(path.texture));
-  path.light += path.throughput * kInversePi * path.irradiance;
+// The last reflection of paths that no emitter can add to: many of these surfaces lie in shadow, and their
+// textures need not be asked for.
+void PathIntegrator::reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const {
+  const auto add = [&](Path& path, glm::vec3 irradiance) {
+    reflect(path);
+    path.light += path.throughput * kInversePi * irradiance;
+  };
+  Path* lit = nullptr;  // the latest
+  glm::vec3 litBy(0);
+  for (size_t n = 0; n < wave.count; ++n) {
+    const uint32_t i = wave.alive[n];
+    Path& path = wave.paths[i];
+    const glm::vec3 irradiance = oneLight(path.vertex, wave.random[i], 8 * edges + 2, rays);
+    if (irradiance == glm::vec3(0)) continue;
+    surfaces_.find(path.material, path.uv, path.texture);
+    if (lit != nullptr) add(*lit, litBy);
+    lit = &path;
+    litBy = irradiance;
+  }
+  if (lit != nullptr) add(*lit, litBy);
 }
 
 void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampler> random,
                               std::span<glm::vec3> light, uint64_t& rays) const {
-  std::array<Path, kMaxPaths> paths;
-  std::array<uint8_t, kMaxPaths> alive;  // their numbers
-  size_t count = random.size();
-  for (size_t i = 0; i < count; ++i) {
-    paths[i].vertex = first;
-    paths[i].throughput = first.reflectance;
-    alive[i] = uint8_t(i);
+  Wave wave;
+  wave.random = random;
+  wave.count = random.size();
+  for (size_t i = 0; i < wave.count; ++i) {
+    wave.paths[i].vertex = first;
+    wave.paths[i].throughput = first.reflectance;
+    wave.alive[i] = uint8_t(i);
   }
-  const auto keepThose = [&](const auto& that) {
-    size_t kept = 0;
-    for (size_t i = 0; i < count; ++i)
-      if (that(alive[i])) alive[kept++] = alive[i];
-    count = kept;
-  };
-  // Without emitters the last edge is a shadow ray.
-  const uint32_t others = emitters_.empty() ? 2 : 1, bounces = std::max(depth_, others) - others;
-  for (uint32_t edges = 1; edges <= bounces && count > 0; ++edges) {
-    const bool last = emitters_.empty() && edges == bounces;
-    const auto look = [&](uint8_t i) {
-      if (!arrive(paths[i])) return false;
-      if (!last) findTexture(paths[i]);
-      return true;
-    };
-    // Each path looks at what it hit while the next one's ray is under way.
-    size_t kept = 0;
-    bool waits = false;
-    uint8_t latest = 0;
-    for (size_t n = 0; n < count; ++n) {
-      const uint8_t i = alive[n];
-      if (!leave(paths[i], edges, random[i], rays)) continue;
-      if (waits && look(latest)) alive[kept++] = latest;
-      latest = i;
-      waits = true;
+  // Light from an emitter comes along two edges at least, all other along three.
+  const uint32_t edgesAtLeast = emitters_.empty() ? 3 : 2;
+  for (uint32_t edges = 1; depth_ >= edgesAtLeast && edges < depth_ && wave.count > 0; ++edges) {
+    if (lastByLight(edges)) {
+      reflectLast(wave, edges, rays);
+      break;
     }
-    if (waits && look(latest)) alive[kept++] = latest;
-    count = kept;
-    if (last) {
-      keepThose([&](uint8_t i) { return lightLast(paths[i], edges + 1, random[i], rays); });
-      for (size_t n = 0; n < count; ++n) reflectLast(paths[alive[n]]);
-    } else {
-      keepThose([&](uint8_t i) { return reflect(paths[i], edges); });
-    }
+    bounce(wave, edges, rays);
   }
-  for (size_t i = 0; i < random.size(); ++i) light[i] = paths[i].light;
+  for (size_t i = 0; i < random.size(); ++i) light[i] = wave.paths[i].light;
 }
 
 }  // namespace fovea::passes

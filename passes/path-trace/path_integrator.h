@@ -10,7 +10,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/ray_scene.h"
 #include "passes/path-trace/emitters.h"
-#include "passes/path-trace/huge_pages.h"
+#include "passes/path-trace/surface_table.h"
 
 namespace fovea::passes {
 
@@ -68,26 +68,19 @@ class PathIntegrator {
 
  private:
   struct Path;
-  // Where texels_ has those of a texture; width 0: nowhere.
-  struct TexelBlocks {
-    uint32_t width = 0, height = 0, blocksPerRow = 0;
-    bool srgb = true;
-    size_t first = 0;
-    size_t at(uint32_t x, uint32_t y) const;
-  };
+  struct Wave;
   scene::RayHit intersect(const scene::Ray& ray, uint64_t& rays) const;
   bool occluded(const scene::Ray& ray, uint64_t& rays) const;
   // `direction`: unit, of the ray that hit.
   PathVertex vertexAt(const scene::SurfaceHit& s, glm::vec3 direction) const;  // all but the reflectance
-  void copyTexels();
   // The steps of a path from one vertex to the next; false: it ends.
   bool leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
-  bool arrive(Path& path) const;
-  void findTexture(Path& path) const;
-  bool reflect(Path& path, uint32_t edges) const;
-  // Those of the last one, instead of reflect().
-  bool lightLast(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
-  void reflectLast(Path& path) const;
+  bool arrive(Path& path, uint32_t edges) const;
+  bool reflect(Path& path) const;
+  void bounce(Wave& wave, uint32_t edges, uint64_t& rays) const;
+  void reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const;
+  // Without emitters the last edge is a shadow ray.
+  bool lastByLight(uint32_t edges) const { return emitters_.empty() && edges + 1 == depth_; }
   // Irradiance of one light on a vertex where nothing is in between.
   glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
   glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;  // irradiance
@@ -100,10 +93,7 @@ class PathIntegrator {
   const scene::View& view_;
   const scene::RayScene& rays_;
   Emitters emitters_;
-  // What hits look up, side by side in few pages: the geometry's triangles, and the texels of base colours.
-  HugeVector<scene::TriangleVertices> triangles_;
-  HugeVector<uint8_t> texels_;
-  std::vector<TexelBlocks> blocks_;  // of each texture of the scene
+  SurfaceTable surfaces_;
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;
 };
