@@ -278,13 +278,18 @@ Value parseFile(const std::filesystem::path& file) {
 }
 
 std::string joinPath(std::string_view path, std::string_view key) {
-  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  std::string joined;
+  joined.reserve(path.size() + 1 + key.size());
+  joined.append(path);
+  if (!path.empty()) joined.push_back('.');
+  return joined.append(key);
 }
 
 // ---- ObjectReader ------------------------------------------------------------------------------------
 
 ObjectReader::ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics)
     : value_(value), path_(std::move(path)), diagnostics_(diagnostics) {
+  known_.reserve(8);
   if (!value.isObject())
     diagnostics_.error(value.where.location(), path_,
                        fmt::format("expected an object, found {}", value.describe()));

@@ -36,14 +36,14 @@ Expander::Expander(Description& description, const LoadOptions& options, Diagnos
   }
 }
 
-void Expander::error(const json::Position& where, const std::string& path, std::string message,
+void Expander::error(const json::Position& where, const Trail& path, std::string message,
                      std::string remedy) {
   // A wire through a sub-graph's output is looked at once for the output and once for each reader.
   for (const Diagnostic& d : diagnostics_.list())
     if (d.where.line == where.line && d.where.column == where.column && d.message == message &&
         d.where.file == (where.file ? *where.file : std::string()))
       return;
-  diagnostics_.error(where.location(), path, std::move(message), std::move(remedy));
+  diagnostics_.error(where.location(), path.text(), std::move(message), std::move(remedy));
 }
 
 std::string Expander::nearestRemedy(std::string_view word, const std::vector<std::string>& names) {
@@ -54,6 +54,8 @@ std::string Expander::nearestRemedy(std::string_view word, const std::vector<std
 }
 
 Place Expander::place(const json::Position& position) {
+  if (latestIndex_ != kNone && position.file.get() == latestFile_)
+    return {latestIndex_, position.line, position.column};
   const auto [at, added] = fileIndex_.try_emplace(position.file.get(), 0);
   if (added) {
     keepFiles_.push_back(position.file);  // keeps the address from being used again
@@ -62,7 +64,9 @@ Place Expander::place(const json::Position& position) {
     at->second = static_cast<uint32_t>(known - description_.files.begin());
     if (known == description_.files.end()) description_.files.push_back(name);
   }
-  return {at->second, position.line, position.column};
+  latestFile_ = position.file.get();
+  latestIndex_ = at->second;
+  return {latestIndex_, position.line, position.column};
 }
 
 // ---- Scopes ------------------------------------------------------------------------------------------
@@ -91,11 +95,11 @@ void Expander::expandScope(size_t index) {
   reader.finish();
 }
 
-void Expander::readParameters(size_t index, const json::Value* given, const std::string& givenPath) {
+void Expander::readParameters(size_t index, const json::Value* given, const Trail& givenPath) {
   Scope& scope = scopes_[index];
   if (const json::Value* own = scope.document.find("parameters"); own && own->isObject()) {
     for (const Member& member : own->members) {
-      const std::string path = json::joinPath("parameters", member.key);
+      const Trail parent("parameters"), path(parent, member.key);
       Scope::Parameter parameter;
       parameter.name = member.key;
       const json::Value& v = member.value;
@@ -114,7 +118,7 @@ void Expander::readParameters(size_t index, const json::Value* given, const std:
   }
   if (given && given->isObject()) {
     for (const Member& member : given->members) {
-      const std::string path = json::joinPath(givenPath, member.key);
+      const Trail path(givenPath, member.key);
       Scope::Parameter* parameter = scope.findParameter(member.key);
       if (!parameter) {
         std::vector<std::string> names;
@@ -188,7 +192,7 @@ ParameterDescription Expander::overrideValue(const ParameterDescription& current
   return value;
 }
 
-bool Expander::readScalar(Scope& scope, const json::Value& value, const std::string& path,
+bool Expander::readScalar(Scope& scope, const json::Value& value, const Trail& path,
                           ParameterDescription& out) {
   out.type = value.type;
   out.place = place(value.where);
@@ -230,7 +234,7 @@ bool Expander::readScalar(Scope& scope, const json::Value& value, const std::str
   return true;
 }
 
-Symbol Expander::readView(Scope& scope, const json::Value& value, const std::string& path) {
+Symbol Expander::readView(Scope& scope, const json::Value& value, const Trail& path) {
   ParameterDescription name;
   if (!readScalar(scope, value, path, name)) return kNone;
   if (name.type == Type::String) return name.text;
@@ -265,10 +269,10 @@ void Expander::expandPass(size_t scope, const Member& member) {
 
 void Expander::addPass(size_t index, const Member& member, json::ObjectReader& reader) {
   Scope& scope = scopes_[index];
-  const std::string path = json::joinPath("passes", member.key);
+  const Trail path(reader.path());
   PassDescription pass;
   pass.name = intern(scope.prefix + member.key);
-  pass.path = intern(path);
+  pass.path = intern(reader.path());
   pass.place = place(member.keyWhere);
   pass.typePlace = pass.viewPlace = pass.place;
   pass.view = scope.view;
@@ -278,37 +282,36 @@ void Expander::addPass(size_t index, const Member& member, json::ObjectReader& r
     if (type->isString())
       pass.type = intern(type->string);
     else
-      error(type->where, json::joinPath(path, "type"),
+      error(type->where, {path, "type"},
             fmt::format("expected the name of a pass type, found {}", type->describe()));
   }
   if (const json::Value* view = reader.find("view")) {
-    pass.view = readView(scope, *view, json::joinPath(path, "view"));
+    pass.view = readView(scope, *view, {path, "view"});
     pass.viewPlace = place(view->where);
     pass.ownView = true;
   }
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
   if (const json::Value* inputs = reader.object("inputs")) {
+    const Trail inputsPath(path, "inputs");
     for (const Member& input : inputs->members) {
-      const std::string inputPath = json::joinPath(path, "inputs." + input.key);
       if (input.value.isString())
-        rawWires_.push_back({index, intern(input.key), &input.value, place(input.keyWhere), inputPath});
+        rawWires_.push_back({index, intern(input.key), &input.value, place(input.keyWhere)});
       else
-        error(input.value.where, inputPath,
+        error(input.value.where, {inputsPath, input.key},
               fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
     }
   }
-  addPassParameters(index, pass, reader.object("params"), json::joinPath(path, "params"));
-  scope.passes.emplace(member.key, static_cast<uint32_t>(description_.passes.size()));
+  addPassParameters(index, pass, reader.object("params"), {path, "params"});
   description_.passes.push_back(pass);
 }
 
 void Expander::addPassParameters(size_t index, PassDescription& pass, const json::Value* params,
-                                 const std::string& path) {
+                                 const Trail& path) {
   pass.firstParameter = static_cast<uint32_t>(description_.parameters.size());
   if (params) {
     for (const Member& param : params->members) {
       ParameterDescription value;
-      if (!readScalar(scopes_[index], param.value, json::joinPath(path, param.key), value)) continue;
+      if (!readScalar(scopes_[index], param.value, {path, param.key}, value)) continue;
       value.name = intern(param.key);
       value.keyPlace = place(param.keyWhere);
       description_.parameters.push_back(value);

@@ -8,12 +8,27 @@
 #include <unordered_map>
 #include <vector>
 
+#include "framework/base/small_vector.h"
 #include "framework/graph/resolve.h"
 
 namespace fovea::graph::detail {
 
 // Letters, digits, _ and -: what passes, parameters and inputs may be called.
 bool isName(std::string_view name);
+
+// A place inside a document, "passes.a.inputs.b", that only messages put together. Refers to its parts.
+class Trail {
+ public:
+  Trail() = default;
+  Trail(const std::string& whole) : key_(whole) {}  // NOLINT: implicit, a text is a place
+  Trail(const char* whole) : key_(whole) {}         // NOLINT
+  Trail(const Trail& before, std::string_view key) : before_(&before), key_(key) {}
+  std::string text() const { return before_ ? json::joinPath(before_->text(), key_) : std::string(key_); }
+
+ private:
+  const Trail* before_ = nullptr;
+  std::string_view key_;
+};
 
 // One graph document in use: the whole graph, or a sub-graph under a prefix.
 struct Scope {
@@ -40,18 +55,18 @@ struct Scope {
   std::vector<Parameter> parameters;
   std::vector<Input> inputs;
   std::unordered_map<std::string, size_t> instances;  // name -> scope
-  std::unordered_map<std::string, uint32_t> passes;   // name -> Description::passes
 
   Parameter* findParameter(std::string_view name);
   Input* findInput(std::string_view name);
 };
+
+using WireParts = SmallVector<std::string_view, 4>;  // of "pass.port.member"
 
 struct RawWire {
   size_t scope;
   Symbol target;
   const json::Value* value;
   Place keyPlace;
-  std::string path;
 };
 
 class Expander {
@@ -73,35 +88,33 @@ class Expander {
   };
 
   void expandScope(size_t scope);
-  void readParameters(size_t scope, const json::Value* given, const std::string& givenPath);
+  void readParameters(size_t scope, const json::Value* given, const Trail& givenPath);
   void overrideParameters(Scope& scope);
   void readRootInputs(Scope& scope);
   void readInputs(size_t scope, const json::Value* wires);
   void expandPass(size_t scope, const json::Member& member);
   void addPass(size_t scope, const json::Member& member, json::ObjectReader& reader);
-  void addPassParameters(size_t scope, PassDescription& pass, const json::Value* params,
-                         const std::string& path);
+  void addPassParameters(size_t scope, PassDescription& pass, const json::Value* params, const Trail& path);
   void overridePass(PassDescription& pass);
   void expandInstance(size_t scope, const json::Member& member, json::ObjectReader& reader);
   ResourceDesc readResource(Scope& scope, json::ObjectReader& reader);
   int64_t readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback);
-  Symbol readView(Scope& scope, const json::Value& value, const std::string& path);
+  Symbol readView(Scope& scope, const json::Value& value, const Trail& path);
   // A literal or "$name".
-  bool readScalar(Scope& scope, const json::Value& value, const std::string& path, ParameterDescription& out);
+  bool readScalar(Scope& scope, const json::Value& value, const Trail& path, ParameterDescription& out);
   ParameterDescription overrideValue(const ParameterDescription& current, const Override& source);
 
-  bool resolveWire(size_t scope, const json::Value& value, const std::string& path, WireDescription& wire,
+  bool resolveWire(size_t scope, const json::Value& value, const Trail& path, WireDescription& wire,
                    int depth);
-  bool resolveInput(size_t scope, const json::Value& value, const std::string& path,
-                    const std::vector<std::string_view>& parts, WireDescription& wire, int depth);
-  bool resolveInstance(size_t child, const json::Value& value, const std::string& path,
-                       const std::vector<std::string_view>& parts, WireDescription& wire, int depth);
-  bool combine(const json::Value& value, const std::string& path, std::string_view member, bool previous,
+  bool resolveInput(size_t scope, const json::Value& value, const Trail& path, const WireParts& parts,
+                    WireDescription& wire, int depth);
+  bool resolveInstance(size_t child, const json::Value& value, const Trail& path, const WireParts& parts,
+                       WireDescription& wire, int depth);
+  bool combine(const json::Value& value, const Trail& path, std::string_view member, bool previous,
                WireDescription& wire);
   void resolveOutputs();
 
-  void error(const json::Position& where, const std::string& path, std::string message,
-             std::string remedy = {});
+  void error(const json::Position& where, const Trail& path, std::string message, std::string remedy = {});
   std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
   Place place(const json::Position& position);
   Symbol intern(std::string_view text) { return description_.symbols.intern(text); }
@@ -115,6 +128,8 @@ class Expander {
   std::vector<PendingOverride> overrides_;
   std::vector<std::filesystem::path> fileStack_;
   std::unordered_map<const std::string*, uint32_t> fileIndex_;
+  const std::string* latestFile_ = nullptr;  // of place(), and its index
+  uint32_t latestIndex_ = kNone;
   std::vector<std::shared_ptr<const std::string>> keepFiles_;
   std::vector<bool> isPass_;  // by symbol
   bool full_ = false;

@@ -8,6 +8,11 @@ namespace fovea::graph {
 
 Symbol SymbolTable::intern(std::string_view text) {
   if (const auto at = index_.find(text); at != index_.end()) return at->second;
+  if (strings_.empty()) {  // room for a graph of a hundred passes
+    index_.reserve(256);
+    strings_.reserve(256);
+    hashes_.reserve(256);
+  }
   const auto symbol = static_cast<Symbol>(strings_.size());
   const auto at = index_.emplace(std::string(text), symbol).first;
   strings_.push_back(&at->first);

@@ -11,8 +11,8 @@ namespace {
 constexpr std::string_view kPrevious = "@previous";
 constexpr int kMaxHops = 64;  // through sub-graph inputs and outputs
 
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> parts;
+WireParts split(std::string_view text) {
+  WireParts parts;
   for (;;) {
     const size_t dot = text.find('.');
     parts.push_back(text.substr(0, dot));
@@ -30,10 +30,12 @@ void Expander::resolveWires() {
   for (size_t p = 0; p < description_.passes.size(); ++p) {
     PassDescription& pass = description_.passes[p];
     pass.firstInput = static_cast<uint32_t>(description_.wires.size());
+    const Trail passPath(description_.symbols[pass.path]), inputsPath(passPath, "inputs");
     for (uint32_t i = rawFirst_[p]; i < rawFirst_[p + 1]; ++i) {
       const RawWire& raw = rawWires_[i];
       WireDescription wire;
-      if (!resolveWire(raw.scope, *raw.value, raw.path, wire, 0)) continue;
+      const Trail path(inputsPath, description_.symbols[raw.target]);
+      if (!resolveWire(raw.scope, *raw.value, path, wire, 0)) continue;
       wire.target = raw.target;
       wire.text = intern(raw.value->string);
       wire.keyPlace = raw.keyPlace;
@@ -50,7 +52,7 @@ void Expander::resolveOutputs() {
     const json::Value* outputs = scopes_[s].document.find("outputs");
     if (!outputs || !outputs->isObject()) continue;
     for (const json::Member& member : outputs->members) {
-      const std::string path = json::joinPath("outputs", member.key);
+      const Trail outputsPath("outputs"), path(outputsPath, member.key);
       if (!member.value.isString()) {
         error(member.value.where, path,
               fmt::format("expected a wire such as \"pass.port\", found {}", member.value.describe()));
@@ -73,8 +75,8 @@ void Expander::resolveOutputs() {
 }
 
 // False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
-bool Expander::resolveWire(size_t index, const json::Value& value, const std::string& path,
-                           WireDescription& wire, int depth) {
+bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& path, WireDescription& wire,
+                           int depth) {
   if (depth > kMaxHops)
     return error(value.where, path, "this wire runs in a circle through sub-graphs"), false;
   std::string_view text = value.string;
@@ -85,7 +87,7 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const std::st
     previous = true;
     text = text.substr(0, at);
   }
-  const std::vector<std::string_view> parts = split(text);
+  const WireParts parts = split(text);
   if (parts.size() > 3 ||
       std::any_of(parts.begin(), parts.end(), [](std::string_view p) { return p.empty(); }))
     return error(value.where, path, fmt::format("`{}` is no wire", value.string),
@@ -102,14 +104,16 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const std::st
     return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
   }
   wire.pass = description_.symbols.find(scope.prefix + name);
-  const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
-  const bool known = inner ? wire.pass < isPass_.size() && isPass_[wire.pass] : scope.passes.count(name) > 0;
-  if (!known) {
+  if (wire.pass >= isPass_.size() || !isPass_[wire.pass]) {
+    const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
     std::vector<std::string> names = {"inputs"};
-    for (const auto& [pass, position] : scope.passes) names.push_back(pass);
     for (const auto& [instance, position] : scope.instances) names.push_back(instance);
-    if (inner)
-      for (const PassDescription& p : description_.passes) names.push_back(description_.symbols[p.name]);
+    for (const PassDescription& p : description_.passes) {
+      const std::string& full = description_.symbols[p.name];
+      const bool own =
+          full.starts_with(scope.prefix) && full.find('/', scope.prefix.size()) == std::string::npos;
+      if (own || inner) names.push_back(own ? full.substr(scope.prefix.size()) : full);
+    }
     std::sort(names.begin(), names.end());
     return error(value.where, path, fmt::format("no pass `{}`", name), nearestRemedy(name, names)), false;
   }
@@ -119,8 +123,8 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const std::st
   return true;
 }
 
-bool Expander::resolveInput(size_t index, const json::Value& value, const std::string& path,
-                            const std::vector<std::string_view>& parts, WireDescription& wire, int depth) {
+bool Expander::resolveInput(size_t index, const json::Value& value, const Trail& path, const WireParts& parts,
+                            WireDescription& wire, int depth) {
   Scope& scope = scopes_[index];
   Scope::Input* input = parts.size() > 1 ? scope.findInput(parts[1]) : nullptr;
   if (!input && parts.size() == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
@@ -141,8 +145,8 @@ bool Expander::resolveInput(size_t index, const json::Value& value, const std::s
                      depth + 1);
 }
 
-bool Expander::resolveInstance(size_t child, const json::Value& value, const std::string& path,
-                               const std::vector<std::string_view>& parts, WireDescription& wire, int depth) {
+bool Expander::resolveInstance(size_t child, const json::Value& value, const Trail& path,
+                               const WireParts& parts, WireDescription& wire, int depth) {
   const json::Value* outputs = scopes_[child].document.find("outputs");
   const std::vector<json::Member> none;
   const std::vector<json::Member>& members = outputs && outputs->isObject() ? outputs->members : none;
@@ -164,8 +168,8 @@ bool Expander::resolveInstance(size_t child, const json::Value& value, const std
 }
 
 // What is written after a sub-graph's name applies to what that stands for.
-bool Expander::combine(const json::Value& value, const std::string& path, std::string_view member,
-                       bool previous, WireDescription& wire) {
+bool Expander::combine(const json::Value& value, const Trail& path, std::string_view member, bool previous,
+                       WireDescription& wire) {
   if (!member.empty()) {
     if (wire.member != kNone)
       return error(value.where, path, fmt::format("`{}`: that is one member already", value.string)), false;
