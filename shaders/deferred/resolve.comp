@@ -152,33 +152,51 @@ void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float pla
   sum += vec4(imageLoad(partial, q).rgb * w, w);
 }
 
-// A sample of one subset outside the window: on the other side of the pixel, where an edge has left the surface, or else
-// from anywhere in the wide window. a: whether there is one.
-vec4 wideSample(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
-  ivec2 inside = offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2)));
-  ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
-  vec4 sum = vec4(0.0);
-  addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
-  addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
-  addSample(sum, c, p, across, size, plane, least);
-  // A loop of no turns is skipped where a branch is not, on a CPU device.
-  int samples = sum.a == 0.0 ? 16 : 0;
-  for (int i = 0; i < samples; ++i) addSample(sum, c, p, offset + INTERLEAVE * (ivec2(i & 3, i >> 2) - 2), size, plane, least);
-  return sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
+// Takes a subset off the mask.
+int nextSubset(inout uvec2 left, out uvec2 bit) {
+  int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
+  bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
+  left &= ~bit;
+  return subset;
 }
 
-// Looks for the missing subsets; those found leave the mask.
-void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least) {
-  uvec2 left = c.missing;
+void take(inout Centre c, vec4 sum, uvec2 bit) {
+  if (sum.a == 0.0) return;
+  c.sum += sum.rgb / sum.a;
+  ++c.found;
+  c.missing &= ~bit;
+}
+
+// Where the sample of a subset is in the window.
+ivec2 placeInWindow(ivec2 offset) { return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2))); }
+
+// Looks for the missing subsets; those found leave the mask. First on the other side of the pixel, where an edge has left the
+// surface. What is not there comes from anywhere in the wide window, in a loop of its own: on a CPU device every turn of the
+// first one would go through all of it. window: look in the window, too, where the subsets were missing by other bounds.
+void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool window) {
+  uvec2 left = c.missing, bit;
   while ((left.x | left.y) != 0u) {
-    int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
-    uvec2 bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
-    left &= ~bit;
-    vec4 v = wideSample(c, p, ivec2(subset % INTERLEAVE, subset / INTERLEAVE), size, plane, least);
-    if (v.a == 0.0) continue;
-    c.sum += v.rgb;
-    ++c.found;
-    c.missing &= ~bit;
+    int subset = nextSubset(left, bit);
+    ivec2 inside = placeInWindow(ivec2(subset % INTERLEAVE, subset / INTERLEAVE));
+    ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
+    vec4 sum = vec4(0.0);
+    addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
+    addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
+    addSample(sum, c, p, across, size, plane, least);
+    take(c, sum, bit);
+  }
+  left = c.missing;
+  while ((left.x | left.y) != 0u) {
+    int subset = nextSubset(left, bit);
+    ivec2 offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE), first = offset - 2 * INTERLEAVE;
+    vec4 sum = vec4(0.0);
+    // Of its 4 x 4 samples the four in the middle are the one in the window and those on the other side.
+    for (int i = 0; i < 12; ++i) {
+      int place = i < 4 ? i : i < 8 ? 4 * (i / 2 - 1) + 3 * (i & 1) : i + 4;
+      addSample(sum, c, p, first + INTERLEAVE * ivec2(place & 3, place >> 2), size, plane, least);
+    }
+    if (window) addSample(sum, c, p, placeInWindow(offset), size, plane, least);
+    take(c, sum, bit);
   }
 }
 
@@ -215,15 +233,26 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
       c.missing = uvec2(0u);  // the base also stands in for those that are neither in the window nor in the block
     }
 #endif
-    searchWider(c, p, size, c.plane, filterCos);
-    incomplete = 2u * c.found < kSubsets;
+    float plane = c.plane, least = filterCos;
+    bool based = false;
+#if MASKED
+    based = c.outside.a > 0.0;
+#endif
+    bool again = false;  // by wider bounds. A loop and not two calls: a second turn that no pixel wants is none
+    do {
+      searchWider(c, p, size, plane, least, again);
+      bool few = 2u * c.found < kSubsets;
+      incomplete = incomplete || few;
+      again = few && !again && !based;
+      plane *= 8.0;
+      least = 0.5;
+    } while (again);
 #if MASKED
     if (c.outside.a > 0.0) {
       vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
       return (inWindow * inside + c.outside.rgb) / (inWindow + c.outside.a);
     }
 #endif
-    if (incomplete) searchWider(c, p, size, 8.0 * c.plane, 0.5);
   }
   return c.sum / float(c.found);
 }
