@@ -37,7 +37,7 @@ class Weights : public Pass {
   std::string strategy_;
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
   Kernel tally_, finish_;
-  Kernel points_, escapes_, density_, pdf_,
+  Kernel points_, escapes_, density_, median_, pdf_,
       constant_;                         // `pdf`; `constant` after it; not all: `importance-area`
   Kernel paths_, seen_, share_, discs_;  // `importance-area`
   Kernel brick_, nearest_, sum_;         // `area`
@@ -82,10 +82,10 @@ PassDeclaration Weights::declaration() {
       "points", integer(2048, 64, 4096),
       "screen points that a density is averaged over (all but `area`); but for `importance-area`, rays "
       "go to 64 of them");
-  d.parameter("area_cap", real(4, 1, 1e6),
-              "the most that A_l can be, in medians of 1 / (N p) (all but `area`); also what a VPL stands "
-              "for that the region "
-              "does not see");
+  d.parameter(
+      "area_cap", real(4, 1, 1e6),
+      "the most that A_l can be, in medians of 1 / (N p) (all but `area`; `importance-area` gives the paths "
+      "that would need more to other VPLs); also what a VPL stands for that the region does not see");
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths that `importance-area` gives to the VPLs nearest to their ends (M)");
   d.parameter(
@@ -108,7 +108,7 @@ PassDeclaration Weights::declaration() {
               "of the scene");
   d.counter("alive", "slots that hold a VPL");
   d.counter("unseen", "VPLs that no screen point sees (`pdf`)");
-  d.counter("capped", "VPLs that are seen and whose area is cut to the cap (`pdf`)");
+  d.counter("capped", "VPLs that are seen, but so little that the cap holds for them");
   d.counter("given_sides", "sides that were given to a VPL (`area`)");
   return d;
 }
@@ -130,13 +130,17 @@ void Weights::addScratch(PassDeclaration& d) {
                  shared = max(parameter("strategy") - 2, 0), area = owning - shared,
                  side = ceilDiv(widthOf("voxels.index"), kBrick);
   const SizeExpr bricks = side * side * side;
-  d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * owning)),
-            Usage::StorageWrite | Usage::TexelRead, "position, normal of the VPLs that compete for surface");
+  d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * owning)), readWrite | Usage::TexelRead,
+            "position, normal of the VPLs that compete for surface");
   d.scratch("ends", buffer("PathEnd", 32, max(1, parameter("paths") * shared)),
             Usage::StorageWrite | Usage::TexelRead, "where the eye paths end");
   d.scratch("seen",
             buffer("uint", 4, max(1, countOf("vpls") * shared * ceilDiv(parameter("points"), 2048) * 64)),
             Usage::StorageWrite | Usage::TexelRead, "a bit for each screen point that sees a VPL");
+  d.scratch(
+      "seen_from", buffer("float", 4, max(1, countOf("vpls") * shared)),
+      Usage::StorageWrite | Usage::TexelRead,
+      "screen points that a density is an average of: squared sum of their terms by the sum of squares");
   d.scratch("gains", buffer("float", 4, max(1, countOf("vpls") * shared)), readWrite,
             "how much more a VPL shines for its disc");
   d.scratch("bricks", buffer("uint", 4, bricks), readWrite | Usage::TexelRead | Usage::TransferWrite,
@@ -182,6 +186,7 @@ void Weights::prepare(PrepareContext& ctx) {
     seen_ = ctx.compute("weights/seen.comp");
   else
     density_ = ctx.compute("weights/density.comp", {{"ONCE", strategy_ == "constant" ? "1" : "0"}});
+  median_ = ctx.compute("weights/median.comp", {{"SHARED", shared}});
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
     paths_ = ctx.compute("weights/paths.comp");
@@ -211,6 +216,8 @@ void Weights::recordDensities(RecordContext& ctx) {
   if (shared) density.constant("nearest", clamped ? float(p.real("clamp_distance")) : 0.0f);
   density.dispatch(row, (vplCount_ + row - 1) / row);
   ctx.barrier();
+  ctx.use(median_).constant("vplCount", vplCount_).dispatch(1);
+  ctx.barrier();
   if (shared) {
     ctx.use(share_)
         .constant("vplCount", vplCount_)
@@ -218,7 +225,7 @@ void Weights::recordDensities(RecordContext& ctx) {
         .dispatchThreads(tried);
     ctx.barrier();
   }
-  ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatch(1);
+  ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatchThreads(vplCount_);
   ctx.barrier();
   if (shared && !clamped) {
     ctx.use(discs_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);

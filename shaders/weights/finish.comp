@@ -28,7 +28,7 @@ float meanLight(uint slot, int side, float radiosity) {
   float own = side >= 0 && side < textureSize(radiance) ? kPi * texelFetch(radiance, side).w : 0.0;
   if (sum.x == 0u || !(own > 0.0) || !(radiosity > 0.0)) return 1.0;
   float direct = min(own / radiosity, 1.0);
-  return 1.0 + direct * (float(sum.y) / (kLightUnits * float(sum.x)) - 1.0);
+  return 1.0 + direct * (float(sum.y) / float(sum.x) - 1.0);
 }
 #endif
 

@@ -21,6 +21,7 @@ layout(set = 0, std430) writeonly buffer DensitiesBlock { float list[]; } densit
 layout(set = 0) uniform samplerBuffer radiance;
 layout(set = 0, std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: handicap; normal, w: luminance
 layout(set = 0, std430) writeonly buffer SeenBlock { uint words[]; } seen;   // see landing.glsl
+layout(set = 0, std430) writeonly buffer SeenFromBlock { float list[]; } seenFrom;
 
 layout(push_constant) uniform Constants {
   uint vplCount;
@@ -29,7 +30,7 @@ layout(push_constant) uniform Constants {
   uint fadeFrames;
 };
 
-shared float sums[64];
+shared vec2 sums[64];
 
 struct Map {
   uint slot;
@@ -47,16 +48,17 @@ bool sees(Map map, vec3 point, vec3 face) {
   return vplSees(stored, dot(tilt, local), len, len + local.z, tilt, texel, map.layout_.size, 1.0);
 }
 
-float seenSum(float area, uint slot, uint lane) {
+// Sum of the terms of p_l, and of their squares.
+vec2 seenSum(float area, uint slot, uint lane) {
   vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
   Map map = Map(slot, position, orthonormalFrame(normal), atlasLayout(imageSize(atlas)));
-  float sum = 0.0;
+  vec2 sum = vec2(0.0);
   uint bits = 0u, turn = 0u;
   for (uint i = lane; i < points; i += 64u, ++turn) {
     float p = landing(i, position, normal, area, nearest);
     vec3 from = texelFetch(screen, int(3u * i)).xyz, face = texelFetch(screen, int(3u * i + 2u)).xyz;
     bool seen_ = p > 0.0 && sees(map, from, face);
-    sum += seen_ ? p : 0.0;
+    sum += seen_ ? vec2(p, p * p) : vec2(0.0);
     bits |= seen_ ? 1u << (turn & 31u) : 0u;
     if ((turn & 31u) == 31u || i + 64u >= points) {
       seen.words[(slot * 64u + lane) * laneWords(points) + turn / 32u] = bits;
@@ -74,19 +76,21 @@ void main() {
   // Also what pass place has let go as no number.
   bool wanted = inside && normalLife.w > 0.0 && texelFetch(placed, int(3u * min(slot, vplCount - 1u))).w > 0.0;
   VoxelGrid grid = voxelsGrid();
-  sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : 0.0;
+  sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec2(0.0);
   barrier();
   for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }
   if (lane != 0u || !inside) return;
-  densities.list[slot] = sums[0] / float(points);
+  float sum = sums[0].x;
+  densities.list[slot] = sum / float(points);
+  seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
   int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
   float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
   // A new VPL is put at a disadvantage, at first of the area that there would be to each, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
-  float handicap = sums[0] > 0.0 ? min(young * float(points) / (sums[0] * float(vplCount)), 1e10) : -1.0;
+  float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
   sites.list[2u * slot] = vec4(texelFetch(vpls, first).xyz, handicap);
   sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
 }

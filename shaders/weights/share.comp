@@ -6,6 +6,10 @@
 // paths) / (M p_l) keeps that light, whatever picked the VPLs; p_l is the only thing that has to be estimated. It has to be
 // what the region gets from the VPL as that is shaded: with the VPL's own shadow map (seen.comp), with its own disc
 // (discs.comp) or, where that is asked for, with the clamp, whose light comes back to the region's mean.
+//
+// A VPL that the region hardly sees (one in a crack, or within what its voxel averages) would have to shine without bounds to
+// bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path; the rest
+// goes to the nearest VPL that is seen well, so that no light is lost: a third of it in rooms full of small things.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
@@ -13,16 +17,26 @@ layout(local_size_x = 64) in;
 
 layout(set = 0) uniform samplerBuffer sites;
 layout(set = 0) uniform samplerBuffer ends;
+layout(set = 0) uniform samplerBuffer densities;
+layout(set = 0) uniform samplerBuffer seenFrom;
 layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) buffer SumsBlock { uvec2 list[]; } sums;  // paths; their light
+layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint paths;
   float normalShare;
+  float areaCap;
 };
 
 const float kOtherKind = 1e20;  // m^2: only if there is no VPL of the kind
+
+void give(uint vpl, float light, uint pathUnits) {
+  if (vpl == kNoSide || pathUnits == 0u) return;
+  atomicAdd(sums.list[vpl].x, pathUnits);
+  atomicAdd(sums.list[vpl].y, lightUnits(light, texelFetch(sites, int(2u * vpl + 1u)).w, pathUnits));
+}
 
 void main() {
   uint path = gl_GlobalInvocationID.x;
@@ -30,18 +44,24 @@ void main() {
   vec4 end = texelFetch(ends, int(2u * path)), normal = texelFetch(ends, int(2u * path + 1u));
   if (!(end.w > 0.0)) return;
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
-  float best = 1e38;
-  uint owner = kNoSide;
+  float best = 1e38, bestWhole = 1e38;
+  uint owner = kNoSide, whole = kNoSide;  // nearest of all; of those that are seen well
   for (uint i = 0u; i < vplCount; ++i) {
     vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
     vec3 d = site.xyz - end.xyz;
-    precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, siteNormal.xyz)) + site.w;
-    cost = site.w >= 0.0 ? cost + (siteKind(siteNormal.w) == end.w ? 0.0 : kOtherKind) : 2e38;
-    bool nearer = cost < best;
+    bool thin = site.w <= kThinSite;
+    float handicap = thin ? kThinSite - site.w : site.w;
+    precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, siteNormal.xyz)) + handicap;
+    cost = handicap >= 0.0 ? cost + (siteKind(siteNormal.w) == end.w ? 0.0 : kOtherKind) : 2e38;
+    bool nearer = cost < best, nearerWhole = !thin && cost < bestWhole;
     owner = nearer ? i : owner;
     best = nearer ? cost : best;
+    whole = nearerWhole ? i : whole;
+    bestWhole = nearerWhole ? cost : bestWhole;
   }
   if (owner == kNoSide) return;
-  atomicAdd(sums.list[owner].x, 1u);
-  atomicAdd(sums.list[owner].y, lightUnits(normal.w, texelFetch(sites, int(2u * owner + 1u)).w));
+  float part = partKept(texelFetch(densities, int(owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(owner)).r);
+  uint units = owner == whole || whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
+  give(owner, normal.w, units);
+  give(whole, normal.w, uint(kPathUnits) - units);
 }

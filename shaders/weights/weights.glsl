@@ -31,12 +31,23 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
 // VPLs and ends of eye paths on sides with direct light keep to themselves.
 float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
 
-// Direct light at the end of a path in units of that of a VPL, in fixed point, with an end to it.
-const float kLightUnits = 1024.0, kMostLight = 16.0;
+// Paths in fixed point, for they may be divided; and direct light at the end of a path in units of that of a VPL, with an end
+// to it.
+const float kPathUnits = 1024.0, kMostLight = 16.0;
 
-uint lightUnits(float light, float ofVpl) {
-  return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * kLightUnits + 0.5);
+uint lightUnits(float light, float ofVpl, uint pathUnits) {
+  return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * float(pathUnits) + 0.5);
 }
+
+// The fourth component of a VPL that paths may go to is how much farther away it counts, m^2; of one that the region hardly
+// sees this minus that; -1: it takes none.
+const float kThinSite = -2.0;
+
+// Which part of the paths that end nearest to it a VPL keeps, see share.comp. p: its density; least: that counts;
+// seenFrom: screen points that p is an average of.
+const float kEnoughPoints = 16.0;
+
+float partKept(float p, float least, float seenFrom) { return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0); }
 
 // Texels of a VplState.
 const int kStateTexels = 5;

@@ -153,16 +153,17 @@ inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl,
 }
 
 // What the region gets from each slot per area and radiosity, 1/m^2; areas: of the discs that the VPLs shine
-// with, without them those of a cell.
+// with, without them those of a cell. seenFrom: points that each is an average of.
 inline std::vector<double> seenDensities(const Room& room, const std::vector<scene::VplState>& vpls,
                                          const std::vector<Seen>& points, const Maps& maps, float clamp = 0,
-                                         const std::vector<double>* areas = nullptr) {
+                                         const std::vector<double>* areas = nullptr,
+                                         std::vector<double>* seenFrom = nullptr) {
   const float cell = room.voxels.grid.cell;
   std::vector<double> result;
   for (size_t slot = 0; slot < vpls.size(); ++slot) {
     const scene::VplState& vpl = vpls[slot];
     const double area = areas ? (*areas)[slot] : double(cell) * cell;
-    double sum = 0;
+    double sum = 0, squares = 0;
     for (const Seen& s : points) {
       if (!(vpl.life > 0) || !s.there) continue;
       const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
@@ -171,9 +172,13 @@ inline std::vector<double> seenDensities(const Room& room, const std::vector<sce
                              std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
       if (!(cosines > 1e-12 * d2 && d2 > 1e-12) || !seesVpl(maps, s, vpl, slot)) continue;
       const double pi = glm::pi<double>();
-      sum += cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
+      const double term =
+          cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
+      sum += term;
+      squares += term * term;
     }
     result.push_back(sum / double(points.size()));
+    if (seenFrom) seenFrom->push_back(squares > 0 ? sum * sum / squares : 0);
   }
   return result;
 }
@@ -321,20 +326,42 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
 }
 
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
-// VPL of its kind, by trying every one. `light`: mean direct light of the paths in units of the VPL's own.
-// gain: p by the disc of a cell over p by that of the VPL's own area. doubtful: paths that two VPLs are
-// equally near to.
+// VPL of its kind, by trying every one. A VPL that the region hardly sees, p below the least density or from
+// less than 16 points, keeps as small a part of it (in 1024ths), and the nearest of all others gets the rest.
+// `light`: mean direct light of the paths in units of the VPL's own. gain: p by the disc of a cell over p by
+// that of the VPL's own area. doubtful: paths that two VPLs are equally near to. passed: paths that were
+// passed on.
 struct SharedAreas {
   std::vector<double> area, light, gain;
   int doubtful = 0;
+  double passed = 0;
 };
+
+// The nearest VPL of those that count; as many as there are: none.
+struct Nearest {
+  size_t vpl;
+  double cost = 1e300, second = 1e300;
+  void offer(size_t i, double other) {
+    second = std::min(second, std::max(other, cost));
+    if (other < cost) vpl = i;
+    cost = std::min(cost, other);
+  }
+  bool doubtful() const { return second - cost < 1e-5 * (1 + cost); }
+};
+
 inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplState>& vpls,
                                const std::vector<glm::vec4>& radiance, const std::vector<Seen>& points,
-                               const std::vector<double>& p, const Maps& maps, uint32_t paths,
-                               const WeightSettings& settings) {
+                               const Maps& maps, uint32_t paths, const WeightSettings& settings) {
   SharedAreas result;
-  std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0);
-  const double lambda = normalLambda(room, settings.normalWeight);
+  std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0), seenFrom;
+  const auto p = seenDensities(room, vpls, points, maps, float(settings.clamp), nullptr, &seenFrom);
+  const double lambda = normalLambda(room, settings.normalWeight), least = leastDensity(p, settings.areaCap);
+  const auto part = [&](size_t i) { return std::min({p[i] / least, seenFrom[i] / 16, 1.0}); };
+  const auto give = [&](size_t vpl, uint32_t side, double share) {
+    count[vpl] += share;
+    const double own = radiance[vpls[vpl].side].w;
+    light[vpl] += share * (own > 0 ? std::min(radiance[side].w / own, 16.0) : 1);
+  };
   uint32_t found = 0;
   for (uint32_t path = 0; path < paths; ++path) {
     const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
@@ -349,30 +376,27 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
     if (s == scene::kNoSide) continue;
     ++found;
     const scene::VoxelSide& side = room.voxels.surface[s];
-    double best = 1e300, second = 1e300;
-    size_t owner = vpls.size();
+    Nearest owner{vpls.size()}, whole{vpls.size()};
     for (size_t i = 0; i < vpls.size(); ++i) {
       if (!(p[i] > 0)) continue;
       const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
       const bool same = (radiance[vpls[i].side].w > 0) == (radiance[s].w > 0);
       const double cost = glm::dot(d, d) + (same ? 0 : 1e20) +
                           lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
-      second = std::min(second, std::max(cost, best));
-      if (cost < best) {
-        best = cost;
-        owner = i;
-      }
+      owner.offer(i, cost);
+      if (part(i) >= 1) whole.offer(i, cost);
     }
-    if (owner == vpls.size()) continue;
-    result.doubtful += second - best < 1e-5 * (1 + best);
-    count[owner] += 1;
-    const double own = radiance[vpls[owner].side].w;
-    light[owner] += own > 0 ? std::min(radiance[s].w / own, 16.0) : 1;
+    if (owner.vpl == vpls.size()) continue;
+    const bool alone = owner.vpl == whole.vpl || whole.vpl == vpls.size();
+    const double kept = alone ? 1 : std::floor(part(owner.vpl) * 1024 + 0.5) / 1024;
+    result.doubtful += owner.doubtful() || (!alone && whole.doubtful());
+    result.passed += 1 - kept;
+    give(owner.vpl, s, kept);
+    if (kept < 1) give(whole.vpl, s, 1 - kept);
   }
   result.area = pdfAreas(vpls, p, settings.areaCap, double(paths) / std::max(found, 1u));
-  const double least = leastDensity(p, settings.areaCap);
   for (size_t i = 0; i < vpls.size(); ++i) {
-    if (p[i] > 0) result.area[i] = count[i] / (paths * std::max(p[i], least));
+    if (p[i] > 0) result.area[i] = count[i] / (paths * p[i]) * seenFrom[i] / (seenFrom[i] + 1);
     result.light.push_back(count[i] > 0 ? light[i] / count[i] : 1);
   }
   const auto own = seenDensities(room, vpls, points, maps, float(settings.clamp), &result.area);
