@@ -1,5 +1,11 @@
 // Light that reaches the eye straight from the lights after one diffuse reflection, plus what surfaces emit.
+#include <array>
+#include <string>
+#include <vector>
+
 #include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/lights.h"
 
 namespace fovea::passes {
 namespace {
@@ -36,12 +42,18 @@ class Direct : public Pass {
   void prepare(PrepareContext& ctx) override {
     const std::string& filter = ctx.parameters().text("filter");
     const char* taps = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
-    kernel_ = ctx.compute("direct/direct.comp", {{"SHADOW_FILTER", taps}});
+    for (size_t i = 0; i < kernels_.size(); ++i)
+      kernels_[i] =
+          ctx.compute("direct/direct.comp", {{"SHADOW_FILTER", taps}, {"ONE_LIGHT", std::to_string(i)}});
   }
-  void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("direct"); }
+  void record(RecordContext& ctx) override {
+    const std::vector<scene::Light>& lights = ctx.frame().lights;
+    const bool oneMap = scene::shadowLayers(lights) == 1;
+    ctx.use(kernels_[lights.size() != 1 ? 0 : oneMap ? 2 : 1]).dispatchOver("direct");
+  }
 
  private:
-  Kernel kernel_;
+  std::array<Kernel, 3> kernels_;  // for any number of lights, for one, and for one with one map
 };
 
 FOVEA_PASS(Direct);

@@ -24,6 +24,7 @@ uint shadowFace(vec3 fromLight) {
 
 // Shaders that look up shadows define SHADOW_BINDING, the first of three free bindings of set 0, and have an input port `maps`
 // of bundle `shadow-maps`. SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3 bilinear ones.
+// SHADOW_LAYER, if defined: the one layer there is. A CPU device loads what is found by an index lane by lane.
 #ifdef SHADOW_BINDING
 #ifndef SHADOW_FILTER
 #define SHADOW_FILTER 1
@@ -65,7 +66,11 @@ float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
   float facing = dot(face, fromLight);
   if (facing >= 0.0) return 0.0;
   ShadowReceiver r;
+#ifdef SHADOW_LAYER
+  r.layer = SHADOW_LAYER;
+#else
   r.layer = firstLayer + (uint(light.position.w) == kLightPoint ? shadowFace(fromLight) : 0u);
+#endif
   vec4 right = mapsViews.view[r.layer].right, up = mapsViews.view[r.layer].up, bias = mapsViews.view[r.layer].bias;
   vec4 clip = mapsViews.view[r.layer].worldToClip * vec4(position, 1.0);
   if (clip.w <= 0.0) return 1.0;  // behind a spot light

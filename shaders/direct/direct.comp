@@ -2,8 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 // L = emission + rho / pi * sum over the lights of E_l * visibility_l.
+// Defines: SHADOW_FILTER; ONE_LIGHT, there is one light, 2: with one map; 0: any number. What is known of a single light is found
+// at a constant place: a CPU device loads what is found by an index lane by lane.
 #include "common/scene.glsl"
 #define SHADOW_BINDING 6
+#if ONE_LIGHT == 2
+#define SHADOW_LAYER 0u
+#endif
 #include "common/shadow.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -16,6 +21,13 @@ layout(set = 0, binding = 3, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D gbufferEmission;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D direct;
 
+vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face) {
+  LightSample e = sampleLight(light, position);
+  float cosine = dot(normal, e.direction);
+  if (cosine <= 0.0 || e.irradiance == vec3(0.0)) return vec3(0.0);
+  return e.irradiance * (cosine * lightVisibility(light, firstShadowLayer(light), position, face));
+}
+
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(p, imageSize(direct)))) return;
@@ -23,13 +35,12 @@ void main() {
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   vec3 face = octDecode(imageLoad(gbufferFace, p).xy);
   vec3 irradiance = vec3(0.0);
+#if ONE_LIGHT
+  if (position.w > 0.0) irradiance = irradianceFrom(lights[0], position.xyz, normal, face);
+#else
   uint lightCount = position.w > 0.0 ? frame.lightCount : 0u;  // background: nothing to light
-  for (uint i = 0u; i < lightCount; ++i) {
-    LightSample light = sampleLight(lights[i], position.xyz);
-    float cosine = dot(normal, light.direction);
-    if (cosine <= 0.0 || light.irradiance == vec3(0.0)) continue;
-    irradiance += light.irradiance * (cosine * lightVisibility(lights[i], firstShadowLayer(lights[i]), position.xyz, face));
-  }
+  for (uint i = 0u; i < lightCount; ++i) irradiance += irradianceFrom(lights[i], position.xyz, normal, face);
+#endif
   vec3 radiance = imageLoad(gbufferEmission, p).rgb + imageLoad(gbufferAlbedo, p).rgb * irradiance * (1.0 / kPi);
   imageStore(direct, p, vec4(min(radiance, 65504.0), 1.0));
 }
