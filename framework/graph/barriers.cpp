@@ -125,6 +125,13 @@ void Planner::collectTouches() {
     uint32_t pass = kNone, touch = 0;
   };
   detail::ScratchVector<Seen> seen(resources * 2, scratch_);
+  struct Known {
+    PassKind kind = PassKind::Host;
+    Usage usage = Usage::None;
+    bool reads = false;
+    AccessScope scope;
+  };
+  Known knownScopes[2];  // the latest reader's and the latest writer's: most passes are alike
   touchFirst_.assign(levels_ + 1, 0);
   touches_.reserve(schedule_.order.size() * 2);
   for (uint32_t l = 0; l < levels_; ++l) {
@@ -134,7 +141,11 @@ void Planner::collectTouches() {
       const BoundPass& pass = graph_.passes[p];
       for (const Access& a : pass.accesses) {
         const bool depth = isDepthFormat(graph_.resources[a.resource].desc.format);
-        AccessScope scope = accessScope(pass.declaration->kind, a.usage, a.reads, a.writes, depth);
+        Known& known = knownScopes[a.writes];
+        if (known.kind != pass.declaration->kind || known.usage != a.usage || known.reads != a.reads)
+          known = {pass.declaration->kind, a.usage, a.reads,
+                   accessScope(pass.declaration->kind, a.usage, a.reads, a.writes, depth)};
+        AccessScope scope = known.scope;
         const uint32_t slot =
             a.previous ? groupFirst_[a.resource + 1] - 1 : groupFirst_[a.resource] + a.version;
         scope.layout = a.layout;
@@ -206,7 +217,7 @@ void Planner::leave(uint32_t resource) {
 }
 
 void Planner::frame(bool record) {
-  if (record) plan_.levels.resize(levels_);
+  if (record) plan_.levels.reserve(levels_);
   for (ReadGroup& group : groups_) group.served = false;
   BarrierBatch batch;
   for (uint32_t l = 0; l < levels_; ++l) {
@@ -215,9 +226,11 @@ void Planner::frame(bool record) {
     for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], batch, record);
     for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
     if (!record) continue;
-    plan_.levels[l].before = batch;
-    plan_.levels[l].passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
-                                  schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+    Level level;
+    level.before = batch;
+    level.passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
+                        schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+    plan_.levels.push_back(std::move(level));
   }
   batch = {};
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};

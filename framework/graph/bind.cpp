@@ -58,7 +58,7 @@ std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
 
 void Binder::declare() {
   const size_t count = description_.passes.size();
-  graph_.passes.resize(count);
+  graph_.passes.reserve(count);
   firstPort_.resize(count + 1);
   ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
   passBySymbol_.assign(description_.symbols.size(), kNone);
@@ -72,7 +72,8 @@ void Binder::declare() {
   }
   for (uint32_t p = 0; p < count; ++p) {
     const PassDescription& from = description_.passes[p];
-    BoundPass& pass = graph_.passes[p];
+    BoundPass fresh;  // resize() would fill every byte with zeros first
+    BoundPass& pass = graph_.passes.emplace_back(std::move(fresh));
     pass.name = text(from.name);
     passBySymbol_[from.name] = p;
     firstPort_[p] = static_cast<uint32_t>(ports_.size());
