@@ -3,7 +3,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 // The pixels outside the blocks that are shaded: the base, times reflectance, with direct light. Defines: HAS_DIRECT.
 
-layout(local_size_x = 16, local_size_y = 4) in;
+layout(local_size_x = 64) in;
 
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferAlbedo;

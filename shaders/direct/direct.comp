@@ -11,7 +11,7 @@
 #endif
 #include "common/shadow.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 // Images and not textures: on lavapipe a load from a texture costs several times as much.
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;

@@ -5,7 +5,7 @@
 // that positions carry none of the rasteriser's snapping and interpolation (visibility buffer, Burns and Hunt, JCGT 2013).
 #include "common/scene.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform utexture2D seen;
 layout(set = 0, binding = 1, rgba32f) uniform writeonly image2D gbufferPosition;
