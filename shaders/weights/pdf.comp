@@ -20,7 +20,6 @@ layout(set = 0, std430) writeonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 #if SHARED
 layout(set = 0, std430) readonly buffer SumsBlock { uvec2 list[]; } sums;
-layout(set = 0) uniform samplerBuffer seenFrom;
 #endif
 layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
 
@@ -39,9 +38,7 @@ void main() {
   float p = texelFetch(densities, int(i)).r;
   float area = there && least > 0.0 ? 1.0 / (found * max(p, least)) : 0.0;
 #if SHARED
-  // 1 / p_l is larger in the mean than what p_l averages to, by the relative variance of p_l, which is 1 / n with n points.
-  float n = texelFetch(seenFrom, int(i)).r;
-  if (there && p > 0.0) area = float(sums.list[i].x) / (kPathUnits * float(tried) * p) * (n / (n + 1.0));
+  if (there && p > 0.0) area = float(sums.list[i].x) / (kPathUnits * float(tried) * p);
 #endif
   areas.list[i] = area;
   if (there && !(p > 0.0)) atomicAdd(counters.unseen, 1u);

@@ -45,7 +45,7 @@ const float kThinSite = -2.0;
 
 // Which part of the paths that end nearest to it a VPL keeps, see share.comp. p: its density; least: that counts;
 // seenFrom: screen points that p is an average of.
-const float kEnoughPoints = 16.0;
+const float kEnoughPoints = 4.0;
 
 float partKept(float p, float least, float seenFrom) { return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0); }
 

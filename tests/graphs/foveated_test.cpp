@@ -309,7 +309,7 @@ TEST(Foveated, BiasOfOursByWeight) {
         EXPECT_LE(worst[weights], 0.05);
       }
     }
-    EXPECT_LE(worst["importance-area"], large ? 0.2 : 0.05) << e.name;
+    EXPECT_LE(worst["importance-area"], large ? 0.15 : 0.05) << e.name;
     EXPECT_LE(worst["importance-area"], std::min({worst["pdf"], worst["area"], worst["constant"]})) << e.name;
   }
 }

@@ -327,7 +327,7 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
 
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
 // VPL of its kind, by trying every one. A VPL that the region hardly sees, p below the least density or from
-// less than 16 points, keeps as small a part of it (in 1024ths), and the nearest of all others gets the rest.
+// less than 4 points, keeps as small a part of it (in 1024ths), and the nearest of all others gets the rest.
 // `light`: mean direct light of the paths in units of the VPL's own. gain: p by the disc of a cell over p by
 // that of the VPL's own area. doubtful: paths that two VPLs are equally near to. passed: paths that were
 // passed on.
@@ -356,7 +356,7 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
   std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0), seenFrom;
   const auto p = seenDensities(room, vpls, points, maps, float(settings.clamp), nullptr, &seenFrom);
   const double lambda = normalLambda(room, settings.normalWeight), least = leastDensity(p, settings.areaCap);
-  const auto part = [&](size_t i) { return std::min({p[i] / least, seenFrom[i] / 16, 1.0}); };
+  const auto part = [&](size_t i) { return std::min({p[i] / least, seenFrom[i] / 4, 1.0}); };
   const auto give = [&](size_t vpl, uint32_t side, double share) {
     count[vpl] += share;
     const double own = radiance[vpls[vpl].side].w;
@@ -396,7 +396,7 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
   }
   result.area = pdfAreas(vpls, p, settings.areaCap, double(paths) / std::max(found, 1u));
   for (size_t i = 0; i < vpls.size(); ++i) {
-    if (p[i] > 0) result.area[i] = count[i] / (paths * p[i]) * seenFrom[i] / (seenFrom[i] + 1);
+    if (p[i] > 0) result.area[i] = count[i] / (paths * p[i]);
     result.light.push_back(count[i] > 0 ? light[i] / count[i] : 1);
   }
   const auto own = seenDensities(room, vpls, points, maps, float(settings.clamp), &result.area);
