@@ -8,8 +8,9 @@
 // (discs.comp) or, where that is asked for, with the clamp, whose light comes back to the region's mean.
 //
 // A VPL that the region hardly sees (one in a crack, or within what its voxel averages) would have to shine without bounds to
-// bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path; the rest
-// goes to the nearest VPL that is seen well, so that no light is lost: a third of it in rooms full of small things.
+// bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path, and
+// likewise one whose p_l is the average of less than a few points (partKept()); the rest goes to the nearest VPL that is seen
+// well, so that no light is lost: a third of it in rooms full of small things.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
