@@ -37,7 +37,7 @@ class Deferred : public Pass {
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(), Usage::Sampled),
+             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead),
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
@@ -46,7 +46,9 @@ class Deferred : public Pass {
          "atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
          "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
         .makeOptional();
-    d.input("direct", image2D(), Usage::Sampled, "rgb: radiance to add the indirect light to").makeOptional();
+    d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: radiance to add the indirect light to")
+        .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageWrite,

@@ -13,8 +13,9 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTile =
-    16;  // pixels a side that a work group of warp.comp works on: whole blocks of any size allowed
+constexpr uint32_t kTile = 16;  // pixels a side that a work group of fill.comp works on: whole blocks of any
+                                // size allowed
+constexpr uint32_t kRowWidth = 64, kRows = 4;  // pixels that one of warp.comp works on
 
 class Reproject : public Pass {
  public:
@@ -23,10 +24,11 @@ class Reproject : public Pass {
         "reproject",
         "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
+    const SizeExpr tiles = ceilDiv(width, kTile) * ceilDiv(height, kTile);
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(), Usage::Sampled)},
+             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead)},
             "surfaces seen by the second eye");
     d.input("source_gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
@@ -35,7 +37,8 @@ class Reproject : public Pass {
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: what is warped, of the first eye: `irradiance` of pass deferred");
     d.output(
-        "irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
+        "irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height),
+        Usage::StorageRead | Usage::StorageWrite,
         "rgb: the source's, warped; a: 1 where it is known, 0.5 where it is that of pixels nearby, 0 where "
         "there is neither, and in the background");
     const SizeExpr blocks =
@@ -50,9 +53,14 @@ class Reproject : public Pass {
                 "groups of an indirect dispatch, a column for 256 blocks and a row for a pixel of a block; "
                 "w: blocks")},
         "what the second eye has to shade");
-    d.scratch("tile_blocks", buffer("uint", 4, ceilDiv(width, kTile) * ceilDiv(height, kTile)),
-              Usage::StorageRead | Usage::StorageWrite,
+    d.scratch("tile_blocks", buffer("uint", 4, tiles),
+              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
               "blocks to shade in each tile of 16 x 16 pixels, then in those before it");
+    d.scratch("open_tiles", buffer("TileDispatch", 16),
+              Usage::StorageRead | Usage::StorageWrite | Usage::Indirect | Usage::TransferWrite,
+              "dispatch for `open_list`, a group more than it has tiles");
+    d.scratch("open_list", buffer("uint", 4, tiles), Usage::StorageRead | Usage::StorageWrite,
+              "tiles with a pixel without a source, in any order");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
     d.counter("new_pixels", "of these, pixels without a source");
@@ -71,7 +79,8 @@ class Reproject : public Pass {
     const gpu::Defines defines{{"INTERLEAVE", std::to_string(n)}};
     gpu::Defines filling = defines;
     filling["FILL"] = std::to_string(ctx.parameters().integer("fill"));
-    warp_ = ctx.compute("reproject/warp.comp", filling);
+    warp_ = ctx.compute("reproject/warp.comp");
+    fill_ = ctx.compute("reproject/fill.comp", filling);
     scan_ = ctx.compute("reproject/scan.comp", defines);
     compact_ = ctx.compute("reproject/compact.comp", defines);
   }
@@ -79,10 +88,18 @@ class Reproject : public Pass {
   void record(RecordContext& ctx) override {
     const Parameters& p = ctx.parameters();
     const auto tiles = uint32_t(ctx.count("tile_blocks"));
+    const VkExtent3D size = ctx.extent("irradiance");
+    const auto groups = [](uint32_t pixels, uint32_t each) { return (pixels + each - 1) / each; };
+    const float leastCos = std::cos(float(p.real("normal_angle")) * 0.017453293f);
+    ctx.fill("tile_blocks", 0);
+    ctx.fill("open_tiles", 1);
+    ctx.barrier();
     ctx.use(warp_)
         .constant("sourceWorldToClip", sourceView(ctx).worldToClip)
-        .constant("leastCos", std::cos(float(p.real("normal_angle")) * 0.017453293f))
-        .dispatchOver("irradiance");
+        .constant("leastCos", leastCos)
+        .dispatch(groups(size.width, kRowWidth), groups(size.height, kRows));
+    ctx.barrier();
+    ctx.use(fill_).constant("leastCos", leastCos).dispatchIndirect("open_tiles");
     ctx.barrier();
     ctx.use(scan_).constant("tiles", tiles).dispatch(1);
     ctx.barrier();
@@ -118,7 +135,7 @@ class Reproject : public Pass {
                 "there is: " + known);
   }
 
-  Kernel warp_, scan_, compact_;
+  Kernel warp_, fill_, scan_, compact_;
 };
 
 FOVEA_PASS(Reproject);

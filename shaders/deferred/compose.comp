@@ -1,5 +1,4 @@
 #version 460
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // The pixels outside the blocks that are shaded: the base, times reflectance, with direct light. Defines: HAS_DIRECT.
 
@@ -14,7 +13,7 @@ layout(set = 0, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, rgba16f) uniform writeonly image2D radiance;
 layout(set = 0, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
 #if HAS_DIRECT
-layout(set = 0) uniform texture2D direct;
+layout(set = 0, rgba16f) uniform readonly image2D direct;
 #endif
 
 void main() {
@@ -28,7 +27,7 @@ void main() {
   vec3 reflected = imageLoad(gbufferAlbedo, p).rgb * e, total = reflected;
   if (!surface) total = reflected = vec3(0.0);
 #if HAS_DIRECT
-  total += texelFetch(direct, p, 0).rgb;
+  total += imageLoad(direct, p).rgb;
 #endif
   imageStore(irradiance, p, vec4(e, 1.0));
   imageStore(indirect, p, vec4(reflected, 1.0));

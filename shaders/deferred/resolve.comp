@@ -52,7 +52,7 @@ layout(set = 0, binding = 13, std430) buffer Edges { uint x, y, z, end; } edges;
 layout(set = 0, binding = 14, std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
 #endif
 #if HAS_DIRECT
-layout(set = 0, binding = 12) uniform texture2D direct;
+layout(set = 0, binding = 12, rgba16f) uniform readonly image2D direct;
 #endif
 
 #if MASKED
@@ -262,7 +262,7 @@ void write(ivec2 p, bool surface, vec3 e) {
   vec3 reflected = surface ? imageLoad(gbufferAlbedo, p).rgb * e : vec3(0.0);
   vec3 total = reflected;
 #if HAS_DIRECT
-  total += texelFetch(direct, p, 0).rgb;
+  total += imageLoad(direct, p).rgb;
 #endif
   imageStore(irradiance, p, vec4(e, 1.0));
   imageStore(indirect, p, vec4(reflected, 1.0));

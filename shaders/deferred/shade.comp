@@ -29,7 +29,7 @@ layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
 layout(set = 0, binding = 2, std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
 layout(set = 0, binding = 3, rgba16f) uniform image2D partial;
 #if SHADOWED
-layout(set = 0, binding = 4) uniform texture2D gbufferFace;
+layout(set = 0, binding = 4, rg16_snorm) uniform readonly image2D gbufferFace;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
 #endif
 
@@ -177,7 +177,7 @@ void main() {
     receivers[k].position = position.xyz;
     receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
 #if SHADOWED
-    receivers[k].face = octDecode(texelFetch(gbufferFace, p, 0).xy);
+    receivers[k].face = octDecode(imageLoad(gbufferFace, p).xy);
 #endif
     receivers[k].sum = vec3(0.0);
   }

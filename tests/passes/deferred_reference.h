@@ -58,14 +58,14 @@ struct GBuffer {
       position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
       half(normal, {p.normal.x, p.normal.y, p.normal.z, 0});
       const glm::vec2 oct = octEncode(glm::normalize(p.normal));
-      half(face, {oct.x, oct.y});
+      for (const float v : {oct.x, oct.y}) face.push_back(glm::packSnorm1x16(v));
       half(albedo, {p.albedo.r, p.albedo.g, p.albedo.b, 0});
     }
     const auto w = uint32_t(width), h = uint32_t(height);
     test.viewSize(w, h);
     test.image(port + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
     test.image(port + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
-    if (members > 2) test.image(port + ".face", VK_FORMAT_R16G16_SFLOAT, w, h, 1, face);
+    if (members > 2) test.image(port + ".face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
     if (members > 3) test.image(port + ".albedo", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
   }
 };

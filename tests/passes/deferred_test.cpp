@@ -284,7 +284,8 @@ INSTANTIATE_TEST_SUITE_P(Pages, Counts, testing::Values(1, 2, 63, 1000, 1024, 10
 TEST(Deferred, EmptySlotsGiveNoLight) {
   const GBuffer g = makeFloor(8, 8, 0.1f);
   PassTest test("deferred");
-  test.image("direct", VK_FORMAT_R32G32B32A32_SFLOAT, 8, 8, 1, std::vector<float>(8 * 8 * 4, 0.25f));
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1,
+             std::vector<uint16_t>(8 * 8 * 4, glm::packHalf1x16(0.25f)));
   const auto image = run(test, g, std::vector<Vpl>(100), 4);
   const auto radiance = test.floats("radiance");
   for (size_t i = 0; i < image.size(); i += 4) {
@@ -300,8 +301,10 @@ TEST(Deferred, BackgroundShowsTheDirectImageOnly) {
       if ((x / 5 + y / 4) % 2 == 0) g.pixels[size_t(y * g.width + x)].distance = 0;
   std::vector<float> direct;
   for (size_t i = 0; i < g.pixels.size(); ++i) direct.insert(direct.end(), {0.125f * float(i % 8), 1, 2, 1});
+  std::vector<uint16_t> half;
+  for (float v : direct) half.push_back(glm::packHalf1x16(v));
   PassTest test("deferred");
-  test.image("direct", VK_FORMAT_R32G32B32A32_SFLOAT, 33, 17, 1, direct);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 33, 17, 1, half);
   const auto vpls = randomVpls(200);
   const auto image = run(test, g, vpls, 4), indirect = test.floats("indirect"), radiance = test.floats("radiance");
   size_t surfaces = 0;

@@ -1,0 +1,111 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+// The listed tiles, those with pixels without a source. Such a pixel takes the light of pixels of its surface at most FILL
+// pixels away, in its tile, that have one: nearer than the interleaved samples that shading would gather. Where there are
+// none it makes its whole block be shaded. One tile a work group.
+// Defines: INTERLEAVE, pixels a side of a block; FILL, 0: no such pixels.
+#include "common/scene.glsl"
+
+const int kTile = 16, kBlocksPerSide = kTile / INTERLEAVE;
+const uint kThreads = 64u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
+layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
+layout(set = 0, rg16_snorm) uniform readonly image2D gbufferFace;
+layout(set = 0, rgba16f) uniform image2D irradiance;
+layout(set = 0, r8) uniform writeonly image2D shadeMask;
+layout(set = 0, std430) writeonly buffer TileBlocks { uint count[]; } tileBlocks;
+layout(set = 0, std430) readonly buffer OpenList { uint list[]; } openList;
+layout(set = 0, std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
+
+layout(push_constant) uniform Constants {
+  float planeTolerance;  // in parts of the distance to the eye
+  float leastCos;
+};
+
+shared vec4 tile[kPixels];  // irradiance; a: 1 where it has a source
+shared uint open[kPixels];  // pixels of the tile without one
+shared uint openCount, blocks;
+shared uint newInBlock[kBlocks];
+
+ivec2 placeOf(uint index) { return ivec2(int(index) % kTile, int(index) / kTile); }
+
+uint blockOf(uint index) {
+  ivec2 block = placeOf(index) / INTERLEAVE;
+  return uint(block.y * kBlocksPerSide + block.x);
+}
+
+// Mean over the pixels of the surface around, nearer ones with more weight; a: 0 without one.
+vec4 fromNeighbours(ivec2 corner, ivec2 local) {
+  vec4 sum = vec4(0.0);
+  vec3 origin = vec3(0.0);
+  vec4 position = imageLoad(gbufferPosition, corner + local);
+  vec3 normal = imageLoad(gbufferNormal, corner + local).xyz, face = octDecode(imageLoad(gbufferFace, corner + local).xy);
+  float tolerance = planeTolerance * position.w;
+  const int kSide = 2 * FILL + 1;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    ivec2 d = ivec2(i % kSide, i / kSide) - FILL, q = local + d;
+    if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, ivec2(kTile)))) continue;
+    vec4 value = tile[q.y * kTile + q.x];
+    if (value.a == 0.0) continue;
+    bool same = abs(dot(imageLoad(gbufferPosition, corner + q).xyz - position.xyz, face)) <= tolerance &&
+                dot(imageLoad(gbufferNormal, corner + q).xyz, normal) >= leastCos;
+    if (!same) continue;
+    if (sum.a == 0.0) origin = value.rgb;
+    float w = 1.0 / float(d.x * d.x + d.y * d.y);
+    sum += w * vec4(value.rgb - origin, 1.0);
+  }
+  return vec4(origin + sum.rgb / max(sum.a, 1e-12), sum.a);
+}
+
+void main() {
+  if (gl_WorkGroupID.x + 1u == gl_NumWorkGroups.x) return;  // one more than there are tiles
+  uint thread = gl_LocalInvocationIndex, listed = openList.list[gl_WorkGroupID.x];
+  ivec2 size = imageSize(irradiance);
+  uint columns = uint((size.x + kTile - 1) / kTile);
+  ivec2 corner = ivec2(listed % columns, listed / columns) * kTile;
+  for (uint i = thread; i < kBlocks; i += kThreads) newInBlock[i] = 0u;
+  if (thread == 0u) openCount = blocks = 0u;
+  barrier();
+
+  for (uint i = thread; i < kPixels; i += kThreads) {
+    ivec2 p = corner + placeOf(i), inside = min(p, size - 1);
+    vec4 light = imageLoad(irradiance, inside);
+    bool surface = p == inside && imageLoad(gbufferPosition, inside).w > 0.0;
+    tile[i] = surface ? light : vec4(0.0);
+    if (surface && light.a == 0.0) open[atomicAdd(openCount, 1u)] = i;
+  }
+  barrier();
+
+  uint filled = 0u;
+  for (uint item = thread; item < openCount; item += kThreads) {
+    uint i = open[item];
+    vec4 light = fromNeighbours(corner, placeOf(i));
+    if (light.a > 0.0) {
+      ++filled;
+      imageStore(irradiance, corner + placeOf(i), vec4(light.rgb, 0.5));
+    } else {
+      atomicOr(newInBlock[blockOf(i)], 1u);
+    }
+  }
+  barrier();
+
+  uint shaded = 0u;
+  for (uint i = thread; i < kPixels; i += kThreads) {
+    ivec2 p = corner + placeOf(i);
+    if (newInBlock[blockOf(i)] == 0u || any(greaterThanEqual(p, size))) continue;
+    imageStore(shadeMask, p, vec4(1.0));
+    if (imageLoad(gbufferPosition, p).w > 0.0) ++shaded;
+  }
+  for (uint i = thread; i < kBlocks; i += kThreads)
+    if (newInBlock[i] != 0u) atomicAdd(blocks, 1u);
+  barrier();
+  if (thread == 0u) tileBlocks.count[listed] = blocks;
+  filled = subgroupAdd(filled);
+  shaded = subgroupAdd(shaded);
+  if (subgroupElect() && filled > 0u) atomicAdd(counters[2], filled);
+  if (subgroupElect() && shaded > 0u) atomicAdd(counters[3], shaded);
+}
