@@ -1,7 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 // From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only, and the composition
 // with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED, EDGES.
 //
@@ -170,33 +172,57 @@ void take(inout Centre c, vec4 sum, uvec2 bit) {
 // Where the sample of a subset is in the window.
 ivec2 placeInWindow(ivec2 offset) { return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2))); }
 
-// Looks for the missing subsets; those found leave the mask. First on the other side of the pixel, where an edge has left the
-// surface. What is not there comes from anywhere in the wide window, in a loop of its own: on a CPU device every turn of the
-// first one would go through all of it. window: look in the window, too, where the subsets were missing by other bounds.
-void searchWider(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool window) {
-  uvec2 left = c.missing, bit;
-  while ((left.x | left.y) != 0u) {
-    int subset = nextSubset(left, bit);
-    ivec2 inside = placeInWindow(ivec2(subset % INTERLEAVE, subset / INTERLEAVE));
-    ivec2 across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
-    vec4 sum = vec4(0.0);
-    addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
-    addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
-    addSample(sum, c, p, across, size, plane, least);
-    take(c, sum, bit);
+// The sample of a subset on the other side of the pixel, where an edge has left the surface.
+vec4 lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
+  ivec2 inside = placeInWindow(offset), across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
+  vec4 sum = vec4(0.0);
+  addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
+  addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
+  addSample(sum, c, p, across, size, plane, least);
+  return sum;
+}
+
+// From anywhere in the wide window, but for where it was looked for before: of its 4 x 4 samples the four in the middle are the
+// one in the window and those on the other side. window: look in the window, too, where it was missing by other bounds.
+vec4 lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least, bool window) {
+  ivec2 first = offset - 2 * INTERLEAVE;
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 12; ++i) {
+    int place = i < 4 ? i : i < 8 ? 4 * (i / 2 - 1) + 3 * (i & 1) : i + 4;
+    addSample(sum, c, p, first + INTERLEAVE * ivec2(place & 3, place >> 2), size, plane, least);
   }
-  left = c.missing;
-  while ((left.x | left.y) != 0u) {
-    int subset = nextSubset(left, bit);
-    ivec2 offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE), first = offset - 2 * INTERLEAVE;
-    vec4 sum = vec4(0.0);
-    // Of its 4 x 4 samples the four in the middle are the one in the window and those on the other side.
-    for (int i = 0; i < 12; ++i) {
-      int place = i < 4 ? i : i < 8 ? 4 * (i / 2 - 1) + 3 * (i & 1) : i + 4;
-      addSample(sum, c, p, first + INTERLEAVE * ivec2(place & 3, place >> 2), size, plane, least);
+  if (window) addSample(sum, c, p, placeInWindow(offset), size, plane, least);
+  return sum;
+}
+
+// Looks for the missing subsets of the `wanted` pixels; those found leave the mask. Some pixels miss many and most miss few or
+// none, so that a subgroup shares them out: each lane looks for one subset of one of its pixels, and hands what it finds to the
+// lane of that pixel. On a CPU device all lanes would wait for the pixel that misses most.
+void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool wanted, bool across, bool window) {
+  uvec2 left = wanted ? c.missing : uvec2(0u);
+  uint mine = uint(bitCount(left.x) + bitCount(left.y)), end = subgroupInclusiveAdd(mine);
+  uint lanes = subgroupBallotBitCount(subgroupBallot(true)), total = subgroupMax(end);
+  for (uint first = 0u; first < total; first += lanes) {
+    uint item = first + gl_SubgroupInvocationID, owner = 0u;
+    for (uint lane = 0u; lane + 1u < lanes; ++lane) owner += uint(subgroupShuffle(end, lane) <= item);
+    uint before = item - subgroupShuffle(end - mine, owner);
+    uvec2 its = subgroupShuffle(left, owner), bit;
+    int subset = nextSubset(its, bit);
+    for (uint i = 0u; i < min(before, kSubsets); ++i) subset = nextSubset(its, bit);
+    Centre other;
+    other.position = subgroupShuffle(c.position, owner);
+    other.normal = subgroupShuffle(c.normal, owner);
+    float otherPlane = subgroupShuffle(plane, owner);
+    ivec2 at = subgroupShuffle(p, owner), offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE);
+    vec4 sum = across ? lookAcross(other, at, offset, size, otherPlane, least)
+                      : lookWider(other, at, offset, size, otherPlane, least, window);
+    uint from = owner | uint(subset) << 16u;
+    for (uint lane = 0u; lane < min(lanes, total - first); ++lane) {
+      uint to = subgroupShuffle(from, lane), found = to >> 16u;
+      vec4 handed = subgroupShuffle(sum, lane);
+      if ((to & 0xffffu) == gl_SubgroupInvocationID)
+        take(c, handed, found < 32u ? uvec2(1u << found, 0u) : uvec2(0u, 1u << (found - 32u)));
     }
-    if (window) addSample(sum, c, p, placeInWindow(offset), size, plane, least);
-    take(c, sum, bit);
   }
 }
 
@@ -217,43 +243,42 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
 }
 #endif
 
-// The mean over the subsets from what the window held; whether less than half of them was found on the surface.
-vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, out bool incomplete) {
+// The mean over the subsets from what the window held; whether less than half of them was found on the surface. All lanes
+// of a subgroup come here, those that have no pixel, too: not `wanted`.
+vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
   incomplete = false;
-  if (c.found < kSubsets) {
-    if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
-      c.sum = imageLoad(partial, p).rgb;
-      c.found = 1u;
-      c.missing = uvec2(0u);
-    }
-#if MASKED
-    float inWindow = float(c.found);
-    if (c.outside.a > 0.0) {
-      searchBlock(c, p, size);
-      c.missing = uvec2(0u);  // the base also stands in for those that are neither in the window nor in the block
-    }
-#endif
-    float plane = c.plane, least = filterCos;
-    bool based = false;
-#if MASKED
-    based = c.outside.a > 0.0;
-#endif
-    bool again = false;  // by wider bounds. A loop and not two calls: a second turn that no pixel wants is none
-    do {
-      searchWider(c, p, size, plane, least, again);
-      bool few = 2u * c.found < kSubsets;
-      incomplete = incomplete || few;
-      again = few && !again && !based;
-      plane *= 8.0;
-      least = 0.5;
-    } while (again);
-#if MASKED
-    if (c.outside.a > 0.0) {
-      vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
-      return (inWindow * inside + c.outside.rgb) / (inWindow + c.outside.a);
-    }
-#endif
+  if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
+    c.sum = imageLoad(partial, p).rgb;
+    c.found = 1u;
+    c.missing = uvec2(0u);
   }
+  bool based = false;
+#if MASKED
+  float inWindow = float(c.found);
+  based = c.outside.a > 0.0;
+  if (based) {
+    searchBlock(c, p, size);
+    c.missing = uvec2(0u);  // the base also stands in for those that are neither in the window nor in the block
+  }
+#endif
+  float plane = c.plane, least = filterCos;
+  bool searches = wanted, again = false;  // by wider bounds. A loop and not two calls: a second turn that no pixel wants is none
+  do {
+    search(c, p, size, plane, least, searches, true, false);
+    search(c, p, size, plane, least, searches, false, again);
+    bool few = wanted && 2u * c.found < kSubsets;
+    incomplete = incomplete || few;
+    searches = few && !again && !based;
+    again = true;
+    plane *= 8.0;
+    least = 0.5;
+  } while (subgroupBallot(searches) != uvec4(0u));
+#if MASKED
+  if (based) {
+    vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
+    return (inWindow * inside + c.outside.rgb) / (inWindow + c.outside.a);
+  }
+#endif
   return c.sum / float(c.found);
 }
 #endif
@@ -273,15 +298,14 @@ void write(ivec2 p, bool surface, vec3 e) {
 void main() {
   ivec2 size = imageSize(gbufferPosition);
   uint item = gl_GlobalInvocationID.x;
-  bool incomplete = false;
-  if (item + 1u < texelFetch(edges, 0).w) {
-    uint where = texelFetch(edgePixels, int(item)).x;
-    ivec2 p = ivec2(where & 0xffffu, where >> 16u);
-    Centre centres[kPixels];
-    centres[0] = centreAt(p, size);
-    filterWindows(centres, p, size);
-    write(p, true, meanOfSubsets(centres[0], p, size, incomplete));
-  }
+  bool incomplete, listed = item + 1u < texelFetch(edges, 0).w;
+  uint where = listed ? texelFetch(edgePixels, int(item)).x : 0u;
+  ivec2 p = ivec2(where & 0xffffu, where >> 16u);
+  Centre centres[kPixels];
+  centres[0] = centreAt(p, size);
+  filterWindows(centres, p, size);
+  vec3 mean = meanOfSubsets(centres[0], p, size, listed, incomplete);
+  if (listed) write(p, true, mean);
   uint found = subgroupBallotBitCount(subgroupBallot(incomplete));
   if (subgroupElect() && found > 0u) atomicAdd(counters[1], found);
 }
