@@ -94,7 +94,7 @@ class Deferred : public Pass {
     gpu::Defines filter = defines;
     filter.insert(composition.begin(), composition.end());
     filter["EDGES"] = "0";
-    resolve_ = ctx.compute("deferred/resolve.comp", filter);
+    if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
     filter["EDGES"] = "1";
     edges_ = ctx.compute("deferred/resolve.comp", filter);
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
@@ -105,7 +105,7 @@ class Deferred : public Pass {
     const Parameters& p = ctx.parameters();
     const VkExtent3D size = ctx.extent("partial");
     const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
-    ctx.fill("edges", 1);
+    if (!masked_) ctx.fill("edges", 1);
     for (uint32_t page = 0; page < pages_.size(); ++page) {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
       if (page > 0) ctx.barrier();
@@ -119,17 +119,17 @@ class Deferred : public Pass {
                           side_ * side_);
     }
     ctx.barrier();
-    Commands resolve = ctx.use(resolve_);
     const float filterCos = std::cos(float(p.real("filter_angle")) * 0.017453293f);
-    resolve.constant("filterCos", filterCos);
     if (masked_) {
-      resolve.dispatchIndirect("shade.dispatch");
+      ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("shade.dispatch");
       ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
     } else {
-      resolve.dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
+      ctx.use(resolve_)
+          .constant("filterCos", filterCos)
+          .dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
+      ctx.barrier();
+      ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
     }
-    ctx.barrier();
-    ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 

@@ -8,6 +8,7 @@
 // with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED, EDGES.
 //
 // Pixels whose window does not hold all subsets are listed, and done by EDGES: few, and next to each other in its work groups.
+// With MASKED most windows leave the blocks; EDGES does all pixels of the blocks then, without a list.
 //
 // Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once; where all of it lies on the surface of the pixel, the
 // mean over it is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
@@ -23,7 +24,7 @@
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
-#if MASKED || EDGES
+#if EDGES
 const int kPixels = 1;  // that are filtered together
 #else
 const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
@@ -46,7 +47,8 @@ layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
 layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
-#if EDGES
+#if MASKED
+#elif EDGES
 layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
 layout(set = 0, binding = 14) uniform usamplerBuffer edgePixels;  // x | y << 16
 #else
@@ -227,15 +229,18 @@ void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool 
 }
 
 #if MASKED
-// Samples of missing subsets from the pixel's own block, where each is.
+// Samples of missing subsets from the pixel's own block, where each is. What is in the window, too, has been looked at.
 void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
   ivec2 corner = p / BLOCK * BLOCK;
   for (int i = 0; i < BLOCK * BLOCK; ++i) {
-    ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), inside = min(q, size - 1);
-    uvec2 bit = subsetBit((q - p + BLOCK) % INTERLEAVE);
-    bool wanted = q == inside && (c.missing & bit) != uvec2(0u);
-    if (wanted && sameSurface(c, imageLoad(gbufferPosition, inside), imageLoad(gbufferNormal, inside).xyz, c.plane, filterCos)) {
-      c.sum += imageLoad(partial, inside).rgb;
+    ivec2 q = corner + ivec2(i % BLOCK, i / BLOCK), d = q - p;
+    bool inWindow = all(greaterThanEqual(d, ivec2(-INTERLEAVE / 2))) && all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
+    uvec2 bit = subsetBit((d + BLOCK) % INTERLEAVE);
+    bool wanted = c.outside.a > 0.0 && !inWindow && all(lessThan(q, size)) && (c.missing & bit) != uvec2(0u);
+    int turns = wanted ? 1 : 0;  // a loop of no turns is skipped where a branch is not, on a CPU device
+    for (int k = 0; k < turns; ++k) {
+      if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) continue;
+      c.sum += imageLoad(partial, q).rgb;
       ++c.found;
       c.missing &= ~bit;
     }
@@ -256,8 +261,8 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
 #if MASKED
   float inWindow = float(c.found);
   based = c.outside.a > 0.0;
+  searchBlock(c, p, size);
   if (based) {
-    searchBlock(c, p, size);
     c.missing = uvec2(0u);  // the base also stands in for those that are neither in the window nor in the block
   }
 #endif
@@ -295,19 +300,37 @@ void write(ivec2 p, bool surface, vec3 e) {
 }
 
 #if EDGES
+#if MASKED
+const int kItems = int(kListedPixels);
+ivec2 itemAt(int k, ivec2 size) { return listedPixel(k, size); }
+#else
+const int kItems = 1;
+ivec2 itemAt(int k, ivec2 size) {
+  uint item = gl_GlobalInvocationID.x;
+  if (item + 1u >= texelFetch(edges, 0).w) return size;
+  uint where = texelFetch(edgePixels, int(item)).x;
+  return ivec2(where & 0xffffu, where >> 16u);
+}
+#endif
+
 void main() {
   ivec2 size = imageSize(gbufferPosition);
-  uint item = gl_GlobalInvocationID.x;
-  bool incomplete, listed = item + 1u < texelFetch(edges, 0).w;
-  uint where = listed ? texelFetch(edgePixels, int(item)).x : 0u;
-  ivec2 p = ivec2(where & 0xffffu, where >> 16u);
-  Centre centres[kPixels];
-  centres[0] = centreAt(p, size);
-  filterWindows(centres, p, size);
-  vec3 mean = meanOfSubsets(centres[0], p, size, listed, incomplete);
-  if (listed) write(p, true, mean);
-  uint found = subgroupBallotBitCount(subgroupBallot(incomplete));
+  uint surfaces = 0u, found = 0u;
+  for (int k = 0; k < kItems; ++k) {
+    ivec2 p = itemAt(k, size);  // past the end of the list: `size`
+    Centre centres[kPixels];
+    centres[0] = centreAt(p, size);
+    filterWindows(centres, p, size);
+    bool surface = centres[0].plane >= 0.0, incomplete;
+    vec3 mean = meanOfSubsets(centres[0], min(p, size - 1), size, surface, incomplete);
+    if (all(lessThan(p, size))) write(p, surface, surface ? mean : vec3(0.0));
+    surfaces += subgroupBallotBitCount(subgroupBallot(surface));
+    found += subgroupBallotBitCount(subgroupBallot(incomplete));
+  }
   if (subgroupElect() && found > 0u) atomicAdd(counters[1], found);
+#if MASKED
+  if (subgroupElect() && surfaces > 0u) atomicAdd(counters[3], surfaces);  // compose.comp counts `pixels`
+#endif
 }
 #else
 // Filters kPixels pixels from `first` downwards and writes them, or lists them. Returns how many of the subgroup show a surface.
@@ -340,17 +363,10 @@ uint resolve(ivec2 first, ivec2 size) {
 
 void main() {
   ivec2 size = imageSize(gbufferPosition);
-  uint surfaces = 0u;
-#if MASKED
-  for (int k = 0; k < kListedPixels; ++k) surfaces += resolve(listedPixel(k, size), size);
-#else
-  surfaces = resolve(ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels)) +
-                         ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size);
-#endif
+  ivec2 corner = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels));
+  uint surfaces = resolve(corner + ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size);
   if (subgroupElect() && surfaces > 0u) {
-#if !MASKED
-    atomicAdd(counters[0], surfaces);  // MASKED: compose.comp counts them
-#endif
+    atomicAdd(counters[0], surfaces);
     atomicAdd(counters[3], surfaces);
   }
 }
