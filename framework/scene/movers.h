@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "framework/base/random.h"
+#include "framework/scene/deform.h"
 #include "framework/scene/motion.h"
 
 namespace fovea::scene {
@@ -54,10 +55,10 @@ inline uint32_t poseHash(const Object& object, size_t index, const Frame& frame)
   auto add = [&](const float* values, size_t count) {
     for (size_t i = 0; i < count; ++i) hash = hashCombine(std::bit_cast<uint32_t>(values[i]), hash);
   };
-  add(&frame.objects[index].toWorld[0][0], 16);
-  if (!object.deforms) return hash;
-  for (const glm::mat4& joint : frame.joints) add(&joint[0][0], 16);
-  add(frame.weights.data(), frame.weights.size());
+  const ObjectPose pose = poseOf(object, index, frame);
+  add(&pose.toWorld[0][0], 16);
+  for (const glm::mat4& joint : pose.joints) add(&joint[0][0], 16);
+  add(pose.weights.data(), pose.weights.size());
   return hash;
 }
 

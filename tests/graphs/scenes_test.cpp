@@ -31,11 +31,11 @@ struct Animated {
   // is dimmer than what is seen of their surface. Measured 0.776, 0.681, 1.042, 0.862, 1.077.
   double low, high;
 };
-const Animated kScenes[] = {{"cornellbox_moving", 0.65, 0.9},
-                            {"atrium", 0.55, 0.8},
-                            {"balcony", 0.9, 1.15},
-                            {"room", 0.75, 1.0},
-                            {"yard", 0.95, 1.2}};
+const Animated kScenes[] = {{"cornellbox_moving", 0.7, 0.85},
+                            {"atrium", 0.6, 0.75},
+                            {"balcony", 0.95, 1.1},
+                            {"room", 0.8, 0.95},
+                            {"yard", 0.95, 1.1}};
 
 const scene::Scene& sceneOf(const std::string& name) {
   static std::map<std::string, scene::Scene> scenes;

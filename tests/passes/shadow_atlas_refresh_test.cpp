@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "framework/scene/load.h"
-#include "framework/scene/scene.h"
-#include "framework/scene/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"
 #include "tests/support/pass_test.h"
@@ -19,11 +15,8 @@
 namespace fovea::test {
 namespace {
 
-using scene::Geometry;
 using scene::Scene;
 using scene::Vpl;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 scene::VplState stateOf(const Vpl& v, float life, float importance) {
   scene::VplState state;
@@ -32,6 +25,17 @@ scene::VplState stateOf(const Vpl& v, float life, float importance) {
   state.life = life;
   state.importance = importance;
   return state;
+}
+
+void runFrame(PassTest& test, uint32_t frame, const std::vector<Vpl>& vpls,
+              const std::vector<scene::VplState>& state) {
+  if (frame == 0) {
+    test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
+  } else {
+    test.set("vpls", vpls);
+    test.set("state", state);
+  }
+  test.run();
 }
 
 // The rule in plain words, over slots in order.
@@ -75,7 +79,6 @@ void checkRefresh(const char* policy, double share) {
   SCOPED_TRACE(policy);
   Scene s = emptyScene();
   addBox(s, 0, {-1, -1, -1}, {1, 1, 1});
-  const Geometry g = scene::flatten(s);
   constexpr uint32_t kSlots = 300;
   std::mt19937 random(17);
   std::vector<Vpl> vpls(kSlots);
@@ -102,13 +105,7 @@ void checkRefresh(const char* policy, double share) {
     }();
     const std::vector<bool> draw = reference.frame(vpls, state, frame, share, policy);
     for (uint32_t i = 0; i < kSlots; ++i) fresh += draw[i] && (state[i].life <= 1 || before[i] == 0);
-    if (frame == 0)
-      test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
-    else {
-      test.set("vpls", vpls);
-      test.set("state", state);
-    }
-    test.run();
+    runFrame(test, frame, vpls, state);
     // What an atlas of this frame alone holds, for the slots that were drawn; the rest as they were.
     PassTest whole("shadow-atlas");
     whole.scene(s).param("size", 8).buffer("vpls", vpls, "Vpl");
@@ -164,13 +161,7 @@ TEST(ShadowAtlasRefresh, StaleMapsThatSeeAMoverAreDrawnFirst) {
       vpls[i] = vpl({0.01f * float(i) + 0.02f * float(frame), 1, 0}, {0, i % 2 == 0 ? 1 : -1, 0.1f});
       state[i] = stateOf(vpls[i], float(frame + 1), i < kSlots - kImportant ? 0.1f : 0.9f);
     }
-    if (frame == 0)
-      test.buffer("vpls", vpls, "Vpl").buffer("state", state, "VplState");
-    else {
-      test.set("vpls", vpls);
-      test.set("state", state);
-    }
-    test.run();
+    runFrame(test, frame, vpls, state);
     const std::vector<float> now = test.values<float>("atlas");
     for (uint32_t i = 0; frame > 0 && i < kSlots; ++i) {
       const bool changed =

@@ -27,8 +27,6 @@ using scene::Geometry;
 using scene::Scene;
 using scene::Vpl;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 void addTriangle(Scene& s, glm::vec3 a, glm::vec3 b, glm::vec3 c, uint32_t material = 0) {
   scene::Primitive p;
   const glm::vec3 n = glm::cross(b - a, c - a);

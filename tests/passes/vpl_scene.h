@@ -2,11 +2,15 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "framework/scene/scene.h"
 #include "framework/scene/vpl.h"
 
 namespace fovea::test {
+
+// What a texel of a shadow map that sees nothing holds.
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A camera and a white material, nothing to see.
 inline scene::Scene emptyScene() {
