@@ -1,12 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_vote : require
 // One work group a slot: would its map come out with other bits if it were drawn again? Not while the VPL stays where it
 // is, and each mover either keeps its pose or lies, then as now, behind what the map holds. Define: MOVERS.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
-layout(local_size_x = 64) in;
+// No more than a CPU device runs at a time: what all invocations of a slot read costs by the invocation.
+const int kRow = 8;
+layout(local_size_x = kRow) in;
 
 layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(set = 0, std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0: there is no map
@@ -48,14 +51,15 @@ void look(uint slot, Vpl v, vec4 sphere) {
   ivec2 first = ivec2(low), last = ivec2(high);
   ivec3 corner = atlasTexel(slot, ivec2(0), layout_);
   float nearest = away - reach;
-  bool seen = nearest <= 0.0;
-  for (int y = first.y + int(gl_LocalInvocationIndex) / 8; y <= last.y; y += 8)
-    for (int x = first.x + int(gl_LocalInvocationIndex) % 8; x <= last.x; x += 8) {
+  bool any_ = nearest <= 0.0;  // one is enough, and mostly it is not far to seek
+  for (int y = first.y; y <= last.y && !any_; ++y)
+    for (int row = first.x; row <= last.x && !any_; row += kRow) {
+      int x = row + int(gl_LocalInvocationIndex);
       vec2 p = paraboloidTexelCentre(ivec2(x, y), layout_.size);
-      float distance_ = uintBitsToFloat(imageLoad(atlas, corner + ivec3(x, y, 0)).r);
-      seen = seen || dot(p, p) < 1.0 && distance_ >= nearest;
+      float distance_ = uintBitsToFloat(imageLoad(atlas, corner + ivec3(min(x, last.x), y, 0)).r);
+      any_ = subgroupAny(x <= last.x && dot(p, p) < 1.0 && distance_ >= nearest);
     }
-  if (seen) atomicOr(found, 1u);
+  if (any_) atomicOr(found, 1u);
 }
 
 void main() {
