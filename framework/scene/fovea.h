@@ -35,6 +35,7 @@ inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
 
 // Parameter `region`.
 inline constexpr uint32_t kRegionFovea = 0u, kRegionImage = 1u;
+inline constexpr uint32_t kRegionMixed = 2u;  // every fifth sample from the image
 
 // Numbers [0, kRegionDraws) of a random stream belong to regionSample.
 inline constexpr uint32_t kRegionTries = 32u, kRegionDraws = 2u * kRegionTries + 2u;
@@ -62,6 +63,34 @@ inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 i
   }
   const glm::vec2 position = high * streamPoint(stream, 2u * kRegionTries);
   return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
+}
+
+// Of the fixed points on screen that pass weights looks from, number i of `points`:
+// shaders/weights/points.comp.
+inline glm::ivec2 screenPoint(uint32_t region, uint32_t i, uint32_t points, const Fovea& fovea,
+                              glm::ivec2 imageSize) {
+  constexpr uint32_t kPointsStream = 0x77656967u;
+  const auto sequence = [](uint32_t k) {
+    return glm::vec2(uniformFloat(0x80000000u + k * 3242174889u),
+                     uniformFloat(0x80000000u + k * 2447445414u));
+  };
+  const uint32_t part = region != kRegionMixed ? region : i % 5u == 4u ? kRegionImage : kRegionFovea;
+  const uint32_t number = region != kRegionMixed ? i : i % 5u == 4u ? i / 5u : i - i / 5u;
+  const glm::vec2 high(imageSize);
+  if (part == kRegionImage)
+    return glm::clamp(glm::ivec2(high * sequence(number)), glm::ivec2(0), imageSize - 1);
+  const glm::vec2 off = glm::max(glm::max(-fovea.centre, fovea.centre - high), glm::vec2(0.0f));
+  const float radius2 = fovea.radius * fovea.radius;
+  const glm::vec2 across(off.y, off.x),
+      reach = glm::sqrt(glm::max(radius2 - across * across, glm::vec2(0.0f)));
+  const glm::vec2 boxLow = glm::max(glm::vec2(0.0f), fovea.centre - reach),
+                  boxHigh = glm::min(high, fovea.centre + reach);
+  for (uint32_t k = 0; glm::dot(off, off) < radius2 && k < kRegionTries; ++k) {
+    const glm::vec2 position = glm::mix(boxLow, boxHigh, sequence(number + k * points)),
+                    d = position - fovea.centre;
+    if (glm::dot(d, d) <= radius2) return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
+  }
+  return regionSample(part, fovea, imageSize, randomStream(0u, 0u, kPointsStream, number));
 }
 
 }  // namespace fovea::scene

@@ -49,6 +49,10 @@ class Deferred : public Pass {
     d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: radiance to add the indirect light to")
         .makeOptional();
+    d.input("near", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: irradiance / pi of each pixel by what is near (pass near-field), to be filtered with that "
+            "of the VPLs")
+        .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageWrite,
@@ -189,6 +193,7 @@ class Deferred : public Pass {
   }
 
   void preparePages(PrepareContext& ctx, gpu::Defines defines) {
+    defines["NEAR"] = ctx.has("near") ? "1" : "0";
     defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
     defines["TILED"] = "0";
     if (ctx.has("atlas")) {

@@ -36,6 +36,8 @@ class Weights : public Pass {
 
   std::string strategy_;
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
+  uint32_t tried_ = 0;   // eye paths of this frame
+  bool traced_ = false;  // the paths come from pass eye-paths
   Kernel tally_, finish_;
   Kernel points_, escapes_, density_, median_, pdf_,
       constant_;                         // `pdf`; `constant` after it; not all: `importance-area`
@@ -67,8 +69,15 @@ PassDeclaration Weights::declaration() {
           "the VPLs as they were to `atlas`: where they shine from");
   d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
           "their shadow maps: for `importance-area` what is seen from where");
+  d.input(
+       "traced_ends", buffer("EyePathEnd", 48), Usage::TexelRead,
+       "of pass eye-paths, whose region and points had best be the same: what `importance-area` shares out "
+       "in place of paths through the voxels and of the VPLs' own light")
+      .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
+  d.output("spread", buffer("VplSpread", 16, 1), Usage::StorageWrite,
+           "x: area of the discs that pass near-field makes up for, m^2");
   addScratch(d);
   d.parameter("strategy", choice("pdf", {"constant", "pdf", "area", "importance-area"}),
               "A_l: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N p), p "
@@ -96,6 +105,10 @@ PassDeclaration Weights::declaration() {
       "kernel", choice("disc", {"disc", "clamp"}),
       "what `importance-area` takes the VPLs to be shaded with, as in pass deferred: with `clamp` the "
       "region's mean gets the light back that the clamp takes");
+  d.parameter(
+      "near_field", real(0, 0, 100),
+      "above 0: the picture gets the light of what is near from pass near-field, as much as discs of so "
+      "many median areas leave out, and no disc of `importance-area` is smaller");
   d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "of the kernel `clamp`");
   d.parameter("sides", choice("lit", {"lit", "all"}),
               "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such "
@@ -147,7 +160,8 @@ void Weights::addScratch(PassDeclaration& d) {
             "1: holds surface (for `area`: to give away)");
   d.scratch("masks", buffer("uint", 4, max(1, bricks * area * ceilDiv(countOf("vpls"), 32))),
             Usage::StorageWrite | Usage::TexelRead, "a bit for each VPL that can be nearest in a brick");
-  d.scratch("sums", buffer("Sum", 8, max(1, countOf("vpls") * owning)), readWrite | Usage::TransferWrite,
+  d.scratch("sums", buffer("Sum", 8, max(1, countOf("vpls") * (owning + shared))),
+            readWrite | Usage::TransferWrite,
             "surface, or paths and their light, given to each VPL, as whole numbers");
 }
 
@@ -159,6 +173,8 @@ void Weights::prepare(PrepareContext& ctx) {
   bricks_ = (ctx.extent("voxels.index").width + kBrick - 1) / kBrick;
   const bool area = strategy_ == "area";
   const std::string shared = strategy_ == "importance-area" ? "1" : "0";
+  traced_ = ctx.has("traced_ends") && shared == "1";
+  const std::string traced = traced_ ? "1" : "0";
   const std::string lit = p.text("sides") == "lit" ? "1" : "0";
   if (area && vplCount_ > kMostCompeting)
     throw Error(ExitCode::BadInput,
@@ -174,7 +190,8 @@ void Weights::prepare(PrepareContext& ctx) {
                 "wire the same VPLs to the atlas and to the weights");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   const bool discs = shared == "1" && p.text("kernel") == "disc";
-  finish_ = ctx.compute("weights/finish.comp", {{"SHARED", shared}, {"GAINS", discs ? "1" : "0"}});
+  finish_ = ctx.compute("weights/finish.comp",
+                        {{"SHARED", shared}, {"TRACED", traced}, {"GAINS", discs ? "1" : "0"}});
   if (area) {
     brick_ = ctx.compute("weights/bricks.comp");
     nearest_ = ctx.compute("weights/nearest.comp", {{"LIT_ONLY", lit}});
@@ -189,9 +206,9 @@ void Weights::prepare(PrepareContext& ctx) {
   median_ = ctx.compute("weights/median.comp", {{"SHARED", shared}});
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
-    paths_ = ctx.compute("weights/paths.comp");
-    share_ = ctx.compute("weights/share.comp");
-    if (discs) discs_ = ctx.compute("weights/discs.comp");
+    if (!traced_) paths_ = ctx.compute("weights/paths.comp");
+    share_ = ctx.compute("weights/share.comp", {{"TRACED", traced}});
+    if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", p.real("near_field") > 0 ? "1" : "0"}});
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");
   }
@@ -202,13 +219,13 @@ void Weights::recordDensities(RecordContext& ctx) {
   const Parameters& p = ctx.parameters();
   const bool shared = strategy_ == "importance-area";
   const uint32_t points = uint32_t(p.integer("points"));
-  const uint32_t tried = shared ? uint32_t(p.integer("paths")) : std::min(points, kEscapePoints);
+  const uint32_t tried = tried_ = traced_  ? uint32_t(ctx.count("traced_ends"))
+                                  : shared ? uint32_t(p.integer("paths"))
+                                           : std::min(points, kEscapePoints);
   ctx.use(points_).dispatchThreads(points);
   ctx.barrier();
-  if (shared)
-    ctx.use(paths_).dispatchThreads(tried);
-  else
-    ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);
+  if (shared && !traced_) ctx.use(paths_).dispatchThreads(tried);
+  if (!shared) ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);
   const bool clamped = shared && p.text("kernel") == "clamp";
   const uint32_t row = std::min(vplCount_, 32768u);
   Commands density = ctx.use(shared ? seen_ : density_);
@@ -221,6 +238,7 @@ void Weights::recordDensities(RecordContext& ctx) {
   if (shared) {
     ctx.use(share_)
         .constant("vplCount", vplCount_)
+        .constant("tried", tried)
         .constant("normalShare", float(p.real("normal_weight")))
         .dispatchThreads(tried);
     ctx.barrier();
@@ -228,7 +246,10 @@ void Weights::recordDensities(RecordContext& ctx) {
   ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatchThreads(vplCount_);
   ctx.barrier();
   if (shared && !clamped) {
-    ctx.use(discs_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
+    ctx.use(discs_)
+        .constant("vplCount", vplCount_)
+        .constant("tried", tried)
+        .dispatch(row, (vplCount_ + row - 1) / row);
     ctx.barrier();
   }
   if (strategy_ != "constant") return;
@@ -269,7 +290,7 @@ void Weights::record(RecordContext& ctx) {
     recordVoronoi(ctx);
   else
     recordDensities(ctx);
-  ctx.use(finish_).constant("vplCount", vplCount_).dispatchThreads(vplCount_);
+  ctx.use(finish_).constant("vplCount", vplCount_).constant("tried", tried_).dispatchThreads(vplCount_);
 }
 
 FOVEA_PASS(Weights);

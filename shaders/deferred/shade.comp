@@ -7,7 +7,7 @@
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (METHOD Eq. 2 without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page;
-// MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
+// NEAR 0/1: with the light of pass near-field; MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
@@ -31,6 +31,10 @@ layout(set = 0, binding = 3, rgba16f) uniform image2D partial;
 #if SHADOWED
 layout(set = 0, binding = 4, rg16_snorm) uniform readonly image2D gbufferFace;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
+#endif
+
+#if NEAR
+layout(set = 0, binding = 6, rgba16f) uniform readonly image2D near;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -213,6 +217,9 @@ void main() {
     if (any(greaterThanEqual(p, size))) continue;
     // Units of `irradiance`: E / pi; a subset stands for all of them.
     vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
+#if NEAR && !ACCUMULATE
+    sum += imageLoad(near, p).rgb;
+#endif
 #if ACCUMULATE
     sum += imageLoad(partial, p).rgb;
 #endif

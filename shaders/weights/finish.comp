@@ -1,5 +1,6 @@
 // VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's place.
-// Defines: SHARED 0/1: strategy `importance-area`; GAINS 0/1: with what discs.comp found.
+// Defines: SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with what
+// discs.comp found.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 #include "common/finite.glsl"
@@ -10,29 +11,55 @@ layout(set = 0) uniform samplerBuffer placed;
 layout(set = 0, std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) writeonly buffer EmittersBlock { Vpl list[]; } emitters;
 layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
+layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
+layout(set = 0, std430) writeonly buffer SpreadBlock { vec4 area; } spread;
 layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
 
 #if GAINS
 layout(set = 0, std430) readonly buffer GainsBlock { float list[]; } gains;
 #endif
-#if SHARED
+#if TRACED
+layout(set = 0) uniform samplerBuffer tracedEnds;
+layout(set = 0) uniform samplerBuffer densities;
+layout(set = 0, std430) readonly buffer SumsBlock { PathSum list[]; } sums;
+
+// Intensity of a VPL of area `area` that shines as its paths do on average; one that the region does not see shines of its
+// own.
+vec3 intensityOf(uint slot, vec3 own, float area) {
+  PathSum sum = sums.list[slot];
+  vec3 light = vec3(sum.lightX, sum.lightY, sum.lightZ) * texelFetch(tracedEnds, 2).w * kPathUnits;
+  if (!(texelFetch(densities, int(slot)).r > 0.0)) return own * area;
+  return sum.paths > 0u ? light / float(sum.paths) * area : vec3(0.0);
+}
+#elif SHARED
 layout(set = 0) uniform samplerBuffer vpls;
 layout(set = 0) uniform samplerBuffer radiosity;
 layout(set = 0) uniform samplerBuffer radiance;
-layout(set = 0, std430) readonly buffer SumsBlock { uvec2 list[]; } sums;
+layout(set = 0, std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 
 // Mean light of the paths given to a VPL over its own, all of it when there are none. Direct light is that at the ends of
 // the paths; for what comes by more bounces the VPL speaks for all of them.
 float meanLight(uint slot, int side, float radiosity) {
-  uvec2 sum = sums.list[slot];
+  PathSum sum = sums.list[slot];
   float own = side >= 0 && side < textureSize(radiance) ? kPi * texelFetch(radiance, side).w : 0.0;
-  if (sum.x == 0u || !(own > 0.0) || !(radiosity > 0.0)) return 1.0;
+  if (sum.paths == 0u || !(own > 0.0) || !(radiosity > 0.0)) return 1.0;
   float direct = min(own / radiosity, 1.0);
-  return 1.0 + direct * (float(sum.y) / float(sum.x) - 1.0);
+  return 1.0 + direct * (float(sum.lightX) / float(sum.paths) - 1.0);
 }
+
+vec3 intensityOf(uint slot, vec3 own, float area) {
+  int side = int(floatBitsToUint(texelFetch(vpls, int(slot) * kStateTexels + 2).w));
+  return own * (area * meanLight(slot, side, texelFetch(radiosity, int(slot)).w));
+}
+#else
+vec3 intensityOf(uint slot, vec3 own, float area) { return own * area; }
 #endif
 
-layout(push_constant) uniform Constants { uint vplCount; };
+layout(push_constant) uniform Constants {
+  uint vplCount;
+  uint tried;  // eye paths, 0: none
+  float nearField;
+};
 
 const float kBrightest = 1e18;  // W/sr: far from any real light, and its products stay finite where it is shaded
 
@@ -41,19 +68,19 @@ void main() {
   if (slot >= vplCount) return;
   int first = 3 * int(slot);
   vec4 place = texelFetch(placed, first), light = texelFetch(placed, first + 2);
-  float area = areas.list[slot], gain = area;
-#if SHARED
-  gain *= meanLight(slot, int(floatBitsToUint(texelFetch(vpls, int(slot) * kStateTexels + 2).w)), texelFetch(radiosity, int(slot)).w);
-#endif
+  float area = areas.list[slot];
+  vec3 intensity = intensityOf(slot, light.rgb, area);
 #if GAINS
-  gain *= gains.list[slot];
+  intensity *= gains.list[slot];
 #endif
   Vpl vpl = Vpl(vec4(0.0), vec4(0.0), vec4(0.0));
-  if (place.w > 0.0 && finite(vec4(area, gain, 0.0, 0.0))) {
-    vpl.positionArea = vec4(place.xyz, area);
+  if (place.w > 0.0 && finite(vec4(intensity, area))) {
+    vpl.positionArea = vec4(place.xyz, max(area, nearArea(totals.value, kept.median, tried, nearField)));
     vpl.normal = texelFetch(placed, first + 1);
-    vpl.intensity = clamp(light * gain, vec4(0.0), vec4(kBrightest));
+    vpl.intensity = clamp(vec4(intensity, 0.0), vec4(0.0), vec4(kBrightest));
   }
   emitters.list[slot] = vpl;
-  if (slot == 0u) counters.alive = totals.value.alive;
+  if (slot != 0u) return;
+  counters.alive = totals.value.alive;
+  spread.area = vec4(nearArea(totals.value, kept.median, tried, nearField), 0.0, 0.0, 0.0);
 }

@@ -10,7 +10,6 @@ layout(local_size_x = 64) in;
 
 layout(set = 0) uniform samplerBuffer screen;
 layout(set = 0) uniform samplerBuffer radiance;
-layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) writeonly buffer EndsBlock { vec4 list[]; } ends;  // position, w: kind; normal, w: luminance
 
 layout(push_constant) uniform Constants {
@@ -37,7 +36,6 @@ void main() {
       light = light > 0.0 ? light : 0.0;  // nor not a number
       position = vec4(texelFetch(voxelsSurface, first).xyz, siteKind(light));
       normal = vec4(texelFetch(voxelsSurface, first + 1).xyz, light);
-      atomicAdd(totals.value.found, 1u);
     }
   }
   ends.list[2u * path] = position;

@@ -19,7 +19,7 @@ layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) writeonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 #if SHARED
-layout(set = 0, std430) readonly buffer SumsBlock { uvec2 list[]; } sums;
+layout(set = 0, std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 #endif
 layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
 
@@ -38,7 +38,7 @@ void main() {
   float p = texelFetch(densities, int(i)).r;
   float area = there && least > 0.0 ? 1.0 / (found * max(p, least)) : 0.0;
 #if SHARED
-  if (there && p > 0.0) area = float(sums.list[i].x) / (kPathUnits * float(tried) * p);
+  if (there && p > 0.0) area = float(sums.list[i].paths) / (kPathUnits * float(tried) * p);
 #endif
   areas.list[i] = area;
   if (there && !(p > 0.0)) atomicAdd(counters.unseen, 1u);

@@ -11,39 +11,64 @@
 // bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path, and
 // likewise one whose p_l is the average of less than a few points (partKept()); the rest goes to the nearest VPL that is seen
 // well, so that no light is lost: a third of it in rooms full of small things.
+//
+// TRACED 1: the paths are those of pass eye-paths, whose ends know all the light that leaves there, in colour: a VPL shines
+// with it in place of its own.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(set = 0) uniform samplerBuffer sites;
+#if TRACED
+layout(set = 0) uniform samplerBuffer tracedEnds;
+#else
 layout(set = 0) uniform samplerBuffer ends;
+#endif
 layout(set = 0) uniform samplerBuffer densities;
 layout(set = 0) uniform samplerBuffer seenFrom;
-layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
-layout(set = 0, std430) buffer SumsBlock { uvec2 list[]; } sums;  // paths; their light
+layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
+layout(set = 0, std430) buffer SumsBlock { PathSum list[]; } sums;
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 
 layout(push_constant) uniform Constants {
   uint vplCount;
-  uint paths;
+  uint tried;  // paths
   float normalShare;
   float areaCap;
 };
 
 const float kOtherKind = 1e20;  // m^2: only if there is no VPL of the kind
 
-void give(uint vpl, float light, uint pathUnits) {
+vec4 endTexel(uint path, int texel) {
+#if TRACED
+  return texelFetch(tracedEnds, int(path) * kTracedEndTexels + texel);
+#else
+  return texelFetch(ends, int(path) * kEndTexels + texel);
+#endif
+}
+
+void give(uint vpl, uint path, float luminance, uint pathUnits) {
   if (vpl == kNoSide || pathUnits == 0u) return;
-  atomicAdd(sums.list[vpl].x, pathUnits);
-  atomicAdd(sums.list[vpl].y, lightUnits(light, texelFetch(sites, int(2u * vpl + 1u)).w, pathUnits));
+  atomicAdd(sums.list[vpl].paths, pathUnits);
+#if TRACED
+  vec4 radiance = endTexel(path, 2);
+  if (!(radiance.w > 0.0)) return;
+  uvec3 light = uvec3(radiance.rgb / radiance.w * (float(pathUnits) / kPathUnits) + 0.5);
+  atomicAdd(sums.list[vpl].lightX, light.x);
+  atomicAdd(sums.list[vpl].lightY, light.y);
+  atomicAdd(sums.list[vpl].lightZ, light.z);
+#else
+  atomicAdd(sums.list[vpl].lightX, lightUnits(luminance, texelFetch(sites, int(2u * vpl + 1u)).w, pathUnits));
+#endif
 }
 
 void main() {
   uint path = gl_GlobalInvocationID.x;
-  if (path >= paths) return;
-  vec4 end = texelFetch(ends, int(2u * path)), normal = texelFetch(ends, int(2u * path + 1u));
+  if (path >= tried) return;
+  vec4 end = endTexel(path, 0), normal = endTexel(path, 1);
   if (!(end.w > 0.0)) return;
+  atomicAdd(totals.value.found, 1u);
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
   float best = 1e38, bestWhole = 1e38;
   uint owner = kNoSide, whole = kNoSide;  // nearest of all; of those that are seen well
@@ -63,6 +88,6 @@ void main() {
   if (owner == kNoSide) return;
   float part = partKept(texelFetch(densities, int(owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(owner)).r);
   uint units = owner == whole || whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
-  give(owner, normal.w, units);
-  give(whole, normal.w, uint(kPathUnits) - units);
+  give(owner, path, normal.w, units);
+  give(whole, path, normal.w, uint(kPathUnits) - units);
 }

@@ -8,7 +8,7 @@
 // numbers add up to the same sum in any order.
 struct Totals {
   uint alive;              // slots that hold a VPL
-  uint found;              // eye paths that found a surface: see escapes.comp, paths.comp
+  uint found;              // eye paths that found a surface: see escapes.comp, share.comp
   uint areaLow, areaHigh;  // surface of all voxel sides
 };
 
@@ -34,6 +34,23 @@ float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
 // Paths in fixed point, for they may be divided; and direct light at the end of a path in units of that of a VPL, with an end
 // to it.
 const float kPathUnits = 1024.0, kMostLight = 16.0;
+
+// Texels of a PathEnd: position, w: kind (siteKind(), 0: the path ends nowhere); normal, w: luminance. An EyePathEnd, of a path
+// traced through the triangles (pass eye-paths), has a third one: radiance, w: the unit of its sums.
+const int kEndTexels = 2, kTracedEndTexels = 3;
+
+// Area of the discs that pass near-field makes up for, m^2, which none is smaller than: `share` times that of a VPL of the median
+// density when all have as many eye paths.
+float nearArea(Totals totals, float median, uint tried, float share) {
+  float found = totals.found > 0u ? float(totals.alive) * float(tried) / float(totals.found) : 0.0;
+  return found * median > 0.0 ? share / (found * median) : 0.0;
+}
+
+// Paths that a VPL is given, in parts of a path; their light: in lightX as lightUnits(), of traced paths rgb in their unit.
+struct PathSum {
+  uint paths;
+  uint lightX, lightY, lightZ;
+};
 
 uint lightUnits(float light, float ofVpl, uint pathUnits) {
   return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * float(pathUnits) + 0.5);

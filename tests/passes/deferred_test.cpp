@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "framework/base/diagnostic.h"
@@ -377,6 +378,26 @@ TEST(Deferred, AnAtlasOfTooFewMapsIsRefused) {
   PassTest test("deferred");
   test.image("atlas", VK_FORMAT_R32_UINT, kMap, kMap, 2, std::vector<uint32_t>(2 * kMap * kMap));
   EXPECT_THROW(run(test, g, randomVpls(3), 1), Error);
+}
+
+// The light of pass near-field is filtered with that of the VPLs, and the reflectance comes afterwards.
+TEST(Deferred, NearLightJoinsThatOfTheVpls) {
+  const GBuffer g = makeFloor(32, 32, 0.1f);
+  const std::vector<Vpl> vpls = randomVpls(64);
+  PassTest without("deferred"), with("deferred");
+  const std::vector<float> alone = run(without, g, vpls, 4);
+  std::vector<uint16_t> near;
+  for (int i = 0; i < 32 * 32; ++i)  // another share for each pixel of a block, 1 on average
+    for (const float x : {float(i % 4) / 1.5f, 1.0f, 0.0f, 0.0f}) near.push_back(glm::packHalf1x16(x));
+  with.image("near", VK_FORMAT_R16G16B16A16_SFLOAT, 32, 32, 1, near);
+  const std::vector<float> both = run(with, g, vpls, 4);
+  for (int y = 4; y < 28; ++y)
+    for (int x = 4; x < 28; ++x) {
+      const size_t i = 4 * (size_t(y) * 32 + size_t(x));
+      EXPECT_NEAR(both[i] - alone[i], 1, 0.01) << x << "," << y;
+      EXPECT_NEAR(both[i + 1] - alone[i + 1], 1, 0.005);
+      EXPECT_NEAR(both[i + 2], alone[i + 2], 0.002f * alone[i + 2]);
+    }
 }
 
 }  // namespace

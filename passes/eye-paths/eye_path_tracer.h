@@ -1,0 +1,48 @@
+// Where diffuse eye paths end after one bounce, and the light that they find there, by rays through the
+// triangles themselves.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "framework/scene/fovea.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/ray_scene.h"
+
+namespace fovea::passes {
+
+struct EyePathSettings {
+  uint32_t region = scene::kRegionFovea;  // of the image that the paths start in
+  float foveaRadius = 0.25f;              // image widths
+  uint32_t points = 1024;                 // screen points, the same in every frame: scene::screenPoint()
+  uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees
+  uint32_t gathered = 2;                  // rays by which the second of them is found
+  uint32_t threads = 0;                   // 0: one a core; the result does not depend on it
+};
+
+// The same layout as in shaders/weights/weights.glsl. All zeros: the path ends nowhere.
+struct EyePathEnd {
+  glm::vec3 position{0};  // world space, m
+  float kind = 0;         // 1: no direct light there, 2: some
+  glm::vec3 normal{0};    // unit, the side that the path came to
+  float luminance = 0;    // of `radiance`
+  glm::vec3 radiance{0};  // that leaves towards the point where the path started, W/(sr m^2)
+  float unit = 0;         // the same for all: of sums as whole numbers, W/(sr m^2), see sumUnit()
+};
+static_assert(sizeof(EyePathEnd) == 48);
+
+struct EyePathStatistics {
+  uint64_t rays = 0, ends = 0;
+};
+
+// Fills `ends`: path i starts from screen point i % points.
+EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
+                                const scene::RayScene& rays, const EyePathSettings& settings,
+                                std::span<EyePathEnd> ends);
+
+// The unit in which the light of all the ends sums up to 2^31 in the brightest channel.
+float sumUnit(std::span<const EyePathEnd> ends);
+
+}  // namespace fovea::passes

@@ -1,0 +1,65 @@
+// Eye paths through the triangles themselves: what the light that VPLs stand for is measured by.
+#include "passes/eye-paths/eye_path_tracer.h"
+
+#include "framework/graph/registry.h"
+#include "framework/scene/fovea.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class EyePaths : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d(
+        "eye-paths",
+        "diffuse paths from fixed points of the region on screen, one bounce each, and the light "
+        "that leaves the surfaces where they end",
+        PassKind::Host);
+    d.view();
+    d.output("ends", buffer("EyePathEnd", sizeof(EyePathEnd), parameter("paths")), Usage::HostWrite,
+             "where the paths end, and the light there; those of one screen point lie `points` apart");
+    d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
+                "where the eye paths start: as in pass candidates");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
+    d.parameter("points", integer(1024, 1, 65536), "screen points: where pass weights has as many");
+    d.parameter("paths", integer(8192, 64, 65536), "eye paths");
+    d.parameter("bounces", integer(2, 1, 64),
+                "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "
+                "depth 4 sees, 1 is direct light at the ends");
+    d.parameter("gathered", integer(2, 1, 256), "rays from each end by which the second of them is found");
+    d.counter("rays", "rays traced, towards lights, too");
+    d.counter("ends", "paths that found a surface");
+    return d;
+  }
+
+  void execute(HostContext& ctx) override {
+    const scene::Frame& frame = ctx.frame();
+    const Parameters& p = ctx.parameters();
+    EyePathSettings settings;
+    const std::string& region = p.text("region");
+    settings.region = region == "fovea"   ? scene::kRegionFovea
+                      : region == "image" ? scene::kRegionImage
+                                          : scene::kRegionMixed;
+    settings.foveaRadius = float(p.real("fovea_radius"));
+    settings.points = uint32_t(p.integer("points"));
+    settings.bounces = uint32_t(p.integer("bounces"));
+    settings.gathered = uint32_t(p.integer("gathered"));
+    const auto ends = ctx.outputAs<EyePathEnd>("ends");
+    EyePathStatistics statistics;
+    if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
+      statistics = traceEyePaths(frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry),
+                                 settings, ends);
+    else
+      std::fill(ends.begin(), ends.end(), EyePathEnd{});
+    ctx.counter("rays", double(statistics.rays));
+    ctx.counter("ends", double(statistics.ends));
+  }
+};
+
+FOVEA_PASS(EyePaths);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,193 @@
+// Eye paths through triangles: where they end and what they find there, against plain rays and closed forms.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "passes/eye-paths/eye_path_tracer.h"
+#include "tests/passes/weights_reference.h"
+#include "tests/support/path_reference.h"
+
+namespace fovea::test {
+namespace {
+
+using passes::EyePathEnd;
+
+struct Look {
+  scene::Scene scene;
+  scene::Geometry geometry;
+  std::unique_ptr<scene::RayScene> rays;
+  scene::Frame frame;
+
+  explicit Look(scene::Scene s, glm::uvec2 size = glm::uvec2(64)) : scene(std::move(s)) {
+    if (scene.cameras.empty()) scene.cameras.emplace_back();
+    geometry = scene::flatten(scene);
+    rays = std::make_unique<scene::RayScene>(scene, geometry);
+    frame = scene::makeFrame(scene, geometry, size, 0, 1);
+  }
+  std::vector<EyePathEnd> trace(const passes::EyePathSettings& settings, uint32_t paths = 4096) const {
+    std::vector<EyePathEnd> ends(paths);
+    statistics = passes::traceEyePaths(frame, frame.views[0], *rays, settings, ends);
+    return ends;
+  }
+  mutable passes::EyePathStatistics statistics;
+};
+
+scene::Scene litRoom(bool block) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), red = addMaterial(s, {0.6f, 0.2f, 0.1f});
+  const uint32_t walls[6] = {red, grey, grey, red, grey, grey};
+  addRoom(s, walls, 2);
+  if (block) addBox(s, grey, {-1.1f, -2, -1.6f}, {0.2f, -0.4f, -0.7f});
+  s.lights = {pointLight({0.4f, 1.2f, 0.3f}, {10, 20, 30}), pointLight({-1, 0, 0.5f}, {5, 5, 1})};
+  return s;
+}
+
+TEST(EyePaths, StartFromTheScreenPointsOfPassWeights) {
+  const Room room = closedRoom(true);
+  for (const uint32_t region : {scene::kRegionFovea, scene::kRegionImage, scene::kRegionMixed})
+    for (const glm::vec2 gaze : {glm::vec2(0.5f), glm::vec2(0.95f, 0.1f), glm::vec2(3, -2)}) {
+      WeightSettings settings;
+      settings.region = region;
+      settings.gaze = gaze;
+      const auto points = screenPoints(room, settings);
+      const scene::Fovea fovea = scene::makeFovea(gaze, room.size, settings.foveaRadius);
+      for (uint32_t i = 0; i < points.size(); ++i) {
+        const glm::ivec2 p = scene::screenPoint(region, i, settings.points, fovea, room.size);
+        ASSERT_EQ(points[i].position, room.pixels[size_t(p.y) * room.size.x + p.x].position) << i;
+      }
+    }
+}
+
+// Light that the ends find: their own surface's reflectance times the lights' irradiance over pi, where no
+// shadow falls.
+TEST(EyePaths, EndsAreLitAsPlainRaysSay) {
+  const Look look(litRoom(true));
+  passes::EyePathSettings settings;
+  settings.bounces = 1;
+  const auto ends = look.trace(settings);
+  int lit = 0, dark = 0;
+  for (const EyePathEnd& e : ends) {
+    ASSERT_GT(e.kind, 0);  // the room is closed
+    glm::dvec3 irradiance(0);
+    for (const scene::Light& light : look.scene.lights) {
+      const glm::dvec3 from = glm::dvec3(e.position) + 1e-4 * glm::dvec3(e.normal),
+                       to = glm::dvec3(light.position) - from;
+      const double d2 = glm::dot(to, to), cosine = glm::dot(glm::dvec3(e.normal), to) / std::sqrt(d2);
+      if (cosine <= 0 || castRay(look.scene, look.geometry, from, to, {.tMax = 1})) continue;
+      irradiance += glm::dvec3(light.color) * double(light.intensity) * cosine / d2;
+    }
+    const RayHit at = castRay(look.scene, look.geometry, glm::dvec3(e.position) + 0.01 * glm::dvec3(e.normal),
+                              -glm::dvec3(e.normal));
+    ASSERT_TRUE(at);
+    EXPECT_NEAR(at.t, 0.01, 1e-4);  // ends lie on surfaces
+    const glm::dvec3 rho(look.scene.materials[look.geometry.triangles[at.triangle].material()].baseColor);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(e.radiance[c], rho[c] * irradiance[c] / glm::pi<double>(), 2e-3 * e.radiance[c] + 1e-6);
+    (e.radiance == glm::vec3(0) ? dark : lit)++;
+    EXPECT_EQ(e.kind, e.radiance == glm::vec3(0) ? 1 : 2);
+  }
+  EXPECT_GT(lit, 1000);
+  EXPECT_GT(dark, 20);
+}
+
+// What the paths bring to the surfaces that the points see is their indirect light.
+TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
+  const Look look(litRoom(true));
+  const scene::View& view = look.frame.views[0];
+  const PathReference reference(look.scene, look.geometry);
+  passes::EyePathSettings settings;
+  settings.points = 64;
+  const auto ends = look.trace(settings, 65536);
+  const scene::Fovea fovea = scene::makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
+  glm::dvec3 want(0), got(0);
+  for (uint32_t i = 0; i < settings.points; ++i) {
+    const glm::ivec2 p =
+        scene::screenPoint(settings.region, i, settings.points, fovea, glm::ivec2(view.size));
+    const glm::vec3 d = view.rayDirection(glm::vec2(p) + 0.5f);
+    const RayHit hit = castRay(look.scene, look.geometry, view.eye, d);
+    const glm::dvec3 rho(look.scene.materials[look.geometry.triangles[hit.triangle].material()].baseColor);
+    want += reference.indirect(view.eye, glm::normalize(d), i, 4000) / rho / double(settings.points);
+  }
+  for (const EyePathEnd& e : ends) got += glm::dvec3(e.radiance) / double(ends.size());
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.01 * want[c]) << "channel " << c;
+}
+
+// A closed room whose walls all shine: each bounce adds one more term of the series, exactly.
+TEST(EyePaths, Furnace) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f));
+  s.materials[m].emission = {1, 2, 4};
+  const uint32_t walls[6] = {m, m, m, m, m, m};
+  addRoom(s, walls, 2);
+  const Look look(std::move(s));
+  const float series[] = {1, 1.5f, 1.75f};
+  for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
+    passes::EyePathSettings settings;
+    settings.bounces = bounces;
+    for (const EyePathEnd& e : look.trace(settings, 512))
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.radiance[c], series[bounces - 1] * float(1 << c), 1e-5f);
+  }
+}
+
+TEST(EyePaths, TheSameWhateverTheThreads) {
+  const Look look(litRoom(true));
+  passes::EyePathSettings settings;
+  settings.threads = 1;
+  const auto one = look.trace(settings);
+  const uint64_t rays = look.statistics.rays;
+  settings.threads = 5;
+  const auto five = look.trace(settings);
+  EXPECT_EQ(std::memcmp(one.data(), five.data(), one.size() * sizeof one[0]), 0);
+  EXPECT_EQ(rays, look.statistics.rays);
+  EXPECT_EQ(look.statistics.ends, one.size());
+}
+
+// The unit holds the sum of all the light in 31 bits.
+TEST(EyePaths, SumsFitIntoTheirUnit) {
+  const Look look(litRoom(false));
+  const auto ends = look.trace({}, 4096);
+  glm::dvec3 sum(0);
+  for (const EyePathEnd& e : ends) {
+    EXPECT_EQ(e.unit, ends[0].unit);
+    sum += glm::dvec3(e.radiance) / double(e.unit);
+  }
+  EXPECT_NEAR(std::max({sum.r, sum.g, sum.b}) / 2147483648.0, 1, 1e-5);
+}
+
+// A floor under the open sky sends its paths nowhere; so do an empty scene and one behind the eye. A black
+// back reflects nothing.
+TEST(EyePaths, NothingToFind) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f));
+  addQuad(s, m, {-50, -1, -50}, {0, 0, 100}, {100, 0, 0});
+  s.lights = {sun({0, -1, 0}, glm::vec3(3))};
+  const EyePathEnd none;
+  for (const EyePathEnd& e : Look(std::move(s)).trace({}, 256))
+    EXPECT_EQ(std::memcmp(&e, &none, sizeof e), 0);
+  PassTest empty("eye-paths");
+  empty.param("paths", 64);
+  empty.viewSize(8, 8);
+  empty.run();
+  for (const EyePathEnd& e : empty.values<EyePathEnd>("ends")) EXPECT_EQ(std::memcmp(&e, &none, sizeof e), 0);
+  EXPECT_EQ(empty.counter("ends"), 0);
+}
+
+// The pass hands on what the tracer finds, for its own gaze.
+TEST(EyePaths, PassEqualsTheTracer) {
+  const Look look(litRoom(true), {32, 32});
+  PassTest test("eye-paths");
+  test.param("paths", 512).param("points", 128).param("region", "mixed").param("gathered", 3);
+  test.viewSize(32, 32).scene(look.scene);
+  test.run();
+  passes::EyePathSettings settings;
+  settings.region = scene::kRegionMixed;
+  settings.points = 128;
+  settings.gathered = 3;
+  const auto want = look.trace(settings, 512), got = test.values<EyePathEnd>("ends");
+  ASSERT_EQ(got.size(), want.size());
+  EXPECT_EQ(std::memcmp(got.data(), want.data(), got.size() * sizeof got[0]), 0);
+  EXPECT_EQ(test.counter("ends"), 512);
+}
+
+}  // namespace
+}  // namespace fovea::test
