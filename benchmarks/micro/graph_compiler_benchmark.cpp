@@ -151,11 +151,12 @@ void aliasMemory(benchmark::State& state) {
 void barriers(benchmark::State& state) {
   const Fixture f(state);
   const Schedule order = schedule(*f.graph);
+  const std::vector<Interval> intervals = lifetimes(*f.graph, order);
   const Plan plan = compile(f.graph, f.options());
   for (auto _ : state) {
     Plan again;
     again.placements = plan.placements;
-    placeBarriers(*f.graph, order, again);
+    placeBarriers(*f.graph, order, intervals, again);
     benchmark::DoNotOptimize(again);
   }
   report(state);
@@ -177,11 +178,8 @@ void resolveToPlan(benchmark::State& state) {
   const CompileOptions options = f.options();
   const json::Value document = json::parse(f.text, "graph.json");
   for (auto _ : state) {
-    state.PauseTiming();
-    json::Value own = document;  // parse makes it, resolve takes it apart
-    state.ResumeTiming();
     Diagnostics messages;
-    const Description description = resolve(std::move(own), "graph.json", {}, messages);
+    const Description description = resolve(document, "graph.json", {}, messages);
     auto graph = std::make_shared<const BoundGraph>(bind(description, f.environment, messages));
     benchmark::DoNotOptimize(compile(graph, options));
   }

@@ -204,17 +204,6 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
-const Member* Value::findMember(std::string_view key) const {
-  for (const Member& member : members)
-    if (member.key == key) return &member;
-  return nullptr;
-}
-
-const Value* Value::find(std::string_view key) const {
-  const Member* member = findMember(key);
-  return member ? &member->value : nullptr;
-}
-
 std::string Value::describe() const {
   switch (type) {
     case Type::Null:
@@ -288,48 +277,46 @@ std::string joinPath(std::string_view path, std::string_view key) {
 // ---- ObjectReader ------------------------------------------------------------------------------------
 
 ObjectReader::ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics)
-    : value_(value), path_(std::move(path)), diagnostics_(diagnostics) {
-  known_.reserve(8);
+    : ObjectReader(value, std::move(path), {}, diagnostics) {}
+
+ObjectReader::ObjectReader(const Value& value, std::string path, std::string_view key,
+                           Diagnostics& diagnostics)
+    : value_(value), path_(std::move(path)), key_(key), diagnostics_(diagnostics) {
   if (!value.isObject())
-    diagnostics_.error(value.where.location(), path_,
+    diagnostics_.error(value.where.location(), this->path(),
                        fmt::format("expected an object, found {}", value.describe()));
 }
 
-const Value* ObjectReader::take(std::string_view key) {
-  known_.emplace_back(key);
-  return value_.find(key);
-}
+std::string ObjectReader::path() const { return key_.empty() ? path_ : joinPath(path_, key_); }
 
-std::string ObjectReader::pathOf(std::string_view key) const { return joinPath(path_, key); }
+std::string ObjectReader::pathOf(std::string_view key) const { return joinPath(path(), key); }
 
 void ObjectReader::wrong(std::string_view key, const Value& value, const std::string& expected) {
   diagnostics_.error(value.where.location(), pathOf(key),
                      fmt::format("`{}`: expected {}, found {}", key, expected, value.describe()));
 }
 
-const Value* ObjectReader::find(std::string_view key) { return take(key); }
-
 const Value* ObjectReader::require(std::string_view key) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (!value && value_.isObject())
-    diagnostics_.error(value_.where.location(), path_, fmt::format("`{}` is missing", key));
+    diagnostics_.error(value_.where.location(), path(), fmt::format("`{}` is missing", key));
   return value;
 }
 
 const Value* ObjectReader::object(std::string_view key) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (value && !value->isObject()) return wrong(key, *value, "an object"), nullptr;
   return value;
 }
 
 const Value* ObjectReader::array(std::string_view key) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (value && !value->isArray()) return wrong(key, *value, "an array"), nullptr;
   return value;
 }
 
 double ObjectReader::number(std::string_view key, double fallback, double min, double max) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (!value) return fallback;
   if (value->isNumber() && value->real >= min && value->real <= max) return value->real;
   if (!value->isNumber() || (std::isinf(min) && std::isinf(max)))
@@ -344,7 +331,7 @@ double ObjectReader::number(std::string_view key, double fallback, double min, d
 }
 
 int64_t ObjectReader::integer(std::string_view key, int64_t fallback, int64_t min, int64_t max) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (!value) return fallback;
   if (value->isInt() && value->integer >= min && value->integer <= max) return value->integer;
   const bool below = min != std::numeric_limits<int64_t>::min(),
@@ -359,20 +346,20 @@ int64_t ObjectReader::integer(std::string_view key, int64_t fallback, int64_t mi
 }
 
 bool ObjectReader::boolean(std::string_view key, bool fallback) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (value && !value->isBool()) wrong(key, *value, "true or false");
   return value && value->isBool() ? value->boolean : fallback;
 }
 
 std::string ObjectReader::text(std::string_view key, std::string fallback) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (value && !value->isString()) wrong(key, *value, "a text");
   return value && value->isString() ? value->string : fallback;
 }
 
 std::string ObjectReader::choice(std::string_view key, std::string fallback,
                                  const std::vector<std::string>& choices) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (!value) return fallback;
   if (value->isString() && std::find(choices.begin(), choices.end(), value->string) != choices.end())
     return value->string;
@@ -385,7 +372,7 @@ std::string ObjectReader::choice(std::string_view key, std::string fallback,
 }
 
 std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, size_t count) {
-  const Value* value = take(key);
+  const Value* value = find(key);
   if (!value) return std::nullopt;
   bool good = value->isArray() && value->items.size() == count;
   std::vector<double> result;
@@ -401,8 +388,9 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 void ObjectReader::finish() {
   for (const Member& member : value_.members) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    const std::string nearest = nearestName(member.key, known_);
-    std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known_, ", "))
+    const std::vector<std::string> known(known_.begin(), known_.end());
+    const std::string nearest = nearestName(member.key, known);
+    std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
                                          : fmt::format("did you mean `{}`?", nearest);
     diagnostics_.error(member.keyWhere.location(), pathOf(member.key),
                        fmt::format("unknown key `{}`", member.key), std::move(remedy));

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "framework/base/diagnostic.h"
+#include "framework/base/small_vector.h"
 
 namespace fovea::json {
 
@@ -60,6 +61,17 @@ struct Member {
   Value value;
 };
 
+inline const Member* Value::findMember(std::string_view key) const {
+  for (const Member& member : members)
+    if (member.key == key) return &member;
+  return nullptr;
+}
+
+inline const Value* Value::find(std::string_view key) const {
+  const Member* member = findMember(key);
+  return member ? &member->value : nullptr;
+}
+
 inline constexpr int kMaxDepth = 64;                   // nesting of arrays and objects
 inline constexpr size_t kMaxBytes = size_t(64) << 20;  // of one file
 
@@ -72,7 +84,7 @@ Value parseFile(const std::filesystem::path& file);
 
 // Reads an object member by member. A value of a wrong type or out of range is reported and replaced by the
 // fallback (or nothing); finish() reports every member that nobody asked for, with the nearest name that
-// somebody did.
+// somebody did. Keys are literals: the reader keeps where they are, not what they say.
 //   ObjectReader r(value, "camera", diagnostics);
 //   camera.fov = r.number("fov_degrees", 60, 1, 179);
 //   r.finish();
@@ -80,8 +92,13 @@ class ObjectReader {
  public:
   // Reports when `value` is no object; every member is then absent. `path` is the place inside the document.
   ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics);
+  // The same at "path.key"; `key` is kept by reference.
+  ObjectReader(const Value& value, std::string path, std::string_view key, Diagnostics& diagnostics);
 
-  const Value* find(std::string_view key);     // any type; nullptr when absent
+  const Value* find(std::string_view key) {  // any type; nullptr when absent
+    known_.push_back(key);
+    return value_.find(key);
+  }
   const Value* require(std::string_view key);  // reports when absent
   const Value* object(std::string_view key);   // nullptr when absent or wrong
   const Value* array(std::string_view key);
@@ -100,17 +117,17 @@ class ObjectReader {
   void finish();
 
   std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
-  const std::string& path() const { return path_; }
+  std::string path() const;
   const Value& value() const { return value_; }
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
-  const Value* take(std::string_view key);
   void wrong(std::string_view key, const Value& value, const std::string& expected);
   const Value& value_;
   std::string path_;
+  std::string_view key_;
   Diagnostics& diagnostics_;
-  std::vector<std::string> known_;
+  SmallVector<std::string_view, 8> known_;
 };
 
 // "a.b", or "b" when path is empty.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -52,7 +53,7 @@ class SmallVector {
   void reserve(size_t count) {
     if (count <= capacity_) return;
     const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
-    T* grown = static_cast<T*>(::operator new(capacity * sizeof(T), std::align_val_t(alignof(T))));
+    T* grown = std::allocator<T>().allocate(capacity);
     std::memcpy(static_cast<void*>(grown), data(), size_ * sizeof(T));
     release();
     heap_ = grown;
@@ -88,7 +89,7 @@ class SmallVector {
 
  private:
   void release() {
-    if (capacity_ > N) ::operator delete(heap_, std::align_val_t(alignof(T)));
+    if (capacity_ > N) std::allocator<T>().deallocate(heap_, capacity_);
   }
   void take(SmallVector& other) {
     std::memcpy(here_, other.here_, sizeof here_);  // the elements, or where they are

@@ -49,8 +49,9 @@ struct Segment {
 
 class Planner {
  public:
-  Planner(const BoundGraph& graph, const Schedule& schedule, Plan& plan)
-      : graph_(graph), schedule_(schedule), plan_(plan), levels_(schedule.levels()) {}
+  Planner(const BoundGraph& graph, const Schedule& schedule, const std::vector<Interval>& intervals,
+          Plan& plan)
+      : graph_(graph), schedule_(schedule), intervals_(intervals), plan_(plan), levels_(schedule.levels()) {}
 
   void run() {
     collectTouches();
@@ -96,6 +97,7 @@ class Planner {
 
   const BoundGraph& graph_;
   const Schedule& schedule_;
+  const std::vector<Interval>& intervals_;
   Plan& plan_;
   const uint32_t levels_;
   detail::Scratch scratch_;
@@ -192,12 +194,11 @@ void Planner::makeSegments() {
   segments_.assign(segment + 1, {});
   // Resources by the last level of their life; outputs leave after the end of the frame.
   leavingFirst_.assign(levels_ + 2, 0);
-  const std::vector<Interval> intervals = lifetimes(graph_, schedule_);
-  for (const Placement& p : plan_.placements) ++leavingFirst_[intervals[p.resource].last + 1];
+  for (const Placement& p : plan_.placements) ++leavingFirst_[intervals_[p.resource].last + 1];
   for (uint32_t l = 1; l < levels_ + 2; ++l) leavingFirst_[l] += leavingFirst_[l - 1];
   detail::ScratchVector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end(), scratch_);
   leaving_.resize(plan_.placements.size());
-  for (const Placement& p : plan_.placements) leaving_[at[intervals[p.resource].last]++] = p.resource;
+  for (const Placement& p : plan_.placements) leaving_[at[intervals_[p.resource].last]++] = p.resource;
 }
 
 void Planner::occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const {
@@ -219,20 +220,16 @@ void Planner::leave(uint32_t resource) {
 void Planner::frame(bool record) {
   if (record) plan_.levels.reserve(levels_);
   for (ReadGroup& group : groups_) group.served = false;
-  BarrierBatch batch;
+  BarrierBatch unrecorded;
   for (uint32_t l = 0; l < levels_; ++l) {
-    batch.srcStage = batch.srcAccess = batch.dstStage = batch.dstAccess = 0;
-    batch.images.clear();
+    BarrierBatch& batch = record ? plan_.levels.emplace_back().before : unrecorded;
     for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], batch, record);
     for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
     if (!record) continue;
-    Level level;
-    level.before = batch;
-    level.passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
-                        schedule_.order.begin() + schedule_.levelFirst[l + 1]);
-    plan_.levels.push_back(std::move(level));
+    plan_.levels.back().passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
+                                      schedule_.order.begin() + schedule_.levelFirst[l + 1]);
   }
-  batch = {};
+  BarrierBatch batch;
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};
   detail::ScratchVector<uint8_t> done(graph_.resources.size(), 0, scratch_);
   for (const BoundOutput& output : graph_.outputs) {
@@ -314,8 +311,9 @@ void Planner::write(const Touch& t, State& state, BarrierBatch& batch, bool reco
 
 }  // namespace
 
-void placeBarriers(const BoundGraph& graph, const Schedule& schedule, Plan& plan) {
-  Planner(graph, schedule, plan).run();
+void placeBarriers(const BoundGraph& graph, const Schedule& schedule, const std::vector<Interval>& intervals,
+                   Plan& plan) {
+  Planner(graph, schedule, intervals, plan).run();
 }
 
 }  // namespace fovea::graph

@@ -17,6 +17,7 @@ namespace fovea::graph {
 // - The first write to a transient resource waits for whatever used its memory before, in this frame or the
 // last, and
 //   discards the contents (UNDEFINED).
-void placeBarriers(const BoundGraph& graph, const Schedule& schedule, Plan& plan);
+void placeBarriers(const BoundGraph& graph, const Schedule& schedule, const std::vector<Interval>& intervals,
+                   Plan& plan);
 
 }  // namespace fovea::graph

@@ -50,7 +50,7 @@ void Binder::error(const Place& place, std::string path, std::string message, st
 }
 
 std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
-  const std::string& path = text(description_.passes[pass].path);
+  const std::string path = json::joinPath("passes", description_.localName(description_.passes[pass]));
   return rest.empty() ? path : json::joinPath(path, rest);
 }
 
@@ -145,13 +145,19 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   std::vector<Value> values;
   values.reserve(specs.size());
   for (const ParameterSpec& spec : specs) values.push_back(spec.defaultValue);
+  // Parameters are mostly given in the order of the declaration: start looking after the last one found.
+  size_t guess = 0;
   for (uint32_t i = 0; i < from.parameterCount; ++i) {
     const ParameterDescription& given = description_.parameters[from.firstParameter + i];
     const std::string& name = text(given.name);
     size_t k = 0;
-    while (k < specs.size() && specs[k].name != name) ++k;
+    for (; k < specs.size(); ++k, ++guess) {
+      if (guess >= specs.size()) guess = 0;
+      if (specs[guess].name == name) break;
+    }
     if (k < specs.size()) {
-      readParameter(specs[k], given, from, values[k]);
+      readParameter(specs[guess], given, from, values[guess]);
+      ++guess;
       continue;
     }
     std::vector<std::string> names;
@@ -214,38 +220,25 @@ std::string rangeText(const ParameterSpec& spec) {
 
 }  // namespace
 
-bool Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& from,
+void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& from,
                            const PassDescription& pass, Value& out) {
-  using Type = ParameterSpec::Type;
-  using Json = json::Value::Type;
-  const bool typed = from.fromCommandLine && from.type == Json::String;
+  const bool typed = from.fromCommandLine && from.type == json::Value::Type::String;
+  if (typed ? assign(spec, parseTyped(from, text(from.text), spec.type), out) : assign(spec, from, out)) return;
   const ParameterDescription given = typed ? parseTyped(from, text(from.text), spec.type) : from;
-  const bool number = given.type == Json::Int || given.type == Json::Real;
-  const bool inRange =
-      number && std::isfinite(given.real) && given.real >= spec.min && given.real <= spec.max;
   std::string expected, remedy;
   switch (spec.type) {
-    case Type::Bool:
-      if (given.type == Json::Bool) return out = given.integer != 0, true;
+    case ParameterSpec::Type::Bool:
       expected = "true or false";
       break;
-    case Type::Int:
-      if (given.type == Json::Int && inRange) return out = given.integer, true;
+    case ParameterSpec::Type::Int:
+    case ParameterSpec::Type::Real:
       expected = rangeText(spec);
       break;
-    case Type::Real:
-      if (inRange) return out = given.real, true;
-      expected = rangeText(spec);
-      break;
-    case Type::Choice:
-      if (given.type == Json::String &&
-          std::find(spec.choices.begin(), spec.choices.end(), text(given.text)) != spec.choices.end())
-        return out = text(given.text), true;
+    case ParameterSpec::Type::Choice:
       expected = fmt::format("one of {}", fmt::join(spec.choices, ", "));
-      if (given.type == Json::String) remedy = nearestName(text(given.text), spec.choices);
+      if (given.type == json::Value::Type::String) remedy = nearestName(text(given.text), spec.choices);
       break;
-    case Type::Text:
-      if (given.type == Json::String) return out = text(given.text), true;
+    case ParameterSpec::Type::Text:
       expected = "a text";
       break;
   }
@@ -254,6 +247,39 @@ bool Binder::readParameter(const ParameterSpec& spec, const ParameterDescription
         fmt::format("parameter `{}`: expected {}, found {}", spec.name, expected,
                     describeGiven(given, description_.symbols)),
         remedy.empty() ? std::string() : fmt::format("did you mean `{}`?", remedy));
+}
+
+// False when the value is of another type or out of range.
+bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const {
+  using Type = ParameterSpec::Type;
+  using Json = json::Value::Type;
+  const auto inRange = [&] {
+    return std::isfinite(given.real) && given.real >= spec.min && given.real <= spec.max;
+  };
+  switch (spec.type) {
+    case Type::Bool:
+      if (given.type != Json::Bool) return false;
+      out = given.integer != 0;
+      return true;
+    case Type::Int:
+      if (given.type != Json::Int || !inRange()) return false;
+      out = given.integer;
+      return true;
+    case Type::Real:
+      if ((given.type != Json::Int && given.type != Json::Real) || !inRange()) return false;
+      out = given.real;
+      return true;
+    case Type::Choice:
+      if (given.type != Json::String ||
+          std::find(spec.choices.begin(), spec.choices.end(), text(given.text)) == spec.choices.end())
+        return false;
+      out = text(given.text);
+      return true;
+    case Type::Text:
+      if (given.type != Json::String) return false;
+      out = text(given.text);
+      return true;
+  }
   return false;
 }
 

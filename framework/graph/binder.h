@@ -41,8 +41,9 @@ class Binder {
   void declare();
   void bindView(BoundPass& pass, const PassDescription& from);
   void bindParameters(BoundPass& pass, const PassDescription& from);
-  bool readParameter(const ParameterSpec& spec, const ParameterDescription& from, const PassDescription& pass,
+  void readParameter(const ParameterSpec& spec, const ParameterDescription& from, const PassDescription& pass,
                      Value& out);
+  bool assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const;
   void makeExternals();
   void makeResources();
   void makeAccesses();
@@ -79,6 +80,8 @@ class Binder {
   bool evaluatePass(uint32_t pass, int depth);
   bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
                         BoundResource& resource, int depth);
+  bool evaluateSize(uint32_t pass, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
+                    const char* what, int64_t limit, int64_t& out, int depth);
   bool evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why);
   bool evaluateTerm(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);
   bool sizeOfPort(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);

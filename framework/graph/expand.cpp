@@ -53,29 +53,27 @@ std::string Expander::nearestRemedy(std::string_view word, const std::vector<std
   return fmt::format("there is: {}", fmt::join(names, ", "));
 }
 
-Place Expander::place(const json::Position& position) {
-  if (latestIndex_ != kNone && position.file.get() == latestFile_)
-    return {latestIndex_, position.line, position.column};
-  const auto [at, added] = fileIndex_.try_emplace(position.file.get(), 0);
-  if (added) {
-    keepFiles_.push_back(position.file);  // keeps the address from being used again
-    const std::string name = position.file ? *position.file : std::string();
-    const auto known = std::find(description_.files.begin(), description_.files.end(), name);
-    at->second = static_cast<uint32_t>(known - description_.files.begin());
-    if (known == description_.files.end()) description_.files.push_back(name);
-  }
-  latestFile_ = position.file.get();
-  latestIndex_ = at->second;
-  return {latestIndex_, position.line, position.column};
+void Expander::enterFile(const std::shared_ptr<const std::string>& file) {
+  latestFile_ = file.get();
+  for (const auto& [known, index] : files_)
+    if (known == file) {
+      latestIndex_ = index;
+      return;
+    }
+  const std::string name = file ? *file : std::string();
+  std::vector<std::string>& names = description_.files;
+  const auto at = std::find(names.begin(), names.end(), name);
+  latestIndex_ = static_cast<uint32_t>(at - names.begin());
+  if (at == names.end()) names.push_back(name);
+  files_.emplace_back(file, latestIndex_);
 }
 
 // ---- Scopes ------------------------------------------------------------------------------------------
 
-void Expander::expandRoot(json::Value document, const std::filesystem::path& file) {
+void Expander::expandRoot(const json::Value& document, const std::filesystem::path& file) {
   Scope& root = scopes_.emplace_back();
   root.file = file;
-  root.document = std::move(document);
-  fileStack_.push_back(file.lexically_normal());
+  root.document = &document;
   readParameters(0, nullptr, {});
   readRootInputs(root);
   expandScope(0);
@@ -83,21 +81,29 @@ void Expander::expandRoot(json::Value document, const std::filesystem::path& fil
 
 void Expander::expandScope(size_t index) {
   Scope& scope = scopes_[index];
-  json::ObjectReader reader(scope.document, {}, diagnostics_);
+  json::ObjectReader reader(*scope.document, {}, diagnostics_);
+  reader.find("extends");  // merged by now
   reader.text("$schema");
   const std::string text = reader.text("description");
   if (index == 0) description_.description = text;
   reader.object("parameters");  // read by readParameters
   reader.object("inputs");      // read by readRootInputs or readInputs
   reader.object("outputs");     // read by wiring
-  if (const json::Value* passes = reader.object("passes"))
+  if (const json::Value* passes = reader.object("passes")) {
+    const size_t count = description_.passes.size() + passes->members.size();
+    description_.passes.reserve(count);
+    description_.parameters.reserve(2 * count);
+    description_.symbols.reserve(2 * count);
+    rawFirst_.reserve(count + 1);
+    rawWires_.reserve(2 * count);
     for (const Member& member : passes->members) expandPass(index, member);
+  }
   reader.finish();
 }
 
 void Expander::readParameters(size_t index, const json::Value* given, const Trail& givenPath) {
   Scope& scope = scopes_[index];
-  if (const json::Value* own = scope.document.find("parameters"); own && own->isObject()) {
+  if (const json::Value* own = scope.document->find("parameters"); own && own->isObject()) {
     for (const Member& member : own->members) {
       const Trail parent("parameters"), path(parent, member.key);
       Scope::Parameter parameter;
@@ -219,7 +225,7 @@ bool Expander::readScalar(Scope& scope, const json::Value& value, const Trail& p
                                                          : std::string_view(text));
     return true;
   }
-  Scope::Parameter* parameter = scope.findParameter(text.substr(1));
+  Scope::Parameter* parameter = scope.findParameter(std::string_view(text).substr(1));
   if (!parameter) {
     std::vector<std::string> names;
     for (const Scope::Parameter& p : scope.parameters) names.push_back("$" + p.name);
@@ -245,8 +251,8 @@ Symbol Expander::readView(Scope& scope, const json::Value& value, const Trail& p
 // ---- Passes ------------------------------------------------------------------------------------------
 
 void Expander::expandPass(size_t scope, const Member& member) {
-  const std::string path = json::joinPath("passes", member.key);
   if (full_) return;
+  const Trail passes("passes"), path(passes, member.key);
   if (description_.passes.size() + scopes_.size() > kMaxPasses) {
     full_ = true;
     return error(member.keyWhere, path, fmt::format("more than {} passes", kMaxPasses));
@@ -254,13 +260,13 @@ void Expander::expandPass(size_t scope, const Member& member) {
   if (!isName(member.key) || member.key == "inputs")
     return error(member.keyWhere, path, fmt::format("`{}` is no name for a pass", member.key),
                  "letters, digits, _ and -; `inputs` means the graph's own inputs");
-  json::ObjectReader reader(member.value, path, diagnostics_);
+  json::ObjectReader reader(member.value, "passes", member.key, diagnostics_);
   if (!member.value.isObject()) return;
-  if (reader.has("graph") && reader.has("type"))
-    error(member.value.find("graph")->where, json::joinPath(path, "graph"),
-          "a pass has a `type` or a `graph`, not both");
+  const bool graph = reader.has("graph");
+  if (graph && reader.has("type"))
+    error(member.value.find("graph")->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
   reader.text("comment");
-  if (reader.has("graph") && !reader.has("type"))
+  if (graph && !reader.has("type"))
     expandInstance(scope, member, reader);
   else
     addPass(scope, member, reader);
@@ -269,10 +275,9 @@ void Expander::expandPass(size_t scope, const Member& member) {
 
 void Expander::addPass(size_t index, const Member& member, json::ObjectReader& reader) {
   Scope& scope = scopes_[index];
-  const Trail path(reader.path());
+  const Trail passes("passes"), path(passes, member.key);
   PassDescription pass;
-  pass.name = intern(scope.prefix + member.key);
-  pass.path = intern(reader.path());
+  pass.name = scope.prefix.empty() ? intern(member.key) : intern(scope.prefix + member.key);
   pass.place = place(member.keyWhere);
   pass.typePlace = pass.viewPlace = pass.place;
   pass.view = scope.view;
@@ -355,26 +360,26 @@ void Expander::expandInstance(size_t parent, const Member& member, json::ObjectR
   if (file.empty())
     return error(graph.where, json::joinPath(path, "graph"), fmt::format("no graph file `{}`", graph.string),
                  fmt::format("it is looked up beside {} and in the search paths", from.string()));
-  if (std::find(fileStack_.begin(), fileStack_.end(), file) != fileStack_.end() ||
-      fileStack_.size() > static_cast<size_t>(kMaxInstanceDepth))
+  if (containsItself(parent, file))
     return error(graph.where, json::joinPath(path, "graph"),
                  fmt::format("`{}` contains itself", graph.string));
-  Scope scope;
-  scope.file = file;
-  scope.parent = parent;
-  scope.path = path;
-  scope.prefix = scopes_[parent].prefix + member.key + "/";
-  scope.view = view ? readView(scopes_[parent], *view, json::joinPath(path, "view")) : scopes_[parent].view;
+  json::Value parsed;
   try {
-    scope.document = mergeExtends(json::parseFile(file), file, options_, diagnostics_);
+    parsed = json::parseFile(file);
   } catch (const Error& e) {
     for (const Diagnostic& d : e.diagnostics()) diagnostics_.add(d);
     return;
   }
   const size_t child = scopes_.size();
-  scopes_.push_back(std::move(scope));
+  Scope& scope = scopes_.emplace_back();
+  scope.file = file;
+  scope.parent = parent;
+  scope.path = path;
+  scope.prefix = scopes_[parent].prefix + member.key + "/";
+  scope.view = view ? readView(scopes_[parent], *view, json::joinPath(path, "view")) : scopes_[parent].view;
+  scope.parsed = std::move(parsed);
+  scope.document = &mergeExtends(scope.parsed, file, options_, diagnostics_, scope.merged);
   scopes_[parent].instances.emplace(member.key, child);
-  fileStack_.push_back(file);
   readParameters(child, parameters, json::joinPath(path, "parameters"));
   readInputs(child, inputs);
   for (const Scope::Input& input : scopes_[child].inputs)
@@ -383,7 +388,15 @@ void Expander::expandInstance(size_t parent, const Member& member, json::ObjectR
             fmt::format("input `{}` of the sub-graph `{}` is not wired", input.name, member.key),
             fmt::format("add \"inputs\": {{\"{}\": \"pass.port\"}}", input.name));
   expandScope(child);
-  fileStack_.pop_back();
+}
+
+// Is this the file of the scope, or of one that it lies in? Also when they lie in each other too deep.
+bool Expander::containsItself(size_t scope, const std::filesystem::path& file) const {
+  for (int depth = 0; depth <= kMaxInstanceDepth; ++depth, scope = scopes_[scope].parent) {
+    if (scopes_[scope].file.lexically_normal() == file) return true;
+    if (scope == 0) return false;
+  }
+  return true;
 }
 
 void Expander::reportUnused() {
@@ -401,10 +414,11 @@ void Expander::reportUnused() {
         diagnostics_.warning(description_.location(input.place), "inputs." + input.name,
                              fmt::format("nothing uses the input `{}`", input.name));
   }
-  std::vector<std::string> targets;
-  for (const PassDescription& pass : description_.passes) targets.push_back(description_.symbols[pass.name]);
   for (const PendingOverride& o : overrides_) {
     if (o.used) continue;
+    std::vector<std::string> targets;
+    for (const PassDescription& pass : description_.passes)
+      targets.push_back(description_.symbols[pass.name]);
     const SourceLocation where{fmt::format("--set {}={}", o.source->name, o.source->value), 0, 0};
     const std::string nearest = nearestName(o.target, targets);
     const bool pass = !o.target.empty() && !nearest.empty();

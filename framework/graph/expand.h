@@ -3,9 +3,11 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "framework/base/small_vector.h"
@@ -50,11 +52,12 @@ struct Scope {
   std::string path;    // in the parent's document: "passes.left"
   size_t parent = 0;   // itself for the whole graph
   std::filesystem::path file;
-  json::Value document;
+  const json::Value* document = nullptr;
+  json::Value parsed, merged;  // a sub-graph's document is one of them
   Symbol view = kNone;
   std::vector<Parameter> parameters;
   std::vector<Input> inputs;
-  std::unordered_map<std::string, size_t> instances;  // name -> scope
+  std::map<std::string, size_t, std::less<>> instances;  // name -> scope
 
   Parameter* findParameter(std::string_view name);
   Input* findInput(std::string_view name);
@@ -74,7 +77,7 @@ class Expander {
   Expander(Description& description, const LoadOptions& options, Diagnostics& diagnostics);
 
   // expand.cpp: structure and parameters
-  void expandRoot(json::Value document, const std::filesystem::path& file);
+  void expandRoot(const json::Value& document, const std::filesystem::path& file);
   void reportUnused();
 
   // wiring.cpp
@@ -116,7 +119,12 @@ class Expander {
 
   void error(const json::Position& where, const Trail& path, std::string message, std::string remedy = {});
   std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
-  Place place(const json::Position& position);
+  Place place(const json::Position& position) {
+    if (latestIndex_ == kNone || position.file.get() != latestFile_) enterFile(position.file);
+    return {latestIndex_, position.line, position.column};
+  }
+  void enterFile(const std::shared_ptr<const std::string>& file);
+  bool containsItself(size_t scope, const std::filesystem::path& file) const;
   Symbol intern(std::string_view text) { return description_.symbols.intern(text); }
 
   Description& description_;
@@ -126,11 +134,10 @@ class Expander {
   std::vector<RawWire> rawWires_;
   std::vector<uint32_t> rawFirst_;  // per pass
   std::vector<PendingOverride> overrides_;
-  std::vector<std::filesystem::path> fileStack_;
-  std::unordered_map<const std::string*, uint32_t> fileIndex_;
+  // Files met and their numbers; held, so that no address is used again.
+  std::vector<std::pair<std::shared_ptr<const std::string>, uint32_t>> files_;
   const std::string* latestFile_ = nullptr;  // of place(), and its index
   uint32_t latestIndex_ = kNone;
-  std::vector<std::shared_ptr<const std::string>> keepFiles_;
   std::vector<bool> isPass_;  // by symbol
   bool full_ = false;
 };

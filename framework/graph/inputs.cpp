@@ -74,7 +74,7 @@ ResourceDesc Expander::readResource(Scope& scope, json::ObjectReader& reader) {
 }
 
 void Expander::readRootInputs(Scope& scope) {
-  const json::Value* inputs = scope.document.find("inputs");
+  const json::Value* inputs = scope.document->find("inputs");
   if (!inputs || !inputs->isObject()) return;
   for (const Member& member : inputs->members) {
     const std::string path = json::joinPath("inputs", member.key);
@@ -117,7 +117,7 @@ void Expander::readRootInputs(Scope& scope) {
 
 void Expander::readInputs(size_t index, const json::Value* wires) {
   Scope& scope = scopes_[index];
-  if (const json::Value* inputs = scope.document.find("inputs"); inputs && inputs->isObject()) {
+  if (const json::Value* inputs = scope.document->find("inputs"); inputs && inputs->isObject()) {
     for (const Member& member : inputs->members) {
       json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), diagnostics_);
       reader.text("doc");

@@ -75,13 +75,12 @@ std::filesystem::path canonicalPath(const std::filesystem::path& file) {
   return ec ? file : path;
 }
 
-json::Value mergeChain(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
-                       Diagnostics& diagnostics, std::vector<std::filesystem::path>& chain) {
-  const auto at = std::find_if(document.members.begin(), document.members.end(),
-                               [](const Member& m) { return m.key == "extends"; });
-  if (at == document.members.end()) return document;
-  const json::Value extends = std::move(at->value);
-  document.members.erase(at);
+const json::Value& mergeChain(const json::Value& document, const std::filesystem::path& file,
+                              const LoadOptions& options, Diagnostics& diagnostics,
+                              std::vector<std::filesystem::path>& chain, json::Value& merged) {
+  const json::Value* found = document.find("extends");
+  if (!found) return document;
+  const json::Value& extends = *found;
   const SourceLocation where = extends.where.location();
   if (!extends.isString()) {
     diagnostics.error(where, "extends", fmt::format("expected a file name, found {}", extends.describe()));
@@ -99,20 +98,21 @@ json::Value mergeChain(json::Value document, const std::filesystem::path& file, 
                       "a base must not extend what extends it");
     return document;
   }
-  json::Value merged;
+  json::Value extended;
   try {
-    merged = json::parseFile(base);
+    extended = json::parseFile(base);
   } catch (const Error& error) {
     for (const Diagnostic& d : error.diagnostics()) diagnostics.add(d);
     return document;
   }
-  if (!merged.isObject()) {
-    diagnostics.error(merged.where.location(), {},
-                      fmt::format("expected an object, found {}", merged.describe()));
+  if (!extended.isObject()) {
+    diagnostics.error(extended.where.location(), {},
+                      fmt::format("expected an object, found {}", extended.describe()));
     return document;
   }
-  merged = mergeChain(std::move(merged), base, options, diagnostics, chain);
-  return mergeDocuments(std::move(merged), document, diagnostics);
+  json::Value all;
+  if (&mergeChain(extended, base, options, diagnostics, chain, all) == &extended) all = std::move(extended);
+  return merged = mergeDocuments(std::move(all), document, diagnostics);
 }
 
 }  // namespace
@@ -122,18 +122,17 @@ json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnosti
   return base;
 }
 
-json::Value mergeExtends(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
-                         Diagnostics& diagnostics) {
+const json::Value& mergeExtends(const json::Value& document, const std::filesystem::path& file,
+                                const LoadOptions& options, Diagnostics& diagnostics, json::Value& merged) {
   if (!document.isObject()) {
     diagnostics.error(document.where.location(), {},
                       fmt::format("a graph is an object, this is {}", document.describe()));
-    json::Value empty;
-    empty.type = json::Value::Type::Object;
-    empty.where = document.where;
-    return empty;
+    merged.type = json::Value::Type::Object;
+    merged.where = document.where;
+    return merged;
   }
   std::vector<std::filesystem::path> chain;
-  return mergeChain(std::move(document), file, options, diagnostics, chain);
+  return mergeChain(document, file, options, diagnostics, chain, merged);
 }
 
 std::filesystem::path findGraphFile(const std::string& name, const std::filesystem::path& from,

@@ -168,7 +168,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
   plan.bytesUnaliased = placed.bytesUnaliased;
   plan.passLive.assign(order.passLive.begin(), order.passLive.end());
   plan.resourceLive.assign(order.resourceLive.begin(), order.resourceLive.end());
-  placeBarriers(*graph, order, plan);
+  placeBarriers(*graph, order, intervals, plan);
   plan.hash = hash.value();
   plan.graph = std::move(graph);
   return plan;

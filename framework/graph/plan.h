@@ -87,7 +87,7 @@ struct ImageBarrier {
 struct BarrierBatch {
   VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  SmallVector<ImageBarrier, 1> images;
+  SmallVector<ImageBarrier, 2> images;  // of a pass alone in its level: what it reads and what it writes
   bool empty() const { return srcStage == 0 && dstStage == 0 && images.empty(); }
 };
 

@@ -1,37 +1,53 @@
 #include "framework/graph/resolve.h"
 
+#define XXH_INLINE_ALL  // names are short: calling the library would cost more than the hash
 #include <xxhash.h>
+
+#include <algorithm>
+#include <bit>
 
 #include "framework/graph/expand.h"
 
 namespace fovea::graph {
 
-Symbol SymbolTable::intern(std::string_view text) {
-  if (const auto at = index_.find(text); at != index_.end()) return at->second;
-  if (strings_.empty()) {  // room for a graph of a hundred passes
-    index_.reserve(256);
-    strings_.reserve(256);
-    hashes_.reserve(256);
+void SymbolTable::reserve(size_t count) {
+  hashes_.reserve(count);
+  if (slots_.size() >= 2 * count) return;
+  slots_.assign(std::bit_ceil(2 * count), kNone);
+  for (Symbol symbol = 0; symbol < strings_.size(); ++symbol)
+    slots_[slotOf(strings_[symbol], hashes_[symbol])] = symbol;
+}
+
+size_t SymbolTable::slotOf(std::string_view text, uint64_t hash) const {
+  const size_t mask = slots_.size() - 1;
+  for (size_t slot = hash & mask;; slot = (slot + 1) & mask) {
+    const Symbol symbol = slots_[slot];
+    if (symbol == kNone || (hashes_[symbol] == hash && strings_[symbol] == text)) return slot;
   }
-  const auto symbol = static_cast<Symbol>(strings_.size());
-  const auto at = index_.emplace(std::string(text), symbol).first;
-  strings_.push_back(&at->first);
-  hashes_.push_back(XXH3_64bits(text.data(), text.size()));
+}
+
+Symbol SymbolTable::intern(std::string_view text) {
+  if (slots_.size() < 2 * (strings_.size() + 1)) reserve(std::max<size_t>(32, 2 * strings_.size()));
+  const uint64_t hash = XXH3_64bits(text.data(), text.size());
+  Symbol& symbol = slots_[slotOf(text, hash)];
+  if (symbol != kNone) return symbol;
+  symbol = static_cast<Symbol>(strings_.size());
+  strings_.emplace_back(text);
+  hashes_.push_back(hash);
   return symbol;
 }
 
 Symbol SymbolTable::find(std::string_view text) const {
-  const auto at = index_.find(text);
-  return at == index_.end() ? kNone : at->second;
+  return slots_.empty() ? kNone : slots_[slotOf(text, XXH3_64bits(text.data(), text.size()))];
 }
 
-Description resolve(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
-                    Diagnostics& diagnostics) {
+Description resolve(const json::Value& document, const std::filesystem::path& file,
+                    const LoadOptions& options, Diagnostics& diagnostics) {
   Description description;
   description.name = file.stem().string();
-  document = mergeExtends(std::move(document), file, options, diagnostics);
+  json::Value merged;
   detail::Expander expander(description, options, diagnostics);
-  expander.expandRoot(std::move(document), file);
+  expander.expandRoot(mergeExtends(document, file, options, diagnostics, merged), file);
   expander.resolveWires();
   expander.reportUnused();
   return description;

@@ -2,11 +2,11 @@
 // overrides put in. Names are interned, wires are split; nothing is known about pass types yet.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "framework/base/diagnostic.h"
@@ -32,23 +32,21 @@ using Symbol = uint32_t;
 
 class SymbolTable {
  public:
-  SymbolTable() = default;
-  SymbolTable(SymbolTable&&) = default;
-  SymbolTable& operator=(SymbolTable&&) = default;
   Symbol intern(std::string_view text);
   Symbol find(std::string_view text) const;  // kNone when unknown
-  const std::string& operator[](Symbol symbol) const { return *strings_[symbol]; }
+  // Stays where it is while others are added.
+  const std::string& operator[](Symbol symbol) const { return strings_[symbol]; }
   size_t size() const { return strings_.size(); }
   uint64_t hash(Symbol symbol) const { return hashes_[symbol]; }
+  void reserve(size_t count);
 
  private:
-  struct Hash {
-    using is_transparent = void;
-    size_t operator()(std::string_view text) const { return std::hash<std::string_view>()(text); }
-  };
-  std::unordered_map<std::string, Symbol, Hash, std::equal_to<>> index_;
-  std::vector<const std::string*> strings_;  // the map's keys: stable, also when moved
+  // The slot that holds the text, or the free one where it belongs.
+  size_t slotOf(std::string_view text, uint64_t hash) const;
+
+  std::deque<std::string> strings_;
   std::vector<uint64_t> hashes_;
+  std::vector<Symbol> slots_;  // open addressing, a power of two and at most half full; kNone: free
 };
 
 // Where something stands in the files, for messages only.
@@ -87,7 +85,6 @@ struct PassDescription {
   uint32_t firstInput = 0, inputCount = 0;          // Description::wires
   uint32_t firstParameter = 0, parameterCount = 0;  // Description::parameters
   Place place, typePlace, viewPlace;
-  Symbol path = kNone;  // "passes.deferred": place inside its document
 };
 
 // An input of the whole graph: the caller's memory.
@@ -111,15 +108,20 @@ struct Description {
   std::vector<ExternalDescription> externals;
 
   SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
+  // "deferred" of "left/deferred": what the pass is called inside its document.
+  std::string_view localName(const PassDescription& pass) const {
+    const std::string_view name = symbols[pass.name];
+    return name.substr(name.rfind('/') + 1);
+  }
 };
 
 // Merges `patch` over `base` as RFC 7396, base keys first; an object under "passes" whose "type" or "graph"
 // differs replaces the base's. A null that removes nothing is an error. Exposed for tests.
 json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnostics& diagnostics);
 
-// The document with everything it extends merged in, its "extends" gone.
-json::Value mergeExtends(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
-                         Diagnostics& diagnostics);
+// The document with everything it extends merged in: itself when it extends nothing, else `merged`.
+const json::Value& mergeExtends(const json::Value& document, const std::filesystem::path& file,
+                                const LoadOptions& options, Diagnostics& diagnostics, json::Value& merged);
 
 // `name` relative to the folder of `from`, else in the search paths, with or without ".json"; empty when not
 // found.
@@ -130,7 +132,7 @@ std::filesystem::path findGraphFile(const std::string& name, const std::filesyst
 inline constexpr size_t kMaxPasses = 10000;
 inline constexpr int kMaxInstanceDepth = 16;
 
-Description resolve(json::Value document, const std::filesystem::path& file, const LoadOptions& options,
-                    Diagnostics& diagnostics);
+Description resolve(const json::Value& document, const std::filesystem::path& file,
+                    const LoadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace fovea::graph

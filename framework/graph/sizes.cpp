@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "framework/graph/binder.h"
 
@@ -102,41 +103,44 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   desc.volume = from.volume;
   desc.array = from.array;
   desc.stride = from.stride;
-  desc.element = from.element;
+  constexpr int64_t kMaxExtent = 1 << 24, kMaxCount = int64_t(1) << 40;
   auto size = [&](const SizeExpr& expr, const char* what, int64_t limit, auto& out) {
     int64_t value = 0;
-    std::string why;
-    const std::vector<SizeExpr::Term>& terms = expr.terms();
-    if (terms.size() == 1 && terms[0].op == SizeExpr::Op::Constant)
-      value = terms[0].constant;
-    else if (!evaluate(p, expr, value, depth, why)) {
-      if (why.empty()) return false;  // the cause has been reported
-      value = 0;
-    }
-    if (value >= 1 && value <= limit) {
-      out = static_cast<std::remove_reference_t<decltype(out)>>(value);
-      return true;
-    }
-    if (why.empty()) why = fmt::format("is {}, it must be from 1 to {}", value, limit);
-    const std::string port = member.name.empty() ? spec.name : spec.name + "." + member.name;
-    const std::string names = parametersOf(from);
-    error(description_.passes[p].place, passPath(p),
-          fmt::format("pass `{}`: {} of `{}`, {}, {}", graph_.passes[p].name, what, port, expr.print(), why),
-          names.empty() ? std::string() : fmt::format("it depends on {}", names));
-    return false;
+    if (!evaluateSize(p, spec, member, expr, what, limit, value, depth)) return false;
+    out = static_cast<std::remove_reference_t<decltype(out)>>(value);
+    return true;
   };
-  constexpr int64_t kMaxExtent = 1 << 24, kMaxCount = int64_t(1) << 40;
-  if (from.kind == ResourceKind::Buffer) return size(from.count, "the count", kMaxCount, desc.count);
+  if (from.kind == ResourceKind::Buffer) {
+    desc.element = from.element;
+    return size(from.count, "the count", kMaxCount, desc.count);
+  }
   bool good = size(from.width, "the width", kMaxExtent, desc.width);
   good = size(from.height, "the height", kMaxExtent, desc.height) && good;
   if (from.volume) good = size(from.depth, "the depth", kMaxExtent, desc.depth) && good;
   if (from.array) good = size(from.layers, "the number of layers", kMaxExtent, desc.layers) && good;
   good = size(from.mips, "the number of mip levels", 32, desc.mips) && good;
   // More levels than the size has would be refused by the device; expressions may ask for "enough".
-  uint32_t levels = 1;
-  for (uint32_t s = std::max({desc.width, desc.height, desc.depth}); s > 1; s >>= 1) ++levels;
-  desc.mips = std::min(desc.mips, levels);
+  desc.mips = std::min(desc.mips, uint32_t(std::bit_width(std::max({desc.width, desc.height, desc.depth}))));
   return good;
+}
+
+// One size of a resource, from 1 to `limit`; false, and a message, when it is not.
+bool Binder::evaluateSize(uint32_t p, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
+                          const char* what, int64_t limit, int64_t& out, int depth) {
+  std::string why;
+  const std::vector<SizeExpr::Term>& terms = size.terms();
+  const bool known = terms.size() == 1 && terms[0].op < SizeExpr::Op::Add
+                         ? evaluateTerm(p, terms[0], out, depth, why)
+                         : evaluate(p, size, out, depth, why);
+  if (!known && why.empty()) return false;  // the cause has been reported
+  if (known && out >= 1 && out <= limit) return true;
+  if (known) why = fmt::format("is {}, it must be from 1 to {}", out, limit);
+  const std::string port = member.name.empty() ? spec.name : spec.name + "." + member.name;
+  const std::string names = parametersOf(member.resource);
+  error(description_.passes[p].place, passPath(p),
+        fmt::format("pass `{}`: {} of `{}`, {}, {}", graph_.passes[p].name, what, port, size.print(), why),
+        names.empty() ? std::string() : fmt::format("it depends on {}", names));
+  return false;
 }
 
 bool Binder::evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why) {

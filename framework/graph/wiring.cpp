@@ -30,7 +30,8 @@ void Expander::resolveWires() {
   for (size_t p = 0; p < description_.passes.size(); ++p) {
     PassDescription& pass = description_.passes[p];
     pass.firstInput = static_cast<uint32_t>(description_.wires.size());
-    const Trail passPath(description_.symbols[pass.path]), inputsPath(passPath, "inputs");
+    const Trail passesPath("passes"), passPath(passesPath, description_.localName(pass)),
+        inputsPath(passPath, "inputs");
     for (uint32_t i = rawFirst_[p]; i < rawFirst_[p + 1]; ++i) {
       const RawWire& raw = rawWires_[i];
       WireDescription wire;
@@ -49,7 +50,7 @@ void Expander::resolveWires() {
 
 void Expander::resolveOutputs() {
   for (size_t s = 0; s < scopes_.size(); ++s) {
-    const json::Value* outputs = scopes_[s].document.find("outputs");
+    const json::Value* outputs = scopes_[s].document->find("outputs");
     if (!outputs || !outputs->isObject()) continue;
     for (const json::Member& member : outputs->members) {
       const Trail outputsPath("outputs"), path(outputsPath, member.key);
@@ -98,12 +99,12 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& 
     if (!resolveInput(index, value, path, parts, wire, depth)) return false;
     return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
   }
-  const std::string name(parts[0]);
+  const std::string_view name = parts[0];
   if (const auto child = scope.instances.find(name); child != scope.instances.end()) {
     if (!resolveInstance(child->second, value, path, parts, wire, depth)) return false;
     return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
   }
-  wire.pass = description_.symbols.find(scope.prefix + name);
+  wire.pass = description_.symbols.find(scope.prefix.empty() ? name : scope.prefix + std::string(name));
   if (wire.pass >= isPass_.size() || !isPass_[wire.pass]) {
     const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
     std::vector<std::string> names = {"inputs"};
@@ -147,7 +148,7 @@ bool Expander::resolveInput(size_t index, const json::Value& value, const Trail&
 
 bool Expander::resolveInstance(size_t child, const json::Value& value, const Trail& path,
                                const WireParts& parts, WireDescription& wire, int depth) {
-  const json::Value* outputs = scopes_[child].document.find("outputs");
+  const json::Value* outputs = scopes_[child].document->find("outputs");
   const std::vector<json::Member> none;
   const std::vector<json::Member>& members = outputs && outputs->isObject() ? outputs->members : none;
   const json::Member* found = nullptr;
