@@ -387,7 +387,8 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 
 void ObjectReader::finish() {
   for (const Member& member : value_.members) {
-    if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
+    const auto is = [&](std::string_view key) { return key == member.key; };
+    if (std::any_of(known_.begin(), known_.end(), is)) continue;
     const std::vector<std::string> known(known_.begin(), known_.end());
     const std::string nearest = nearestName(member.key, known);
     std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))

@@ -223,7 +223,8 @@ std::string rangeText(const ParameterSpec& spec) {
 void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& from,
                            const PassDescription& pass, Value& out) {
   const bool typed = from.fromCommandLine && from.type == json::Value::Type::String;
-  if (typed ? assign(spec, parseTyped(from, text(from.text), spec.type), out) : assign(spec, from, out)) return;
+  if (typed ? assign(spec, parseTyped(from, text(from.text), spec.type), out) : assign(spec, from, out))
+    return;
   const ParameterDescription given = typed ? parseTyped(from, text(from.text), spec.type) : from;
   std::string expected, remedy;
   switch (spec.type) {
@@ -426,24 +427,22 @@ uint64_t Binder::hash() const {
   Hasher h;
   for (size_t p = 0; p < graph_.passes.size(); ++p) {
     const BoundPass& pass = graph_.passes[p];
-    h.add(description_.symbols.hash(description_.passes[p].name));
-    h.add(description_.symbols.hash(description_.passes[p].type));
+    const SymbolTable& symbols = description_.symbols;
+    h.add(symbols.hash(description_.passes[p].name), symbols.hash(description_.passes[p].type));
     h.add(pass.view);
     for (const Value& value : pass.parameters.values()) h.addValue(value);
-    for (const Access& a : pass.accesses) {
-      h.add(uint64_t(a.resource) << 32 | uint64_t(a.port) << 16 | a.member);
-      h.add(uint64_t(a.version) << 32 | uint64_t(a.usage) << 3 | uint64_t(a.previous) << 2 |
-            uint64_t(a.reads) << 1 | uint64_t(a.writes));
-    }
+    for (const Access& a : pass.accesses)
+      h.add(uint64_t(a.resource) << 32 | uint64_t(a.port) << 16 | a.member,
+            uint64_t(a.version) << 32 | uint64_t(a.usage) << 3 | uint64_t(a.previous) << 2 |
+                uint64_t(a.reads) << 1 | uint64_t(a.writes));
   }
   for (const BoundResource& r : graph_.resources) {
     const ResourceDesc& d = r.desc;
-    h.add(uint64_t(d.width) << 32 | d.height);
-    h.add(uint64_t(d.depth) << 32 | d.layers);
+    h.add(uint64_t(d.width) << 32 | d.height, uint64_t(d.depth) << 32 | d.layers);
     h.add(uint64_t(d.format) << 32 | uint64_t(d.mips) << 8 | uint64_t(d.kind) << 7 | uint64_t(d.volume) << 6 |
-          uint64_t(d.array) << 5 | uint64_t(r.external) << 4 | uint64_t(r.history) << 3 |
-          uint64_t(r.output) << 2 | uint64_t(r.lifetime));
-    h.add(d.count * 31 + d.stride);
+              uint64_t(d.array) << 5 | uint64_t(r.external) << 4 | uint64_t(r.history) << 3 |
+              uint64_t(r.output) << 2 | uint64_t(r.lifetime),
+          d.count * 31 + d.stride);
   }
   for (const BoundOutput& o : graph_.outputs) h.add(o.name), h.add(o.resource);
   for (const std::string& view : graph_.views) h.add(view);

@@ -13,11 +13,13 @@ namespace fovea::graph::detail {
 
 class Hasher {
  public:
-  // Multiply, fold, rotate (as in wyhash): every input bit reaches every output bit within two rounds.
+  // Multiply, fold, rotate (as in wyhash): every input bit reaches every output bit within two rounds. Two
+  // numbers at a time cost no more than one.
   template <std::integral T>
-  void add(T number) {
+  void add(T number, uint64_t other = 0) {
     const auto v = static_cast<uint64_t>(number);
-    const unsigned __int128 product = static_cast<unsigned __int128>(state_ ^ v) * 0x9E3779B97F4A7C15ull;
+    const unsigned __int128 product =
+        static_cast<unsigned __int128>(state_ ^ v) * (other ^ 0x9E3779B97F4A7C15ull);
     state_ = std::rotl(static_cast<uint64_t>(product) ^ static_cast<uint64_t>(product >> 64), 23) +
              0xD6E8FEB86659FD93ull;
   }
@@ -30,11 +32,12 @@ class Hasher {
     }
   }
   void addValue(const Value& value) {
-    add(static_cast<uint64_t>(value.index()));
-    if (const bool* b = std::get_if<bool>(&value)) add(static_cast<uint64_t>(*b));
-    if (const int64_t* i = std::get_if<int64_t>(&value)) add(static_cast<uint64_t>(*i));
-    if (const double* d = std::get_if<double>(&value)) add(std::bit_cast<uint64_t>(*d));
-    if (const std::string* s = std::get_if<std::string>(&value)) add(std::string_view(*s));
+    const auto type = static_cast<uint64_t>(value.index());
+    if (const bool* b = std::get_if<bool>(&value)) return add(static_cast<uint64_t>(*b), type);
+    if (const int64_t* i = std::get_if<int64_t>(&value)) return add(*i, type);
+    if (const double* d = std::get_if<double>(&value)) return add(std::bit_cast<uint64_t>(*d), type);
+    add(type);
+    add(std::string_view(std::get<std::string>(value)));
   }
   uint64_t value() const { return state_; }
 

@@ -152,8 +152,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
     const BoundResource& resource = graph->resources[r];
     if (resource.external) continue;
     const MemoryNeed need = options.memory ? options.memory(r) : estimateMemory(resource.desc);
-    hash.add(need.bytes);
-    hash.add(need.alignment << 32 | need.memoryTypeBits);
+    hash.add(need.bytes, need.alignment << 32 | need.memoryTypeBits);
     if (isTransient(resource))
       requests.push_back({r, intervals[r], need});
     else
@@ -182,8 +181,7 @@ std::shared_ptr<const Plan> PlanCache::compile(std::shared_ptr<const BoundGraph>
   for (uint32_t r = 0; r < graph->resources.size() && options.memory; ++r) {
     if (graph->resources[r].external) continue;
     const MemoryNeed need = options.memory(r);
-    hash.add(need.bytes);
-    hash.add(need.alignment << 32 | need.memoryTypeBits);
+    hash.add(need.bytes, need.alignment << 32 | need.memoryTypeBits);
   }
   hash.add(options.granularity << 2 | uint64_t(options.alias) << 1 | uint64_t(bool(options.memory)));
   hash.add(options.randomOrder ? uint64_t(*options.randomOrder) + 1 : uint64_t(0));
