@@ -13,6 +13,7 @@ class Bounce : public Pass {
         "bounce", "radiance of every voxel side after one more bounce: direct plus rho E / pi of six cones");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
              member("info", buffer("VoxelInfo", 16), Usage::TexelRead)},
             "surfaces in the voxels");

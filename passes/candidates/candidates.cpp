@@ -26,6 +26,7 @@ class Candidates : public Pass {
         .makeOptional();
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "what bounces meet");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,

@@ -30,6 +30,7 @@ PassDeclaration Importance::declaration() {
                     "foveated importance of VPLs: mean weight of what six directions over each see");
   d.input("voxels", "voxels",
           {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+           member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
           "grid that the VPLs look at");
   d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "foveated weight of each side, in [0, 1]");

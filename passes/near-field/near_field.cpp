@@ -23,6 +23,7 @@ class NearField : public Pass {
             "surfaces seen by the eye");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "what the rays meet");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each voxel side");

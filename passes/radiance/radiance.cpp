@@ -14,6 +14,7 @@ class Radiance : public Pass {
     d.input("vpls", buffer("VplState", 80), Usage::TexelRead, "VPLs; empty slots have no life");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
             "surfaces in the voxels");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,

@@ -15,6 +15,7 @@ class ViewVoxels : public Pass {
     d.view();
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surface voxels");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`")

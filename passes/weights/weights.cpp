@@ -55,6 +55,7 @@ PassDeclaration Weights::declaration() {
           "rgb: B_l, W/m^2; w: its luminance; slots as in `vpls`");
   d.input("voxels", "voxels",
           {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
+           member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead),
            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::Uniform)},
           "surfaces that VPLs stand for");

@@ -32,10 +32,15 @@ uint voxelSideOf(vec3 normal) {
 
 // The bundle "voxels" (pass voxelize): an index volume and a compact list of the voxels that hold surface.
 //   index    r32ui, R^3: 0 empty, else 1 + number of the voxel
+//   occupied r32ui, a texel for each brick of kBrickCells: a bit for each cell that holds a voxel, see occupiedBit()
 //   surface  kVoxelSideTexels vec4 a side; side = 2 * voxel + voxelSideOf(geometric normal)
 //   info     VoxelInfo
 // Voxels of static surfaces come first, ordered by linear cell index x + R (y + R z); those of dynamic objects follow in the
 // same order and hide the static voxel of their cell: the volume refers to the dynamic one.
+const ivec3 kBrickCells = ivec3(4, 4, 2);
+ivec3 occupiedBrick(ivec3 cell) { return cell >> ivec3(2, 2, 1); }
+uint occupiedBit(ivec3 cell) { return 1u << (cell.x & 3 | (cell.y & 3) << 2 | (cell.z & 1) << 4); }
+
 const int kVoxelSideTexels = 4;
 struct VoxelSide {
   vec3 position;     // average over the side's surface, world space

@@ -1,6 +1,6 @@
 // Rays through the voxels: the first surface that one meets. The same formulas as framework/scene/voxel_trace.h.
-// Needs common/scene.glsl and an input port `voxels` (index as Usage::StorageRead, surface as Usage::TexelRead); its bindings
-// number themselves.
+// Needs common/scene.glsl and an input port `voxels` (index and, for traceVoxels, occupied as Usage::StorageRead, surface as
+// Usage::TexelRead); its bindings number themselves.
 #ifndef FOVEA_VOXEL_TRACE_GLSL
 #define FOVEA_VOXEL_TRACE_GLSL
 
@@ -9,6 +9,7 @@
 
 // An image and not a texture: on lavapipe a load from a texture costs several times as much.
 layout(set = 0, r32ui) uniform readonly uimage3D voxelsIndex;
+layout(set = 0, r32ui) uniform readonly uimage3D voxelsOccupied;
 layout(set = 0) uniform samplerBuffer voxelsSurface;
 
 // The grid of the bundle that is wired.
@@ -65,6 +66,13 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
              : kPassed;
 }
 
+// Where a walk along one axis stands once it has passed all walls before the distance t (also those at t, with `also`), rounding
+// put right: `at` is that or a neighbour, next and before are the distances of the walls ahead of it and behind it.
+int settle(int at, int from, int stride, float next, float before, float t, bool also) {
+  bool more = also ? next <= t : next < t, less = at != from && (also ? before > t : before >= t);
+  return at + (more ? stride : less ? -stride : 0);
+}
+
 // First side along a ray. direction: unit; normal: of the surface the ray starts on, unit, pointing to where the ray goes
 // (a ray that starts on no surface: the direction itself). A side is hit that faces the ray, is met within its cell and lies
 // in front of the start's tangent plane: that skips the own surface and the back of an own thin wall. If both sides of a
@@ -73,7 +81,9 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
 //
 // The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray
 // Tracing", Eurographics 1987); the distances to the walls follow from the cell's whole numbers, so no error adds up, and
-// a direction component of 0 never comes to a wall. At most 3R + 3 turns; anything that is not a number hits nothing.
+// a direction component of 0 never comes to a wall. Through an empty brick it goes in one step, to the very cell that it
+// would come to step by step: what it reads there is 1/32 of the index volume, which does not fit a CPU's nearer caches.
+// At most 3R + 3 turns; anything that is not a number hits nothing.
 // far: cells that the ray enters beyond this distance (m) are not looked at.
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, float far) {
   VoxelHit miss = VoxelHit(kNoSide, 0.0), passed = miss;
@@ -96,26 +106,36 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   ivec3 cell = clamp(ivec3(floor(p + t * direction)), ivec3(0), ivec3(grid.resolution - 1));
   ivec3 stride = ivec3(sign(direction)) * ivec3(moves);
   vec3 ahead = vec3(greaterThan(direction, vec3(0.0)));  // the wall ahead: corner 0 or 1 of the cell
-  uint voxel = imageLoad(voxelsIndex, cell).r;
-  bool inside = true;
+  uint brick = imageLoad(voxelsOccupied, occupiedBrick(cell)).r;
+  bool inside = true, full = (brick & occupiedBit(cell)) != 0u;
   for (int turn = 0; inside;) {
     // Through what is empty in a loop of its own: a CPU device runs whatever a loop holds for all rays of a group in
     // every turn, and most cells are empty.
-    for (; voxel == 0u && inside; ++turn) {
-      vec3 walls = (vec3(cell) + ahead - p) * inverse + never;
+    for (; !full && inside; ++turn) {
+      ivec3 low = brick == 0u ? cell & ~(kBrickCells - 1) : cell;
+      ivec3 wide = min(brick == 0u ? kBrickCells : ivec3(1), grid.resolution - low);
+      vec3 wall = vec3(low) + ahead * vec3(wide);  // where the ray leaves what is empty
+      vec3 walls = (wall - p) * inverse + never;
       t = min(min(walls.x, walls.y), walls.z);
       bool throughX = walls.x == t, throughY = !throughX && walls.y == t;
-      cell.x += throughX ? stride.x : 0;
-      cell.y += throughY ? stride.y : 0;
-      cell.z += throughX || throughY ? 0 : stride.z;
+      // Along the other axes: as far as walls lie before this one, of equal ones first those of x, then of y.
+      ivec3 last = mix(cell, low + max(stride, 0) * (wide - 1), moves);
+      ivec3 at = clamp(ivec3(floor(p + t * direction)), min(cell, last), max(cell, last));
+      vec3 next = (vec3(at) + ahead - p) * inverse + never, before = (vec3(at - stride) + ahead - p) * inverse + never;
+      ivec3 on = ivec3(settle(at.x, cell.x, stride.x, next.x, before.x, t, !throughX),
+                       settle(at.y, cell.y, stride.y, next.y, before.y, t, !throughX && !throughY),
+                       settle(at.z, cell.z, stride.z, next.z, before.z, t, false));
+      ivec3 out_ = low + mix(ivec3(-1), wide, greaterThan(stride, ivec3(0)));
+      cell = ivec3(throughX ? out_.x : on.x, throughY ? out_.y : on.y, throughX || throughY ? on.z : out_.z);
       inside = turn < 3 * grid.resolution + 3 && t * grid.cell <= far &&
                all(lessThan(uvec3(cell), uvec3(grid.resolution)));
-      voxel = imageLoad(voxelsIndex, inside ? cell : ivec3(0)).r;
+      brick = imageLoad(voxelsOccupied, inside ? occupiedBrick(cell) : ivec3(0)).r;
+      full = (brick & occupiedBit(cell)) != 0u;
     }
     if (!inside) break;
     vec3 walls = (vec3(cell) + ahead - p) * inverse + never;
     float next = min(min(walls.x, walls.y), walls.z);
-    uint side = 2u * (voxel - 1u);
+    uint side = 2u * (imageLoad(voxelsIndex, cell).r - 1u);
     float facing0, facing1, distance0, distance1;
     uint met0 = meetsSide(grid, side, origin, direction, normal, next * grid.cell, facing0, distance0);
     uint met1 = meetsSide(grid, side + 1u, origin, direction, normal, next * grid.cell, facing1, distance1);
@@ -127,7 +147,7 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
       if (met == kMet) return hit;
       passed = hit;
     }
-    voxel = 0u;  // on to the next cell
+    full = false;  // on to the next cell
   }
   if (t * grid.cell > far) return miss;
   return passed;

@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Third of the prefix sum over marked cells: gives each its voxel, in linear order. A voxel of a dynamic object remembers
 // what it hides.
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
 #include "voxelize/scan.glsl"
 
 layout(local_size_x = 256) in;
@@ -11,6 +13,7 @@ layout(set = 0, std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
 layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
 layout(set = 0, std430) writeonly buffer CellsBlock { uvec2 list[]; } cells;
 layout(set = 0, r32ui) uniform uimage3D voxelsIndex;
+layout(set = 0, r32ui) uniform uimage3D voxelsOccupied;
 
 layout(push_constant) uniform Constants {
   uint count;  // words
@@ -32,6 +35,7 @@ void main() {
     ivec3 cell = ivec3(linear % resolution, linear / resolution % resolution, linear / (resolution * resolution));
     cells.list[first + rank] = uvec2(linear, imageLoad(voxelsIndex, cell).r);
     imageStore(voxelsIndex, cell, uvec4(first + rank + 1u));
+    imageAtomicOr(voxelsOccupied, occupiedBrick(cell), occupiedBit(cell));
     bits &= bits - 1u;
     ++rank;
   }

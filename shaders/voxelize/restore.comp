@@ -12,6 +12,7 @@ layout(set = 0, std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
 layout(set = 0, std430) writeonly buffer MarksBlock { uint words[]; } marks;
 layout(set = 0, std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
 layout(set = 0, r32ui) uniform writeonly uimage3D voxelsIndex;
+layout(set = 0, r32ui) uniform uimage3D voxelsOccupied;
 
 layout(push_constant) uniform Constants { uint resolution; };
 
@@ -23,6 +24,7 @@ void main() {
   if (side % 2u != 0u) return;
   uvec2 entry = cells.list[voxel];
   marks.words[entry.x / 32u] = 0u;
-  imageStore(voxelsIndex, ivec3(entry.x % resolution, entry.x / resolution % resolution, entry.x / (resolution * resolution)),
-             uvec4(entry.y));
+  ivec3 cell = ivec3(entry.x % resolution, entry.x / resolution % resolution, entry.x / (resolution * resolution));
+  imageStore(voxelsIndex, cell, uvec4(entry.y));
+  if (entry.y == 0u) imageAtomicAnd(voxelsOccupied, occupiedBrick(cell), ~occupiedBit(cell));
 }

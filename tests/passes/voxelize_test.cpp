@@ -65,6 +65,7 @@ VoxelArrays readBack(const PassTest& test, int resolution) {
   v.index = test.values<uint32_t>("voxels.index");
   v.surface = test.values<VoxelSide>("voxels.surface");
   v.info = test.values<scene::VoxelInfo>("voxels.info").at(0);
+  EXPECT_EQ(test.values<uint32_t>("voxels.occupied"), occupiedBricks(v));
   return v;
 }
 

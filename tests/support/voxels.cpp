@@ -252,6 +252,17 @@ VoxelArrays voxelizeReference(const scene::Scene& scene, const scene::Geometry& 
   return out;
 }
 
+std::vector<uint32_t> occupiedBricks(const VoxelArrays& voxels) {
+  const int r = voxels.resolution, wide = (r + 3) / 4;
+  std::vector<uint32_t> bricks(size_t(wide) * size_t(wide) * size_t((r + 1) / 2));
+  for (int z = 0; z < r; ++z)
+    for (int y = 0; y < r; ++y)
+      for (int x = 0; x < r; ++x)
+        if (voxels.voxelAt({x, y, z}) != 0)
+          bricks[size_t(x / 4 + wide * (y / 4 + wide * (z / 2)))] |= 1u << (x % 4 + 4 * (y % 4) + 16 * (z % 2));
+  return bricks;
+}
+
 void setVoxels(PassTest& test, const VoxelArrays& voxels) {
   const graph::PortSpec* port = test.declaration().findPort("voxels");
   if (!port) return;
@@ -260,6 +271,9 @@ void setVoxels(PassTest& test, const VoxelArrays& voxels) {
   if (surface.empty()) surface.resize(2);  // an empty buffer does not exist
   for (const graph::MemberSpec& m : port->members) {
     if (m.name == "index") test.volume("voxels.index", VK_FORMAT_R32_UINT, r, r, r, voxels.index);
+    if (m.name == "occupied")
+      test.volume("voxels.occupied", VK_FORMAT_R32_UINT, (r + 3) / 4, (r + 3) / 4, (r + 1) / 2,
+                  occupiedBricks(voxels));
     if (m.name == "surface") test.buffer("voxels.surface", surface, "VoxelSide");
     if (m.name == "info") test.buffer("voxels.info", std::vector<scene::VoxelInfo>{voxels.info}, "VoxelInfo");
   }

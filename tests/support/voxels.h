@@ -30,6 +30,9 @@ struct VoxelArrays {
 // close.
 VoxelArrays voxelizeReference(const scene::Scene& scene, const scene::Geometry& geometry, int resolution);
 
+// Member `occupied`: a bit for each cell with a voxel, a word for each brick of 4 x 4 x 2 cells.
+std::vector<uint32_t> occupiedBricks(const VoxelArrays& voxels);
+
 // Uploads the members of `voxels` that the pass reads.
 void setVoxels(PassTest& test, const VoxelArrays& voxels);
 
