@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "framework/base/json.h"
+
 namespace fovea::scene {
 namespace {
 
@@ -20,6 +22,18 @@ glm::dvec3 areaVector(const SubdivisionCage& cage, size_t first, uint32_t size) 
 }
 
 }  // namespace
+
+std::optional<uint32_t> readLightLevel(json::ObjectReader& r, std::string_view key, uint32_t level) {
+  const json::Value* v = r.find(key);
+  if (!v) return std::nullopt;
+  if (v->isInt() && v->integer >= 0 && v->integer <= int64_t(level)) return uint32_t(v->integer);
+  r.diagnostics().error(v->where.location(), r.pathOf(key),
+                        "`" + std::string(key) + "`: expected a whole number from 0 to " +
+                            std::to_string(level) + ", the picture's level, found " + v->describe(),
+                        "voxels and VPL maps may see a coarser surface than the picture shows, not a finer "
+                        "one; leave it out for the same");
+  return std::nullopt;
+}
 
 size_t CageBuilder::Hash::operator()(const Key& k) const {
   uint64_t h = 0;

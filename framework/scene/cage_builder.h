@@ -3,13 +3,23 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "framework/scene/subdivision.h"
 
+namespace fovea::json {
+class ObjectReader;
+}
+
 namespace fovea::scene {
+
+// SubdivisionCage::lightLevel as files give it, beside the picture's `level`; what is wrong goes to the
+// reader's diagnostics.
+std::optional<uint32_t> readLightLevel(json::ObjectReader& r, std::string_view key, uint32_t level);
 
 // Vertices in exactly the same place become one point of the cage, with the morph targets and joints of the
 // first of them; texture coordinates join where they are equal. Vertices that no face uses are left out.

@@ -41,6 +41,8 @@ class Flattener {
 
   Geometry run() {
     checkLimits();
+    for (const Mesh& mesh : scene_.meshes)
+      for (const Primitive& p : mesh.primitives) coarse_ = coarse_ || !p.lightIndices.empty();
     const std::vector<bool> dynamic = dynamicNodes(scene_, poses_);
     const std::vector<glm::mat4> world = worldTransforms(scene_);
     begin("static", kNoIndex, false);
@@ -48,6 +50,7 @@ class Flattener {
       if (!dynamic[i]) append(i, {world[i], true});
     end();
     out_.staticTriangles = uint32_t(out_.triangles.size());
+    out_.staticLightTriangles = uint32_t(out_.lightTriangles.size());
     for (uint32_t i = 0; i < scene_.nodes.size(); ++i) {
       if (!dynamic[i] || scene_.nodes[i].mesh == kNoIndex) continue;
       begin(scene_.nodes[i].name, i, true);
@@ -218,18 +221,23 @@ class Flattener {
 
   void appendTriangles(const Primitive& p, uint32_t base, bool flip) {
     const uint32_t tag = p.material | uint32_t(out_.objects.size()) << 16;
-    for (size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      const uint32_t a = base + p.indices[i], b = base + p.indices[i + 1], c = base + p.indices[i + 2];
-      out_.triangles.push_back(flip ? Triangle{{a, c, b}, tag} : Triangle{{a, b, c}, tag});
-    }
+    const auto add = [&](const std::vector<uint32_t>& indices, std::vector<Triangle>& to) {
+      for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+        const uint32_t a = base + indices[i], b = base + indices[i + 1], c = base + indices[i + 2];
+        to.push_back(flip ? Triangle{{a, c, b}, tag} : Triangle{{a, b, c}, tag});
+      }
+    };
+    add(p.indices, out_.triangles);
+    if (coarse_) add(p.lightIndices.empty() ? p.indices : p.lightIndices, out_.lightTriangles);
   }
 
   const Scene& scene_;
   NodePoses poses_;
   Geometry out_;
   Object object_;
-  uint32_t jointCount_ = 0, weightCount_ = 0;                     // of the objects so far
-  std::map<uint32_t, uint32_t> firstJoint_;                       // of skins
+  bool coarse_ = false;                        // something is coarser for voxels and VPL maps
+  uint32_t jointCount_ = 0, weightCount_ = 0;  // of the objects so far
+  std::map<uint32_t, uint32_t> firstJoint_;    // of skins
   std::map<uint32_t, std::shared_ptr<const Stencils>> stencils_;  // of meshes with a cage that deforms
 };
 

@@ -40,6 +40,7 @@ class CageReader {
     SubdivisionCage cage = builder_.take();
     cage.scheme = scheme_;
     cage.level = level_;
+    cage.lightLevel = lightLevel_;
     cage.creases = std::move(creases_);
     cage.corners = std::move(corners_);
     const std::vector<CageProblem> problems = checkCage(cage);
@@ -60,6 +61,7 @@ class CageReader {
     ObjectReader r(v, path, errors);
     const std::string scheme = r.choice("scheme", "catmull-clark", {"catmull-clark", "loop"});
     const uint32_t level = uint32_t(r.integer("level", 2, 1, SubdivisionCage::kMaxLevel));
+    const std::optional<uint32_t> lightLevel = readLightLevel(r, "lightLevel", level);
     const Value* sizes = r.find("faceSizes");
     const Value* creases = r.array("creases");
     const Value* corners = r.array("corners");
@@ -67,12 +69,13 @@ class CageReader {
     errors.throwIfErrors();
     const SubdivisionCage::Scheme chosen =
         scheme == "loop" ? SubdivisionCage::Scheme::Loop : SubdivisionCage::Scheme::CatmullClark;
-    if (begun_ && (chosen != scheme_ || level != level_))
-      fail(v, path, "differs in scheme or level from the mesh's first primitive",
+    if (begun_ && (chosen != scheme_ || level != level_ || lightLevel != lightLevel_))
+      fail(v, path, "differs in scheme, level or lightLevel from the mesh's first primitive",
            "the primitives of a mesh are one cage");
     begun_ = true;
     scheme_ = chosen;
     level_ = level;
+    lightLevel_ = lightLevel;
     builder_.begin(p);
     faces(p, sizes, path + ".faceSizes");
     for (size_t i = 0; creases && i < creases->items.size(); ++i) {
@@ -156,6 +159,7 @@ class CageReader {
   bool begun_ = false;
   SubdivisionCage::Scheme scheme_ = SubdivisionCage::Scheme::CatmullClark;
   uint32_t level_ = 2;
+  std::optional<uint32_t> lightLevel_;
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ struct FrameBlock {
   uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
   float time, exposure;
   glm::vec4 boundsMin, boundsMax, environment;
-  glm::uvec4 staticVertices;
+  glm::uvec4 firstMoving;
 };
 static_assert(sizeof(FrameBlock) == 96);
 
@@ -87,6 +87,12 @@ std::vector<uint32_t> indexList(const Geometry& g) {
   return list;
 }
 
+std::vector<Triangle> triangleList(const Geometry& g) {
+  std::vector<Triangle> list = g.triangles;
+  list.insert(list.end(), g.lightTriangles.begin(), g.lightTriangles.end());
+  return list;
+}
+
 std::vector<glm::vec4> positionList(const Geometry& g) {
   std::vector<glm::vec4> list;
   list.reserve(g.positions.size());
@@ -142,7 +148,7 @@ struct GpuScene::Impl {
   gpu::Device& device;
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
-  uint32_t staticVertices;
+  uint32_t staticVertices, firstMovingLight;
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, srgb, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one a slot
@@ -161,6 +167,7 @@ struct GpuScene::Impl {
         vertexCount(uint32_t(g.positions.size())),
         environment(scene.environment),
         staticVertices(g.staticVertices()),
+        firstMovingLight(g.light().firstMoving),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
         textures(d, scene),
         runs(fovea::scene::drawRuns(scene, g)) {
@@ -169,7 +176,7 @@ struct GpuScene::Impl {
     indices = makeBuffer(device, "scene indices", indexList(g),
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     static_assert(sizeof(Triangle) == 16);
-    triangles = makeBuffer(device, "scene triangles", g.triangles, kTexelUsage);
+    triangles = makeBuffer(device, "scene triangles", triangleList(g), kTexelUsage);
     positions = makeBuffer(device, "scene positions", positionList(g),
                            kTexelUsage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
     previous = gpu::Buffer(device,
@@ -360,7 +367,7 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
                          glm::vec4(s.boundsMin, 0),
                          glm::vec4(s.boundsMax, 0),
                          glm::vec4(s.environment, 0),
-                         glm::uvec4(s.staticVertices, 0, 0, 0)};
+                         glm::uvec4(s.staticVertices, s.firstMovingLight, 0, 0)};
   impl_->store(slot, 0, block);
   uint32_t layer = 0;
   for (size_t i = 0; i < frame.lights.size(); ++i) {

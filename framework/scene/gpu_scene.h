@@ -45,7 +45,8 @@ class GpuScene {
   gpu::Buffer& indices() const;  // uint32, 3 a triangle, for indexed draws
   // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the
   // device.
-  gpu::Buffer& triangles() const;   // uvec4: 3 vertices, material | object << 16
+  // uvec4: 3 vertices, material | object << 16; Geometry::lightTriangles behind those of the picture.
+  gpu::Buffer& triangles() const;
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
   gpu::Buffer& previous() const;    // vec4: last frame's positions of the vertices that move

@@ -87,6 +87,7 @@ void hashPath(Hasher& h, uint32_t what, const Motion& m) {
 }
 
 void hash(Hasher& h, const Primitive& p) {
+  if (!p.lightIndices.empty()) h.array(p.lightIndices);
   if (p.targets.empty() && p.joints.empty()) return;
   for (const MorphTarget& t : p.targets) {
     h.array(t.positions);

@@ -58,6 +58,9 @@ struct Primitive {
   std::vector<glm::vec2> uvs;      // zeros where the model has none
   std::vector<uint32_t> indices;   // 3 a triangle
   uint32_t material = 0;
+  // Fewer triangles of the same vertices, which voxels and VPL maps see in place of `indices`; empty: the
+  // same.
+  std::vector<uint32_t> lightIndices{};
   // Of a mesh that deforms. Morph targets come first, then the joints of Node::skin move the result.
   std::vector<MorphTarget> targets{};  // as many in every primitive of a mesh
   std::vector<glm::u16vec4> joints{};  // four a vertex: indices into Skin::joints; empty: not skinned
@@ -248,11 +251,28 @@ struct Geometry {
   std::vector<Triangle> triangles;
   std::vector<Object> objects;
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
+  // What voxels and VPL maps see, where something is coarser for them: all of it, what never moves first.
+  // Empty: they see `triangles`.
+  std::vector<Triangle> lightTriangles;
+  uint32_t staticLightTriangles = 0;
   glm::vec3 boundsMin{std::numeric_limits<float>::max()}, boundsMax{std::numeric_limits<float>::lowest()};
   bool empty() const { return triangles.empty(); }
   // Vertices [0, staticVertices()) never move.
   uint32_t staticVertices() const {
     return objects.size() > 1 ? objects[1].firstVertex : uint32_t(positions.size());
+  }
+
+  // Those triangles by the numbers they have on the device, where `lightTriangles` follow `triangles`.
+  struct LightTriangles {
+    uint32_t first, firstMoving, end;
+  };
+  LightTriangles light() const {
+    const uint32_t all = uint32_t(triangles.size()), coarse = uint32_t(lightTriangles.size());
+    if (coarse == 0) return {0, staticTriangles < all ? staticTriangles : all, all};
+    return {all, all + staticLightTriangles, all + coarse};
+  }
+  const Triangle& triangle(uint32_t number) const {
+    return number < triangles.size() ? triangles[number] : lightTriangles[number - triangles.size()];
   }
 };
 

@@ -74,9 +74,10 @@ struct SubdivisionEntry {
   SourceLocation where;
   std::string path;
   uint32_t level = 1;
-  bool loop = true;                 // of meshes that are no cages yet; else Catmull-Clark
-  float creaseDegrees = 180;        // edges sharper than this stay sharp
-  std::vector<std::string> meshes;  // empty: all
+  std::optional<uint32_t> lightLevel;  // what voxels and VPL maps see; none: `level`
+  bool loop = true;                    // of meshes that are no cages yet; else Catmull-Clark
+  float creaseDegrees = 180;           // edges sharper than this stay sharp
+  std::vector<std::string> meshes;     // empty: all
 };
 SubdivisionEntry readSubdivision(const json::Value& v, const std::string& path, Diagnostics& errors);
 // Makes cages of the model's meshes and refines them; those that are cages take the level. Throws

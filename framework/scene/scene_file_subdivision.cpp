@@ -28,6 +28,7 @@ SubdivisionEntry readSubdivision(const Value& v, const std::string& path, Diagno
   e.where = v.where.location();
   e.path = path;
   e.level = uint32_t(r.integer("level", 1, 1, SubdivisionCage::kMaxLevel));
+  e.lightLevel = readLightLevel(r, "light_level", e.level);
   e.loop = r.choice("scheme", "loop", {"loop", "catmull-clark"}) == "loop";
   e.creaseDegrees = float(r.number("crease_deg", 180, 0, 180));
   if (const Value* list = r.array("meshes"))
@@ -60,6 +61,7 @@ void applySubdivision(const SubdivisionEntry& e, Scene& model) {
     if (mesh.primitives.empty()) continue;
     SubdivisionCage cage = mesh.cage ? *mesh.cage : cageOfTriangles(mesh);
     cage.level = e.level;
+    cage.lightLevel = e.lightLevel;
     if (!mesh.cage)
       cage.scheme = e.loop ? SubdivisionCage::Scheme::Loop : SubdivisionCage::Scheme::CatmullClark;
     const std::vector<CageProblem> problems = checkCage(cage);

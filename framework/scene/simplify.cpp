@@ -34,10 +34,11 @@ std::vector<glm::vec3> weld(const Geometry& geometry, std::vector<uint32_t>& ind
 
 SimplifiedMesh simplify(const Scene& scene, const Geometry& geometry, float ratio) {
   SimplifiedMesh mesh;
-  mesh.sourceTriangles = std::min<uint32_t>(geometry.staticTriangles, uint32_t(geometry.triangles.size()));
+  const Geometry::LightTriangles light = geometry.light();
+  mesh.sourceTriangles = light.firstMoving - light.first;
   std::vector<uint32_t> indices;
-  for (uint32_t i = 0; i < mesh.sourceTriangles; ++i) {
-    const Triangle& t = geometry.triangles[i];
+  for (uint32_t i = light.first; i < light.firstMoving; ++i) {
+    const Triangle& t = geometry.triangle(i);
     if (!isMasked(scene, t)) {
       indices.insert(indices.end(), t.v, t.v + 3);
       continue;

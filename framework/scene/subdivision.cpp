@@ -34,6 +34,7 @@ std::vector<Primitive> refineChecked(const SubdivisionCage& cage) {
     Primitive& p = primitives.emplace_back();
     p.material = part.material;
     p.indices = part.indices;
+    p.lightIndices = part.lightIndices;
     p.positions.reserve(part.vertices.size());
     p.normals.reserve(part.vertices.size());
     for (const CageLimit::Vertex& v : part.vertices) {

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ struct SubdivisionCage {
   std::vector<Corner> corners;
   std::vector<uint32_t> faceMaterials;  // a face; may be empty: material 0
   uint32_t level = 2;                   // of uniform refinement, 1..kMaxLevel
+  // What voxels and VPL maps see: triangles between the limit points of the vertices of this level, 0..level.
+  // None: `level`.
+  std::optional<uint32_t> lightLevel;
 
   // Of a cage that deforms, as of a Primitive, one entry a cage point (normals are not used).
   std::vector<MorphTarget> targets;
@@ -63,7 +67,8 @@ std::vector<CageProblem> checkCage(const SubdivisionCage& cage);
 // Of refine(), without refining: (corners of all faces) * 4^(level-1) * 2, for Loop faces * 4^level.
 uint64_t refinedTriangles(const SubdivisionCage& cage);
 
-// Triangles at cage.level: one primitive a material (ascending), limit positions, unit limit normals.
+// Triangles at cage.level: one primitive a material (ascending), limit positions, unit limit normals; with
+// Primitive::lightIndices where cage.lightLevel is below it.
 // Deterministic: the order depends on the cage's connectivity and materials alone. Throws Error(BadInput) for
 // a bad cage and where fovea was built without OpenSubdiv.
 std::vector<Primitive> refine(const SubdivisionCage& cage);

@@ -36,6 +36,11 @@ class CageChecker {
     if (cage_.level < 1 || cage_.level > SubdivisionCage::kMaxLevel)
       problem("level", "the level of refinement is " + std::to_string(cage_.level) + ", not in 1 to " +
                            std::to_string(SubdivisionCage::kMaxLevel));
+    if (cage_.lightLevel && *cage_.lightLevel > cage_.level)
+      problem("lightLevel",
+              "the level for voxels and VPL maps is " + std::to_string(*cage_.lightLevel) +
+                  ", finer than that of the picture, " + std::to_string(cage_.level),
+              "leave it out, or choose one from 0 to " + std::to_string(cage_.level));
     for (size_t i = 0; i < cage_.positions.size(); ++i)
       if (const glm::vec3& p = cage_.positions[i];
           !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))

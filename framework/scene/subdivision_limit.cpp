@@ -326,6 +326,28 @@ struct CageLimit::Refined {
     return out;
   }
 
+  // Where the corner of a face of some level at its point `point` is in the last level: a corner, face *
+  // corners() + its place in the face.
+  size_t lastCorner(int level, int face, int point) const {
+    for (; level < refiner->GetMaxLevel(); ++level) {
+      const TopologyLevel& now = refiner->GetLevel(level);
+      const TopologyLevel& next = refiner->GetLevel(level + 1);
+      point = now.GetVertexChildVertex(point);
+      for (const int child : now.GetFaceChildFaces(face))
+        if (placeIn(next.GetFaceVertices(child), point) >= 0) {
+          face = child;
+          break;
+        }
+    }
+    return size_t(face) * corners() + size_t(placeIn(last().GetFaceVertices(face), point));
+  }
+
+  static int placeIn(const ConstIndexArray& points, int point) {
+    for (int i = 0; i < points.size(); ++i)
+      if (points[i] == point) return i;
+    return -1;
+  }
+
   std::vector<uint32_t> materials(const SubdivisionCage& cage) const {
     std::vector<uint32_t> values = cage.faceMaterials;
     const Far::PrimvarRefiner primvars(*refiner);
@@ -381,6 +403,7 @@ CageLimit::CageLimit(const SubdivisionCage& cage) : refined_(std::make_unique<Re
                      [&](uint32_t a, uint32_t b) { return materials[a] < materials[b]; });
   PartBuilder builder(refined_->sides);
   const size_t corners = refined_->corners();
+  std::vector<uint32_t> partOfFace(order.size()), vertexOfCorner(order.size() * corners);
   for (size_t n = 0; n < order.size(); ++n) {
     const uint32_t face = order[n], material = materials.empty() ? 0 : materials[face];
     if (n == 0 || material != parts_.back().material) {
@@ -389,12 +412,27 @@ CageLimit::CageLimit(const SubdivisionCage& cage) : refined_(std::make_unique<Re
     }
     Part& part = parts_.back();
     const ConstIndexArray points = level.GetFaceVertices(int(face));
-    uint32_t v[4] = {};
+    uint32_t* v = &vertexOfCorner[face * corners];
     for (size_t k = 0; k < corners; ++k)
       v[k] = builder.vertex(part, {uint32_t(points[int(k)]), refined_->sideOfCorner[face * corners + k],
                                    hasUvs ? uint32_t(level.GetFaceFVarValues(int(face))[int(k)]) : 0});
     part.indices.insert(part.indices.end(), {v[0], v[1], v[2]});
     if (corners == 4) part.indices.insert(part.indices.end(), {v[0], v[2], v[3]});
+    partOfFace[face] = uint32_t(parts_.size() - 1);
+  }
+  if (!cage.lightLevel || *cage.lightLevel >= cage.level) return;
+  // A vertex of the coarse level goes to a vertex of the last one, and their limit points are the same.
+  const TopologyLevel& coarse = refined_->refiner->GetLevel(int(*cage.lightLevel));
+  std::vector<uint32_t> fan;
+  for (int face = 0; face < coarse.GetNumFaces(); ++face) {
+    fan.clear();
+    size_t corner = 0;
+    for (const int point : coarse.GetFaceVertices(face)) {
+      corner = refined_->lastCorner(int(*cage.lightLevel), face, point);
+      fan.push_back(vertexOfCorner[corner]);
+    }
+    std::vector<uint32_t>& indices = parts_[partOfFace[corner / corners]].lightIndices;
+    for (size_t k = 2; k < fan.size(); ++k) indices.insert(indices.end(), {fan[0], fan[k - 1], fan[k]});
   }
 }
 

@@ -31,8 +31,9 @@ class CageLimit {
   };
   struct Part {
     uint32_t material = 0;
-    std::vector<Vertex> vertices;   // each once, in the order in which the triangles name them
-    std::vector<uint32_t> indices;  // into vertices
+    std::vector<Vertex> vertices;        // each once, in the order in which the triangles name them
+    std::vector<uint32_t> indices;       // into vertices
+    std::vector<uint32_t> lightIndices;  // likewise, of the cage's lightLevel; empty: none of its own
   };
   const std::vector<Part>& parts() const { return parts_; }
 

@@ -229,12 +229,13 @@ ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
     for (; first < end; first += kRangeTriangles)
       to.push_back({&kernels, first, std::min(end - first, kRangeTriangles), epsilon});
   };
-  const uint32_t all = uint32_t(geometry.triangles.size()), still = std::min(geometry.staticTriangles, all);
+  const scene::Geometry::LightTriangles light = geometry.light();
   if (simplify_)
     add(list.all, simplified_, 0, simplifiedTriangles_, own + simplifiedError_);
   else if (staticMaps_)
-    add(list.all, still_, 0, still, own);
-  add(staticMaps_ ? list.overlay : list.all, exact_, simplify_ || staticMaps_ ? still : 0, all, own);
+    add(list.all, still_, light.first, light.firstMoving, own);
+  add(staticMaps_ ? list.overlay : list.all, exact_,
+      simplify_ || staticMaps_ ? light.firstMoving : light.first, light.end, own);
   return list;
 }
 

@@ -195,11 +195,10 @@ void Voxelize::recordPhase(RecordContext& ctx, Phase phase, Triangles triangles)
 }
 
 void Voxelize::record(RecordContext& ctx) {
-  const scene::Geometry& geometry = *ctx.frame().geometry;
-  const uint32_t all = uint32_t(geometry.triangles.size()), fixed = std::min(geometry.staticTriangles, all);
-  const bool dynamic = fixed < all;
+  const scene::Geometry::LightTriangles triangles = ctx.frame().geometry->light();
+  const bool dynamic = triangles.firstMoving < triangles.end;
   if (!voxelized_) {
-    recordPhase(ctx, Static, {0, fixed});
+    recordPhase(ctx, Static, {triangles.first, triangles.firstMoving - triangles.first});
     if (dynamic) {
       ctx.fill("marks", 0);
       ctx.barrier();
@@ -209,7 +208,7 @@ void Voxelize::record(RecordContext& ctx) {
     ctx.use(restore_).dispatchIndirect("state", kPhaseOffset + Dynamic * kPhaseBytes);
     ctx.barrier();
   }
-  if (dynamic) recordPhase(ctx, Dynamic, {fixed, all - fixed});
+  if (dynamic) recordPhase(ctx, Dynamic, {triangles.firstMoving, triangles.end - triangles.firstMoving});
   ctx.use(count_).dispatch(1);
 }
 

@@ -53,6 +53,9 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
   for (const scene::Object& o : geometry.objects) dynamic += o.dynamic;
   line("triangles", fmt::format("{} ({} of them moving)", geometry.triangles.size(),
                                 geometry.triangles.size() - geometry.staticTriangles));
+  if (const scene::Geometry::LightTriangles light = geometry.light(); light.first > 0)
+    line("", fmt::format("{} for voxels and VPL maps ({} of them moving)", light.end - light.first,
+                         light.end - light.firstMoving));
   line("vertices", fmt::format("{}", geometry.positions.size()));
   line("objects", fmt::format("{} ({} of them moving)", geometry.objects.size(), dynamic));
   line("materials", fmt::format("{} ({} masked, {} emissive)", s.materials.size(), masked, emissive));

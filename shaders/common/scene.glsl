@@ -19,7 +19,8 @@ layout(set = 1, binding = 0) uniform FrameBlock {
   vec4 boundsMin;        // world space, m
   vec4 boundsMax;
   vec4 environment;      // radiance where nothing is hit
-  uvec4 staticVertices;  // x: vertices below it never move
+  uvec4 firstMoving;     // x: vertices below it never move; y: the first triangle that moves, of those that voxels and VPL
+                         // maps see (behind those of the picture where some are coarser, else among them)
 } frame;
 
 layout(set = 1, binding = 1) uniform ViewBlock {
@@ -62,8 +63,8 @@ layout(set = 1, binding = 10) uniform samplerBuffer scenePrevious;      // xyz w
 uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
 vec3 scenePreviousPosition(uint vertex) {  // in the frame before
-  if (vertex < frame.staticVertices.x) return scenePosition(vertex);
-  return texelFetch(scenePrevious, int(vertex - frame.staticVertices.x)).xyz;
+  if (vertex < frame.firstMoving.x) return scenePosition(vertex);
+  return texelFetch(scenePrevious, int(vertex - frame.firstMoving.x)).xyz;
 }
 vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int(vertex)).xy); }
 vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
@@ -99,12 +100,12 @@ vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objec
 
 // ---- Points of surfaces that deform -------------------------------------------------------------------------------
 
-// A point keeps its place in a triangle: the triangle's number past the static ones (exact as a float below 2^24) and the
-// weights of its second and third vertex. A direction keeps its components along the triangle's own axes.
+// A point keeps its place in a triangle, of those that voxels see: its number past frame.firstMoving.y (exact as a float
+// below 2^24) and the weights of its second and third vertex. A direction keeps its components along the triangle's own axes.
 
 // The point of the triangle that is nearest to `position` (Ericson 2005, 5.1.5).
 vec3 attach(uint triangle, vec3 position) {
-  uvec4 t = sceneTriangle(frame.staticTriangleCount + triangle);
+  uvec4 t = sceneTriangle(frame.firstMoving.y + triangle);
   vec3 a = scenePosition(t.x), ab = scenePosition(t.y) - a, ac = scenePosition(t.z) - a, ap = position - a;
   float d1 = dot(ab, ap), d2 = dot(ac, ap), bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
   float area = bb * cc - bc * bc;
@@ -121,14 +122,14 @@ vec3 attach(uint triangle, vec3 position) {
 }
 
 vec3 attachedPosition(vec3 place) {
-  uvec4 t = sceneTriangle(frame.staticTriangleCount + uint(place.x));
+  uvec4 t = sceneTriangle(frame.firstMoving.y + uint(place.x));
   vec3 a = scenePosition(t.x);
   return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
 }
 
 // Columns: along the first edge, across it in the plane, the normal; unit.
 mat3 triangleAxes(uint triangle) {
-  uvec4 t = sceneTriangle(frame.staticTriangleCount + triangle);
+  uvec4 t = sceneTriangle(frame.firstMoving.y + triangle);
   vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);
   if (!(dot(n, n) > 0.0)) return mat3(1.0);
   edge = normalize(edge);

@@ -244,8 +244,9 @@ TEST(Animate, WithoutPosesThingsRest) {
 
 // ---- Points that keep their place in a triangle (common/scene.glsl)
 
-// What attach() and its like give for points around the triangles past the static ones.
-TEST(Attach, FindsTheNearestPointAndFollows) {
+// What attach() and its like give for points around the triangles past the static ones, of those that voxels
+// see: `coarse` has others than the picture.
+void attachAndCompare(bool coarse) {
   Scene s;
   test::addMaterial(s, glm::vec3(0.5f));
   test::addQuad(s, 0, {-3, 0, -3}, {0, 0, 6}, {6, 0, 0});
@@ -254,6 +255,7 @@ TEST(Attach, FindsTheNearestPointAndFollows) {
   p.normals.assign(4, {0, 0, 1});
   p.uvs.assign(4, {0, 0});
   p.indices = {0, 1, 2, 2, 1, 3};
+  if (coarse) p.lightIndices = {1, 3, 0, 3, 2, 0};
   MorphTarget bend;
   bend.positions = {{0, 0, 1}, {0.2f, 0.1f, 0}, {0, 0, -0.5f}, {0.5f, 0.5f, 0.5f}};
   p.targets = {bend};
@@ -283,7 +285,7 @@ TEST(Attach, FindsTheNearestPointAndFollows) {
     r[2] = vec4(axes[2], length(transpose(axes) * axes[0] - vec3(1.0, 0.0, 0.0)));
   )");
   for (size_t i = 0; i < queries.size(); ++i) {
-    const Triangle& t = now.triangles[now.staticTriangles + uint32_t(queries[i].w)];
+    const Triangle& t = now.triangle(now.light().firstMoving + uint32_t(queries[i].w));
     const glm::vec3 a0 = now.positions[t.v[0]], b = now.positions[t.v[1]], c = now.positions[t.v[2]];
     const glm::vec3 place(results[3 * i]), at(results[3 * i + 1]), point(queries[i]);
     EXPECT_EQ(results[3 * i].w, 1.0f);
@@ -301,6 +303,10 @@ TEST(Attach, FindsTheNearestPointAndFollows) {
     EXPECT_LT(results[3 * i + 2].w, 1e-5f);
   }
 }
+
+TEST(Attach, FindsTheNearestPointAndFollows) { attachAndCompare(false); }
+
+TEST(Attach, ToTheCoarserTrianglesThatVoxelsSee) { attachAndCompare(true); }
 
 }  // namespace
 }  // namespace fovea::scene

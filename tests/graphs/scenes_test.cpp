@@ -208,7 +208,7 @@ TEST_P(ScenesInMotion, VplsFollow) {
       ++onMovers;
       const size_t object = size_t(v.object);
       if (g.objects[object].deforms) {
-        const scene::Triangle& t = g.triangles.at(g.staticTriangles + size_t(v.localPosition.x));
+        const scene::Triangle& t = g.triangle(g.light().firstMoving + uint32_t(v.localPosition.x));
         ASSERT_EQ(t.object(), object) << f << " " << i;
         const glm::vec3 a = g.positions[t.v[0]],
                         n = glm::cross(g.positions[t.v[1]] - a, g.positions[t.v[2]] - a);

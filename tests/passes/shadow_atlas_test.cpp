@@ -320,6 +320,47 @@ TEST(ShadowAtlas, IsRepeatableBitForBit) {
   EXPECT_EQ(a.bytes("atlas"), b.bytes("atlas"));
 }
 
+// Where something is coarser for VPL maps, they are those of the coarser scene: also the parts that move, the
+// masked ones and the simplified mesh.
+TEST(ShadowAtlas, SeesTheTrianglesThatAreCoarserForLight) {
+  Scene s = scene::builtin("cornellbox");
+  s.textures.push_back(checkerTexture());
+  s.materials.emplace_back();
+  s.materials.back().masked = true;
+  s.materials.back().baseColorTexture.texture = uint32_t(s.textures.size() - 1);
+  s.meshes[0].primitives[0].material = uint32_t(s.materials.size() - 1);
+  for (size_t i = 0; i < s.nodes.size(); i += 3) s.nodes[i].dynamic = true;
+  Scene coarse = s;
+  for (size_t m = 0; m < s.meshes.size(); ++m)
+    for (size_t n = 0; n < s.meshes[m].primitives.size(); ++n) {
+      std::vector<uint32_t>& kept = coarse.meshes[m].primitives[n].indices;
+      if (kept.size() > 6) kept.resize(kept.size() / 6 * 3);
+      if (m % 2 == 0)
+        s.meshes[m].primitives[n].lightIndices = kept;
+      else
+        kept = s.meshes[m].primitives[n].indices;
+    }
+  const Geometry g = scene::flatten(s);
+  ASSERT_GT(g.staticTriangles, 0u);
+  ASSERT_LT(g.staticTriangles, g.triangles.size());
+  ASSERT_LT(g.lightTriangles.size(), g.triangles.size());
+  const std::vector<Vpl> vpls = surfaceVpls(g, 20, 8);
+  for (const char* technique : {"exact", "simplified"}) {
+    const auto atlasOf = [&](const Scene& scene) {
+      PassTest test("shadow-atlas");
+      test.scene(scene).param("size", 48).param("technique", technique).param("simplify_ratio", 1.0);
+      test.buffer("vpls", vpls, "Vpl").run();
+      return test.values<float>("atlas");
+    };
+    const std::vector<float> got = atlasOf(s);
+    EXPECT_EQ(got, atlasOf(coarse)) << technique;
+    Scene fine = s;
+    for (scene::Mesh& mesh : fine.meshes)
+      for (scene::Primitive& p : mesh.primitives) p.lightIndices.clear();
+    EXPECT_NE(got, atlasOf(fine)) << technique;
+  }
+}
+
 TEST(ShadowAtlas, SimplifiedKeepingAllIsExactAndKeepingLessIsClose) {
   Scene s = scene::builtin("cornellbox");
   s.textures.push_back(checkerTexture());

@@ -358,6 +358,30 @@ TEST(Voxelize, DynamicObjectsMoveAppearAndDisappear) {
   EXPECT_EQ(gone, 1u);     // the frame without any object
 }
 
+// Of a scene in which every third triangle is missing for voxels: they are those of the scene that has but
+// the others.
+TEST(Voxelize, TrianglesThatAreCoarserForLight) {
+  Scene s = movingScene(2), coarse = s;
+  for (size_t m = 0; m < s.meshes.size(); ++m)
+    for (size_t n = 0; n < s.meshes[m].primitives.size(); ++n) {
+      std::vector<uint32_t>& kept = coarse.meshes[m].primitives[n].indices;
+      if (kept.size() < 9) continue;
+      std::vector<uint32_t> list;
+      for (size_t i = 0; i < kept.size(); ++i)
+        if (i / 3 % 3 != 2) list.push_back(kept[i]);
+      kept = s.meshes[m].primitives[n].lightIndices = list;
+    }
+  PassTest test("voxelize");
+  test.scene(s).param("resolution", 40);
+  scene::Geometry g = scene::flatten(coarse);
+  ASSERT_LT(g.triangles.size(), scene::flatten(s).triangles.size());
+  for (int frame = 0; frame < 3; ++frame) {
+    test.run();
+    g.positions = test.geometry().positions;
+    ASSERT_NO_FATAL_FAILURE(expectEqual(readBack(test, 40), voxelizeReference(coarse, g, 40))) << frame;
+  }
+}
+
 TEST(Voxelize, OnlyDynamicObjects) {
   Scene s = movingScene(1);
   s.nodes.erase(s.nodes.begin(), s.nodes.begin() + 2);

@@ -186,6 +186,11 @@ const BadCage kBadCages[] = {
     {"Scheme", R"("faceSizes":4,"scheme":"doo-sabin")", "fovea_subdivision.scheme", "catmull-clark"},
     {"LevelTooHigh", R"("faceSizes":4,"level":12)", "fovea_subdivision.level", "12"},
     {"LevelOfAText", R"("faceSizes":4,"level":"high")", "fovea_subdivision.level", "high"},
+    {"LightLevelTooFine", R"("faceSizes":4,"level":3,"lightLevel":4)", "fovea_subdivision.lightLevel",
+     "from 0 to 3, the picture's level, found the number 4"},
+    {"LightLevelTooCoarse", R"("faceSizes":4,"lightLevel":-1)", "fovea_subdivision.lightLevel",
+     "from 0 to 2, the picture's level, found the number -1"},
+    {"LightLevelOfAText", R"("faceSizes":4,"lightLevel":"low")", "fovea_subdivision.lightLevel", "low"},
     {"LoopOfQuads", R"("faceSizes":4,"scheme":"loop")", "faceSizes[0]", "triangles only"},
     {"FaceOfTwo", R"("faceSizes":[4,4,2,4,4,4])", "faceSizes[2]", "from 3 to 64"},
     {"FaceOfAText", R"("faceSizes":"four")", "faceSizes", "from 3 to 64"},
@@ -302,6 +307,22 @@ TEST(CageFiles, AnyMeshOfASceneFileCanBeSubdivided) {
   EXPECT_NE(finer.scene.hash, smooth.scene.hash);
 }
 
+TEST(CageFiles, VoxelsAndMapsMaySeeACoarserLevel) {
+  SubdivisionCage cage = renumbered(cubeCage(3));
+  cage.lightLevel = 1;
+  const std::vector<Primitive> want = refine(cage);
+  const std::string extras = cageExtras(R"("faceSizes":4,"level":3,"lightLevel":1)");
+  const Scene ofModel = loadCage(document(cubeCage(1), extras));
+  EXPECT_EQ(ofModel.meshes.at(0).primitives.at(0).lightIndices, want.at(0).lightIndices);
+  const TriangleDocument plain = document(cubeCage(1), cageExtras(R"("faceSizes":4)"));
+  const SceneResult coarse = loadScene(plain, R"({"level": 3, "light_level": 1})"),
+                    same = loadScene(plain, R"({"level": 3})");
+  EXPECT_EQ(coarse.error + same.error, "");
+  EXPECT_EQ(coarse.scene.meshes.at(0).primitives.at(0).lightIndices, want.at(0).lightIndices);
+  EXPECT_TRUE(same.scene.meshes.at(0).primitives.at(0).lightIndices.empty());
+  EXPECT_NE(coarse.scene.hash, same.scene.hash);
+}
+
 TEST(CageFiles, MistakesOfSubdivision) {
   const TriangleDocument tetrahedron = document(tetrahedronCage(1), "{}");
   const auto expect = [&](const TriangleDocument& d, const char* text, const char* place,
@@ -312,6 +333,12 @@ TEST(CageFiles, MistakesOfSubdivision) {
   expect(tetrahedron, "3", "models[0].subdivision", "expected an object");
   expect(tetrahedron, R"({"levels": 3})", "models[0].subdivision.levels", "did you mean `level`");
   expect(tetrahedron, R"({"level": 9})", "models[0].subdivision.level", "9");
+  expect(tetrahedron, R"({"level": 2, "light_level": 3})", "models[0].subdivision.light_level",
+         "from 0 to 2, the picture's level, found the number 3");
+  expect(tetrahedron, R"({"level": 2, "light_level": 3})", "models[0].subdivision.light_level",
+         "leave it out for the same");
+  expect(tetrahedron, R"({"light_level": -1})", "models[0].subdivision.light_level", "from 0 to 1");
+  expect(tetrahedron, R"({"light_level": 0.5})", "models[0].subdivision.light_level", "0.5");
   expect(tetrahedron, R"({"scheme": "cubic"})", "models[0].subdivision.scheme", "catmull-clark");
   expect(tetrahedron, R"({"crease_deg": 200})", "models[0].subdivision.crease_deg", "200");
   expect(tetrahedron, R"({"meshes": ["try"]})", "models[0].subdivision", "did you mean `tri`");

@@ -110,6 +110,33 @@ TEST(Flatten, StaticFirstThenOneObjectPerMovingNode) {
   for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(g.triangles[i].object(), i < 2 ? 0u : i - 1);
 }
 
+// Only where something is coarser for voxels and VPL maps is there a list for them: all they see.
+TEST(Flatten, WhatLightSeesIsAListOfItsOwnWhereItIsCoarser) {
+  Scene s = triangleScene();
+  s.nodes = {meshNode(), meshNode()};
+  s.nodes[1].dynamic = true;
+  Primitive& p = s.meshes[0].primitives[0];
+  p.positions.push_back({1, 1, 0});
+  p.normals.push_back(p.normals[0]);
+  p.uvs.push_back(p.uvs[0]);
+  p.indices = {0, 1, 3, 0, 3, 2};
+  Geometry g = flatten(s);
+  EXPECT_TRUE(g.lightTriangles.empty());
+  EXPECT_EQ(g.light().first, 0u);
+  EXPECT_EQ(g.light().firstMoving, 2u);
+  EXPECT_EQ(g.light().end, 4u);
+  p.lightIndices = {0, 1, 2};
+  g = flatten(s);
+  EXPECT_EQ(g.triangles.size(), 4u) << "the picture's stay";
+  EXPECT_EQ(g.light().first, 4u);
+  EXPECT_EQ(g.light().firstMoving, 5u);
+  EXPECT_EQ(g.light().end, 6u);
+  EXPECT_EQ(g.triangle(4).v[2], 2u);
+  EXPECT_EQ(g.triangle(5).v[2], 6u);
+  EXPECT_EQ(g.triangle(5).object(), 1u);
+  EXPECT_EQ(&g.triangle(3), &g.triangles[3]);
+}
+
 TEST(Flatten, SingularTransformsKeepUnitNormals) {
   Scene s = triangleScene();
   s.nodes = {meshNode(), meshNode()};
@@ -157,6 +184,7 @@ TEST(SceneHash, FollowsEveryPartOfTheContentButNotNames) {
   };
   EXPECT_TRUE(changed([](Scene& c) { c.meshes[0].primitives[0].positions[1].x = 2; }));
   EXPECT_TRUE(changed([](Scene& c) { c.meshes[0].primitives[0].indices = {0, 2, 1}; }));
+  EXPECT_TRUE(changed([](Scene& c) { c.meshes[0].primitives[0].lightIndices = {0, 1, 2}; }));
   EXPECT_TRUE(changed([](Scene& c) { c.materials[0].baseColor.g = 0.5f; }));
   EXPECT_TRUE(changed([](Scene& c) { c.materials[0].masked = true; }));
   EXPECT_TRUE(changed([](Scene& c) { c.nodes[0].translation.y = 1; }));

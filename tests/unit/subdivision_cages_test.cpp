@@ -36,6 +36,8 @@ TEST(Subdivision, BadCagesAreRefused) {
   expectRefused(Cage{}, "faceSizes", "no faces");
   expectRefused(changed([](Cage& c) { c.level = 0; }), "level", "not in 1 to 8");
   expectRefused(changed([](Cage& c) { c.level = 9; }), "level", "not in 1 to 8");
+  expectRefused(changed([](Cage& c) { c.lightLevel = 3; }), "lightLevel",
+                "finer than that of the picture, 2");
   expectRefused(changed([](Cage& c) { c.positions[3].y = NAN; }), "positions[3]", "not finite");
   expectRefused(changed([](Cage& c) { c.faceVertices[5] = 8; }), "faceVertices[5]", "only 8");
   expectRefused(changed([](Cage& c) { c.faceSizes[2] = 2; }), "faceSizes[2]", "a face of 2 vertices");

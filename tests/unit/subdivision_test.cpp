@@ -369,6 +369,74 @@ TEST(Subdivision, StencilsAreAffine) {
   }
 }
 
+// ---- the coarser level for voxels and VPL maps ----
+
+// Its triangles are those of the cage refined to that level, on vertices of the finer one.
+void expectCoarse(SubdivisionCage cage, uint32_t light) {
+  const std::vector<Primitive> picture = refine(cage);
+  cage.lightLevel = light;
+  const std::vector<Primitive> both = refine(cage);
+  cage.lightLevel.reset();
+  cage.level = light;
+  const std::vector<Primitive> coarse = refine(cage);
+  ASSERT_EQ(both.size(), coarse.size());
+  for (size_t n = 0; n < both.size(); ++n) {
+    EXPECT_EQ(both[n].positions, picture[n].positions) << "the picture's mesh stays as it is";
+    EXPECT_EQ(both[n].indices, picture[n].indices);
+    EXPECT_EQ(both[n].material, coarse[n].material);
+    ASSERT_EQ(both[n].lightIndices.size(), coarse[n].indices.size());
+    for (size_t i = 0; i < coarse[n].indices.size(); ++i) {
+      const uint32_t a = both[n].lightIndices[i], b = coarse[n].indices[i];
+      ASSERT_LT(glm::distance(both[n].positions[a], coarse[n].positions[b]), 2e-6f) << n << " " << i;
+      ASSERT_LT(glm::distance(both[n].uvs[a], coarse[n].uvs[b]), 2e-6f) << n << " " << i;
+    }
+  }
+}
+
+TEST(Subdivision, CoarserTrianglesForLightAreThoseOfTheirLevel) {
+  for (uint32_t level = 2; level <= 4; ++level)
+    for (uint32_t light = 1; light < level; ++light) {
+      SCOPED_TRACE(std::to_string(level) + " " + std::to_string(light));
+      // Where a crease ends inside the surface, OpenSubdiv's limit point depends a little on the level:
+      // without.
+      SubdivisionCage everything = everythingCage(level);
+      everything.creases.resize(6);
+      expectCoarse(everything, light);
+      expectCoarse(torusCage(5, 4, level), light);
+      expectCoarse(icosahedronCage(level), light);
+      expectCoarse(gridCage(4, 3, level, [](uint32_t x, uint32_t y) { return float(x * y); }), light);
+      SubdivisionCage cube = cubeCage(level);
+      cube.faceMaterials = {4, 4, 4, 1, 4, 1};
+      expectCoarse(cube, light);
+    }
+}
+
+// Level 0: the cage's own faces, as fans between the limit points of its vertices.
+TEST(Subdivision, CoarsestTrianglesForLightAreTheFacesOfTheCage) {
+  for (uint32_t level = 1; level <= 3; ++level) {
+    SubdivisionCage cage = cubeCage(level);
+    cage.lightLevel = 0;
+    const Primitive p = refineOne(cage);
+    ASSERT_EQ(p.lightIndices.size(), 12u * 3);
+    size_t i = 0;
+    for (size_t face = 0; face < 6; ++face)
+      for (uint32_t k = 2; k < 4; ++k)
+        for (uint32_t corner : {0u, k - 1, k}) {
+          const glm::vec3 limit = 0.5f * cage.positions[cage.faceVertices[4 * face + corner]];
+          EXPECT_LT(glm::distance(p.positions[p.lightIndices[i++]], limit), 1e-6f);
+        }
+  }
+  SubdivisionCage ball = icosahedronCage(2);
+  ball.lightLevel = 0;
+  EXPECT_EQ(refineOne(ball).lightIndices.size(), 20u * 3);
+}
+
+TEST(Subdivision, TheSameLevelForLightNeedsNoTrianglesOfItsOwn) {
+  SubdivisionCage cage = cubeCage(2);
+  cage.lightLevel = 2;
+  EXPECT_TRUE(refineOne(cage).lightIndices.empty());
+}
+
 TEST(Subdivision, RefiningIsDeterministic) {
   const std::vector<Primitive> a = refine(everythingCage(3)), b = refine(everythingCage(3));
   ASSERT_EQ(a.size(), b.size());
