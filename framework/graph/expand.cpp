@@ -82,8 +82,8 @@ void Expander::expandRoot(const json::Value& document, const std::filesystem::pa
 void Expander::expandScope(size_t index) {
   Scope& scope = scopes_[index];
   json::ObjectReader reader(*scope.document, {}, diagnostics_);
-  reader.find("extends");  // merged by now
   reader.text("$schema");
+  reader.find("extends");  // merged by now
   const std::string text = reader.text("description");
   if (index == 0) description_.description = text;
   reader.object("parameters");  // read by readParameters

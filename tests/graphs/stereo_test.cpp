@@ -122,7 +122,7 @@ TEST(Stereo, RepeatsBitForBit) {
 TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/stereo.json",
-    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "weights", "atlas": "shadow-atlas"},
+    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "weights.emitters", "atlas": "shadow-atlas"},
                          "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
     "outputs": {"whole": "whole.indirect"}})";
   GraphRunOptions options;
