@@ -30,6 +30,8 @@ using namespace std::chrono_literals;
 // A claim that its owner has not touched for so long is void: the owner is gone, or its machine is.
 constexpr auto kStale = 180s;
 constexpr auto kTouch = 10s;
+// One that names nobody after so long: its owner was killed before it had written its name.
+constexpr auto kNameless = 5s;
 
 [[noreturn]] void cannotWrite(const fs::path& where, const std::string& reason) {
   throw Error(ExitCode::CannotWrite, "cannot write to `" + where.string() + "`: " + reason,
@@ -109,7 +111,7 @@ class Claim {
     pid_t pid = 0;
     owner >> host >> pid;
     const bool dead = pid > 0 && host == hostName() && kill(pid, 0) != 0 && errno == ESRCH;
-    if (dead || age > kStale) fs::remove(file_, failed);
+    if (dead || age > kStale || (pid <= 0 && age > kNameless)) fs::remove(file_, failed);
   }
 
  private:
