@@ -19,7 +19,4 @@ float landing(uint point, vec3 position, vec3 normal, float area, float nearest)
   return from.w > 0.0 ? p : 0.0;
 }
 
-// Points that each of 64 invocations looks at, every 64th, and words of 32 bits that say which of them the VPL is seen from.
-uint laneWords(uint points) { return (points + 2047u) / 2048u; }
-
 #endif

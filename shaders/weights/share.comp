@@ -1,5 +1,8 @@
-// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), a lit one if the
-// end is lit.
+// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), of those that
+// the path's start sees, and of these to one that is lit if the end is.
+//
+// Given to a VPL that the start does not see, its light would go to whoever does see that one: after a jump of the gaze, when
+// no VPL is where the new paths end yet, that is a flash on the far wall.
 //
 // The light that the region gets by way of a piece of surface C is the integral of B p over C: what the eye paths that end
 // there find, summed and divided by their number M. A VPL with the flux F sends it F p_l. So F = (sum of B over its n
@@ -27,6 +30,7 @@ layout(set = 0) uniform samplerBuffer ends;
 #endif
 layout(set = 0) uniform samplerBuffer densities;
 layout(set = 0) uniform samplerBuffer seenFrom;
+layout(set = 0) uniform usamplerBuffer seen;
 layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) buffer SumsBlock { PathSum list[]; } sums;
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
@@ -34,11 +38,13 @@ layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint tried;  // paths
+  uint points;
   float normalShare;
   float areaCap;
 };
 
-const float kOtherKind = 1e20;  // m^2: only if there is no VPL of the kind
+// Of all VPLs those that the start of the path sees come first, then those lit as its end is, then the nearest.
+const uint kSeen = 2u, kSameKind = 1u;
 
 vec4 endTexel(uint path, int texel) {
 #if TRACED
@@ -70,20 +76,28 @@ void main() {
   if (!(end.w > 0.0)) return;
   atomicAdd(totals.value.found, 1u);
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
+  uint point = path % points, lane = point & 63u, turn = point >> 6u, words = laneWords(points);
+  int word = int(lane * words + (turn >> 5u)), wordsOfVpl = int(64u * words);
+  uint bit = 1u << (turn & 31u);
   float best = 1e38, bestWhole = 1e38;
-  uint owner = kNoSide, whole = kNoSide;  // nearest of all; of those that are seen well
+  uint owner = kNoSide, whole = kNoSide, rank = 0u, rankWhole = 0u;  // first of all; of those that are seen well
   for (uint i = 0u; i < vplCount; ++i) {
     vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
     vec3 d = site.xyz - end.xyz;
     bool thin = site.w <= kThinSite;
     float handicap = thin ? kThinSite - site.w : site.w;
     precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, siteNormal.xyz)) + handicap;
-    cost = handicap >= 0.0 ? cost + (siteKind(siteNormal.w) == end.w ? 0.0 : kOtherKind) : 2e38;
-    bool nearer = cost < best, nearerWhole = !thin && cost < bestWhole;
+    uint its = ((texelFetch(seen, int(i) * wordsOfVpl + word).r & bit) != 0u ? kSeen : 0u) +
+               (siteKind(siteNormal.w) == end.w ? kSameKind : 0u);
+    bool takes = handicap >= 0.0;
+    bool nearer = takes && (its > rank || (its == rank && cost < best));
+    bool nearerWhole = takes && !thin && (its > rankWhole || (its == rankWhole && cost < bestWhole));
     owner = nearer ? i : owner;
     best = nearer ? cost : best;
+    rank = nearer ? its : rank;
     whole = nearerWhole ? i : whole;
     bestWhole = nearerWhole ? cost : bestWhole;
+    rankWhole = nearerWhole ? its : rankWhole;
   }
   if (owner == kNoSide) return;
   float part = partKept(texelFetch(densities, int(owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(owner)).r);

@@ -66,6 +66,9 @@ const float kEnoughPoints = 4.0;
 
 float partKept(float p, float least, float seenFrom) { return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0); }
 
+// Points that each of 64 invocations looks at, every 64th, and words of 32 bits that say which of them the VPL is seen from.
+uint laneWords(uint points) { return (points + 2047u) / 2048u; }
+
 // Texels of a VplState.
 const int kStateTexels = 5;
 

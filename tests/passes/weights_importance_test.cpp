@@ -121,7 +121,7 @@ TEST(Weights, ImportanceAreasEqualTheReference) {
     for (size_t i = 0; i < p.size(); ++i) seen += p[i], whole += open[i];
     EXPECT_LT(seen, 0.99 * whole);  // the block hides something
     const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings);
-    EXPECT_GT(want.passed, 20);
+    EXPECT_GT(want.passed, 10);  // enough of them to matter
     const auto got = weigh(in, "importance-area", settings);
     int wrong = 0;
     double off = 0, all = 0;

@@ -152,6 +152,20 @@ inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl,
   return stored >= std::min(plane, len) - (0.5f * (len + local.z) * (2.0f / float(maps.size)) + 1e-3f);
 }
 
+// What a point gets from a VPL per area and radiosity, 1/m^2, 0: it does not see it. area: of the disc that the
+// VPL shines with.
+inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& maps, size_t slot, double area,
+                       float clamp) {
+  if (!(vpl.life > 0) || !s.there) return 0;
+  const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
+  const double d2 = glm::dot(to, to);
+  const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) *
+                         std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
+  if (!(cosines > 1e-12 * d2 && d2 > 1e-12) || !seesVpl(maps, s, vpl, slot)) return 0;
+  const double pi = glm::pi<double>();
+  return cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
+}
+
 // What the region gets from each slot per area and radiosity, 1/m^2; areas: of the discs that the VPLs shine
 // with, without them those of a cell. seenFrom: points that each is an average of.
 inline std::vector<double> seenDensities(const Room& room, const std::vector<scene::VplState>& vpls,
@@ -161,19 +175,10 @@ inline std::vector<double> seenDensities(const Room& room, const std::vector<sce
   const float cell = room.voxels.grid.cell;
   std::vector<double> result;
   for (size_t slot = 0; slot < vpls.size(); ++slot) {
-    const scene::VplState& vpl = vpls[slot];
-    const double area = areas ? (*areas)[slot] : double(cell) * cell;
     double sum = 0, squares = 0;
     for (const Seen& s : points) {
-      if (!(vpl.life > 0) || !s.there) continue;
-      const glm::dvec3 to = glm::dvec3(vpl.position) - glm::dvec3(s.position);
-      const double d2 = glm::dot(to, to);
-      const double cosines = std::max(glm::dot(glm::dvec3(s.normal), to), 0.0) *
-                             std::max(-glm::dot(glm::dvec3(vpl.normal), to), 0.0);
-      if (!(cosines > 1e-12 * d2 && d2 > 1e-12) || !seesVpl(maps, s, vpl, slot)) continue;
-      const double pi = glm::pi<double>();
-      const double term =
-          cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
+      const double area = areas ? (*areas)[slot] : double(cell) * cell;
+      const double term = seenTerm(s, vpls[slot], maps, slot, area, clamp);
       sum += term;
       squares += term * term;
     }
@@ -326,7 +331,7 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
 }
 
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
-// VPL of its kind, by trying every one. A VPL that the region hardly sees, p below the least density or from
+// VPL of its kind that the point sees, by trying every one. A VPL that the region hardly sees, p below the least density or from
 // less than 4 points, keeps as small a part of it (in 1024ths), and the nearest of all others gets the rest.
 // `light`: mean direct light of the paths in units of the VPL's own. gain: p by the disc of a cell over p by
 // that of the VPL's own area. doubtful: paths that two VPLs are equally near to. passed: paths that were
@@ -337,11 +342,15 @@ struct SharedAreas {
   double passed = 0;
 };
 
-// The nearest VPL of those that count; as many as there are: none.
+// The nearest VPL of those of the highest rank that count; as many as there are: none.
 struct Nearest {
   size_t vpl;
+  int rank = 0;
   double cost = 1e300, second = 1e300;
-  void offer(size_t i, double other) {
+  void offer(size_t i, int otherRank, double other) {
+    if (otherRank < rank) return;
+    if (otherRank > rank) cost = second = 1e300;
+    rank = otherRank;
     second = std::min(second, std::max(other, cost));
     if (other < cost) vpl = i;
     cost = std::min(cost, other);
@@ -362,6 +371,10 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
     const double own = radiance[vpls[vpl].side].w;
     light[vpl] += share * (own > 0 ? std::min(radiance[side].w / own, 16.0) : 1);
   };
+  std::vector<bool> sees;  // VPL after VPL of each point
+  for (const Seen& s : points)
+    for (size_t i = 0; i < vpls.size(); ++i)
+      sees.push_back(seenTerm(s, vpls[i], maps, i, 1, float(settings.clamp)) > 0);
   uint32_t found = 0;
   for (uint32_t path = 0; path < paths; ++path) {
     const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
@@ -381,10 +394,11 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
       if (!(p[i] > 0)) continue;
       const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
       const bool same = (radiance[vpls[i].side].w > 0) == (radiance[s].w > 0);
-      const double cost = glm::dot(d, d) + (same ? 0 : 1e20) +
+      const double cost = glm::dot(d, d) +
                           lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
-      owner.offer(i, cost);
-      if (part(i) >= 1) whole.offer(i, cost);
+      const int rank = (sees[point * vpls.size() + i] ? 2 : 0) + (same ? 1 : 0);
+      owner.offer(i, rank, cost);
+      if (part(i) >= 1) whole.offer(i, rank, cost);
     }
     if (owner.vpl == vpls.size()) continue;
     const bool alone = owner.vpl == whole.vpl || whole.vpl == vpls.size();
