@@ -290,7 +290,7 @@ TEST(Foveated, BiasOfOursByWeight) {
     for (const std::string weights : {"importance-area", "pdf", "area", "constant"}) {
       std::vector<double> biases;
       for (const int n : {250, 1000, 4000}) {
-        if (large && n != 1000) continue;  // long
+        if (large && n != 1000 && weights != "importance-area") continue;  // long
         if (n > 1000 && (weights == "area" || weights == "constant")) continue;
         const auto image =
             indirectOf("ours", e.scene,
@@ -304,9 +304,8 @@ TEST(Foveated, BiasOfOursByWeight) {
         worst[weights] = std::max(worst[weights], std::abs(fovea));
         biases.push_back(std::abs(fovea));
       }
-      if (weights == "importance-area" && !large) {
-        EXPECT_LE(biases[2], biases[0] + 0.02);
-        EXPECT_LE(worst[weights], 0.05);
+      if (weights == "importance-area") {
+        EXPECT_LE(biases[2], biases[0] + 0.02) << e.name << ": grows with N";
       }
     }
     EXPECT_LE(worst["importance-area"], large ? 0.15 : 0.05) << e.name;

@@ -152,8 +152,8 @@ inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl,
   return stored >= std::min(plane, len) - (0.5f * (len + local.z) * (2.0f / float(maps.size)) + 1e-3f);
 }
 
-// What a point gets from a VPL per area and radiosity, 1/m^2, 0: it does not see it. area: of the disc that the
-// VPL shines with.
+// What a point gets from a VPL per area and radiosity, 1/m^2, 0: it does not see it. area: of the disc that
+// the VPL shines with.
 inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& maps, size_t slot, double area,
                        float clamp) {
   if (!(vpl.life > 0) || !s.there) return 0;
@@ -331,11 +331,11 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
 }
 
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
-// VPL of its kind that the point sees, by trying every one. A VPL that the region hardly sees, p below the least density or from
-// less than 4 points, keeps as small a part of it (in 1024ths), and the nearest of all others gets the rest.
-// `light`: mean direct light of the paths in units of the VPL's own. gain: p by the disc of a cell over p by
-// that of the VPL's own area. doubtful: paths that two VPLs are equally near to. passed: paths that were
-// passed on.
+// VPL of its kind that the point sees, by trying every one. A VPL that the region hardly sees, p below the
+// least density or from less than 4 points, keeps as small a part of it (in 1024ths), and the nearest of all
+// others gets the rest. `light`: mean direct light of the paths in units of the VPL's own. gain: p by the
+// disc of a cell over p by that of the VPL's own area. doubtful: paths that two VPLs are equally near to.
+// passed: paths that were passed on.
 struct SharedAreas {
   std::vector<double> area, light, gain;
   int doubtful = 0;
@@ -394,8 +394,8 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
       if (!(p[i] > 0)) continue;
       const glm::dvec3 d = glm::dvec3(vpls[i].position) - glm::dvec3(side.position);
       const bool same = (radiance[vpls[i].side].w > 0) == (radiance[s].w > 0);
-      const double cost = glm::dot(d, d) +
-                          lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
+      const double cost =
+          glm::dot(d, d) + lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
       const int rank = (sees[point * vpls.size() + i] ? 2 : 0) + (same ? 1 : 0);
       owner.offer(i, rank, cost);
       if (part(i) >= 1) whole.offer(i, rank, cost);
