@@ -308,9 +308,11 @@ class SuiteReader {
     if (!error) messages_.error(graph.where, graph.label, "match needs the measure `error`");
   }
 
-  // All combinations, the first parameter slowest.
+  // All combinations, the first parameter slowest; but those of a scene seed by seed, so that what is
+  // compared is measured in turns, on a machine that is now faster and now slower.
   void expand(const std::string& sweep, const Settings& s, Suite& suite) {
-    for (const auto& scene : s.scenes)
+    for (const auto& scene : s.scenes) {
+      const auto first = std::ptrdiff_t(suite.jobs.size());
       for (const GraphEntry& graph : s.graphs) {
         auto axes = s.set;
         for (const auto& own : graph.set) {
@@ -336,6 +338,9 @@ class SuiteReader {
           }
         if (suite.jobs.size() > kMaxJobs) return;
       }
+      std::stable_sort(suite.jobs.begin() + first, suite.jobs.end(),
+                       [](const Job& a, const Job& b) { return a.seed < b.seed; });
+    }
   }
 
   // What the other graph is run with: the sweep's parameters as in this job, and its own.

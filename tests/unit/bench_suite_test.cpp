@@ -28,22 +28,22 @@ std::string errorOf(const std::string &text) {
   }
 }
 
-TEST(BenchSuite, JobsAreAllCombinationsOneSceneAfterTheOther) {
+TEST(BenchSuite, JobsAreAllCombinationsOneSceneAfterTheOtherSeedBySeed) {
   const Suite suite = parseSuite(R"({
     "scenes": ["a", "b"], "graphs": ["ours"], "set": {"kernel": "disc"},
     "sweeps": [{"name": "n", "set": {"vpl_count": [1, 2]}, "seeds": 2}, {"name": "m", "graphs": [{"graph": "x/ir.json"}]}]
   })",
                                  "s.json");
   EXPECT_THAT(namesOf(suite),
-              ElementsAre("n-a-ours-vpl_count=1-s1", "n-a-ours-vpl_count=1-s2",
-                          "n-a-ours-vpl_count=2-s1", "n-a-ours-vpl_count=2-s2",
+              ElementsAre("n-a-ours-vpl_count=1-s1", "n-a-ours-vpl_count=2-s1",
+                          "n-a-ours-vpl_count=1-s2", "n-a-ours-vpl_count=2-s2",
                           "m-a-ir-s1", "n-b-ours-vpl_count=1-s1",
-                          "n-b-ours-vpl_count=1-s2", "n-b-ours-vpl_count=2-s1",
+                          "n-b-ours-vpl_count=2-s1", "n-b-ours-vpl_count=1-s2",
                           "n-b-ours-vpl_count=2-s2", "m-b-ir-s1"));
   using Pair = std::pair<std::string, std::string>;
-  EXPECT_THAT(suite.jobs[2].set,
+  EXPECT_THAT(suite.jobs[1].set,
               ElementsAre(Pair("kernel", "disc"), Pair("vpl_count", "2")));
-  EXPECT_THAT(suite.jobs[2].varied, ElementsAre(Pair("vpl_count", "2")));
+  EXPECT_THAT(suite.jobs[1].varied, ElementsAre(Pair("vpl_count", "2")));
   EXPECT_EQ(suite.jobs[4].graph, "x/ir.json");
 }
 
