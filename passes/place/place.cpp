@@ -26,6 +26,10 @@ class Place : public Pass {
     // whatever it is.
     d.parameter("offset", real(0.15, 0, 10, "cells"),
                 "moves a VPL along its normal, out of the surface that its voxel averages");
+    d.parameter(
+        "least", real(0, 0, 1e6, "W/sr"),
+        "intensity that no VPL has less of: one of 0 gets no shadow map, which a VPL without light of "
+        "its own needs when pass weights gives it some");
     return d;
   }
 

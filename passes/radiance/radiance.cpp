@@ -1,4 +1,5 @@
 // Radiosity of the VPLs: direct light plus one bounce gathered with cones (METHOD 2, radiance, Eq. 3).
+#include "framework/base/diagnostic.h"
 #include "framework/graph/registry.h"
 
 namespace fovea::passes {
@@ -21,7 +22,8 @@ class Radiance : public Pass {
             "outgoing radiance of every voxel side");
     d.input("mips", "voxel-mips",
             {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
-            "mips of that radiance");
+            "mips of that radiance; for terms `direct` not needed")
+        .makeOptional();
     d.output(
         "radiosity", buffer("VplRadiosity", 16, countOf("vpls")), Usage::StorageWrite,
         "rgb: B_l, W/m^2, what the surface sends out, emission included; w: its luminance; empty slots 0");
@@ -31,7 +33,13 @@ class Radiance : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("radiance/radiance.comp"); }
+  void prepare(PrepareContext& ctx) override {
+    const bool direct = ctx.parameters().text("terms") == "direct";
+    if (!direct && !ctx.has("mips"))
+      throw Error(ExitCode::BadInput, "pass `radiance`: the cones need the input `mips`",
+                  "wire `mips` to mipmap, or set terms to `direct`");
+    kernel_ = ctx.compute("radiance/radiance.comp", {{"CONES", direct ? "0" : "1"}});
+  }
   void record(RecordContext& ctx) override {
     const uint32_t count = uint32_t(ctx.count("vpls"));
     ctx.use(kernel_).constant("count", count).dispatchThreads(count);

@@ -12,6 +12,7 @@ layout(set = 0, std430) writeonly buffer PlacedBlock { Vpl list[]; } placed;
 layout(push_constant) uniform Constants {
   uint vplCount;
   float offset;  // cells
+  float least;   // W/sr
 };
 
 const int kStateTexels = 5;  // of a VplState
@@ -26,7 +27,7 @@ void main() {
   if (normalLife.w > 0.0 && finite(vec4(position, 0.0)) && finite(normalLife) && finite(light)) {
     vpl.positionArea = vec4(position + offset * voxelsGrid().cell * normalLife.xyz, 1.0);
     vpl.normal = vec4(normalLife.xyz, 0.0);
-    vpl.intensity = vec4(max(light.rgb, vec3(0.0)) * (1.0 / kPi), 0.0);
+    vpl.intensity = vec4(max(light.rgb * (1.0 / kPi), vec3(least)), 0.0);
   }
   placed.list[slot] = vpl;
 }

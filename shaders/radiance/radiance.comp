@@ -1,11 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones).
+// Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones). Define: CONES, 0: only the direct term.
 #include "common/scene.glsl"
+#if CONES
 #include "common/random.glsl"
 #define CONE_GATHER
 #include "common/cone.glsl"
+#else
+layout(set = 0) uniform samplerBuffer radiance;
+#endif
 
 layout(local_size_x = 8) in;
 
@@ -31,11 +35,13 @@ void main() {
     int side = int(floatBitsToUint(reflectanceSide.w));
     // Reflected direct light and emission of the voxel are what light-inject has found already: rho E_direct = pi L.
     if (terms != 2 && side >= 0 && side < textureSize(radiance)) result += kPi * texelFetch(radiance, side).rgb;
+#if CONES
     if (terms != 1) {
       // A slot keeps its cones while its VPL lives.
       float turn = 2.0 * kPi * uniformFloat(randomStream(frame.seed, 0u, kRadiance, slot));
       result += reflectanceSide.rgb * gatherHemisphere(voxelsGrid(), texelFetch(vpls, first).xyz, normalLife.xyz, turn);
     }
+#endif
   }
   radiosity[slot] = vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
 }

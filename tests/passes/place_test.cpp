@@ -32,9 +32,9 @@ struct Box {
       radiosity.emplace_back(random(6), random(7), random(8), 1);
     }
   }
-  std::vector<scene::Vpl> place(double offset) {
+  std::vector<scene::Vpl> place(double offset, double least = 0) {
     PassTest test("place");
-    test.scene(scene).param("offset", offset);
+    test.scene(scene).param("offset", offset).param("least", least);
     setVoxels(test, voxels);
     test.buffer("vpls", vpls, "VplState").buffer("radiosity", radiosity, "VplRadiosity");
     test.run();
@@ -81,6 +81,19 @@ TEST(Place, WhatIsNoNumberIsLeftOut) {
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(isEmpty(list[size_t(i)])) << i;
   EXPECT_EQ(list[4].intensity, glm::vec3(0));
   EXPECT_FALSE(isEmpty(list[5]));
+}
+
+TEST(Place, ADarkVplIsNotEmptyWithALeastIntensity) {
+  Box box;
+  for (scene::VplState& v : box.vpls) v.life = 1;
+  box.vpls[1] = {};
+  box.radiosity[0] = glm::vec4(0);
+  box.radiosity[2] = glm::vec4(-1);
+  const auto list = box.place(0.15, 1e-6);
+  EXPECT_EQ(list[0].intensity, glm::vec3(1e-6f));
+  EXPECT_TRUE(isEmpty(list[1]));
+  EXPECT_EQ(list[2].intensity, glm::vec3(1e-6f));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(list[3].intensity[c], box.radiosity[3][c] / 3.14159265f, 1e-6f);
 }
 
 }  // namespace

@@ -162,6 +162,24 @@ TEST(Radiance, EmptySlotsAndSidesOutOfRange) {
   EXPECT_GT(got[2].w, 0);
 }
 
+// Without cones the pass needs no mips, and says so where it does.
+TEST(Radiance, DirectTermNeedsNoMips) {
+  const VoxelScene s(cluttered(), 32);
+  const auto radiance = radianceOf(s, uneven);
+  const std::vector<scene::VplState> vpls = vplsOn(s, 11);
+  const auto run = [&](const char* terms) {
+    PassTest test("radiance");
+    test.scene(s.scene).param("terms", terms).seed(3);
+    setVoxels(test, s.voxels);
+    test.buffer("radiance", radiance, "VoxelRadiance").buffer("vpls", vpls, "VplState");
+    test.run();
+    return test.values<glm::vec4>("radiosity");
+  };
+  EXPECT_EQ(run("direct"), radiosity(s, radiance, runMips(s, radiance, true), vpls, "direct"));
+  EXPECT_THROW(run("both"), Error);
+  EXPECT_THROW(run("cones"), Error);
+}
+
 TEST(Radiance, NothingThere) {
   const VoxelScene s({}, 8);
   const std::vector<glm::vec4> radiance(2, glm::vec4(0));
