@@ -34,13 +34,17 @@ class NearField : public Pass {
         "deferred to filter");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("reach", real(2, 0.1, 100), "length of the rays, in radii of the discs");
+    d.parameter(
+        "most", real(0, 0, 1e6),
+        "times the mean of its 16x16 pixels that a ray can bring, so that the few that meet something "
+        "bright do not show as sparks; 0: no limit");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("near-field/near_field.comp"); }
   void record(RecordContext& ctx) override {
     const VkExtent3D size = ctx.extent("irradiance");
-    ctx.use(kernel_).dispatch((size.width + 63) / 64, (size.height + 3) / 4);
+    ctx.use(kernel_).dispatch((size.width + 15) / 16, (size.height + 15) / 16);
   }
 
  private:

@@ -1,19 +1,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 // Bias compensation (Novak et al., "Screen-space bias compensation for interactive high-quality global illumination with
 // virtual point lights", I3D 2011) by rays through the voxels: a VPL shaded as a disc of area A sends the part
 //   A / (pi d^2 + A)
 // of its light less to what is at a distance d than the point it stands for would. Cosine-weighted rays bring that part of the
 // light they meet: one a pixel in the fovea, elsewhere one for four pixels. Those of neighbours are stratified, and pass
 // deferred filters them along with the VPLs. An invocation has 2 x 2 pixels.
+//
+// Few rays that meet something bright would show as sparks, which no filter that small takes away: none brings more than
+// `most` times the mean of its work group.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/diffuse_bounce.glsl"
 #include "common/fovea.glsl"
 #include "common/voxel_trace.glsl"
 
-layout(local_size_x = 32, local_size_y = 2) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
@@ -25,7 +29,10 @@ layout(set = 0, rgba16f) uniform writeonly image2D irradiance;
 layout(push_constant) uniform Constants {
   float foveaRadius;  // image widths
   float reach;        // radii of the disc
+  float most;         // 0: no limit
 };
+
+shared float subgroupSums[64];
 
 const uint kNearStream = 0x6e656172u;
 
@@ -53,17 +60,37 @@ bool groupInFovea(ivec2 size) {
   return distance(clamp(fovea.centre, low, high), fovea.centre) <= fovea.radius;
 }
 
+float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+
+// Mean over the work group, by a sum that is the same in every run.
+float groupMean(float sum, float rays) {
+  sum = subgroupAdd(sum);
+  if (subgroupElect()) subgroupSums[gl_SubgroupID] = sum;
+  barrier();
+  float total = 0.0;
+  for (uint i = 0u; i < gl_NumSubgroups; ++i) total += subgroupSums[i];
+  return total / (rays * float(gl_WorkGroupSize.x * gl_WorkGroupSize.y));
+}
+
 void main() {
   ivec2 size = imageSize(irradiance), corner = 2 * ivec2(gl_GlobalInvocationID.xy);
   float area = texelFetch(spread, 0).x, radius2 = area / kPi;
   bool each = groupInFovea(size);
+  int rays = each ? 4 : 1;
+  vec3 lights[4];
+  float sum = 0.0;
   // As a loop, for a CPU device walks through a branch that no lane takes.
-  for (int ray = 0; ray < (each ? 4 : 1); ++ray) {
+  for (int ray = 0; ray < rays; ++ray) {
     ivec2 pixel = corner + ivec2(ray & 1, ray >> 1);
     vec2 u = each ? stratified(uvec2(pixel), 4u) : stratified(gl_GlobalInvocationID.xy, 2u);
-    vec3 light = area > 0.0 ? lightAt(min(pixel, size - 1), u, radius2) : vec3(0.0);
+    lights[ray] = area > 0.0 ? lightAt(min(pixel, size - 1), u, radius2) : vec3(0.0);
+    sum += luminanceOf(lights[ray]);
+  }
+  float limit = most > 0.0 ? most * groupMean(sum, float(rays)) : 1e30;
+  for (int ray = 0; ray < rays; ++ray) {
+    vec3 light = lights[ray] * min(limit / max(luminanceOf(lights[ray]), 1e-30), 1.0);
     for (int k = 0; k < (each ? 1 : 4); ++k) {
-      ivec2 to = each ? pixel : corner + ivec2(k & 1, k >> 1);
+      ivec2 to = each ? corner + ivec2(ray & 1, ray >> 1) : corner + ivec2(k & 1, k >> 1);
       if (all(lessThan(to, size))) imageStore(irradiance, to, vec4(light, 0.0));
     }
   }

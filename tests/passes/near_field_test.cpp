@@ -14,7 +14,7 @@ struct Near {
   Room room = closedRoom(true, 24, glm::ivec2(96, 72));
   std::vector<glm::vec4> radiance;
   float area = 0.5f, foveaRadius = 0.15f;
-  double reach = 2;
+  double reach = 2, most = 0;
 
   Near() {
     for (const scene::VoxelSide& side : room.voxels.surface)
@@ -33,6 +33,7 @@ struct Near {
     }
     const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
     test.viewSize(w, h).scene(room.scene).param("reach", reach).param("fovea_radius", double(foveaRadius));
+    test.param("most", most);
     test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
     test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
     test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
@@ -62,7 +63,7 @@ glm::vec3 lightOf(const Near& in, const Seen& seen, glm::vec2 u) {
   return glm::vec3(in.radiance[hit.side]) * radius2 / (hit.distance * hit.distance + radius2);
 }
 
-// A ray for each pixel of the work groups (64 x 4 pixels) that the fovea reaches into, one for four
+// A ray for each pixel of the work groups (16 x 16 pixels) that the fovea reaches into, one for four
 // elsewhere.
 TEST(NearField, EveryRayEqualsTheReference) {
   const Near in;
@@ -71,7 +72,7 @@ TEST(NearField, EveryRayEqualsTheReference) {
   int wrong = 0, lit = 0, sparse = 0;
   for (int y = 0; y < in.room.size.y; ++y)
     for (int x = 0; x < in.room.size.x; ++x) {
-      const glm::vec2 low(x / 64 * 64, y / 4 * 4), high = low + glm::vec2(64, 4);
+      const glm::vec2 low(x / 16 * 16, y / 16 * 16), high = low + glm::vec2(16);
       const bool each = glm::distance(glm::clamp(fovea.centre, low, high), fovea.centre) <= fovea.radius;
       const int px = each ? x : x / 2 * 2, py = each ? y : y / 2 * 2;
       const glm::vec2 u = each ? stratified({x, y}, 4) : stratified({x / 2, y / 2}, 2);
@@ -86,6 +87,34 @@ TEST(NearField, EveryRayEqualsTheReference) {
   EXPECT_GT(sparse, 1000);
   EXPECT_LT(sparse, in.room.size.x * in.room.size.y / 2 + 2000);
   EXPECT_LE(wrong, in.room.size.x * in.room.size.y / 200);  // rays that graze a voxel
+}
+
+// No pixel is brighter than so many times the mean of its work group; those that are not stay as they are.
+TEST(NearField, NoSparksWithALimit) {
+  Near in;
+  in.room = closedRoom(true, 24, glm::ivec2(96, 80));
+  for (size_t i = 0; i < in.radiance.size(); i += 40) in.radiance[i] *= 100;
+  const auto free = in.run();
+  in.most = 3;
+  const auto got = in.run();
+  const auto at = [&](const std::vector<float>& image, int x, int y) {
+    const float* p = &image[4 * (size_t(y) * in.room.size.x + x)];
+    return glm::vec3(p[0], p[1], p[2]);
+  };
+  const auto luminance = [](glm::vec3 v) { return glm::dot(v, glm::vec3(0.2126f, 0.7152f, 0.0722f)); };
+  int limited = 0, wrong = 0;
+  for (int y = 0; y < in.room.size.y; ++y)
+    for (int x = 0; x < in.room.size.x; ++x) {
+      float mean = 0;
+      for (int k = 0; k < 256; ++k)
+        mean += luminance(at(free, x / 16 * 16 + k % 16, y / 16 * 16 + k / 16)) / 256;
+      const glm::vec3 was = at(free, x, y),
+                      want = was * std::min(1.0f, 3 * mean / std::max(luminance(was), 1e-30f));
+      limited += luminance(was) > 3 * mean;
+      wrong += glm::distance(at(got, x, y), want) > 3e-3f * glm::length(want) + 1e-6f;
+    }
+  EXPECT_GT(limited, 50);
+  EXPECT_EQ(wrong, 0);
 }
 
 // In a closed room of one radiance the discs' light and this add up: with a reach that ends nowhere, the mean
