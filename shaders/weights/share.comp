@@ -1,8 +1,5 @@
-// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), of those that
-// the path's start sees, and of these to one that is lit if the end is.
-//
-// Given to a VPL that the start does not see, its light would go to whoever does see that one: after a jump of the gaze, when
-// no VPL is where the new paths end yet, that is a flash on the far wall.
+// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), a lit one if the
+// end is lit.
 //
 // The light that the region gets by way of a piece of surface C is the integral of B p over C: what the eye paths that end
 // there find, summed and divided by their number M. A VPL with the flux F sends it F p_l. So F = (sum of B over its n
@@ -16,7 +13,9 @@
 // well, so that no light is lost: a third of it in rooms full of small things.
 //
 // TRACED 1: the paths are those of pass eye-paths, whose ends know all the light that leaves there, in colour: a VPL shines
-// with it in place of its own.
+// with it in place of its own. So it can go to any VPL, and goes to the nearest of those that the path's start sees: given to
+// another, it would go to whoever does see that one: after a jump of the gaze, when no VPL is where the new paths end yet, that
+// is a flash on the far wall.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
@@ -43,8 +42,13 @@ layout(push_constant) uniform Constants {
   float areaCap;
 };
 
-// Of all VPLs those that the start of the path sees come first, then those lit as its end is, then the nearest.
-const uint kSeen = 2u, kSameKind = 1u;
+// Of all VPLs those of the highest rank come first, then the nearest.
+#if TRACED
+const uint kSeen = 2u;  // by the start of the path
+#else
+const uint kSeen = 0u;  // whatever sees it: dark ones could not shine with what they are given
+#endif
+const uint kSameKind = 1u;  // lit as the end is
 
 vec4 endTexel(uint path, int texel) {
 #if TRACED

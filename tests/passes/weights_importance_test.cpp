@@ -121,7 +121,7 @@ TEST(Weights, ImportanceAreasEqualTheReference) {
     for (size_t i = 0; i < p.size(); ++i) seen += p[i], whole += open[i];
     EXPECT_LT(seen, 0.99 * whole);  // the block hides something
     const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings);
-    EXPECT_GT(want.passed, 10);  // enough of them to matter
+    EXPECT_GT(want.passed, 20);
     const auto got = weigh(in, "importance-area", settings);
     int wrong = 0;
     double off = 0, all = 0;
@@ -258,6 +258,41 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(got[c], want[c], 0.01 * want[c]) << "channel " << c << ", " << nearField;
   }
+}
+
+// Behind a block some VPLs are seen from here and others from there: a path goes to one that its own start
+// sees.
+TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
+  const Room room = closedRoom(true);
+  const WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
+  for (uint32_t i = 0; i < in.vpls.size(); ++i)
+    in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
+  const auto points = screenPoints(room, settings);
+  in.maps = tracedMaps(room, in.vpls);
+  std::vector<passes::EyePathEnd> ends(8192);
+  for (uint32_t i = 0; i < ends.size(); ++i) {
+    const uint32_t side = endOfPath(room, points, i);
+    if (side == scene::kNoSide) continue;
+    ends[i].position = room.voxels.surface[side].position;
+    ends[i].normal = room.voxels.surface[side].normal;
+    ends[i].kind = 2;
+    ends[i].luminance = 1;
+    ends[i].radiance = glm::vec3(1);
+  }
+  const float unit = passes::sumUnit(ends);
+  for (passes::EyePathEnd& e : ends) e.unit = unit;
+  const auto got = weighTraced(in, ends, settings, 0);
+  const auto want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings, true).area,
+             nearest = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings).area;
+  double off = 0, other = 0, all = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    off += std::abs(got[i].area - want[i]);
+    other += std::abs(nearest[i] - want[i]);
+    all += want[i];
+  }
+  EXPECT_LT(off, 0.01 * all);
+  EXPECT_GT(other, 0.02 * all);  // it makes a difference
 }
 
 // Paths that end nowhere count among those tried; without any that ends somewhere nothing shines.

@@ -330,12 +330,25 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
   return areas;
 }
 
+// The voxel side that an eye path ends on: one bounce from point i mod points.
+inline uint32_t endOfPath(const Room& room, const std::vector<Seen>& points, uint32_t path) {
+  const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
+  const Seen& from = points[point];
+  if (!from.there) return scene::kNoSide;
+  const uint32_t stream = randomStream(0, 0, 0x70617468u, point);
+  const float r = std::sqrt(uniformFloat(hashCombine(stream, 0) + turn * 3242174889u)),
+              phi = glm::two_pi<float>() * uniformFloat(hashCombine(stream, 1) + turn * 2447445414u);
+  const glm::vec3 local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r));
+  const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(from.normal), local);
+  return scene::traceVoxels(room.view(), from.position, direction, from.normal).side;
+}
+
 // Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
-// VPL of its kind that the point sees, by trying every one. A VPL that the region hardly sees, p below the
-// least density or from less than 4 points, keeps as small a part of it (in 1024ths), and the nearest of all
-// others gets the rest. `light`: mean direct light of the paths in units of the VPL's own. gain: p by the
-// disc of a cell over p by that of the VPL's own area. doubtful: paths that two VPLs are equally near to.
-// passed: paths that were passed on.
+// VPL of its kind, with `seenFirst` of those that the point sees, by trying every one. A VPL that the region
+// hardly sees, p below the least density or from less than 4 points, keeps as small a part of it (in
+// 1024ths), and the nearest of all others gets the rest. `light`: mean direct light of the paths in units of
+// the VPL's own. gain: p by the disc of a cell over p by that of the VPL's own area. doubtful: paths that two
+// VPLs are equally near to. passed: paths that were passed on.
 struct SharedAreas {
   std::vector<double> area, light, gain;
   int doubtful = 0;
@@ -360,7 +373,8 @@ struct Nearest {
 
 inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplState>& vpls,
                                const std::vector<glm::vec4>& radiance, const std::vector<Seen>& points,
-                               const Maps& maps, uint32_t paths, const WeightSettings& settings) {
+                               const Maps& maps, uint32_t paths, const WeightSettings& settings,
+                               bool seenFirst = false) {
   SharedAreas result;
   std::vector<double> count(vpls.size(), 0.0), light(vpls.size(), 0.0), seenFrom;
   const auto p = seenDensities(room, vpls, points, maps, float(settings.clamp), nullptr, &seenFrom);
@@ -377,15 +391,8 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
       sees.push_back(seenTerm(s, vpls[i], maps, i, 1, float(settings.clamp)) > 0);
   uint32_t found = 0;
   for (uint32_t path = 0; path < paths; ++path) {
-    const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
-    const Seen& from = points[point];
-    if (!from.there) continue;
-    const uint32_t stream = randomStream(0, 0, 0x70617468u, point);
-    const float r = std::sqrt(uniformFloat(hashCombine(stream, 0) + turn * 3242174889u)),
-                phi = glm::two_pi<float>() * uniformFloat(hashCombine(stream, 1) + turn * 2447445414u);
-    const glm::vec3 local(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r));
-    const glm::vec3 direction = scene::toWorld(scene::orthonormalFrame(from.normal), local);
-    const uint32_t s = scene::traceVoxels(room.view(), from.position, direction, from.normal).side;
+    const uint32_t point = path % uint32_t(points.size());
+    const uint32_t s = endOfPath(room, points, path);
     if (s == scene::kNoSide) continue;
     ++found;
     const scene::VoxelSide& side = room.voxels.surface[s];
@@ -396,7 +403,7 @@ inline SharedAreas sharedAreas(const Room& room, const std::vector<scene::VplSta
       const bool same = (radiance[vpls[i].side].w > 0) == (radiance[s].w > 0);
       const double cost =
           glm::dot(d, d) + lambda * (1 - glm::dot(glm::dvec3(side.normal), glm::dvec3(vpls[i].normal)));
-      const int rank = (sees[point * vpls.size() + i] ? 2 : 0) + (same ? 1 : 0);
+      const int rank = (seenFirst && sees[point * vpls.size() + i] ? 2 : 0) + (same ? 1 : 0);
       owner.offer(i, rank, cost);
       if (part(i) >= 1) whole.offer(i, rank, cost);
     }
