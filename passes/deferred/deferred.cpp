@@ -140,9 +140,7 @@ class Deferred : public Pass {
  private:
   static void addMask(PassDeclaration& d) {
     d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: irradiance / pi where `shade` leaves pixels out (of pass reproject), a: above 0; "
-            "background 0; "
-            "with `shade` only")
+            "rgb: irradiance / pi where `shade` leaves pixels out (of pass reproject); with `shade` only")
         .makeOptional();
     d.input("shade", "shade-mask",
             {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead, "1: in a listed block"),

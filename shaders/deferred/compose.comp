@@ -1,10 +1,10 @@
 #version 460
 #extension GL_KHR_shader_subgroup_ballot : require
-// The pixels outside the blocks that are shaded: the base, times reflectance, with direct light. The base is 0 in the
-// background, and its alpha above 0 on every surface outside those blocks. Defines: HAS_DIRECT.
+// The pixels outside the blocks that are shaded: the base, times reflectance, with direct light. Defines: HAS_DIRECT.
 
 layout(local_size_x = 64) in;
 
+layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, rgba16f) uniform readonly image2D base;
 layout(set = 0, r8) uniform readonly image2D shadeMask;
@@ -18,17 +18,18 @@ layout(set = 0, rgba16f) uniform readonly image2D direct;
 
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(irradiance);
-  ivec2 inside = min(p, size - 1);
-  bool wanted = p == inside && imageLoad(shadeMask, inside).r <= 0.5;
-  vec4 e = imageLoad(base, inside);
-  uint surfaces = subgroupBallotBitCount(subgroupBallot(wanted && e.a > 0.0));
+  bool inImage = all(lessThan(p, size));
+  bool surface = inImage && imageLoad(gbufferPosition, min(p, size - 1)).w > 0.0;
+  uint surfaces = subgroupBallotBitCount(subgroupBallot(surface));
   if (subgroupElect() && surfaces > 0u) atomicAdd(counters[0], surfaces);
-  if (!wanted) return;
-  vec3 reflected = imageLoad(gbufferAlbedo, p).rgb * e.rgb, total = reflected;
+  if (!inImage || imageLoad(shadeMask, p).r > 0.5) return;
+  vec3 e = surface ? imageLoad(base, p).rgb : vec3(0.0);
+  vec3 reflected = imageLoad(gbufferAlbedo, p).rgb * e, total = reflected;
+  if (!surface) total = reflected = vec3(0.0);
 #if HAS_DIRECT
   total += imageLoad(direct, p).rgb;
 #endif
-  imageStore(irradiance, p, vec4(e.rgb, 1.0));
+  imageStore(irradiance, p, vec4(e, 1.0));
   imageStore(indirect, p, vec4(reflected, 1.0));
   imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
 }

@@ -329,10 +329,7 @@ void main() {
   }
   if (subgroupElect() && found > 0u) atomicAdd(counters[1], found);
 #if MASKED
-  if (subgroupElect() && surfaces > 0u) {
-    atomicAdd(counters[0], surfaces);  // compose.comp counts the other pixels
-    atomicAdd(counters[3], surfaces);
-  }
+  if (subgroupElect() && surfaces > 0u) atomicAdd(counters[3], surfaces);  // compose.comp counts `pixels`
 #endif
 }
 #else

@@ -8,7 +8,6 @@
 #include "common/scene.glsl"
 
 const int kTile = 16;
-const float kNothing = 1.0 / 256.0;  // of a bilinear weight: what a half float does not show
 const int kRows = 4;  // pixels of an invocation, below each other; all in one tile
 
 layout(local_size_x = 64) in;
@@ -44,16 +43,12 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
   if (any(lessThanEqual(at, vec2(-1.0))) || any(greaterThanEqual(at, vec2(size)))) return vec4(0.0);
   ivec2 first = ivec2(floor(at));
   vec2 f = at - floor(at);
-  // Eyes side by side see a point in the same row: a row or column that hardly counts is not looked at.
-  first += ivec2(greaterThan(f, vec2(1.0 - kNothing)));
-  f = mix(f, vec2(0.0), lessThan(min(f, 1.0 - f), vec2(kNothing)));
-  ivec2 taps = 1 + ivec2(greaterThan(f, vec2(0.0)));
   float tolerance = planeTolerance * position.w;
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
   bool found = false;
-  for (int i = 0; i < taps.x * taps.y; ++i) {
-    ivec2 d = taps.x == 2 ? ivec2(i & 1, i >> 1) : ivec2(0, i), q = first + d, inside = clamp(q, ivec2(0), size - 1);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 d = ivec2(i & 1, i >> 1), q = first + d, inside = clamp(q, ivec2(0), size - 1);
     vec4 p = imageLoad(sourceGbufferPosition, inside);
     bool same = q == inside && p.w > 0.0 && abs(dot(p.xyz - position.xyz, face)) <= tolerance &&
                 dot(imageLoad(sourceGbufferNormal, inside).xyz, normal) >= leastCos;

@@ -82,13 +82,10 @@ struct Mask {
   }
 };
 
-// As pass reproject: nothing in the background.
 void wireBase(PassTest& test, const GBuffer& g, const std::vector<glm::vec3>& base) {
   std::vector<uint16_t> half;
-  for (size_t i = 0; i < base.size(); ++i) {
-    const glm::vec4 v = g.pixels[i].distance > 0 ? glm::vec4(base[i], 1) : glm::vec4(0);
-    for (const float x : {v.r, v.g, v.b, v.a}) half.push_back(glm::packHalf1x16(x));
-  }
+  for (const glm::vec3& v : base)
+    for (const float x : {v.r, v.g, v.b, 1.0f}) half.push_back(glm::packHalf1x16(x));
   test.image("base", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(g.width), uint32_t(g.height), 1, half);
 }
 
