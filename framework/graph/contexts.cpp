@@ -141,7 +141,7 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
 static void requireTransferWrite(const PassInstance& pass, const Access& access, std::string_view port) {
   if (any(access.usage, Usage::TransferWrite)) return;
   throw Error(ExitCode::Internal,
-              "pass `" + pass.bound->declaration->type + "` clears `" + std::string(port) +
+              "pass `" + pass.bound->declaration->type + "` fills `" + std::string(port) +
                   "` without declaring Usage::TransferWrite on it");
 }
 
@@ -157,6 +157,19 @@ void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
   gpu::Image& target = pass_.state->image(access);
   const VkImageSubresourceRange range = wholeImage(target);
   vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
+}
+
+void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
+  const Access &from = pass_.access(imageFrom), &to = pass_.access(imageTo);
+  requireTransferWrite(pass_, to, imageTo);
+  if (!any(from.usage, Usage::TransferRead))
+    throw Error(ExitCode::Internal, "pass `" + pass_.bound->declaration->type + "` copies `" +
+                                        std::string(imageFrom) + "` without declaring Usage::TransferRead on it");
+  const ResourceDesc& d = pass_.desc(to);
+  const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, d.layers};
+  const VkImageCopy region{layers, {0, 0, 0}, layers, {0, 0, 0}, {d.width, d.height, d.depth}};
+  vkCmdCopyImage(cmd_, pass_.state->image(from).handle(), from.layout, pass_.state->image(to).handle(), to.layout, 1,
+                 &region);
 }
 
 void RecordContext::barrier() {

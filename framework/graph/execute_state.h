@@ -91,6 +91,7 @@ struct KernelState {
     uint64_t offset = 0, range = VK_WHOLE_SIZE;
   };
   std::vector<Override> overrides;
+  std::vector<Attachment> covers;  // what a full-screen kernel writes
 };
 
 struct PassInstance {

@@ -202,6 +202,16 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   return kernel;
 }
 
+Kernel PrepareContext::fullscreen(const std::string& fragment, const std::vector<std::string>& colors,
+                                  gpu::Defines defines) {
+  Kernel kernel = graphics({.vertex = "common/fullscreen.vert",
+                            .fragment = fragment,
+                            .defines = std::move(defines),
+                            .colors = colors});
+  for (const std::string& color : colors) kernel.state_->covers.push_back({color, Attachment::Load::Discard});
+  return kernel;
+}
+
 // ---- Commands --------------------------------------------------------------------------------------------------
 
 Commands::Commands(RecordContext& context, KernelState& kernel) : context_(context), kernel_(kernel) {
@@ -365,6 +375,10 @@ void Commands::dispatchOver(std::string_view imagePort) {
 void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
   flush();
   vkCmdDispatchIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset);
+}
+
+void Commands::drawFullscreen() {
+  context_.render(kernel_.covers, nullptr, [&] { draw(3); });
 }
 
 void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t firstInstance) {

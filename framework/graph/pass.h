@@ -70,6 +70,9 @@ class PrepareContext {
   // or be bound by hand in record(). Throws Error(BadInput) naming shader, binding and the nearest port.
   Kernel compute(const std::string& shader, gpu::Defines defines = {});
   Kernel graphics(const GraphicsKernelDesc& desc);
+  // A fragment shader that writes every pixel of images of one size (ports or members, Usage::ColorAttachment, in the
+  // order of its outputs). On a CPU device a store to an image costs several times as much as such an output.
+  Kernel fullscreen(const std::string& fragment, const std::vector<std::string>& colors, gpu::Defines defines = {});
 
  private:
   PassInstance& pass_;
@@ -94,6 +97,7 @@ class Commands {
   void dispatchThreads(uint32_t x, uint32_t y = 1, uint32_t z = 1);  // rounded up to whole groups
   void dispatchOver(std::string_view imagePort);                     // one thread a texel (and layer or slice)
   void dispatchIndirect(std::string_view bufferPort, uint64_t offset = 0);
+  void drawFullscreen();                                             // of PrepareContext::fullscreen
   void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstInstance = 0);
   void drawIndexed(VkBuffer indices32, uint32_t count, uint32_t first = 0, uint32_t instances = 1,
                    uint32_t firstInstance = 0);
@@ -142,6 +146,7 @@ class RecordContext {
               const std::function<void()>& body, uint32_t layers = 1);
   void fill(std::string_view bufferPort, uint32_t word);               // TransferWrite; whole buffer
   void clear(std::string_view imagePort, VkClearColorValue value);     // TransferWrite or StorageWrite; whole image
+  void copy(std::string_view imageFrom, std::string_view imageTo);     // TransferRead to TransferWrite; whole images of a size
   // Between commands of this pass that depend on each other: everything before is visible to everything after.
   void barrier();
   // A counter the CPU knows. Counters written on the GPU: `uint counters[]` in set 0, in declared order.

@@ -32,7 +32,8 @@ class Deferred : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("deferred",
-                      "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered");
+                      "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered",
+                      PassKind::ComputeAndGraphics);
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
@@ -55,12 +56,12 @@ class Deferred : public Pass {
         .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
-    d.output("irradiance", color, Usage::StorageWrite,
+    d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is "
              "`indirect`; background 0");
-    d.output("indirect", color, Usage::StorageWrite,
+    d.output("indirect", color, Usage::ColorAttachment,
              "rgb: indirect radiance rho E / pi towards the eye; background 0");
-    d.output("radiance", color, Usage::StorageWrite, "rgb: `direct` (if wired) plus `indirect`");
+    d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
               "every pixel's estimate from its own subset");
     d.scratch(
@@ -70,11 +71,11 @@ class Deferred : public Pass {
     d.scratch("edge_pixels", buffer("uint", 4, width * height), Usage::StorageWrite | Usage::TexelRead,
               "pixels whose window leaves their surface: x | y << 16");
     addParameters(d);
-    d.counter("pixels", "pixels that show a surface");
     d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
     d.counter("vpls_per_pixel",
               "VPLs that shade one pixel, on average: times `shaded_pixels` the number of pixel-VPL pairs");
-    d.counter("shaded_pixels", "pixels that VPLs shade: `pixels`, or those of the blocks of `shade`");
+    d.counter("shaded_pixels",
+              "pixels that VPLs shade: all that show a surface, or those of the blocks of `shade`");
     return d;
   }
 
@@ -89,18 +90,15 @@ class Deferred : public Pass {
     side_ = subsetsPerSide(interleave, count_);
     masked_ = ctx.has("shade");
     if (masked_) checkMask(ctx, uint32_t(interleave));
-    const gpu::Defines composition{{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}};
     gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
-    if (masked_) {
-      defines["BLOCK"] = std::to_string(interleave);
-      compose_ = ctx.compute("deferred/compose.comp", composition);
-    }
+    if (masked_) defines["BLOCK"] = std::to_string(interleave);
     gpu::Defines filter = defines;
-    filter.insert(composition.begin(), composition.end());
     filter["EDGES"] = "0";
     if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
     filter["EDGES"] = "1";
     edges_ = ctx.compute("deferred/resolve.comp", filter);
+    compose_ = ctx.fullscreen("deferred/compose.frag", {"indirect", "radiance"},
+                              {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);
   }
@@ -109,7 +107,10 @@ class Deferred : public Pass {
     const Parameters& p = ctx.parameters();
     const VkExtent3D size = ctx.extent("partial");
     const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
-    if (!masked_) ctx.fill("edges", 1);
+    if (masked_)
+      ctx.copy("base", "irradiance");  // of the pixels outside the blocks
+    else
+      ctx.fill("edges", 1);
     for (uint32_t page = 0; page < pages_.size(); ++page) {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
       if (page > 0) ctx.barrier();
@@ -126,7 +127,6 @@ class Deferred : public Pass {
     const float filterCos = std::cos(float(p.real("filter_angle")) * 0.017453293f);
     if (masked_) {
       ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("shade.dispatch");
-      ctx.use(compose_).dispatchOver("irradiance");  // the other pixels
     } else {
       ctx.use(resolve_)
           .constant("filterCos", filterCos)
@@ -134,13 +134,16 @@ class Deferred : public Pass {
       ctx.barrier();
       ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
     }
+    ctx.barrier();
+    ctx.use(compose_).drawFullscreen();
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
  private:
   static void addMask(PassDeclaration& d) {
-    d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: irradiance / pi where `shade` leaves pixels out (of pass reproject); with `shade` only")
+    d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::TransferRead,
+            "rgb: irradiance / pi where `shade` leaves pixels out, background 0 (of pass reproject); with "
+            "`shade` only")
         .makeOptional();
     d.input("shade", "shade-mask",
             {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead, "1: in a listed block"),

@@ -17,7 +17,8 @@ class Direct : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d(
         "direct",
-        "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light");
+        "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light",
+        PassKind::Graphics);
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
@@ -32,7 +33,8 @@ class Direct : public Pass {
     d.output(
         "direct",
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
-        Usage::StorageWrite, "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
+        Usage::ColorAttachment,
+        "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 "
                 "such (softer)");
@@ -43,13 +45,13 @@ class Direct : public Pass {
     const std::string& filter = ctx.parameters().text("filter");
     const char* taps = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
     for (size_t i = 0; i < kernels_.size(); ++i)
-      kernels_[i] =
-          ctx.compute("direct/direct.comp", {{"SHADOW_FILTER", taps}, {"ONE_LIGHT", std::to_string(i)}});
+      kernels_[i] = ctx.fullscreen("direct/direct.frag", {"direct"},
+                                   {{"SHADOW_FILTER", taps}, {"ONE_LIGHT", std::to_string(i)}});
   }
   void record(RecordContext& ctx) override {
     const std::vector<scene::Light>& lights = ctx.frame().lights;
     const bool oneMap = scene::shadowLayers(lights) == 1;
-    ctx.use(kernels_[lights.size() != 1 ? 0 : oneMap ? 2 : 1]).dispatchOver("direct");
+    ctx.use(kernels_[lights.size() != 1 ? 0 : oneMap ? 2 : 1]).drawFullscreen();
   }
 
  private:

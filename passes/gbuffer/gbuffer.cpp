@@ -16,20 +16,20 @@ class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("gbuffer", "surfaces seen through the pixel centres, LOD-0 bilinear textures",
-                      PassKind::ComputeAndGraphics);
+                      PassKind::Graphics);
     d.view();
     d.output("gbuffer", "gbuffer",
-             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageWrite,
+             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
                      "xyz: world space, m; w: distance to the eye, m, 0: background"),
-              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
+              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
                      "xyz: shading normal, unit, on the eye's side of the face"),
-              member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageWrite,
+              member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
                      "normal of the triangle itself on the eye's side, octahedral"),
-              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
+              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
                      "rgb: diffuse reflectance, base colour times (1 - metallic)"),
-              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageWrite,
+              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
                      "rgb: emitted radiance, W/(sr m^2); background: the environment"),
-              member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageWrite,
+              member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
                      "material | object << 16; background 0xffffffff"),
               member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment,
                      "0: near plane, 1: far plane")},
@@ -54,8 +54,11 @@ class GBuffer : public Pass {
            .depth = "gbuffer.depth",
            .cull =
                cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
-    resolve_[0] = ctx.compute("gbuffer/resolve.comp", {{"EMISSION_TEXTURES", "0"}});
-    resolve_[1] = ctx.compute("gbuffer/resolve.comp", {{"EMISSION_TEXTURES", "1"}});
+    for (const bool textured : {false, true})
+      resolve_[textured] = ctx.fullscreen("gbuffer/resolve.frag",
+                                          {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
+                                           "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"},
+                                          {{"EMISSION_TEXTURES", textured ? "1" : "0"}});
   }
 
   void record(RecordContext& ctx) override {
@@ -81,7 +84,7 @@ class GBuffer : public Pass {
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
     ctx.barrier();
-    ctx.use(resolve_[emissionTextures_]).dispatchOver("gbuffer.position");
+    ctx.use(resolve_[emissionTextures_]).drawFullscreen();
   }
 
  private:

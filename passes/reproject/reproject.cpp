@@ -45,7 +45,8 @@ class Reproject : public Pass {
         ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
     d.output(
         "shade", "shade-mask",
-        {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height), Usage::StorageRead | Usage::StorageWrite,
+        {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height),
+                Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
                 "1: the pixel is in a block to shade"),
          member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
                 "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
@@ -91,6 +92,7 @@ class Reproject : public Pass {
     const VkExtent3D size = ctx.extent("irradiance");
     const auto groups = [](uint32_t pixels, uint32_t each) { return (pixels + each - 1) / each; };
     const float leastCos = std::cos(float(p.real("normal_angle")) * 0.017453293f);
+    ctx.clear("shade.mask", {});
     ctx.fill("tile_blocks", 0);
     ctx.fill("open_tiles", 1);
     ctx.barrier();

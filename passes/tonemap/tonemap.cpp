@@ -11,10 +11,11 @@ class Tonemap : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("tonemap",
-                      "linear radiance to a display-referred picture with the exact sRGB transfer function");
+                      "linear radiance to a display-referred picture with the exact sRGB transfer function",
+                      PassKind::Graphics);
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
     d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")),
-             Usage::StorageWrite, "rgb: sRGB-encoded, a: 1");
+             Usage::ColorAttachment, "rgb: sRGB-encoded, a: 1");
     d.parameter("exposure", real(0, 0, 1e9),
                 "factor from radiance to display intensity; 0: the scene's own exposure");
     d.parameter("operator", choice("clamp", {"clamp", "reinhard"}),
@@ -26,14 +27,12 @@ class Tonemap : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     const bool reinhard = ctx.parameters().text("operator") == "reinhard";
-    kernel_ = ctx.compute("tonemap/tonemap.comp", {{"REINHARD", reinhard ? "1" : "0"}});
+    kernel_ = ctx.fullscreen("tonemap/tonemap.frag", {"image"}, {{"REINHARD", reinhard ? "1" : "0"}});
   }
 
   void record(RecordContext& ctx) override {
     const float exposure = float(ctx.parameters().real("exposure"));
-    ctx.use(kernel_)
-        .constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure)
-        .dispatchOver("image");
+    ctx.use(kernel_).constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure).drawFullscreen();
   }
 
  private:

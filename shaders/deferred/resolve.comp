@@ -4,8 +4,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-// From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only, and the composition
-// with reflectance and direct light. Defines: INTERLEAVE, HAS_DIRECT, MASKED, EDGES.
+// From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only.
+// Defines: INTERLEAVE, MASKED, EDGES.
 //
 // Pixels whose window does not hold all subsets are listed, and done by EDGES: few, and next to each other in its work groups.
 // With MASKED most windows leave the blocks; EDGES does all pixels of the blocks then, without a list.
@@ -41,12 +41,9 @@ layout(local_size_x = 16, local_size_y = 4) in;
 // Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, binding = 2, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D partial;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D indirect;
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D radiance;
-layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // pixels, incomplete, -, shaded
+layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
 #if MASKED
 #elif EDGES
 layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
@@ -54,9 +51,6 @@ layout(set = 0, binding = 14) uniform usamplerBuffer edgePixels;  // x | y << 16
 #else
 layout(set = 0, binding = 13, std430) buffer Edges { uint x, y, z, end; } edges;
 layout(set = 0, binding = 14, std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
-#endif
-#if HAS_DIRECT
-layout(set = 0, binding = 12, rgba16f) uniform readonly image2D direct;
 #endif
 
 #if MASKED
@@ -288,17 +282,6 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
 }
 #endif
 
-void write(ivec2 p, bool surface, vec3 e) {
-  vec3 reflected = surface ? imageLoad(gbufferAlbedo, p).rgb * e : vec3(0.0);
-  vec3 total = reflected;
-#if HAS_DIRECT
-  total += imageLoad(direct, p).rgb;
-#endif
-  imageStore(irradiance, p, vec4(e, 1.0));
-  imageStore(indirect, p, vec4(reflected, 1.0));
-  imageStore(radiance, p, vec4(min(total, 65504.0), 1.0));
-}
-
 #if EDGES
 #if MASKED
 const int kItems = int(kListedPixels);
@@ -323,13 +306,13 @@ void main() {
     filterWindows(centres, p, size);
     bool surface = centres[0].plane >= 0.0, incomplete;
     vec3 mean = meanOfSubsets(centres[0], min(p, size - 1), size, surface, incomplete);
-    if (all(lessThan(p, size))) write(p, surface, surface ? mean : vec3(0.0));
+    if (all(lessThan(p, size))) imageStore(irradiance, p, vec4(surface ? mean : vec3(0.0), 1.0));
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
     found += subgroupBallotBitCount(subgroupBallot(incomplete));
   }
-  if (subgroupElect() && found > 0u) atomicAdd(counters[1], found);
+  if (subgroupElect() && found > 0u) atomicAdd(counters[0], found);
 #if MASKED
-  if (subgroupElect() && surfaces > 0u) atomicAdd(counters[3], surfaces);  // compose.comp counts `pixels`
+  if (subgroupElect() && surfaces > 0u) atomicAdd(counters[2], surfaces);
 #endif
 }
 #else
@@ -356,7 +339,7 @@ uint resolve(ivec2 first, ivec2 size) {
     if (surface && centres[k].found < kSubsets)
       edgePixels.list[end - 1u + before[k]] = uint(p.x) | uint(p.y) << 16u;
     else if (all(lessThan(p, size)))
-      write(p, surface, surface ? centres[k].sum / float(kSubsets) : vec3(0.0));
+      imageStore(irradiance, p, vec4(surface ? centres[k].sum / float(kSubsets) : vec3(0.0), 1.0));
   }
   return surfaces;
 }
@@ -365,9 +348,6 @@ void main() {
   ivec2 size = imageSize(gbufferPosition);
   ivec2 corner = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels));
   uint surfaces = resolve(corner + ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size);
-  if (subgroupElect() && surfaces > 0u) {
-    atomicAdd(counters[0], surfaces);
-    atomicAdd(counters[3], surfaces);
-  }
+  if (subgroupElect() && surfaces > 0u) atomicAdd(counters[2], surfaces);
 }
 #endif

@@ -20,7 +20,6 @@ layout(set = 0, rgba32f) uniform readonly image2D sourceGbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D sourceGbufferNormal;
 layout(set = 0, rgba16f) uniform readonly image2D sourceIrradiance;
 layout(set = 0, rgba16f) uniform writeonly image2D irradiance;
-layout(set = 0, r8) uniform writeonly image2D shadeMask;
 layout(set = 0, std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 when it is listed
 layout(set = 0, std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups for fill.comp; x: 1 + tiles listed
 layout(set = 0, std430) writeonly buffer OpenList { uint list[]; } openList;
@@ -79,10 +78,7 @@ void main() {
     open = open || (surface && !known);
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
     withoutSource += subgroupBallotBitCount(subgroupBallot(surface && !known));
-    if (p == inside) {
-      imageStore(irradiance, p, known ? vec4(light.rgb, 1.0) : vec4(0.0));
-      imageStore(shadeMask, p, vec4(0.0));
-    }
+    if (p == inside) imageStore(irradiance, p, known ? vec4(light.rgb, 1.0) : vec4(0.0));
   }
   uint turns = open ? 1u : 0u;  // a loop of no turns is skipped where a branch is not, on a CPU device
   for (uint i = 0u; i < turns; ++i) {

@@ -48,7 +48,7 @@ class Suites(CliTest):
             self.assertGreater(result["error"]["fovea"]["noise_floor"], 0)
             self.assertIsInstance(result["temporal"]["periphery"]["excess"], float)
             self.assertGreater(result["time"]["frame"]["wall_ms"]["median"], 0)
-            self.assertGreater(result["time"]["counters"]["deferred.pixels"], 0)
+            self.assertGreater(result["time"]["counters"]["deferred.shaded_pixels"], 0)
         self.assertEqual(len(list((self.folder / "out/references").iterdir())), 4)  # two scenes, two frames
         self.assertEqual(len(list((self.folder / "out/pictures").iterdir())), 16)
         row = self.rows()["cornellbox", "ours", "error.fovea.mse"]
@@ -187,7 +187,7 @@ class Suites(CliTest):
         # A shader that the path tracer does not use makes no new reference.
         references = sorted((self.folder / "out/references").iterdir())
         shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
-        for name in ("tonemap/tonemap.comp", "gbuffer/resolve.comp", "animate/animate.comp"):
+        for name in ("tonemap/tonemap.frag", "gbuffer/resolve.frag", "animate/animate.comp"):
             with open(self.folder / "data/shaders" / name, "a") as file:
                 file.write("#define CHANGED\n")
         data = {"FOVEA_DATA": str(self.folder / "data")}

@@ -82,10 +82,13 @@ struct Mask {
   }
 };
 
+// As pass reproject makes it: 0 in the background.
 void wireBase(PassTest& test, const GBuffer& g, const std::vector<glm::vec3>& base) {
   std::vector<uint16_t> half;
-  for (const glm::vec3& v : base)
+  for (size_t i = 0; i < base.size(); ++i) {
+    const glm::vec3 v = g.pixels[i].distance > 0 ? base[i] : glm::vec3(0);
     for (const float x : {v.r, v.g, v.b, 1.0f}) half.push_back(glm::packHalf1x16(x));
+  }
   test.image("base", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(g.width), uint32_t(g.height), 1, half);
 }
 
@@ -117,9 +120,8 @@ TEST(DeferredMask, FullMaskEqualsNoMask) {
     const auto expected = run(all, g, vpls, n), image = run(masked, g, vpls, n, &mask, base);
     EXPECT_EQ(image, expected) << "interleave " << n;
     EXPECT_EQ(all.floats("radiance"), masked.floats("radiance"));
-    for (const char* name : {"pixels", "shaded_pixels", "incomplete", "vpls_per_pixel"})
+    for (const char* name : {"shaded_pixels", "incomplete", "vpls_per_pixel"})
       EXPECT_EQ(masked.counter(name), all.counter(name)) << name;
-    EXPECT_EQ(all.counter("shaded_pixels"), all.counter("pixels"));
   }
 }
 
@@ -155,7 +157,6 @@ TEST(DeferredMask, PatchEqualsNoMaskAndTheRestIsTheBase) {
         for (size_t c = 0; c < 3; ++c) ASSERT_EQ(image[i + c], base[i / 4][int(c)]) << x << "," << y;
       }
     }
-  EXPECT_EQ(masked.counter("pixels"), 64 * 48);
   EXPECT_EQ(masked.counter("shaded_pixels"), 25 * 16);
   EXPECT_EQ(masked.counter("vpls_per_pixel"), 40);
 }

@@ -211,7 +211,7 @@ TEST(Deferred, FilterOnAFlatWallIsExact) {
     PassTest test("deferred");
     const auto image = run(test, g, vpls, n);
     for (size_t i = 0; i < g.pixels.size(); ++i) ASSERT_NEAR(image[4 * i], expected, 1e-3 * expected) << "interleave " << n;
-    EXPECT_EQ(test.counter("pixels"), double(g.pixels.size()));
+    EXPECT_EQ(test.counter("shaded_pixels"), double(g.pixels.size()));
     EXPECT_EQ(test.counter("incomplete"), 0);
     EXPECT_NEAR(test.counter("vpls_per_pixel"), 1000.0 / (n * n), 1e-6);
   }
@@ -321,7 +321,7 @@ TEST(Deferred, BackgroundShowsTheDirectImageOnly) {
         EXPECT_EQ(radiance[4 * i + c], direct[4 * i + c]);
       }
     }
-  EXPECT_EQ(test.counter("pixels"), double(surfaces));
+  EXPECT_EQ(test.counter("shaded_pixels"), double(surfaces));
 }
 
 // ---- Everything at once, against the CPU --------------------------------------------------------------------------------

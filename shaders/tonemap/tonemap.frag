@@ -2,20 +2,16 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // T(x) = sRGB(clamp01(exposure * x)), METHOD section 4; the transfer function of IEC 61966-2-1.
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
 layout(set = 0, binding = 0) uniform texture2D radiance;
-layout(set = 0, binding = 1, rgba8) uniform writeonly image2D image;
-layout(set = 0, binding = 2, std430) buffer Counters { uint value[]; } counters;
+layout(location = 0) out vec4 image;
+layout(set = 0, binding = 1, std430) buffer Counters { uint value[]; } counters;
 
 layout(push_constant) uniform Constants { float exposure; };
 
 vec3 srgb(vec3 x) { return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308))); }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(p, imageSize(image)))) return;
-  vec3 x = texelFetch(radiance, p, 0).rgb;
+  vec3 x = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
   // By bits: compilers may assume that floats are never NaN.
   bvec3 special = equal(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u));
   if (any(special)) {
@@ -26,5 +22,5 @@ void main() {
 #if REINHARD
   x /= 1.0 + dot(x, vec3(0.2126, 0.7152, 0.0722));
 #endif
-  imageStore(image, p, vec4(srgb(min(x, 1.0)), 1.0));
+  image = vec4(srgb(min(x, 1.0)), 1.0);
 }

@@ -5,15 +5,13 @@
 // that positions carry none of the rasteriser's snapping and interpolation (visibility buffer, Burns and Hunt, JCGT 2013).
 #include "common/scene.glsl"
 
-layout(local_size_x = 64) in;
-
 layout(set = 0, binding = 0) uniform utexture2D seen;
-layout(set = 0, binding = 1, rgba32f) uniform writeonly image2D gbufferPosition;
-layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D gbufferNormal;
-layout(set = 0, binding = 3, rg16_snorm) uniform writeonly image2D gbufferFace;
-layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D gbufferAlbedo;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D gbufferEmission;
-layout(set = 0, binding = 6, r32ui) uniform writeonly uimage2D gbufferId;
+layout(location = 0) out vec4 gbufferPosition;
+layout(location = 1) out vec4 gbufferNormal;
+layout(location = 2) out vec2 gbufferFace;
+layout(location = 3) out vec4 gbufferAlbedo;
+layout(location = 4) out vec4 gbufferEmission;
+layout(location = 5) out uint gbufferId;
 
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
@@ -37,8 +35,7 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(p, imageSize(gbufferPosition)))) return;
+  ivec2 p = ivec2(gl_FragCoord.xy);
   uint index = texelFetch(seen, p, 0).r;
   bool background = index == kNothing;  // worked out as if it were triangle 0: a CPU device runs both sides of a branch
   uvec4 triangle = sceneTriangle(background ? 0u : index);
@@ -62,10 +59,10 @@ void main() {
 #endif
   if (background) emission = frame.environment.rgb;
 
-  imageStore(gbufferPosition, p, background ? vec4(0.0) : vec4(position, distance(position, view.eye.xyz)));
-  imageStore(gbufferNormal, p, background ? vec4(0.0) : vec4(normal, 0.0));
-  imageStore(gbufferFace, p, background ? vec4(0.0) : vec4(octEncode(face), 0.0, 0.0));
-  imageStore(gbufferAlbedo, p, background ? vec4(0.0) : vec4(albedo, 0.0));
-  imageStore(gbufferEmission, p, vec4(min(emission, kMaxHalf), 0.0));
-  imageStore(gbufferId, p, uvec4(background ? kNothing : triangle.w));
+  gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye.xyz));
+  gbufferNormal = background ? vec4(0.0) : vec4(normal, 0.0);
+  gbufferFace = background ? vec2(0.0) : octEncode(face);
+  gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, 0.0);
+  gbufferEmission = vec4(min(emission, kMaxHalf), 0.0);
+  gbufferId = background ? kNothing : triangle.w;
 }

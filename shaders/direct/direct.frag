@@ -11,15 +11,13 @@
 #endif
 #include "common/shadow.glsl"
 
-layout(local_size_x = 64) in;
-
 // Images and not textures: on lavapipe a load from a texture costs several times as much.
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
 layout(set = 0, binding = 2, rg16_snorm) uniform readonly image2D gbufferFace;
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D gbufferEmission;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D direct;
+layout(location = 0) out vec4 direct;
 
 vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face) {
   LightSample e = sampleLight(light, position);
@@ -29,8 +27,7 @@ vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(p, imageSize(direct)))) return;
+  ivec2 p = ivec2(gl_FragCoord.xy);
   vec4 position = imageLoad(gbufferPosition, p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   vec3 face = octDecode(imageLoad(gbufferFace, p).xy);
@@ -42,5 +39,5 @@ void main() {
   for (uint i = 0u; i < lightCount; ++i) irradiance += irradianceFrom(lights[i], position.xyz, normal, face);
 #endif
   vec3 radiance = imageLoad(gbufferEmission, p).rgb + imageLoad(gbufferAlbedo, p).rgb * irradiance * (1.0 / kPi);
-  imageStore(direct, p, vec4(min(radiance, 65504.0), 1.0));
+  direct = vec4(min(radiance, 65504.0), 1.0);
 }
