@@ -13,23 +13,6 @@
 
 namespace fovea::scene {
 
-// World space; empty: low > high.
-struct MoverBox {
-  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
-  bool empty() const { return low.x > high.x; }
-};
-
-// Around all dynamic objects of the frame; wider than they are, and around the whole of its animation where
-// one deforms.
-inline MoverBox moverBox(const Frame& frame) {
-  const Bounds box = movingBounds(*frame.geometry, frame);
-  return {box.low, box.high};
-}
-
-inline MoverBox around(const MoverBox& a, const MoverBox& b) {
-  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
-}
-
 // Of a dynamic object that is visible; around the whole of its animation where it deforms.
 inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
   Bounds box;
@@ -39,6 +22,59 @@ inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
     box.include(object.deforms ? corner : place.fromObject(corner));
   }
   return box;
+}
+
+// Boxes in which all dynamic objects lie, in world space; low > high: unused. An object has one of its own
+// while there are enough; the others share the last. Of a hidden object: where its vertices are gathered.
+struct MoverBoxes {
+  static constexpr size_t kCount = 3;  // shaders/common/movers.glsl
+  // Low and high of each; w 0.
+  std::array<glm::vec4, 2 * kCount> corners = [] {
+    std::array<glm::vec4, 2 * kCount> none;
+    for (size_t i = 0; i < kCount; ++i) {
+      none[2 * i] = glm::vec4(glm::vec3(std::numeric_limits<float>::max()), 0);
+      none[2 * i + 1] = glm::vec4(glm::vec3(std::numeric_limits<float>::lowest()), 0);
+    }
+    return none;
+  }();
+  bool empty() const {
+    for (size_t i = 0; i < kCount; ++i)
+      if (corners[2 * i].x <= corners[2 * i + 1].x) return false;
+    return true;
+  }
+};
+
+inline MoverBoxes moverBoxes(const Frame& frame) {
+  std::array<Bounds, MoverBoxes::kCount> boxes;
+  const Geometry& geometry = *frame.geometry;
+  size_t used = 0;
+  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic || object.vertexCount == 0) continue;
+    const ObjectTransform& place = frame.objects[i];
+    Bounds box;
+    box.include(glm::vec3(place.toWorld[3]));
+    if (place.visible) box = boundsOf(object, place);
+    Bounds& into = boxes[std::min(used++, boxes.size() - 1)];
+    into.include(box.low);
+    into.include(box.high);
+  }
+  MoverBoxes result;
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    result.corners[2 * i] = glm::vec4(boxes[i].low, 0);
+    result.corners[2 * i + 1] = glm::vec4(boxes[i].high, 0);
+  }
+  return result;
+}
+
+// Each box around both of the same place.
+inline MoverBoxes around(const MoverBoxes& a, const MoverBoxes& b) {
+  MoverBoxes result;
+  for (size_t i = 0; i < MoverBoxes::kCount; ++i) {
+    result.corners[2 * i] = glm::min(a.corners[2 * i], b.corners[2 * i]);
+    result.corners[2 * i + 1] = glm::max(a.corners[2 * i + 1], b.corners[2 * i + 1]);
+  }
+  return result;
 }
 
 // Spheres in which all visible dynamic objects lie. An object has one of its own while there are enough; the

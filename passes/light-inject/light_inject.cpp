@@ -2,6 +2,7 @@
 // its radiance from frame to frame while the lights stay, except where the shadow of what moves may have come
 // or gone.
 #include <algorithm>
+#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -29,28 +30,30 @@ class LightInject : public Pass {
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
-             member("info", buffer("VoxelInfo", 16), Usage::TexelRead)},
+             member("info", buffer("VoxelInfo", 16), Usage::Uniform)},
             "surfaces in the voxels");
     d.input("maps", "shadow-maps",
             {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
              member("views", buffer("ShadowView", 112), Usage::Uniform)},
             "what each light sees; without it nothing throws a shadow")
         .makeOptional();
-    d.output("radiance", buffer("VoxelRadiance", 16, countOf("voxels.surface")), Usage::StorageWrite,
+    d.output("radiance", buffer("VoxelRadiance", 16, countOf("voxels.surface")),
+             Usage::StorageRead | Usage::StorageWrite,
              "rgb: L = rho E / pi + emission, W/(sr m^2), w: its luminance; 0 for empty sides, undefined "
              "past the last voxel")
         .keep(Lifetime::Scene);
-    d.scratch("covered", buffer("CoveredTexels", 16, environment("scene.shadow_layers")),
-              Usage::StorageWrite | Usage::TexelRead, "what the moving things may cover of each map");
-    d.scratch("work", buffer("WorkList", 16),
+    d.scratch(
+        "covered",
+        buffer("CoveredTexels", 16, environment("scene.shadow_layers") * SizeExpr(scene::MoverBoxes::kCount)),
+        Usage::StorageWrite | Usage::TexelRead, "what the moving things may cover of each map");
+    d.scratch("work", buffer("WorkList", 32),
               Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect,
-              "dispatch and length of the list");
+              "dispatch over the list and its length; dispatch over all sides");
     d.scratch("listed", buffer("uint", 4, countOf("voxels.surface")), Usage::StorageWrite | Usage::TexelRead,
               "sides to look up anew");
     d.output("changed", buffer("VoxelChanged", 4, countOf("voxels.surface")), Usage::StorageWrite,
-             "1: the radiance of this side was looked up anew, 0: it is that of the frame before; undefined "
-             "past the "
-             "last voxel");
+             "1: this side has another radiance than in the frame before, or is of something that moves; "
+             "undefined past the last voxel");
     d.parameter("keep", flag(true),
                 "sides of what never moves keep their radiance while no light changes, but where the shadow "
                 "of something "
@@ -68,47 +71,48 @@ class LightInject : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    const gpu::Defines shadowed{{"SHADOWED", ctx.has("maps") ? "1" : "0"}};
-    covered_ = ctx.compute("light-inject/covered.comp", shadowed);
-    select_ = ctx.compute("light-inject/select.comp", shadowed);
+    gpu::Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"}};
+    covered_ = ctx.compute("light-inject/covered.comp", defines);
     const std::string& filter = ctx.parameters().text("filter");
-    kernel_ =
-        ctx.compute("light-inject/light_inject.comp", {{"SHADOWED", ctx.has("maps") ? "1" : "0"},
-                                                       {"SHADOW_FILTER", filter == "none"       ? "0"
-                                                                         : filter == "bilinear" ? "1"
-                                                                                                : "2"}});
+    for (size_t i = 0; i < select_.size(); ++i) {
+      defines["ONE_LIGHT"] = std::to_string(i);
+      select_[i] = ctx.compute("light-inject/select.comp", defines);
+      gpu::Defines filtered = defines;
+      filtered["SHADOW_FILTER"] = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
+      kernel_[i] = ctx.compute("light-inject/light_inject.comp", filtered);
+    }
   }
   void record(RecordContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
     const bool stay = gpu_ == frame.gpu && std::equal(lights_.begin(), lights_.end(), frame.lights.begin(),
                                                       frame.lights.end(), same);
     const bool all = ctx.firstFrame() || !stay || !ctx.parameters().flag("keep");
-    const scene::MoverBox now = scene::moverBox(frame), either = scene::around(now, before_);
+    const scene::MoverBoxes now = scene::moverBoxes(frame), either = scene::around(now, before_);
     const uint32_t layers = scene::shadowLayers(frame.lights);
     const bool moving = !either.empty();
     Commands cover = ctx.use(covered_);
     if (ctx.has("maps"))
-      cover.constant("moversLow", glm::vec4(either.low, 0))
-          .constant("moversHigh", glm::vec4(either.high, 0))
-          .constant("layerCount", moving ? layers : 0u);
-    cover.dispatchThreads(std::max(layers, 1u));
+      cover.constant("movers", either.corners).constant("layerCount", moving ? layers : 0u);
+    cover.dispatchThreads(std::max(layers, 1u) * uint32_t(scene::MoverBoxes::kCount));
     ctx.barrier();
-    ctx.use(select_)
+    const size_t lights = frame.lights.size() != 1 ? 0 : layers == 1 ? 2 : 1;
+    ctx.use(select_[lights])
         .constant("relightAll", uint32_t(all))
         .constant("moving", uint32_t(moving))
-        .dispatchThreads(uint32_t(ctx.count("voxels.surface")));
+        .dispatchIndirect("work", 16);
     ctx.barrier();
-    ctx.use(kernel_).dispatchIndirect("work");
+    ctx.use(kernel_[lights]).dispatchIndirect("work");
     lights_ = frame.lights;
     gpu_ = frame.gpu;
     before_ = now;
   }
 
  private:
-  Kernel covered_, select_, kernel_;
-  std::vector<scene::Light> lights_;      // of the frame before,
-  const scene::GpuScene* gpu_ = nullptr;  // its scene,
-  scene::MoverBox before_;                // and where what moves was
+  Kernel covered_;
+  std::array<Kernel, 3> select_, kernel_;  // for any number of lights, for one, and for one with one map
+  std::vector<scene::Light> lights_;       // of the frame before,
+  const scene::GpuScene* gpu_ = nullptr;   // its scene,
+  scene::MoverBoxes before_;               // and where what moves was
 };
 
 FOVEA_PASS(LightInject);

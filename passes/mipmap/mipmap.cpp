@@ -100,10 +100,8 @@ class Mipmap : public Pass {
     if (weighted_) base.bind("mipsWeight", ctx.image("mips.weight").mipView(0));
     if (keeps_) {
       const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu;
-      const scene::MoverBox now = scene::moverBox(ctx.frame()), either = scene::around(now, before_);
-      base.constant("moversLow", glm::vec4(either.low, 0))
-          .constant("moversHigh", glm::vec4(either.high, 0))
-          .constant("all_", uint32_t(all));
+      const scene::MoverBoxes now = scene::moverBoxes(ctx.frame());
+      base.constant("movers", scene::around(now, before_).corners).constant("all_", uint32_t(all));
       before_ = now;
       gpu_ = ctx.frame().gpu;
     }
@@ -111,7 +109,7 @@ class Mipmap : public Pass {
   }
 
   bool directional_ = true, weighted_ = false, keeps_ = false;
-  scene::MoverBox before_;                // where what moves was in the frame before,
+  scene::MoverBoxes before_;              // where what moves was in the frame before,
   const scene::GpuScene* gpu_ = nullptr;  // and in which scene
   Kernel base_, down_;
 };

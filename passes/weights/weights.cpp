@@ -15,6 +15,7 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere but in bricks.comp
+constexpr uint32_t kSharedPaths = 8;      // of an invocation of share.comp
 constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
 constexpr uint32_t kEscapePoints = 1024;  // screen points that the share of escaping paths is taken from
 constexpr uint32_t kBrick = 4;            // cells; shaders/weights/weights.glsl
@@ -241,7 +242,7 @@ void Weights::recordDensities(RecordContext& ctx) {
         .constant("vplCount", vplCount_)
         .constant("tried", tried)
         .constant("normalShare", float(p.real("normal_weight")))
-        .dispatchThreads(tried);
+        .dispatchThreads((tried + kSharedPaths - 1) / kSharedPaths);
     ctx.barrier();
   }
   ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatchThreads(vplCount_);

@@ -2,18 +2,24 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 // Direct light on the voxels: L = rho E / pi + emission for every listed side, E averaged over several points of its surface.
+// Defines: SHADOWED 0/1; SHADOW_FILTER; ONE_LIGHT 0/1/2 as in direct.frag.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/voxel_trace.glsl"
 #if SHADOWED
 #define SHADOW_BINDING 8
+#if ONE_LIGHT == 2
+#define SHADOW_LAYER 0u
+#endif
 #include "common/shadow.glsl"
 #endif
 #include "light-inject/patch.glsl"
 
 layout(local_size_x = 64) in;  // kSidesPerGroup
 
-layout(set = 0, std430) writeonly buffer Radiance { vec4 sides[]; } radiance;
+layout(set = 0, std430) buffer Radiance { vec4 sides[]; } radiance;
+layout(set = 0, std430) writeonly buffer Changed { uint sides[]; } changed;
+layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(set = 0) uniform usamplerBuffer work;    // see select.comp
 layout(set = 0) uniform usamplerBuffer listed;
 
@@ -51,7 +57,11 @@ vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
   uint bits = randomStream(kLightInject, cell.x, cell.y, 2u * cell.z + which);
   vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
   vec3 irradiance = vec3(0.0);
+#if ONE_LIGHT
+  irradiance = irradianceBy(lights[0], side, area, first, grid.cell);
+#else
   for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
+#endif
   vec3 result = side.reflectance * irradiance / kPi + side.emission;
   return vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
 }
@@ -62,5 +72,8 @@ void main() {
   uint number = texelFetch(listed, int(place)).x;
   VoxelSide side = loadSide(number);
   VoxelGrid grid = voxelsGrid();
-  radiance.sides[number] = side.area > 0.0 ? radianceOf(grid, side, patchOf(grid, side), number & 1u) : vec4(0.0);
+  vec4 now = side.area > 0.0 ? radianceOf(grid, side, patchOf(grid, side), number & 1u) : vec4(0.0);
+  bool stays = number / 2u < voxelsInfo.value.staticVoxels && floatBitsToUint(now) == floatBitsToUint(radiance.sides[number]);
+  radiance.sides[number] = now;
+  changed.sides[number] = stays ? 0u : 1u;
 }

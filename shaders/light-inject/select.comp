@@ -3,18 +3,19 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // Lists the sides whose radiance may be another one than in the last frame. Their order in the list does not matter: each
-// side's radiance is its own.
+// side's radiance is its own. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #if SHADOWED
 #define SHADOW_BINDING 8
 #include "common/shadow.glsl"
 #endif
+#include "common/movers.glsl"
 #include "light-inject/patch.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 64) in;  // kSidesPerGroup
 
-layout(set = 0) uniform usamplerBuffer voxelsInfo;
+layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(set = 0, std430) writeonly buffer Changed { uint sides[]; } changed;
 layout(set = 0, std430) buffer Work { uint x, y, z, count; } work;  // groups of light_inject.comp; length of the list
 layout(set = 0, std430) writeonly buffer Listed { uint sides[]; } listed;
@@ -26,14 +27,13 @@ layout(push_constant) uniform Constants {
 };
 
 #if SHADOWED
-layout(set = 0) uniform samplerBuffer covered;  // of each layer, see covered.comp
+layout(set = 0) uniform samplerBuffer covered;  // kMoverBoxes a layer, see covered.comp
 
 const float kMarginTexels = 4.0;  // the reach of the widest filter, and what a rasteriser may round
 
 // Whether the map `layer` may have changed where it is looked up from within a sphere. Bounds only: the texels of the sphere
-// against those of all that moves.
+// against those of what moves.
 bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
-  vec4 moved = texelFetch(covered, int(layer));
   vec4 clip = mapsViews.view[layer].worldToClip * vec4(centre, 1.0);
   // A step of 1 m moves a point by 2 / (texels * width of a texel) where w is 1, and in depth by its own distance.
   vec2 texels = vec2(textureSize(mapsDepth, 0).xy), at = clip.xy / clip.w;
@@ -42,46 +42,66 @@ bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
   reach += kMarginTexels * 2.0 / texels;
   // Outside of the map its border counts.
   vec2 from = clamp(at - reach, -1.0, 1.0), to = clamp(at + reach, -1.0, 1.0);
-  bool meets = all(lessThanEqual(from, clamp(moved.zw, -1.0, 1.0))) && all(greaterThanEqual(to, clamp(moved.xy, -1.0, 1.0)));
-  if (!directional && clip.w < -radius) return false;           // behind the light: never shadowed
-  return meets || (!directional && clip.w <= 1.1 * radius);     // reaches to the light's plane
+  bool any_ = false, meets = false;
+  for (uint box = 0u; box < kMoverBoxes; ++box) {
+    vec4 moved = texelFetch(covered, int(layer * kMoverBoxes + box));
+    bool used = moved.x <= moved.z;
+    any_ = any_ || used;
+    meets = meets || (used && all(lessThanEqual(from, clamp(moved.zw, -1.0, 1.0))) &&
+                      all(greaterThanEqual(to, clamp(moved.xy, -1.0, 1.0))));
+  }
+  if (!directional && clip.w < -radius) return false;                   // behind the light: never shadowed
+  return meets || (any_ && !directional && clip.w <= 1.1 * radius);     // reaches to the light's plane
 }
 
 // Whether the light's shadow on a sphere may be another one than in the last frame.
 bool shadowMayChange(Light light, vec3 centre, float radius) {
   uint type = uint(light.position.w), layer = firstShadowLayer(light);
+#if ONE_LIGHT == 2
+  return mayChange(0u, centre, radius, type == kLightDirectional);
+#endif
   for (uint face = 0u; face < (type == kLightPoint ? 6u : 1u); ++face)
     if (mayChange(layer + face, centre, radius, type == kLightDirectional)) return true;
   return false;
 }
 #endif
 
-bool mayDiffer(uint number) {
+// `asked`: no loop of a CPU device turns for what is not.
+bool mayDiffer(uint number, bool asked) {
 #if SHADOWED
   VoxelGrid grid = voxelsGrid();
-  VoxelSide side = loadSide(number);
-  Patch area = patchOf(grid, side);
-  float radius = length(area.u) + length(area.v) + offset * grid.cell;
+  vec4 positionArea = texelFetch(voxelsSurface, int(number) * kVoxelSideTexels);
+  // No patch reaches farther: half a cell along each axis, 45 degrees steep at most.
+  float radius = (1.4143 + offset) * grid.cell;
   bool may = false;
-  uint lightCount = moving == 0u ? 0u : frame.lightCount;
-  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[i], side.position, radius);
-  return may && side.area > 0.0;
+  uint lightCount = moving == 0u || !asked || !(positionArea.w > 0.0) ? 0u : frame.lightCount;
+#if ONE_LIGHT
+  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[0], positionArea.xyz, radius);
+#else
+  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[i], positionArea.xyz, radius);
+#endif
+  return may;
 #else
   return false;
 #endif
 }
 
 void main() {
-  uint voxels = texelFetch(voxelsInfo, 0).x, number = gl_GlobalInvocationID.x;
+  uint voxels = voxelsInfo.value.voxels, number = gl_GlobalInvocationID.x;
   bool inList = number < 2u * voxels;
-  bool anew = inList && (relightAll != 0u || number / 2u >= texelFetch(voxelsInfo, 0).y || mayDiffer(number));
-  if (inList) changed.sides[number] = uint(anew);
+  bool all_ = relightAll != 0u || number / 2u >= voxelsInfo.value.staticVoxels, may = mayDiffer(number, inList && !all_);
+  bool anew = inList && (all_ || may);
+  if (inList && !anew) changed.sides[number] = 0u;  // else light_inject.comp tells
   uvec4 ballot = subgroupBallot(anew);
   uint first = 0u;
-  if (subgroupElect()) first = atomicAdd(work.count, subgroupBallotBitCount(ballot));
+  uint total = subgroupBallotBitCount(ballot);
+  if (total == 0u) return;
+  if (subgroupElect()) {
+    first = atomicAdd(work.count, total);
+    atomicMax(work.x, (first + total - 1u) / kSidesPerGroup + 1u);
+  }
   first = subgroupBroadcastFirst(first);
   if (!anew) return;
   uint place = first + subgroupBallotExclusiveBitCount(ballot);
   listed.sides[place] = number;
-  atomicMax(work.x, place / kSidesPerGroup + 1u);
 }

@@ -16,11 +16,12 @@ layout(set = 0) uniform samplerBuffer weights;
 #endif
 #if KEEPS
 layout(set = 0) uniform usamplerBuffer changed;
+#include "common/movers.glsl"
 #include "mipmap/dirty.glsl"
 
 layout(push_constant) uniform Constants {
-  vec4 moversLow, moversHigh;  // box around all that moves, in this frame and the last one; low > high: nothing does
-  uint all_;                   // 1: nothing is kept from the last frame
+  vec4 movers[2u * kMoverBoxes];
+  uint all_;  // 1: nothing is kept from the last frame
 };
 #endif
 
@@ -62,7 +63,9 @@ void main() {
 #if KEEPS
   // Voxels come and go where something moves; a voxel may lie a little outside of what it holds.
   vec3 low = voxelToWorld(grid, 2.0 * vec3(cell) - 1.0), high = voxelToWorld(grid, 2.0 * vec3(cell) + 3.0);
-  anew = all_ != 0u || (all(lessThanEqual(low, moversHigh.xyz)) && all(greaterThanEqual(high, moversLow.xyz)));
+  anew = all_ != 0u;
+  for (uint i = 0u; i < kMoverBoxes; ++i)
+    anew = anew || (all(lessThanEqual(low, movers[2u * i + 1u].xyz)) && all(greaterThanEqual(high, movers[2u * i].xyz)));
   for (int i = 0; i < (any_ != 0u ? 8 : 0); ++i) {
     int side = 2 * int(max(voxels[i], 1u) - 1u);
     uint new_ = texelFetch(changed, side).x | texelFetch(changed, side + 1).x;

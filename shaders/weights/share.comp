@@ -43,12 +43,10 @@ layout(push_constant) uniform Constants {
 };
 
 // Of all VPLs those of the highest rank come first, then the nearest.
-#if TRACED
-const uint kSeen = 2u;  // by the start of the path
-#else
-const uint kSeen = 0u;  // whatever sees it: dark ones could not shine with what they are given
-#endif
+const uint kSeen = 2u;      // by the start of the path; of traced paths only: dark VPLs could not shine with what others give
 const uint kSameKind = 1u;  // lit as the end is
+
+const uint kPaths = 8u;  // of an invocation; passes/weights/weights.cpp
 
 vec4 endTexel(uint path, int texel) {
 #if TRACED
@@ -73,39 +71,65 @@ void give(uint vpl, uint path, float luminance, uint pathUnits) {
 #endif
 }
 
-void main() {
-  uint path = gl_GlobalInvocationID.x;
-  if (path >= tried) return;
-  vec4 end = endTexel(path, 0), normal = endTexel(path, 1);
-  if (!(end.w > 0.0)) return;
+struct Path {
+  vec3 position, normal;
+  float kind;               // of its end, 0: it ends nowhere
+  uint bit;                 // of its start in a VPL's words of `seen`,
+  int word;                 // and which of the words
+  float best, bestWhole;
+  uint owner, whole;        // first of all; of those that are seen well
+  uint rank, rankWhole;
+};
+
+Path pathAt(uint path) {
+  bool inside = path < tried;
+  vec4 end = endTexel(inside ? path : 0u, 0), normal = endTexel(inside ? path : 0u, 1);
+  uint point = path % points, turn = point >> 6u;
+  return Path(end.xyz, normal.xyz, inside && end.w > 0.0 ? end.w : 0.0, 1u << (turn & 31u),
+              int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
+}
+
+void offer(inout Path p, uint vpl, vec4 site, vec4 siteNormal, float lambda, int words) {
+  vec3 d = site.xyz - p.position;
+  bool thin = site.w <= kThinSite;
+  float handicap = thin ? kThinSite - site.w : site.w;
+  precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, siteNormal.xyz)) + handicap;
+  uint its = siteKind(siteNormal.w) == p.kind ? kSameKind : 0u;
+#if TRACED
+  its += (texelFetch(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
+#endif
+  bool takes = handicap >= 0.0;
+  bool nearer = takes && (its > p.rank || (its == p.rank && cost < p.best));
+  bool nearerWhole = takes && !thin && (its > p.rankWhole || (its == p.rankWhole && cost < p.bestWhole));
+  p.owner = nearer ? vpl : p.owner;
+  p.best = nearer ? cost : p.best;
+  p.rank = nearer ? its : p.rank;
+  p.whole = nearerWhole ? vpl : p.whole;
+  p.bestWhole = nearerWhole ? cost : p.bestWhole;
+  p.rankWhole = nearerWhole ? its : p.rankWhole;
+}
+
+void finish(Path p, uint path) {
+  if (p.kind == 0.0) return;
   atomicAdd(totals.value.found, 1u);
+  if (p.owner == kNoSide) return;
+  float part = partKept(texelFetch(densities, int(p.owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(p.owner)).r);
+  uint units = p.owner == p.whole || p.whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
+  float luminance = endTexel(path, 1).w;
+  give(p.owner, path, luminance, units);
+  give(p.whole, path, luminance, uint(kPathUnits) - units);
+}
+
+// An invocation takes several paths past each VPL: on a CPU device loading the VPL is most of the work.
+void main() {
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
-  uint point = path % points, lane = point & 63u, turn = point >> 6u, words = laneWords(points);
-  int word = int(lane * words + (turn >> 5u)), wordsOfVpl = int(64u * words);
-  uint bit = 1u << (turn & 31u);
-  float best = 1e38, bestWhole = 1e38;
-  uint owner = kNoSide, whole = kNoSide, rank = 0u, rankWhole = 0u;  // first of all; of those that are seen well
+  uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x * kPaths + gl_LocalInvocationIndex;
+  int words = 64 * int(laneWords(points));
+  Path paths[kPaths];
+  for (uint k = 0u; k < kPaths; ++k) paths[k] = pathAt(first + k * gl_WorkGroupSize.x);
   for (uint i = 0u; i < vplCount; ++i) {
     vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
-    vec3 d = site.xyz - end.xyz;
-    bool thin = site.w <= kThinSite;
-    float handicap = thin ? kThinSite - site.w : site.w;
-    precise float cost = dot(d, d) + lambda * (1.0 - dot(normal.xyz, siteNormal.xyz)) + handicap;
-    uint its = ((texelFetch(seen, int(i) * wordsOfVpl + word).r & bit) != 0u ? kSeen : 0u) +
-               (siteKind(siteNormal.w) == end.w ? kSameKind : 0u);
-    bool takes = handicap >= 0.0;
-    bool nearer = takes && (its > rank || (its == rank && cost < best));
-    bool nearerWhole = takes && !thin && (its > rankWhole || (its == rankWhole && cost < bestWhole));
-    owner = nearer ? i : owner;
-    best = nearer ? cost : best;
-    rank = nearer ? its : rank;
-    whole = nearerWhole ? i : whole;
-    bestWhole = nearerWhole ? cost : bestWhole;
-    rankWhole = nearerWhole ? its : rankWhole;
+    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, siteNormal, lambda, words);
   }
-  if (owner == kNoSide) return;
-  float part = partKept(texelFetch(densities, int(owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(owner)).r);
-  uint units = owner == whole || whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
-  give(owner, path, normal.w, units);
-  give(whole, path, normal.w, uint(kPathUnits) - units);
+  for (uint k = 0u; k < kPaths; ++k) finish(paths[k], first + k * gl_WorkGroupSize.x);
 }
