@@ -8,9 +8,9 @@
 #include "common/scene.glsl"
 
 const int kTile = 16, kBlocksPerSide = kTile / INTERLEAVE;
-const uint kThreads = 64u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
+const uint kThreads = 16u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 16) in;  // few: on a CPU device each subgroup of a group with barriers costs
 
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
