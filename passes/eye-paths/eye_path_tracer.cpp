@@ -17,7 +17,7 @@ namespace {
 using namespace scene;
 
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // of the random numbers
-constexpr uint32_t kPathsAtOnce = 64;
+constexpr uint32_t kPointsAtOnce = 16;                                      // that a thread takes
 constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
 const glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);
 
@@ -51,8 +51,9 @@ class Tracer {
     for (const Material& m : frame.scene->materials) shines_ = shines_ || m.emission != glm::vec3(0);
   }
 
-  Vertex look(glm::vec2 pixel, uint64_t& rays) const;
-  EyePathEnd end(const Vertex& start, uint32_t point, uint32_t turn, uint64_t& rays) const;
+  EyePathStart look(glm::vec2 pixel, uint64_t& rays) const;
+  bool stands(const EyePathStart& start, uint64_t& rays) const;
+  EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const;
 
  private:
   Vertex arrive(glm::vec3 origin, glm::vec3 direction, uint64_t& rays) const;
@@ -85,7 +86,7 @@ Vertex Tracer::vertexAt(const RayHit& hit, glm::vec3 direction) const {
   return v;
 }
 
-Vertex Tracer::look(glm::vec2 pixel, uint64_t& rays) const {
+EyePathStart Tracer::look(glm::vec2 pixel, uint64_t& rays) const {
   Ray ray;
   ray.origin = view_.eye;
   ray.direction = glm::normalize(view_.rayDirection(pixel));
@@ -93,9 +94,22 @@ Vertex Tracer::look(glm::vec2 pixel, uint64_t& rays) const {
     ++rays;
     const RayHit hit = rays_.intersect(ray);
     if (!hit) return {};
-    if (const Vertex v = vertexAt(hit, ray.direction); v.there) return v;
+    if (const Vertex v = vertexAt(hit, ray.direction); v.there)
+      return {v.position, 1, v.normal, 0, v.face, 0};
     ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
   }
+}
+
+// Whether the surface is still where a start was found, or the background: things move.
+bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
+  if (start.there == 0) return true;
+  const float reach = 4 * rays_.epsilon();
+  Ray ray;
+  ray.origin = start.position + reach * start.face;
+  ray.direction = -start.face;
+  ray.far = 2 * reach;
+  ++rays;
+  return bool(rays_.intersect(ray));
 }
 
 Vertex Tracer::arrive(glm::vec3 origin, glm::vec3 direction, uint64_t& rays) const {
@@ -143,12 +157,14 @@ glm::vec3 Tracer::gather(const Vertex& v, uint32_t bounces, uint32_t count, uint
   return sum / float(count);
 }
 
-EyePathEnd Tracer::end(const Vertex& start, uint32_t point, uint32_t turn, uint64_t& rays) const {
+EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const {
   EyePathEnd end;
   const glm::vec3 direction =
       cosineDirection(start.normal, streamSequence(randomStream(0, 0, kPathStream, point), turn));
   if (glm::dot(direction, start.face) <= 0) return end;
-  const Vertex v = arrive(start.origin, direction, rays);
+  const glm::vec3 origin =
+      start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
+  const Vertex v = arrive(origin, direction, rays);
   if (!v.there) return end;
   const glm::vec3 rho(reflectance(*frame_.scene, *v.material, v.uv));
   end.radiance = direct(v, rho, rays);
@@ -171,22 +187,26 @@ float sumUnit(std::span<const EyePathEnd> ends) {
 }
 
 EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayScene& rays,
-                                const EyePathSettings& settings, std::span<EyePathEnd> ends) {
+                                const EyePathSettings& settings, const EyePathLists& lists) {
   const Tracer tracer(frame, view, rays, settings);
-  const uint32_t points = std::min(settings.points, uint32_t(ends.size()));
+  const std::span<EyePathEnd> ends = lists.ends;
+  const uint32_t points = uint32_t(lists.starts.size()), renew = std::max(settings.renewFrames, 1u);
   const Fovea fovea = makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0;
   // All paths of one point after each other: its start is found once.
   const auto work = [&] {
     uint64_t count = 0;
-    for (uint32_t first = next.fetch_add(kPathsAtOnce); first < points; first = next.fetch_add(kPathsAtOnce))
-      for (uint32_t point = first; point < std::min(first + kPathsAtOnce, points); ++point) {
-        const glm::ivec2 pixel =
-            screenPoint(settings.region, point, settings.points, fovea, glm::ivec2(view.size));
-        const Vertex start = tracer.look(glm::vec2(pixel) + 0.5f, count);
-        for (uint32_t i = point, turn = 0; i < ends.size(); i += points, ++turn)
-          ends[i] = start.there ? tracer.end(start, point, turn, count) : EyePathEnd{};
+    for (uint32_t first = next.fetch_add(kPointsAtOnce); first < points;
+         first = next.fetch_add(kPointsAtOnce))
+      for (uint32_t point = first; point < std::min(first + kPointsAtOnce, points); ++point) {
+        EyePathStart& start = lists.starts[point];
+        if (point % renew == settings.turn % renew || !tracer.stands(start, count))
+          start = tracer.look(
+              glm::vec2(screenPoint(settings.region, point, points, fovea, glm::ivec2(view.size))) + 0.5f,
+              count);
+        for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)
+          ends[path] = start.there > 0 ? tracer.end(start, point, turn, count) : EyePathEnd{};
       }
     traced += count;
   };
@@ -194,7 +214,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
     const uint32_t cores =
         std::max(settings.threads != 0 ? settings.threads : std::thread::hardware_concurrency(), 1u);
     std::vector<std::jthread> helpers;
-    for (uint32_t i = 1; i < std::min(cores, (points + kPathsAtOnce - 1) / kPathsAtOnce); ++i)
+    for (uint32_t i = 1; i < std::min(cores, (points + kPointsAtOnce - 1) / kPointsAtOnce); ++i)
       helpers.emplace_back(work);
     work();
   }

@@ -19,8 +19,21 @@ struct EyePathSettings {
   uint32_t points = 1024;                 // screen points, the same in every frame: scene::screenPoint()
   uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees
   uint32_t gathered = 2;                  // rays by which the second of them is found
+  uint32_t renewFrames = 1;               // in which all starts are looked for anew, a share in each
+  uint32_t turn = 0;                      // of them
   uint32_t threads = 0;                   // 0: one a core; the result does not depend on it
 };
+
+// What a screen point shows; as the screen points of shaders/weights/points.comp. All zeros: the background.
+struct EyePathStart {
+  glm::vec3 position{0};  // world space, m
+  float there = 0;        // 1: a surface
+  glm::vec3 normal{0};    // for shading, unit, on the side of the eye
+  float unused0 = 0;
+  glm::vec3 face{0};  // of the triangle, unit
+  float unused1 = 0;
+};
+static_assert(sizeof(EyePathStart) == 48);
 
 // The same layout as in shaders/weights/weights.glsl. All zeros: the path ends nowhere.
 struct EyePathEnd {
@@ -37,10 +50,16 @@ struct EyePathStatistics {
   uint64_t rays = 0, ends = 0;
 };
 
-// Fills `ends`: path i starts from screen point i % points.
+struct EyePathLists {
+  std::span<EyePathStart> starts;  // `points` of them
+  std::span<EyePathEnd> ends;      // path i starts from screen point i % points
+};
+
+// Fills the lists. A start whose number is not `turn` modulo renewFrames stays where it is as long as there
+// is a surface; its paths are traced anew like all.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
-                                std::span<EyePathEnd> ends);
+                                const EyePathLists& lists);
 
 // The unit in which the light of all the ends sums up to 2^31 in the brightest channel.
 float sumUnit(std::span<const EyePathEnd> ends);

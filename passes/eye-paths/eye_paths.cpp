@@ -1,6 +1,9 @@
 // Eye paths through the triangles themselves: what the light that VPLs stand for is measured by.
 #include "passes/eye-paths/eye_path_tracer.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "framework/graph/registry.h"
 #include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
@@ -19,8 +22,12 @@ class EyePaths : public Pass {
         "that leaves the surfaces where they end",
         PassKind::Host);
     d.view();
-    d.output("ends", buffer("EyePathEnd", sizeof(EyePathEnd), parameter("paths")), Usage::HostWrite,
-             "where the paths end, and the light there; those of one screen point lie `points` apart");
+    d.output(
+        "paths", "eye-paths",
+        {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), parameter("points")), Usage::HostWrite),
+         member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), parameter("paths")), Usage::HostWrite)},
+        "what the screen points show; where their paths end, and the light there: those of one point lie "
+        "`points` apart");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "where the eye paths start: as in pass candidates");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
@@ -30,6 +37,10 @@ class EyePaths : public Pass {
                 "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "
                 "depth 4 sees, 1 is direct light at the ends");
     d.parameter("gathered", integer(2, 1, 256), "rays from each end by which the second of them is found");
+    d.parameter(
+        "renew_frames", integer(1, 1, 1000),
+        "in which all paths get new starts, a share of the points in each frame; the others start where "
+        "they did, so that a jump of the gaze comes in gradually");
     d.counter("rays", "rays traced, towards lights, too");
     d.counter("ends", "paths that found a surface");
     return d;
@@ -47,16 +58,23 @@ class EyePaths : public Pass {
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.gathered = uint32_t(p.integer("gathered"));
-    const auto ends = ctx.outputAs<EyePathEnd>("ends");
+    settings.renewFrames = ctx.firstFrame() ? 1 : uint32_t(p.integer("renew_frames"));
+    settings.turn = uint32_t(ctx.frameNumber() % settings.renewFrames);
+    starts_.resize(ctx.count("paths.starts"));
+    const auto ends = ctx.outputAs<EyePathEnd>("paths.ends");
     EyePathStatistics statistics;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
       statistics = traceEyePaths(frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry),
-                                 settings, ends);
+                                 settings, {starts_, ends});
     else
-      std::fill(ends.begin(), ends.end(), EyePathEnd{});
+      std::ranges::fill(starts_, EyePathStart{}), std::ranges::fill(ends, EyePathEnd{});
+    std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("ends", double(statistics.ends));
   }
+
+ private:
+  std::vector<EyePathStart> starts_;  // as they were handed on last
 };
 
 FOVEA_PASS(EyePaths);

@@ -18,6 +18,7 @@ constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere
 constexpr uint32_t kSharedPaths = 8;      // of an invocation of share.comp
 constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
 constexpr uint32_t kEscapePoints = 1024;  // screen points that the share of escaping paths is taken from
+constexpr uint32_t kScreenPoint = 48;     // bytes: position, normal, face
 constexpr uint32_t kBrick = 4;            // cells; shaders/weights/weights.glsl
 constexpr uint32_t kMostCompeting =
     16384;  // VPLs that bricks.comp loops over, twice: below the 65,535 turns of a loop
@@ -71,10 +72,12 @@ PassDeclaration Weights::declaration() {
           "the VPLs as they were to `atlas`: where they shine from");
   d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
           "their shadow maps: for `importance-area` what is seen from where");
-  d.input(
-       "traced_ends", buffer("EyePathEnd", 48), Usage::TexelRead,
-       "of pass eye-paths, whose region and points had best be the same: what `importance-area` shares out "
-       "in place of paths through the voxels and of the VPLs' own light")
+  d.input("traced", "eye-paths",
+          {member("starts", buffer("ScreenPoint", kScreenPoint), Usage::TexelRead),
+           member("ends", buffer("EyePathEnd", 48), Usage::TexelRead)},
+          "of pass eye-paths, with as many points: what `importance-area` shares out in place of paths "
+          "through the "
+          "voxels from points of its own and of the VPLs' own light")
       .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
@@ -133,8 +136,8 @@ void Weights::addScratch(PassDeclaration& d) {
   d.scratch("totals", buffer("WeightTotals", 16), readWrite | Usage::TransferWrite,
             "counts, and surface of the scene");
   d.scratch("areas", buffer("float", 4, countOf("vpls")), readWrite, "A_l, m^2: what a strategy computes");
-  d.scratch("screen", buffer("ScreenPoint", 48, parameter("points")), Usage::StorageWrite | Usage::TexelRead,
-            "position, normal, face of what the screen points see");
+  d.scratch("screen", buffer("ScreenPoint", kScreenPoint, parameter("points")),
+            Usage::StorageWrite | Usage::TexelRead, "position, normal, face of what the screen points see");
   d.scratch("densities", buffer("float", 4, countOf("vpls")), Usage::StorageWrite | Usage::TexelRead,
             "p_A, 1/m^2");
   d.scratch("kept", buffer("WeightsKept", 8), readWrite,
@@ -175,7 +178,7 @@ void Weights::prepare(PrepareContext& ctx) {
   bricks_ = (ctx.extent("voxels.index").width + kBrick - 1) / kBrick;
   const bool area = strategy_ == "area";
   const std::string shared = strategy_ == "importance-area" ? "1" : "0";
-  traced_ = ctx.has("traced_ends") && shared == "1";
+  traced_ = ctx.has("traced") && shared == "1";
   const std::string traced = traced_ ? "1" : "0";
   const std::string lit = p.text("sides") == "lit" ? "1" : "0";
   if (area && vplCount_ > kMostCompeting)
@@ -190,6 +193,11 @@ void Weights::prepare(PrepareContext& ctx) {
                 "pass `weights`: the atlas holds " + std::to_string(mapCount) + " maps for " +
                     std::to_string(vplCount_) + " VPLs",
                 "wire the same VPLs to the atlas and to the weights");
+  if (traced_ && ctx.count("traced.starts") != uint64_t(p.integer("points")))
+    throw Error(ExitCode::BadInput,
+                "pass `weights`: its paths start from " + std::to_string(ctx.count("traced.starts")) +
+                    " points, it has " + std::to_string(p.integer("points")),
+                "give weights.points and eye-paths.points the same number");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   const bool discs = shared == "1" && p.text("kernel") == "disc";
   finish_ = ctx.compute("weights/finish.comp",
@@ -200,7 +208,7 @@ void Weights::prepare(PrepareContext& ctx) {
     sum_ = ctx.compute("weights/sum.comp");
     return;
   }
-  points_ = ctx.compute("weights/points.comp");
+  points_ = ctx.compute("weights/points.comp", {{"TRACED", traced}});
   if (shared == "1")
     seen_ = ctx.compute("weights/seen.comp");
   else
@@ -221,7 +229,7 @@ void Weights::recordDensities(RecordContext& ctx) {
   const Parameters& p = ctx.parameters();
   const bool shared = strategy_ == "importance-area";
   const uint32_t points = uint32_t(p.integer("points"));
-  const uint32_t tried = tried_ = traced_  ? uint32_t(ctx.count("traced_ends"))
+  const uint32_t tried = tried_ = traced_  ? uint32_t(ctx.count("traced.ends"))
                                   : shared ? uint32_t(p.integer("paths"))
                                            : std::min(points, kEscapePoints);
   ctx.use(points_).dispatchThreads(points);

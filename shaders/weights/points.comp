@@ -1,16 +1,30 @@
 // The fixed points of the region on screen from which densities are estimated: the R2 sequence (Roberts, "The Unreasonable
 // Effectiveness of Quasirandom Sequences", 2018) over the box of the region, by rejection as regionSample; the same in every
-// frame, so that only what changes in the scene changes the weights.
+// frame, so that only what changes in the scene changes the weights. TRACED 1: what pass eye-paths saw from such points, some
+// of it in earlier frames.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 
 layout(local_size_x = 64) in;
 
+#if TRACED
+layout(set = 0) uniform samplerBuffer tracedStarts;
+#else
 layout(set = 0) uniform texture2D gbufferPosition;
 layout(set = 0) uniform texture2D gbufferNormal;
 layout(set = 0) uniform texture2D gbufferFace;
+#endif
 layout(set = 0, std430) writeonly buffer ScreenBlock { vec4 list[]; } screen;  // position, w: 1, 0 background; normal; face
 
+#if TRACED
+layout(push_constant) uniform Constants { uint points; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= points) return;
+  for (uint texel = 3u * i; texel < 3u * i + 3u; ++texel) screen.list[texel] = texelFetch(tracedStarts, int(texel));
+}
+#else
 layout(push_constant) uniform Constants {
   uint region;
   float foveaRadius;
@@ -56,3 +70,4 @@ void main() {
   screen.list[3u * i + 1u] = vec4(there ? normalize(texelFetch(gbufferNormal, pixel, 0).xyz) : vec3(0.0), 0.0);
   screen.list[3u * i + 2u] = vec4(octDecode(texelFetch(gbufferFace, pixel, 0).xy), 0.0);
 }
+#endif

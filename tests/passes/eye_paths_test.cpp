@@ -11,6 +11,7 @@ namespace fovea::test {
 namespace {
 
 using passes::EyePathEnd;
+using passes::EyePathStart;
 
 struct Look {
   scene::Scene scene;
@@ -25,8 +26,9 @@ struct Look {
     frame = scene::makeFrame(scene, geometry, size, 0, 1);
   }
   std::vector<EyePathEnd> trace(const passes::EyePathSettings& settings, uint32_t paths = 4096) const {
+    std::vector<EyePathStart> starts(settings.points);
     std::vector<EyePathEnd> ends(paths);
-    statistics = passes::traceEyePaths(frame, frame.views[0], *rays, settings, ends);
+    statistics = passes::traceEyePaths(frame, frame.views[0], *rays, settings, {starts, ends});
     return ends;
   }
   mutable passes::EyePathStatistics statistics;
@@ -168,7 +170,8 @@ TEST(EyePaths, NothingToFind) {
   empty.param("paths", 64);
   empty.viewSize(8, 8);
   empty.run();
-  for (const EyePathEnd& e : empty.values<EyePathEnd>("ends")) EXPECT_EQ(std::memcmp(&e, &none, sizeof e), 0);
+  for (const EyePathEnd& e : empty.values<EyePathEnd>("paths.ends"))
+    EXPECT_EQ(std::memcmp(&e, &none, sizeof e), 0);
   EXPECT_EQ(empty.counter("ends"), 0);
 }
 
@@ -183,10 +186,41 @@ TEST(EyePaths, PassEqualsTheTracer) {
   settings.region = scene::kRegionMixed;
   settings.points = 128;
   settings.gathered = 3;
-  const auto want = look.trace(settings, 512), got = test.values<EyePathEnd>("ends");
+  const auto want = look.trace(settings, 512), got = test.values<EyePathEnd>("paths.ends");
   ASSERT_EQ(got.size(), want.size());
   EXPECT_EQ(std::memcmp(got.data(), want.data(), got.size() * sizeof got[0]), 0);
   EXPECT_EQ(test.counter("ends"), 512);
+}
+
+// After a jump of the gaze a share of the points moves on in each frame, the others stay.
+TEST(EyePaths, StartsMoveOnInTurns) {
+  const Look look(litRoom(true), {32, 32});
+  passes::EyePathSettings settings;
+  settings.points = 100;
+  settings.foveaRadius = 0.1f;
+  const auto before = look.trace(settings, 500);
+  scene::Frame frame = look.frame;
+  frame.views[0].gaze = {0.12f, 0.8f};
+  std::vector<EyePathStart> starts(settings.points);
+  std::vector<EyePathEnd> after(500);
+  passes::traceEyePaths(frame, frame.views[0], *look.rays, settings, {starts, after});
+  for (uint32_t moved = 0; moved <= 4; ++moved) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 4).param("fovea_radius", 0.1);
+    test.viewSize(32, 32).scene(look.scene);
+    test.beforeFrame(
+        [](PassTest&, scene::Frame& f) { f.views[0].gaze = f.index < 3 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f); });
+    test.run(3 + moved);  // the jump comes with the fourth frame, number 3
+    const auto got = test.values<EyePathEnd>("paths.ends");
+    for (uint32_t i = 0; i < got.size(); ++i) {
+      const bool anew = (i % 100 + 4 - 3) % 4 < moved;  // frame f renews the points f, f + 4..
+      const EyePathEnd& want = anew ? after[i] : before[i];
+      EXPECT_EQ(got[i].position, want.position) << moved << " " << i;
+      EXPECT_EQ(got[i].radiance, want.radiance) << moved << " " << i;
+      EXPECT_EQ(got[i].unit, got[0].unit);
+    }
+  }
+  EXPECT_NE(before[0].position, after[0].position);
 }
 
 }  // namespace

@@ -211,12 +211,17 @@ std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector
   return ends;
 }
 
-std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<passes::EyePathEnd>& ends,
+std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& points,
+                                    const std::vector<passes::EyePathEnd>& ends,
                                     const WeightSettings& settings, double nearField,
                                     float* nearArea = nullptr) {
   PassTest test("weights");
   wire(test, in, "importance-area", settings);
-  test.buffer("traced_ends", ends, "EyePathEnd").param("near_field", nearField);
+  std::vector<passes::EyePathStart> starts;
+  for (const Seen& s : points)
+    starts.push_back({s.position, s.there ? 1.0f : 0.0f, s.normal, 0, s.normal, 0});
+  test.buffer("traced.starts", starts, "ScreenPoint").buffer("traced.ends", ends, "EyePathEnd");
+  test.param("near_field", nearField);
   test.run();
   if (nearArea != nullptr) *nearArea = test.values<glm::vec4>("spread")[0].x;
   return test.values<scene::Vpl>("emitters");
@@ -228,13 +233,15 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   WeightSettings settings;
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
   for (size_t i = 0; i < in.vpls.size(); ++i) in.radiosity[i] = glm::vec4(float(i % 7));
-  const auto points = screenPoints(room, settings);
+  WeightSettings elsewhere = settings;  // the paths' own points count, not what the picture shows now
+  elsewhere.gaze = {0.1f, 0.8f};
+  const auto points = screenPoints(room, elsewhere);
   const auto ends = colouredEnds(room, points, 4096);
   glm::dvec3 want(0);
   for (const auto& e : ends) want += glm::dvec3(e.radiance) / double(ends.size());
   for (const double nearField : {0.0, 1.0}) {
     float nearArea = 0;
-    const auto list = weighTraced(in, ends, settings, nearField, &nearArea);
+    const auto list = weighTraced(in, points, ends, settings, nearField, &nearArea);
     glm::dvec3 got(0);
     for (const scene::Vpl& v : list) {
       if (nearField > 0) {
@@ -282,7 +289,7 @@ TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
   }
   const float unit = passes::sumUnit(ends);
   for (passes::EyePathEnd& e : ends) e.unit = unit;
-  const auto got = weighTraced(in, ends, settings, 0);
+  const auto got = weighTraced(in, points, ends, settings, 0);
   const auto want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings, true).area,
              nearest = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings).area;
   double off = 0, other = 0, all = 0;
@@ -300,13 +307,14 @@ TEST(Weights, TracedPathsThatEndNowhere) {
   const Room room = closedRoom(false, 16, glm::ivec2(32));
   const WeightSettings settings;
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 60, settings)));
-  auto ends = colouredEnds(room, screenPoints(room, settings), 2048);
-  const auto all = weighTraced(in, ends, settings, 0);
+  const auto points = screenPoints(room, settings);
+  auto ends = colouredEnds(room, points, 2048);
+  const auto all = weighTraced(in, points, ends, settings, 0);
   ends.resize(4096);  // as many again escape
-  const auto half = weighTraced(in, ends, settings, 0);
+  const auto half = weighTraced(in, points, ends, settings, 0);
   for (size_t i = 0; i < all.size(); ++i)
     EXPECT_NEAR(half[i].area, all[i].area / 2, 1e-5f * all[i].area) << i;
-  for (const scene::Vpl& v : weighTraced(in, std::vector<passes::EyePathEnd>(64), settings, 1))
+  for (const scene::Vpl& v : weighTraced(in, points, std::vector<passes::EyePathEnd>(64), settings, 1))
     EXPECT_EQ(v.intensity, glm::vec3(0));
 }
 
