@@ -161,8 +161,9 @@ Change change(const image::Picture& now, const image::Picture& before) {
 }
 
 // A scene that stands still looks the same wherever the eye looks: when the gaze jumps, the light that
-// `foveal` shows changes little from one frame to the next. A third above what seeds 1 to 3 show; with all
-// paths starting anew at once blocks change by 0.050 and 0.093, the mean by 0.014 and 0.028.
+// `foveal` shows changes little from one frame to the next. A third above what is measured; with all paths
+// starting anew at once the mean changes by 0.026 and 0.019. VPLs that are let go vanish at once, so blocks
+// change by more.
 struct Jump {
   const char* scene;
   double block, mean;
@@ -170,7 +171,7 @@ struct Jump {
 
 TEST(GazeJump, LightDoesNotJumpWithIt) {
   constexpr uint64_t kJump = 24;
-  for (const Jump& bound : {Jump{"atrium", 0.03, 0.007}, Jump{"room", 0.065, 0.011}}) {
+  for (const Jump& bound : {Jump{"atrium", 0.03, 0.007}, Jump{"room", 0.067, 0.011}}) {
     Diagnostics warnings;
     const scene::Scene s = scene::load(bound.scene, warnings);
     GraphRunOptions options;
@@ -178,8 +179,6 @@ TEST(GazeJump, LightDoesNotJumpWithIt) {
     options.frames = kJump + 12;
     options.everyFrame = true;
     options.set = {"shadow_map_size=1024", "map_size=32", "vpl_count=200", "voxels=64"};
-    if (const char* more = std::getenv("SET")) options.set.push_back(more);
-    if (const char* more = std::getenv("SEED")) options.seed = atoi(more);
     options.outputs = {"radiance"};
     options.beforeFrame = [&](scene::Frame& frame) {
       scene::GpuScene* gpu = frame.gpu;
