@@ -42,6 +42,15 @@ struct MoverBoxes {
       if (corners[2 * i].x <= corners[2 * i + 1].x) return false;
     return true;
   }
+  // One around them all; low above high when all are unused.
+  Bounds all() const {
+    Bounds box;
+    for (size_t i = 0; i < kCount; ++i) {
+      box.low = glm::min(box.low, glm::vec3(corners[2 * i]));
+      box.high = glm::max(box.high, glm::vec3(corners[2 * i + 1]));
+    }
+    return box;
+  }
 };
 
 inline MoverBoxes moverBoxes(const Frame& frame) {
