@@ -1,8 +1,10 @@
 // The contexts through which passes see the graph: names in, resources and commands out.
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "framework/base/diagnostic.h"
+#include "framework/gpu/format.h"
 #include "framework/graph/execute_state.h"
 #include "framework/scene/frame.h"
 
@@ -138,34 +140,56 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   vkCmdEndRendering(cmd_);
 }
 
-static void requireTransferWrite(const PassInstance& pass, const Access& access, std::string_view port) {
-  if (any(access.usage, Usage::TransferWrite)) return;
+static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+
+// As errors start: `act` is what the pass does, "fills `sums`".
+static std::string passDoes(const PassInstance& pass, const std::string& act) {
+  return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
+}
+
+static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port,
+                            Usage usage, const std::string& act) {
+  if (any(access.usage, usage)) return;
+  const char* name = usage == Usage::TransferRead ? "TransferRead" : "TransferWrite";
   throw Error(ExitCode::Internal,
-              "pass `" + pass.bound->declaration->type + "` fills `" + std::string(port) +
-                  "` without declaring Usage::TransferWrite on it");
+              passDoes(pass, act) + " without declaring Usage::" + name + " on " + quoted(port));
 }
 
 void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
   const Access& access = pass_.access(bufferPort);
-  requireTransferWrite(pass_, access, bufferPort);
+  requireTransfer(pass_, access, bufferPort, Usage::TransferWrite, "fills " + quoted(bufferPort));
   vkCmdFillBuffer(cmd_, pass_.state->buffer(access).handle(), 0, VK_WHOLE_SIZE, word);
 }
 
 void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
   const Access& access = pass_.access(imagePort);
-  requireTransferWrite(pass_, access, imagePort);
+  requireTransfer(pass_, access, imagePort, Usage::TransferWrite, "clears " + quoted(imagePort));
   gpu::Image& target = pass_.state->image(access);
   const VkImageSubresourceRange range = wholeImage(target);
   vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
 }
 
+static std::string sizeText(const ResourceDesc& d) {
+  std::string text = std::to_string(d.width) + "x" + std::to_string(d.height);
+  if (d.depth > 1) text += "x" + std::to_string(d.depth);
+  if (d.layers > 1) text += ", " + std::to_string(d.layers) + " layers";
+  if (d.mips > 1) text += ", " + std::to_string(d.mips) + " mips";
+  return text + ", " + std::string(gpu::formatInfo(d.format).name);
+}
+
 void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
   const Access &from = pass_.access(imageFrom), &to = pass_.access(imageTo);
-  requireTransferWrite(pass_, to, imageTo);
-  if (!any(from.usage, Usage::TransferRead))
-    throw Error(ExitCode::Internal, "pass `" + pass_.bound->declaration->type + "` copies `" +
-                                        std::string(imageFrom) + "` without declaring Usage::TransferRead on it");
-  const ResourceDesc& d = pass_.desc(to);
+  const std::string act = "copies " + quoted(imageFrom) + " to " + quoted(imageTo);
+  requireTransfer(pass_, from, imageFrom, Usage::TransferRead, act);
+  requireTransfer(pass_, to, imageTo, Usage::TransferWrite, act);
+  const ResourceDesc &source = pass_.desc(from), &d = pass_.desc(to);
+  if (std::tie(source.width, source.height, source.depth, source.layers, source.format) !=
+          std::tie(d.width, d.height, d.depth, d.layers, d.format) ||
+      source.mips > 1 || d.mips > 1)
+    throw Error(ExitCode::BadInput,
+                passDoes(pass_, act) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
+                    quoted(imageTo) + " is " + sizeText(d),
+                "wire images of one size and format, without mips");
   const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, d.layers};
   const VkImageCopy region{layers, {0, 0, 0}, layers, {0, 0, 0}, {d.width, d.height, d.depth}};
   vkCmdCopyImage(cmd_, pass_.state->image(from).handle(), from.layout, pass_.state->image(to).handle(), to.layout, 1,

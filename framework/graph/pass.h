@@ -146,7 +146,8 @@ class RecordContext {
               const std::function<void()>& body, uint32_t layers = 1);
   void fill(std::string_view bufferPort, uint32_t word);               // TransferWrite; whole buffer
   void clear(std::string_view imagePort, VkClearColorValue value);     // TransferWrite or StorageWrite; whole image
-  void copy(std::string_view imageFrom, std::string_view imageTo);     // TransferRead to TransferWrite; whole images of a size
+  // TransferRead to TransferWrite; whole colour images of one size and format, without mips.
+  void copy(std::string_view imageFrom, std::string_view imageTo);
   // Between commands of this pass that depend on each other: everything before is visible to everything after.
   void barrier();
   // A counter the CPU knows. Counters written on the GPU: `uint counters[]` in set 0, in declared order.

@@ -8,7 +8,6 @@
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
-#include "framework/image/image.h"
 #include "framework/scene/animator.h"
 #include "framework/scene/gpu_textures.h"
 #include "framework/scene/lights.h"
@@ -149,7 +148,7 @@ struct GpuScene::Impl {
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
   uint32_t staticVertices, firstMovingLight;
-  gpu::Buffer indices, triangles, positions, attributes, previous, materials, srgb, uniforms;
+  gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one a slot
   std::unique_ptr<Animator> animator;  // null: nothing moves
@@ -187,9 +186,6 @@ struct GpuScene::Impl {
     std::vector<MaterialTexels> list;
     for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
     materials = makeBuffer(device, "scene materials", list, kTexelUsage);
-    std::vector<float> table;
-    for (int code = 0; code < 256; ++code) table.push_back(image::srgbDecode(float(code) / 255));
-    srgb = makeBuffer(device, "sRGB table", table, kTexelUsage);
   }
   ~Impl() {
     vkDestroyDescriptorPool(device.handle(), pool, nullptr);
@@ -268,9 +264,8 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 5 attributes
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 6 materials
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 sRGB table
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 objects
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 10 last frame's positions
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
@@ -288,7 +283,7 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 7 * slots},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
@@ -312,11 +307,10 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  const VkBufferView texels[7] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
+  const VkBufferView texels[6] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
                                   positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  srgb.texelView(VK_FORMAT_R32_SFLOAT),
                                   objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
                                   previous.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);

@@ -9,7 +9,6 @@
 
 #include "framework/scene/animation.h"
 #include "framework/scene/deform.h"
-#include "framework/scene/movers.h"
 
 namespace fovea::scene {
 namespace {
@@ -387,19 +386,6 @@ ObjectPoses objectsAt(const Scene& scene, const Geometry& geometry, double time,
     }
   }
   return list;
-}
-
-Bounds movingBounds(const Geometry& geometry, const Frame& frame) {
-  Bounds all;
-  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
-    const Object& object = geometry.objects[i];
-    if (!object.dynamic || object.vertexCount == 0) continue;
-    const ObjectTransform& o = frame.objects[i];
-    const Bounds box = boundsOf(object, o);
-    all.include(o.visible ? box.low : glm::vec3(o.toWorld[3]));
-    all.include(o.visible ? box.high : glm::vec3(o.toWorld[3]));
-  }
-  return all;
 }
 
 Bounds animatedBounds(const Scene& scene, const NodePoses& poses, const Object& object) {

@@ -82,10 +82,6 @@ struct Bounds {
 // Of all places that the box `mesh` of a node under `mover` comes to, whether visible there or not.
 Bounds sweptBounds(const NodePoses& poses, uint32_t node, const Mover& mover, const Bounds& mesh);
 
-// A box around all that moves in a frame; a wide one where something deforms. Empty (low above high) when
-// nothing does.
-Bounds movingBounds(const Geometry& geometry, const Frame& frame);
-
 // Of all places that the vertices of an object that animations move or deform come to. Looked at in
 // NodePoses::sampleTimes(), and wider by a quarter of what the box grows or shrinks between two of them.
 Bounds animatedBounds(const Scene& scene, const NodePoses& poses, const Object& object);

@@ -27,7 +27,7 @@ inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
 // Boxes in which all dynamic objects lie, in world space; low > high: unused. An object has one of its own
 // while there are enough; the others share the last. Of a hidden object: where its vertices are gathered.
 struct MoverBoxes {
-  static constexpr size_t kCount = 3;  // shaders/common/movers.glsl
+  static constexpr size_t kCount = 3;  // MOVER_BOXES of the shaders
   // Low and high of each; w 0.
   std::array<glm::vec4, 2 * kCount> corners = [] {
     std::array<glm::vec4, 2 * kCount> none;
@@ -41,6 +41,15 @@ struct MoverBoxes {
     for (size_t i = 0; i < kCount; ++i)
       if (corners[2 * i].x <= corners[2 * i + 1].x) return false;
     return true;
+  }
+  // One around them all; low above high when all are unused.
+  Bounds all() const {
+    Bounds box;
+    for (size_t i = 0; i < kCount; ++i) {
+      box.low = glm::min(box.low, glm::vec3(corners[2 * i]));
+      box.high = glm::max(box.high, glm::vec3(corners[2 * i + 1]));
+    }
+    return box;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "framework/graph/registry.h"
@@ -71,7 +72,8 @@ class LightInject : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    gpu::Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"}};
+    gpu::Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"},
+                         {"MOVER_BOXES", std::to_string(scene::MoverBoxes::kCount)}};
     covered_ = ctx.compute("light-inject/covered.comp", defines);
     const std::string& filter = ctx.parameters().text("filter");
     for (size_t i = 0; i < select_.size(); ++i) {

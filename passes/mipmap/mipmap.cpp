@@ -63,6 +63,7 @@ class Mipmap : public Pass {
                                {"KEEPS", keeps_ ? "1" : "0"}};
     gpu::Defines base = defines;
     base["ODD"] = std::to_string(ctx.extent("voxels.index").width % 2);
+    base["MOVER_BOXES"] = std::to_string(scene::MoverBoxes::kCount);
     base_ = ctx.compute("mipmap/base.comp", base);
     down_ = ctx.compute("mipmap/down.comp", defines);
   }

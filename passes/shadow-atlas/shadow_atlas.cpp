@@ -275,7 +275,7 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
 
 // A sphere around everything that moves; radius below 0: nothing does.
 glm::vec4 moversOf(const scene::Frame& frame) {
-  const scene::Bounds box = scene::movingBounds(*frame.geometry, frame);
+  const scene::Bounds box = scene::moverBoxes(frame).all();
   return box.low.x > box.high.x
              ? glm::vec4(0, 0, 0, -1)
              : glm::vec4(0.5f * (box.low + box.high), 0.5f * glm::length(box.high - box.low));

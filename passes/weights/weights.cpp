@@ -15,7 +15,7 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere but in bricks.comp
-constexpr uint32_t kSharedPaths = 8;      // of an invocation of share.comp
+constexpr uint32_t kSharedPaths = 8;      // of an invocation of share.comp: its PATHS
 constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
 constexpr uint32_t kEscapePoints = 1024;  // screen points that the share of escaping paths is taken from
 constexpr uint32_t kScreenPoint = 48;     // bytes: position, normal, face
@@ -217,7 +217,7 @@ void Weights::prepare(PrepareContext& ctx) {
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
     if (!traced_) paths_ = ctx.compute("weights/paths.comp");
-    share_ = ctx.compute("weights/share.comp", {{"TRACED", traced}});
+    share_ = ctx.compute("weights/share.comp", {{"TRACED", traced}, {"PATHS", std::to_string(kSharedPaths)}});
     if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", p.real("near_field") > 0 ? "1" : "0"}});
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");

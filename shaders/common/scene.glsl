@@ -52,11 +52,10 @@ layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;      // xyz w
 layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;     // xy: octahedral normal, zw: uv
 layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // kMaterialTexels texels each
 layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
-layout(set = 1, binding = 8) uniform samplerBuffer sceneSrgb;           // linear light of the 256 sRGB codes
 
-layout(set = 1, binding = 9) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
+layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
 
-layout(set = 1, binding = 10) uniform samplerBuffer scenePrevious;      // xyz world, last frame, of vertices that may move
+layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, of vertices that may move
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Which parts of each shadow map may be covered by what moves, one for each box around some of it: xy: least, zw: largest
 // position in [-1, 1]; and an empty list.
-// Define: SHADOWED 0/1.
+// Defines: SHADOWED 0/1; MOVER_BOXES.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "light-inject/patch.glsl"

@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // Lists the sides whose radiance may be another one than in the last frame. Their order in the list does not matter: each
-// side's radiance is its own. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag.
+// side's radiance is its own. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag; MOVER_BOXES.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #if SHADOWED

@@ -16,6 +16,8 @@
 // with it in place of its own. So it can go to any VPL, and goes to the nearest of those that the path's start sees: given to
 // another, it would go to whoever does see that one: after a jump of the gaze, when no VPL is where the new paths end yet, that
 // is a flash on the far wall.
+//
+// PATHS: of an invocation.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 
@@ -46,7 +48,7 @@ layout(push_constant) uniform Constants {
 const uint kSeen = 2u;      // by the start of the path; of traced paths only: dark VPLs could not shine with what others give
 const uint kSameKind = 1u;  // lit as the end is
 
-const uint kPaths = 8u;  // of an invocation; passes/weights/weights.cpp
+const uint kPaths = uint(PATHS);
 
 vec4 endTexel(uint path, int texel) {
 #if TRACED

@@ -1,9 +1,13 @@
 // What is kept from frame to frame while only some things move is what would be made anew, to the bit.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <glm/gtc/quaternion.hpp>
 
 #include "framework/scene/frame.h"
+#include "framework/scene/movers.h"
+#include "framework/scene/voxel_grid.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/pass_test.h"
 
@@ -46,6 +50,37 @@ scene::Scene movingScene() {
 
 constexpr uint32_t kFrames = 10;
 
+// A box that is one object and moves; times of the keys in frames.
+void addMover(scene::Scene& s, float half, std::vector<scene::MotionKey> keys) {
+  const size_t node = s.nodes.size(), mesh = s.meshes.size();
+  addBox(s, 1, glm::vec3(-half), glm::vec3(half));
+  for (size_t i = mesh + 1; i < s.meshes.size(); ++i)
+    s.meshes[mesh].primitives.push_back(s.meshes[i].primitives[0]);
+  s.meshes.resize(mesh + 1);
+  s.nodes.resize(node + 1);
+  s.nodes[node].dynamic = true;
+  for (scene::MotionKey& key : keys) key.time /= 42;
+  s.movers.push_back({uint32_t(node), true, scene::Repeat::Once, std::move(keys)});
+}
+
+// More things that move than have boxes of their own: one slides, one goes and comes back elsewhere; and of
+// those that share a box one waits and then rises, one turns, one comes late.
+scene::Scene crowdedScene() {
+  scene::Scene s = movingScene();
+  s.lights.pop_back();  // what moves is behind some face of the bulb's map, which is then looked up anew
+                        // everywhere
+  s.movers.clear();
+  s.nodes.resize(2);
+  s.meshes.resize(2);
+  const glm::quat none(1, 0, 0, 0), turned = glm::angleAxis(glm::radians(80.0f), glm::vec3(1, 1, 0));
+  addMover(s, 0.3f, {{0, {-2, 0.4f, 1}}, {9, {-0.5f, 0.5f, 1.5f}}});
+  addMover(s, 0.25f, {{0, {1.5f, 0.5f, 1}}, {3, {1.5f, 0.5f, 1}, none, false}, {6, {2, 1.5f, 0}}});
+  addMover(s, 0.2f, {{0, {-2, 0.3f, -2}}, {4, {-2, 0.3f, -2}}, {8, {-2, 2, -2}}});
+  addMover(s, 0.35f, {{0, {0, 1, -1}}, {9, {0, 1, -1}, turned}});
+  addMover(s, 0.2f, {{0, {2, 0.3f, -2}, none, false}, {5, {2, 0.3f, -2}}, {7, {1.2f, 0.3f, -2}}});
+  return s;
+}
+
 TEST(Kept, ShadowMapsOfWhatStands) {
   for (const uint32_t frames : {2u, 5u, 7u, 8u, kFrames}) {
     PassTest kept("shadow-map"), anew("shadow-map");
@@ -61,16 +96,16 @@ TEST(Kept, ShadowMapsOfWhatStands) {
 }
 
 // Of every frame, the outputs of a graph with what is kept and with everything made anew.
-void expectSame(const char* graph, const std::vector<std::string>& set) {
+void expectSame(const char* graph, const scene::Scene& scene, const std::vector<std::string>& set) {
   GraphRunOptions options;
   options.size = {64, 64};
   options.frames = kFrames;
   options.everyFrame = true;
   options.set = {"vpl_count=64", "attempts=128", "voxels=32", "map_size=16", "shadow_map_size=256"};
   options.set.insert(options.set.end(), set.begin(), set.end());
-  const GraphRun kept = runGraph(graph, movingScene(), options);
+  const GraphRun kept = runGraph(graph, scene, options);
   options.set.push_back("light-inject.keep=false");
-  const GraphRun anew = runGraph(graph, movingScene(), options);
+  const GraphRun anew = runGraph(graph, scene, options);
   size_t moved = 0;
   for (uint32_t i = 0; i < kFrames; ++i)
     for (const auto& [name, data] : kept.frames[i].outputs) {
@@ -81,9 +116,69 @@ void expectSame(const char* graph, const std::vector<std::string>& set) {
   EXPECT_GT(moved, kFrames / 2);
 }
 
-TEST(Kept, LightOfWhatStands) { expectSame("debug_voxels", {"show=radiance"}); }
+TEST(Kept, LightOfWhatStands) { expectSame("debug_voxels", movingScene(), {"show=radiance"}); }
 
-TEST(Kept, PicturesFromWhatIsKept) { expectSame("ours", {}); }
+TEST(Kept, PicturesFromWhatIsKept) { expectSame("ours", movingScene(), {}); }
+
+TEST(Kept, PicturesWhereMoversShareABox) { expectSame("ours", crowdedScene(), {}); }
+
+template <class T>
+std::vector<T> valuesOf(const graph::FrameResult& frame, const char* output) {
+  const std::vector<std::byte>& bytes = frame.outputs.at(output).bytes;
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+// tests/data/graphs/kept_light.json in every frame.
+GraphRun runLight(const scene::Scene& scene, bool keep) {
+  GraphRunOptions options;
+  options.frames = kFrames;
+  options.everyFrame = true;
+  options.outputs = {"voxels.info", "radiance", "changed", "mips.color", "anew.color"};
+  options.set = {keep ? "light-inject.keep=true" : "light-inject.keep=false"};
+  return runGraph(FOVEA_TEST_DATA "/graphs/kept_light.json", scene, options);
+}
+
+// `changed` tells exactly which light of what never moves is another one than in the frame before, however
+// many sides were looked up, and makes no mip that it should not.
+void expectExactChanges(const scene::Scene& scene) {
+  using Bits = std::array<uint32_t, 4>;
+  const GraphRun kept = runLight(scene, true), anew = runLight(scene, false);
+  std::vector<Bits> before(valuesOf<Bits>(kept.frames[0], "radiance").size(), Bits{});
+  size_t changes = 0, stays = 0, shown = 0;
+  for (uint32_t i = 0; i < kFrames; ++i) {
+    SCOPED_TRACE("frame " + std::to_string(i));
+    const graph::FrameResult &a = kept.frames[i], &b = anew.frames[i];
+    const auto info = valuesOf<scene::VoxelInfo>(a, "voxels.info").at(0);
+    const auto light = valuesOf<Bits>(a, "radiance"), lightAnew = valuesOf<Bits>(b, "radiance");
+    const auto changed = valuesOf<uint32_t>(a, "changed"), changedAnew = valuesOf<uint32_t>(b, "changed");
+    shown += info.voxels > info.staticVoxels;
+    for (uint32_t side = 0; side < 2 * info.voxels; ++side) {
+      const bool moves = side >= 2 * info.staticVoxels, differs = light[side] != before[side];
+      ASSERT_EQ(light[side], lightAnew[side]) << "side " << side;
+      ASSERT_EQ(changed[side], uint32_t(moves || differs)) << "side " << side;
+      ASSERT_EQ(changedAnew[side], changed[side]) << "side " << side;
+      if (i > 0 && !moves) ++(differs ? changes : stays);
+    }
+    for (const graph::FrameResult* frame : {&a, &b})
+      EXPECT_TRUE(frame->outputs.at("mips.color").bytes == frame->outputs.at("anew.color").bytes);
+    EXPECT_TRUE(a.outputs.at("mips.color").bytes == b.outputs.at("mips.color").bytes);
+    before = light;
+  }
+  EXPECT_GT(shown, kFrames / 2);
+  EXPECT_GT(changes, 100u);
+  EXPECT_GT(stays, changes);
+}
+
+TEST(Kept, ExactlyTheLightThatChangesIsToldChanged) { expectExactChanges(movingScene()); }
+
+TEST(Kept, ExactlyTheLightThatChangesWhereMoversShareABox) {
+  size_t movers = 0;
+  for (const scene::Object& object : scene::flatten(crowdedScene()).objects) movers += object.dynamic;
+  ASSERT_GT(movers, scene::MoverBoxes::kCount + 1);  // two share one, at least
+  expectExactChanges(crowdedScene());
+}
 
 }  // namespace
 }  // namespace fovea::test
