@@ -21,6 +21,16 @@ layout(push_constant) uniform Constants {
   vec4 movers[2u * kMoverBoxes];
   uint layerCount;
 };
+
+const vec4 kNothing = vec4(1e30, 1e30, -1e30, -1e30);
+const float kFront = 1e-4;  // m: maps show nothing so near
+const float kOutside = 1.1;  // border 1, and some texels for what a rasteriser rounds
+
+void extend(vec4 clip, inout vec2 low, inout vec2 high) {
+  vec2 at = clip.xy / max(clip.w, 0.5 * kFront);
+  low = min(low, at);
+  high = max(high, at);
+}
 #endif
 
 void main() {
@@ -37,20 +47,25 @@ void main() {
   if (layer >= layerCount) return;
   vec3 boxLow = movers[2u * box].xyz, boxHigh = movers[2u * box + 1u].xyz;
   if (boxLow.x > boxHigh.x) {
-    covered.parts[part] = vec4(1e30, 1e30, -1e30, -1e30);
+    covered.parts[part] = kNothing;
     return;
   }
+  vec4 corners[8];
+  for (int i = 0; i < 8; ++i)
+    corners[i] = mapsViews.view[layer].worldToClip *
+                 vec4(mix(boxLow, boxHigh, bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0)), 1.0);
+  // Of the part in front of the light, whose corners are the box's own and where its edges pass the plane; empty where all lies
+  // behind.
   vec2 low = vec2(1e30), high = vec2(-1e30);
-  float nearest = 1e30;
   for (int i = 0; i < 8; ++i) {
-    vec3 corner = mix(boxLow, boxHigh, bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0));
-    vec4 clip = mapsViews.view[layer].worldToClip * vec4(corner, 1.0);
-    vec2 at = clip.xy / max(clip.w, 1e-6);
-    low = min(low, at);
-    high = max(high, at);
-    nearest = min(nearest, clip.w);
+    if (corners[i].w > kFront) extend(corners[i], low, high);
+    for (int axis = 1; axis < 8; axis *= 2) {
+      vec4 from = corners[i], to = corners[i ^ axis];
+      if (from.w > kFront && to.w <= kFront) extend(mix(from, to, (from.w - kFront) / (from.w - to.w)), low, high);
+    }
   }
-  // Reaches behind the light's plane: anywhere.
-  covered.parts[part] = nearest > 1e-5 ? vec4(low, high) : vec4(-1e30, -1e30, 1e30, 1e30);
+  // The map does not show what lies outside of it.
+  bool outside = any(greaterThan(low, vec2(kOutside))) || any(lessThan(high, vec2(-kOutside)));
+  covered.parts[part] = outside ? kNothing : vec4(low, high);
 #endif
 }

@@ -67,8 +67,6 @@ void addMover(scene::Scene& s, float half, std::vector<scene::MotionKey> keys) {
 // those that share a box one waits and then rises, one turns, one comes late.
 scene::Scene crowdedScene() {
   scene::Scene s = movingScene();
-  s.lights.pop_back();  // what moves is behind some face of the bulb's map, which is then looked up anew
-                        // everywhere
   s.movers.clear();
   s.nodes.resize(2);
   s.meshes.resize(2);
