@@ -296,17 +296,13 @@ void ObjectReader::wrong(std::string_view key, const Value& value, const std::st
                      fmt::format("`{}`: expected {}, found {}", key, expected, value.describe()));
 }
 
-const Value* ObjectReader::require(std::string_view key) {
-  const Value* value = find(key);
-  if (!value && value_.isObject())
+void ObjectReader::reportMissing(std::string_view key) {
+  if (value_.isObject())
     diagnostics_.error(value_.where.location(), path(), fmt::format("`{}` is missing", key));
-  return value;
 }
 
-const Value* ObjectReader::object(std::string_view key) {
-  const Value* value = find(key);
-  if (value && !value->isObject()) return wrong(key, *value, "an object"), nullptr;
-  return value;
+const Value* ObjectReader::notObject(std::string_view key, const Value& value) {
+  return wrong(key, value, "an object"), nullptr;
 }
 
 const Value* ObjectReader::array(std::string_view key) {
@@ -351,10 +347,10 @@ bool ObjectReader::boolean(std::string_view key, bool fallback) {
   return value && value->isBool() ? value->boolean : fallback;
 }
 
-std::string ObjectReader::text(std::string_view key, std::string fallback) {
-  const Value* value = find(key);
-  if (value && !value->isString()) wrong(key, *value, "a text");
-  return value && value->isString() ? value->string : fallback;
+std::string ObjectReader::textOf(std::string_view key, const Value& value, std::string fallback) {
+  if (value.isString()) return value.string;
+  wrong(key, value, "a text");
+  return fallback;
 }
 
 std::string ObjectReader::choice(std::string_view key, std::string fallback,
@@ -385,7 +381,7 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
   return std::nullopt;
 }
 
-void ObjectReader::finish() {
+void ObjectReader::reportUnknown() {
   for (const Member& member : value_.members) {
     const auto is = [&](std::string_view key) { return key == member.key; };
     if (std::any_of(known_.begin(), known_.end(), is)) continue;

@@ -3,6 +3,7 @@
 // it.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,9 +12,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "framework/base/diagnostic.h"
+#include "framework/base/same_text.h"
 #include "framework/base/small_vector.h"
 
 namespace fovea::json {
@@ -61,13 +64,14 @@ struct Member {
   Value value;
 };
 
-inline const Member* Value::findMember(std::string_view key) const {
+// Keys are mostly literals: inlined, each costs a comparison or two of whole words.
+[[gnu::always_inline]] inline const Member* Value::findMember(std::string_view key) const {
   for (const Member& member : members)
-    if (member.key == key) return &member;
+    if (sameText(member.key, key)) return &member;
   return nullptr;
 }
 
-inline const Value* Value::find(std::string_view key) const {
+[[gnu::always_inline]] inline const Value* Value::find(std::string_view key) const {
   const Member* member = findMember(key);
   return member ? &member->value : nullptr;
 }
@@ -95,26 +99,42 @@ class ObjectReader {
   // The same at "path.key"; `key` is kept by reference.
   ObjectReader(const Value& value, std::string path, std::string_view key, Diagnostics& diagnostics);
 
-  const Value* find(std::string_view key) {  // any type; nullptr when absent
+  [[gnu::always_inline]] const Value* find(std::string_view key) {  // any type; nullptr when absent
     known_.push_back(key);
-    return value_.find(key);
+    const Member* member = value_.findMember(key);
+    if (!member) return nullptr;
+    const size_t index = static_cast<size_t>(member - value_.members.data());
+    if (index < 64) asked_ |= uint64_t(1) << index;
+    return &member->value;
   }
-  const Value* require(std::string_view key);  // reports when absent
-  const Value* object(std::string_view key);   // nullptr when absent or wrong
+  [[gnu::always_inline]] const Value* require(std::string_view key) {  // reports when absent
+    const Value* value = find(key);
+    if (!value) reportMissing(key);
+    return value;
+  }
+  [[gnu::always_inline]] const Value* object(std::string_view key) {  // nullptr when absent or wrong
+    const Value* value = find(key);
+    return !value || value->isObject() ? value : notObject(key, *value);
+  }
   const Value* array(std::string_view key);
-  bool has(std::string_view key) const { return value_.find(key) != nullptr; }
+  [[gnu::always_inline]] bool has(std::string_view key) const { return value_.find(key) != nullptr; }
 
   double number(std::string_view key, double fallback, double min = -std::numeric_limits<double>::infinity(),
                 double max = std::numeric_limits<double>::infinity());
   int64_t integer(std::string_view key, int64_t fallback, int64_t min = std::numeric_limits<int64_t>::min(),
                   int64_t max = std::numeric_limits<int64_t>::max());
   bool boolean(std::string_view key, bool fallback);
-  std::string text(std::string_view key, std::string fallback = {});
+  [[gnu::always_inline]] std::string text(std::string_view key, std::string fallback = {}) {
+    const Value* value = find(key);
+    return value ? textOf(key, *value, std::move(fallback)) : fallback;
+  }
   std::string choice(std::string_view key, std::string fallback, const std::vector<std::string>& choices);
   // An array of exactly `count` numbers; nullopt when absent or wrong.
   std::optional<std::vector<double>> numbers(std::string_view key, size_t count);
 
-  void finish();
+  void finish() {
+    if (static_cast<size_t>(std::popcount(asked_)) != value_.members.size()) reportUnknown();
+  }
 
   std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
   std::string path() const;
@@ -123,11 +143,16 @@ class ObjectReader {
 
  private:
   void wrong(std::string_view key, const Value& value, const std::string& expected);
+  const Value* notObject(std::string_view key, const Value& value);
+  std::string textOf(std::string_view key, const Value& value, std::string fallback);
+  void reportMissing(std::string_view key);
+  void reportUnknown();
   const Value& value_;
   std::string path_;
   std::string_view key_;
   Diagnostics& diagnostics_;
   SmallVector<std::string_view, 8> known_;
+  uint64_t asked_ = 0;  // of the first 64 members, those that somebody asked for
 };
 
 // "a.b", or "b" when path is empty.

@@ -51,22 +51,17 @@ class SmallVector {
 
   void clear() { size_ = 0; }
   void reserve(size_t count) {
-    if (count <= capacity_) return;
-    const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
-    T* grown = std::allocator<T>().allocate(capacity);
-    std::memcpy(static_cast<void*>(grown), data(), size_ * sizeof(T));
-    release();
-    heap_ = grown;
-    capacity_ = capacity;
+    if (count > capacity_) grow(count);
   }
-  void push_back(T value) {
-    if (size_ == capacity_) reserve(size_ + 1);
+  [[gnu::always_inline]] void push_back(T value) {
+    if (size_ == capacity_) grow(size_ + 1);
     new (data() + size_++) T(value);
   }
   template <class Iterator>
   void assign(Iterator first, Iterator last) {
     clear();
-    insert(end(), first, last);
+    reserve(last - first);
+    for (T* to = data(); first != last; ++first, ++size_) new (to++) T(*first);
   }
   T* insert(const T* where, T value) { return insert(where, &value, &value + 1); }
   // [first, last) must not be part of this list.
@@ -88,6 +83,14 @@ class SmallVector {
   }
 
  private:
+  [[gnu::noinline]] void grow(size_t count) {  // rare, so that what is not can be inlined
+    const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
+    T* grown = std::allocator<T>().allocate(capacity);
+    std::memcpy(static_cast<void*>(grown), data(), size_ * sizeof(T));
+    release();
+    heap_ = grown;
+    capacity_ = capacity;
+  }
   void release() {
     if (capacity_ > N) std::allocator<T>().deallocate(heap_, capacity_);
   }
