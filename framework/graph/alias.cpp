@@ -84,12 +84,14 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
     order[i] = i;
     levels = std::max(levels, requests[i].interval.last + 1);
   }
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+  const auto before = [&](uint32_t a, uint32_t b) {
     const AliasRequest &x = requests[a], &y = requests[b];
     if (x.need.bytes != y.need.bytes) return x.need.bytes > y.need.bytes;
     if (x.interval.first != y.interval.first) return x.interval.first < y.interval.first;
     return x.resource < y.resource;
-  });
+  };
+  // Images of one size, as most are, come in this order already.
+  if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
   for (uint32_t i = 0; i < requests.size(); ++i) {  // heaps in the order of appearance
     uint32_t h = 0;
     while (h < result.heaps.size() && result.heaps[h].memoryTypeBits != requests[i].need.memoryTypeBits) ++h;

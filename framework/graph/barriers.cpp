@@ -61,7 +61,7 @@ class Planner {
     for (const BoundResource& r : graph_.resources) history |= r.history;
     if (history) previous_.assign(graph_.resources.size(), {});
     // Copies that change places need two rounds until both carry the state of a whole frame.
-    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) frame(false);
+    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) frame<false>();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
     plan_.endLayout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
     for (size_t r = 0; r < graph_.resources.size(); ++r) {
@@ -69,7 +69,7 @@ class Planner {
       plan_.startLayout[r][0] = current_[r].layout;
       if (graph_.resources[r].history) plan_.startLayout[r][1] = previous_[r].layout;
     }
-    frame(true);
+    frame<true>();
     for (size_t r = 0; r < graph_.resources.size(); ++r) {
       const bool swapped = graph_.resources[r].history;
       plan_.endLayout[r] = swapped ? previous_[r].layout : current_[r].layout;
@@ -79,10 +79,15 @@ class Planner {
  private:
   void collectTouches();
   void makeSegments();
-  void frame(bool record);
-  void touch(const Touch& t, BarrierBatch& batch, bool record);
-  void read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch, bool record);
-  void write(const Touch& t, State& state, BarrierBatch& batch, bool record);
+  // Without `record` only the states are followed.
+  template <bool record>
+  void frame();
+  template <bool record>
+  void touch(const Touch& t, BarrierBatch& batch);
+  template <bool record>
+  void read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch);
+  template <bool record>
+  void write(const Touch& t, State& state, BarrierBatch& batch);
   void occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const;
   void leave(uint32_t resource);
 
@@ -142,11 +147,11 @@ void Planner::collectTouches() {
       const uint32_t p = schedule_.order[i];
       const BoundPass& pass = graph_.passes[p];
       for (const Access& a : pass.accesses) {
-        const bool depth = isDepthFormat(graph_.resources[a.resource].desc.format);
         Known& known = knownScopes[a.writes];
         if (known.kind != pass.declaration->kind || known.usage != a.usage || known.reads != a.reads)
           known = {pass.declaration->kind, a.usage, a.reads,
-                   accessScope(pass.declaration->kind, a.usage, a.reads, a.writes, depth)};
+                   accessScope(pass.declaration->kind, a.usage, a.reads, a.writes,
+                               isDepthFormat(graph_.resources[a.resource].desc.format))};
         AccessScope scope = known.scope;
         const uint32_t slot =
             a.previous ? groupFirst_[a.resource + 1] - 1 : groupFirst_[a.resource] + a.version;
@@ -174,24 +179,26 @@ void Planner::collectTouches() {
 
 void Planner::makeSegments() {
   placementOf_.assign(graph_.resources.size(), kNone);
-  detail::ScratchVector<std::pair<uint64_t, uint32_t>> edges(
-      scratch_);  // heap and offset, placement * 2 + end
-  edges.reserve(plan_.placements.size() * 2);
+  // Few boundaries are distinct where memory is shared, and neighbours meet in one.
+  detail::ScratchVector<uint64_t> bounds(scratch_);  // heap and offset, ascending
+  const auto add = [&](uint64_t bound) {
+    const auto at = std::lower_bound(bounds.begin(), bounds.end(), bound);
+    if (at == bounds.end() || *at != bound) bounds.insert(at, bound);
+  };
   for (uint32_t i = 0; i < plan_.placements.size(); ++i) {
     const Placement& p = plan_.placements[i];
     placementOf_[p.resource] = i;
-    edges.emplace_back(uint64_t(p.heap) << 56 | p.offset, i * 2);
-    edges.emplace_back(uint64_t(p.heap) << 56 | (p.offset + p.bytes), i * 2 + 1);
+    add(uint64_t(p.heap) << 56 | p.offset);
+    add(uint64_t(p.heap) << 56 | (p.offset + p.bytes));
   }
-  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  placementSegments_.resize(plan_.placements.size());
-  uint32_t segment = 0;
-  for (size_t i = 0; i < edges.size(); ++i) {
-    if (i > 0 && edges[i].first != edges[i - 1].first) ++segment;
-    auto& range = placementSegments_[edges[i].second / 2];
-    (edges[i].second & 1 ? range.second : range.first) = segment;
-  }
-  segments_.assign(segment + 1, {});
+  const auto segmentAt = [&](uint64_t bound) {
+    return static_cast<uint32_t>(std::lower_bound(bounds.begin(), bounds.end(), bound) - bounds.begin());
+  };
+  placementSegments_.reserve(plan_.placements.size());
+  for (const Placement& p : plan_.placements)
+    placementSegments_.emplace_back(segmentAt(uint64_t(p.heap) << 56 | p.offset),
+                                    segmentAt(uint64_t(p.heap) << 56 | (p.offset + p.bytes)));
+  segments_.assign(bounds.size(), {});
   // Resources by the last level of their life; outputs leave after the end of the frame.
   leavingFirst_.assign(levels_ + 2, 0);
   for (const Placement& p : plan_.placements) ++leavingFirst_[intervals_[p.resource].last + 1];
@@ -217,13 +224,14 @@ void Planner::leave(uint32_t resource) {
   for (uint32_t s = first; s < last; ++s) segments_[s] = left;
 }
 
-void Planner::frame(bool record) {
+template <bool record>
+void Planner::frame() {
   if (record) plan_.levels.reserve(levels_);
   for (ReadGroup& group : groups_) group.served = false;
   BarrierBatch unrecorded;
   for (uint32_t l = 0; l < levels_; ++l) {
     BarrierBatch& batch = record ? plan_.levels.emplace_back().before : unrecorded;
-    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], batch, record);
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch<record>(touches_[i], batch);
     for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
     if (!record) continue;
     plan_.levels.back().passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
@@ -238,7 +246,7 @@ void Planner::frame(bool record) {
     t.scope.layout = graph_.resources[output.resource].desc.kind == ResourceKind::Image
                          ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
                          : VK_IMAGE_LAYOUT_UNDEFINED;
-    read(t, current_[output.resource], transfer, batch, record);
+    read<record>(t, current_[output.resource], transfer, batch);
   }
   if (record) plan_.end = batch;
   for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i) leave(leaving_[i]);
@@ -246,15 +254,17 @@ void Planner::frame(bool record) {
     if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
 }
 
-void Planner::touch(const Touch& t, BarrierBatch& batch, bool record) {
+template <bool record>
+void Planner::touch(const Touch& t, BarrierBatch& batch) {
   if (t.scope.stage == 0) return;  // only its size is used
   State& state = t.previous ? previous_[t.resource] : current_[t.resource];
-  if (t.writes) return write(t, state, batch, record);
+  if (t.writes) return write<record>(t, state, batch);
   ReadGroup& group = groups_[t.version];
-  if (!std::exchange(group.served, true)) read(t, state, group, batch, record);
+  if (!std::exchange(group.served, true)) read<record>(t, state, group, batch);
 }
 
-void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch, bool record) {
+template <bool record>
+void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch) {
   const bool image = graph_.resources[t.resource].desc.kind == ResourceKind::Image;
   if (image && state.layout != t.scope.layout) {
     if (record)
@@ -269,7 +279,8 @@ void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& 
     state.layout = t.scope.layout;
   } else if (group.stage & ~state.seenStage || group.access & ~state.seenAccess) {
     // Readers of another group may have waited for the write; these have not.
-    if (state.writeStage) global(batch, state.writeStage, state.writeAccess, group.stage, group.access);
+    if (record && state.writeStage)
+      global(batch, state.writeStage, state.writeAccess, group.stage, group.access);
     state.seenStage |= group.stage;
     state.seenAccess |= group.access;
   }
@@ -278,7 +289,8 @@ void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& 
   state.readStage |= group.stage;
 }
 
-void Planner::write(const Touch& t, State& state, BarrierBatch& batch, bool record) {
+template <bool record>
+void Planner::write(const Touch& t, State& state, BarrierBatch& batch) {
   const BoundResource& resource = graph_.resources[t.resource];
   const bool first = !t.reads && isTransient(resource);
   VkPipelineStageFlags2 source = 0;
@@ -297,7 +309,7 @@ void Planner::write(const Touch& t, State& state, BarrierBatch& batch, bool reco
   const bool change = resource.desc.kind == ResourceKind::Image && state.layout != t.scope.layout;
   // An image's barrier speaks of that image only, so writes of other occupants of its memory need the global
   // one.
-  if (source && (!change || (first && sourceAccess)))
+  if (record && source && (!change || (first && sourceAccess)))
     global(batch, source, sourceAccess, t.scope.stage, t.scope.access);
   if (change && record)
     batch.images.push_back({t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
