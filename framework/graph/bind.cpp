@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
+#include "framework/base/same_text.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/binder.h"
 #include "framework/graph/hash.h"
@@ -59,6 +61,7 @@ std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
 void Binder::declare() {
   const size_t count = description_.passes.size();
   graph_.passes.reserve(count);
+  values_->reserve(description_.parameters.size() + count);  // a guess: one left to its default each
   firstPort_.resize(count + 1);
   ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
   passBySymbol_.assign(description_.symbols.size(), kNone);
@@ -92,6 +95,7 @@ void Binder::declare() {
     bindParameters(pass, from);
     for (size_t i = 0; i < type->ports.size(); ++i) {
       PortState& port = ports_.emplace_back();
+      port.spec = &type->ports[i];
       port.pass = p;
       port.index = static_cast<uint16_t>(i);
     }
@@ -142,9 +146,9 @@ void Binder::bindView(BoundPass& pass, const PassDescription& from) {
 
 void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   const std::vector<ParameterSpec>& specs = pass.declaration->parameters;
-  std::vector<Value> values;
-  values.reserve(specs.size());
-  for (const ParameterSpec& spec : specs) values.push_back(spec.defaultValue);
+  const size_t first = values_->size();
+  for (const ParameterSpec& spec : specs) values_->push_back(spec.defaultValue);
+  const std::span<Value> values = std::span(*values_).subspan(first);
   // Parameters are mostly given in the order of the declaration: start looking after the last one found.
   size_t guess = 0;
   for (uint32_t i = 0; i < from.parameterCount; ++i) {
@@ -153,7 +157,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
     size_t k = 0;
     for (; k < specs.size(); ++k, ++guess) {
       if (guess >= specs.size()) guess = 0;
-      if (specs[guess].name == name) break;
+      if (sameText(specs[guess].name, name)) break;
     }
     if (k < specs.size()) {
       readParameter(specs[guess], given, from, values[guess]);
@@ -170,7 +174,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
           : names.empty()  ? std::string("it has none")
                            : fmt::format("it has: {}", fmt::join(names, ", ")));
   }
-  pass.parameters = Parameters(&specs, std::move(values));
+  pass.parameters = Parameters(&specs, values_, first);
 }
 
 namespace {
@@ -300,6 +304,7 @@ void Binder::makeExternals() {
         resource.desc.height = viewExtents_[0].height;
       resource.external = true;
       resourcePass_.push_back(kNone);
+      resourceSpec_.push_back(nullptr);
     }
   }
 }
@@ -307,14 +312,15 @@ void Binder::makeExternals() {
 void Binder::makeResources() {
   size_t count = graph_.resources.size();
   for (const PortState& port : ports_) {
-    const PortSpec& spec = specOf(port);
+    const PortSpec& spec = *port.spec;
     if (spec.direction == Direction::Output || spec.direction == Direction::Scratch)
       count += spec.members.size();
   }
   graph_.resources.reserve(count);
   resourcePass_.reserve(count);
+  resourceSpec_.reserve(count);
   for (PortState& port : ports_) {
-    const PortSpec& spec = specOf(port);
+    const PortSpec& spec = *port.spec;
     if (spec.direction != Direction::Output && spec.direction != Direction::Scratch) continue;
     port.value = {static_cast<uint32_t>(graph_.resources.size()), static_cast<uint32_t>(spec.members.size()),
                   &spec, kNone, kNone};
@@ -322,11 +328,13 @@ void Binder::makeResources() {
     const std::string& pass = graph_.passes[port.pass].name;
     for (const MemberSpec& member : spec.members) {
       BoundResource& resource = graph_.resources.emplace_back();
-      resource.name.reserve(pass.size() + spec.name.size() + member.name.size() + 2);
-      resource.name.append(pass).append(1, '.').append(spec.name);
-      if (!member.name.empty()) resource.name.append(1, '.').append(member.name);
+      const size_t length = pass.size() + spec.name.size() + member.name.size() + 2;
+      if (length > resource.name.capacity()) resource.name.reserve(length);
+      ((resource.name += pass) += '.') += spec.name;
+      if (!member.name.empty()) (resource.name += '.') += member.name;
       resource.lifetime = spec.lifetime;
       resourcePass_.push_back(port.pass);
+      resourceSpec_.push_back(&member);
     }
   }
   lastVersion_.assign(graph_.resources.size(), 0);
@@ -338,20 +346,22 @@ void Binder::makeAccesses() {
   for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
     BoundPass& pass = graph_.passes[p];
     if (!pass.declaration) continue;
+    const std::span<const PortState> ports(portsOf(p), portCount(p));
     size_t count = 0;
-    for (uint32_t i = 0; i < portCount(p); ++i) count += pass.declaration->ports[i].members.size();
+    for (const PortState& port : ports) count += port.spec->members.size();
     pass.accesses.reserve(count);
-    for (uint32_t i = 0; i < portCount(p); ++i) addAccesses(pass, portsOf(p)[i], pass.declaration->ports[i]);
+    for (const PortState& port : ports) addAccesses(pass, port);
   }
 }
 
-void Binder::addAccesses(BoundPass& pass, PortState& port, const PortSpec& spec) {
+void Binder::addAccesses(BoundPass& pass, const PortState& port) {
+  const PortSpec& spec = *port.spec;
   if (port.value.first == kNone) return;
   const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
   const bool kept = spec.lifetime != Lifetime::Transient;
   for (uint32_t m = 0; m < spec.members.size(); ++m) {
     Access access;
-    access.resource = resourceOf(port, spec, m);
+    access.resource = resourceOf(port, m);
     if (access.resource == kNone) continue;
     access.port = port.index;
     access.member = static_cast<uint16_t>(m);
@@ -389,7 +399,8 @@ void Binder::bindOutputs() {
       output.resource = resource;
       output.version = versionSeen(port, resource);
       if (output.version != lastVersion_[resource])
-        error(wire.place, path, fmt::format("`{}` is updated in place later in the frame", text(wire.text)),
+        error(wire.place, path,
+              fmt::format("`{}` is updated in place later in the frame", description_.text(wire)),
               "wire the output to the last pass that updates it");
       graph_.resources[resource].output = true;
       graph_.resources[resource].usage |= static_cast<uint32_t>(Usage::TransferRead);
@@ -403,8 +414,8 @@ void Binder::markHistory() {
   for (PortState& port : ports_) {
     if (!port.previous || port.value.first == kNone) continue;
     const WireDescription& wire = description_.wires[port.wire];
-    for (uint32_t m = 0; m < specOf(port).members.size(); ++m) {
-      const uint32_t r = resourceOf(port, specOf(port), m);
+    for (uint32_t m = 0; m < port.spec->members.size(); ++m) {
+      const uint32_t r = resourceOf(port, m);
       if (r == kNone) continue;
       BoundResource& resource = graph_.resources[r];
       resource.history = true;
@@ -417,7 +428,7 @@ void Binder::markHistory() {
               "wire it without `@previous`, or make its pass declare it without keep()");
       else if (port.source != kNone && versionSeen(port, r) != lastVersion_[r])
         error(wire.place, wirePath(port),
-              fmt::format("`{}` is updated in place later in the frame", text(wire.text)),
+              fmt::format("`{}` is updated in place later in the frame", description_.text(wire)),
               "`@previous` holds the last update: wire the pass that makes it");
     }
   }

@@ -21,12 +21,13 @@ struct PortValue {
 };
 
 struct PortState {
+  const PortSpec* spec = nullptr;  // nullptr: an output of the graph
   uint32_t pass = 0;
-  uint16_t index = 0;       // in the declaration
+  uint16_t index = 0;  // in the declaration
+  bool previous = false;
+  uint8_t state = 0;        // value: 0 unknown, 1 being followed, 2 known
   uint32_t wire = kNone;    // Description::wires
   uint32_t source = kNone;  // producing port
-  bool previous = false;
-  uint8_t state = 0;  // value: 0 unknown, 1 being followed, 2 known
   PortValue value;
   uint32_t firstVersion = kNone;  // producing ports: versions_, one per resource of the value
 };
@@ -47,7 +48,7 @@ class Binder {
   void makeExternals();
   void makeResources();
   void makeAccesses();
-  void addAccesses(BoundPass& pass, PortState& port, const PortSpec& spec);
+  void addAccesses(BoundPass& pass, const PortState& port);
   void bindOutputs();
   void markHistory();
   uint64_t hash() const;
@@ -62,7 +63,13 @@ class Binder {
   void checkPort(PortState& port, const PortSpec& spec);
   bool fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const;
   // The resource that member `m` of this port stands for; kNone when it has none.
-  uint32_t resourceOf(const PortState& port, const PortSpec& spec, uint32_t m) const;
+  uint32_t resourceOf(const PortState& port, uint32_t m) const {
+    const PortValue& value = port.value;
+    if (value.count == 1 && port.spec->bundle.empty()) return value.first;
+    if (value.origin == port.spec) return value.first + m;
+    return value.first == kNone ? kNone : resourceNamed(value, port.spec->members[m].name);
+  }
+  uint32_t resourceNamed(const PortValue& value, const std::string& member) const;
   std::string missingRemedy(const PortSpec& spec) const;
   std::string describeValue(const PortValue& value) const;
   std::string describeWanted(const PortSpec& spec) const;
@@ -72,7 +79,12 @@ class Binder {
   void reportCycle(const ScratchVector<uint32_t>& waiting);
   void makeVersions();
   void checkInPlace();
-  uint32_t versionSeen(const PortState& port, uint32_t resource) const;
+  uint32_t versionSeen(const PortState& port, uint32_t resource) const {
+    if (port.source == kNone) return 0;  // external, before any update
+    const PortState& source = ports_[port.source];
+    if (source.firstVersion == kNone) return 0;  // after a mistake
+    return versions_[source.firstVersion + (resource - source.value.first)];
+  }
   void chooseLayouts();
 
   // sizes.cpp
@@ -80,6 +92,7 @@ class Binder {
   bool evaluatePass(uint32_t pass, int depth);
   bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
                         BoundResource& resource, int depth);
+  int64_t sizeAtOnce(uint32_t pass, const SizeExpr& size) const;
   bool evaluateSize(uint32_t pass, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
                     const char* what, int64_t limit, int64_t& out, int depth);
   bool evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why);
@@ -94,9 +107,6 @@ class Binder {
   void error(const Place& place, std::string path, std::string message, std::string remedy = {});
   std::string passPath(uint32_t pass, std::string_view rest = {}) const;
   std::string wirePath(const PortState& port) const;
-  const PortSpec& specOf(const PortState& port) const {
-    return graph_.passes[port.pass].declaration->ports[port.index];
-  }
   PortState* portsOf(uint32_t pass) { return ports_.data() + firstPort_[pass]; }
   uint32_t portCount(uint32_t pass) const { return firstPort_[pass + 1] - firstPort_[pass]; }
 
@@ -105,6 +115,8 @@ class Binder {
   Diagnostics& diagnostics_;
   const Registry& registry_;
   BoundGraph graph_;
+  // Of all passes, which keep it alive; whole before anyone reads it.
+  std::shared_ptr<std::vector<Value>> values_ = std::make_shared<std::vector<Value>>();
   Scratch scratch_;
   ScratchVector<uint32_t> passBySymbol_{scratch_};
   ScratchVector<uint32_t> firstPort_{scratch_};  // per pass, and one past the last
@@ -115,8 +127,9 @@ class Binder {
   ScratchVector<uint32_t> externalFirst_{scratch_};  // first resource of each external
   ScratchVector<VkExtent2D> viewExtents_{scratch_};  // per BoundGraph::views
   ScratchVector<uint32_t> resourcePass_{scratch_};   // producing pass, kNone for externals
-  ScratchVector<uint32_t> chain_{scratch_};          // followValue's
-  ScratchVector<uint8_t> sized_{scratch_};           // per pass: 0 not yet, 1 being done, 2 done, 3 failed
+  ScratchVector<const MemberSpec*> resourceSpec_{scratch_};  // as its producer declares it
+  ScratchVector<uint32_t> chain_{scratch_};                  // followValue's
+  ScratchVector<uint8_t> sized_{scratch_};  // per pass: 0 not yet, 1 being done, 2 done, 3 failed
   bool inPlace_ = false, history_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "framework/base/same_text.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/binder.h"
 #include "framework/graph/validate.h"
@@ -73,7 +74,7 @@ void Binder::assignWires() {
       size_t k = 0;
       for (; k < specs.size(); ++k, ++guess) {
         if (guess >= specs.size()) guess = 0;
-        if (specs[guess].name == name) break;
+        if (sameText(specs[guess].name, name)) break;
       }
       const bool wired = k < specs.size() && (specs[guess].direction == Direction::Input ||
                                               specs[guess].direction == Direction::InOut);
@@ -106,7 +107,7 @@ bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& po
     if (!producing(specs[k])) continue;
     only = k;
     ++offered;
-    if (wire.port != kNone && specs[k].name == text(wire.port)) port = k;
+    if (wire.port != kNone && sameText(specs[k].name, text(wire.port))) port = k;
   }
   Symbol memberName = wire.member;
   if (port == kNone && offered == 1 && (wire.port == kNone || wire.member == kNone)) {
@@ -161,10 +162,10 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
       for (const MemberSpec& m : spec.members)
         if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
     }
-    const std::string nearest = nearestName(text(wire.text), names);
+    const std::string nearest = nearestName(description_.text(wire), names);
     return wrong(wire.port == kNone
-                     ? fmt::format("`{}` has {} outputs: name one", text(wire.text), names.size())
-                     : fmt::format("no output `{}`", text(wire.text)),
+                     ? fmt::format("`{}` has {} outputs: name one", description_.text(wire), names.size())
+                     : fmt::format("no output `{}`", description_.text(wire)),
                  !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
                  : names.empty()                        ? fmt::format("`{}` has no outputs", name)
                                  : fmt::format("there is: {}", fmt::join(names, ", ")));
@@ -213,7 +214,7 @@ void Binder::followValue(uint32_t port) {
     if (state.value.first == kNone || member == kNone) continue;
     // The member's name was looked up in the source's declaration; an in-out port there may list fewer
     // members.
-    const std::string& name = specOf(ports_[state.source]).members[member].name;
+    const std::string& name = ports_[state.source].spec->members[member].name;
     state.value.member = member;
     const PortSpec* origin = state.value.origin;
     if (origin)
@@ -224,20 +225,15 @@ void Binder::followValue(uint32_t port) {
   }
 }
 
-uint32_t Binder::resourceOf(const PortState& port, const PortSpec& spec, uint32_t m) const {
-  const PortValue& value = port.value;
-  if (value.first == kNone) return kNone;
-  if (value.count == 1 && spec.bundle.empty()) return value.first;
-  if (value.origin == &spec) return value.first + m;
-  const std::string& name = spec.members[m].name;
+uint32_t Binder::resourceNamed(const PortValue& value, const std::string& member) const {
   if (value.origin) {
     const std::vector<MemberSpec>& members = value.origin->members;
     for (uint32_t k = 0; k < members.size(); ++k)
-      if (members[k].name == name) return value.first + k;
+      if (members[k].name == member) return value.first + k;
   } else {
     const std::vector<Symbol>& members = description_.externals[value.external].members;
     for (uint32_t k = 0; k < members.size(); ++k)
-      if (text(members[k]) == name) return value.first + k;
+      if (text(members[k]) == member) return value.first + k;
   }
   return kNone;
 }
@@ -246,7 +242,7 @@ uint32_t Binder::resourceOf(const PortState& port, const PortSpec& spec, uint32_
 
 void Binder::checkTypes() {
   for (PortState& port : ports_) {
-    const PortSpec& spec = specOf(port);
+    const PortSpec& spec = *port.spec;
     if (spec.direction == Direction::Output || spec.direction == Direction::Scratch) continue;
     inPlace_ = inPlace_ || spec.direction == Direction::InOut;
     checkPort(port, spec);
@@ -279,14 +275,14 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
     return;
   }
   const bool single = port.value.member != kNone;
-  std::string bundle;
+  std::string_view bundle;
   if (!single && port.value.origin) bundle = port.value.origin->bundle;
   if (!single && port.value.external != kNone)
     bundle = text(description_.externals[port.value.external].bundle);
   std::string why;
   bool good = bundle == spec.bundle;
   for (uint32_t m = 0; good && m < spec.members.size(); ++m) {
-    const uint32_t resource = resourceOf(port, spec, m);
+    const uint32_t resource = resourceOf(port, m);
     if (resource == kNone) {
       good = false;
       why = fmt::format("it lacks the member `{}`", spec.members[m].name);
@@ -301,11 +297,11 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
       const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
       if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
           remedy.empty())
-        remedy = fmt::format("wire a member of it, such as `{}.{}`", text(wire.text), member.name);
+        remedy = fmt::format("wire a member of it, such as `{}.{}`", description_.text(wire), member.name);
     }
   error(wire.place, wirePath(port),
-        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), text(wire.text),
-                    describeValue(port.value), why.empty() ? why : ": " + why),
+        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec),
+                    description_.text(wire), describeValue(port.value), why.empty() ? why : ": " + why),
         remedy);
 }
 
@@ -321,20 +317,10 @@ bool Binder::fits(const MemberSpec& wanted, uint32_t resource, std::string& why)
     element = have.element;
   };
   // Sizes are evaluated later, so compare declarations.
-  const uint32_t pass = resourcePass_[resource];
-  if (pass == kNone) {
+  if (const MemberSpec* made = resourceSpec_[resource])
+    read(made->resource);
+  else
     read(graph_.resources[resource].desc);
-  } else {
-    const PortState* ports = ports_.data() + firstPort_[pass];
-    const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
-    for (uint32_t k = 0; k < specs.size(); ++k) {
-      const bool makes = specs[k].direction == Direction::Output || specs[k].direction == Direction::Scratch;
-      if (makes && resource - ports[k].value.first < specs[k].members.size()) {
-        read(specs[k].members[resource - ports[k].value.first].resource);
-        break;
-      }
-    }
-  }
   bool good = kind == want.kind;
   if (good && kind == ResourceKind::Buffer) good = element == want.element && stride == want.stride;
   if (good && kind == ResourceKind::Image)
@@ -350,7 +336,7 @@ std::string Binder::missingRemedy(const PortSpec& spec) const {
   std::vector<std::string> names;
   const MemberSpec& wanted = spec.members[0];
   for (const PortState& port : ports_) {
-    const PortSpec& other = specOf(port);
+    const PortSpec& other = *port.spec;
     if (other.direction != Direction::Output || other.bundle != spec.bundle || names.size() >= 6) continue;
     std::string why;
     if (spec.bundle.empty() && !fits(wanted, port.value.first, why)) continue;

@@ -61,9 +61,9 @@ namespace {
 }  // namespace
 
 const Value* Parameters::find(std::string_view name) const {
-  if (!specs_) return nullptr;
-  for (size_t i = 0; i < specs_->size() && i < values_.size(); ++i)
-    if ((*specs_)[i].name == name) return &values_[i];
+  const std::span<const Value> all = values();
+  for (size_t i = 0; i < all.size(); ++i)
+    if ((*specs_)[i].name == name) return &all[i];
   return nullptr;
 }
 

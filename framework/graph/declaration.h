@@ -6,9 +6,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -41,19 +44,24 @@ ParameterSpec text(std::string defaultValue);
 class Parameters {
  public:
   Parameters() = default;
-  Parameters(const std::vector<ParameterSpec>* specs, std::vector<Value> values)
-      : specs_(specs), values_(std::move(values)) {}
+  // One value for each of `specs`, from `first` on. The passes of a graph share one array: thousands of small ones
+  // would cost more than what is in them.
+  Parameters(const std::vector<ParameterSpec>* specs, std::shared_ptr<const std::vector<Value>> all, size_t first)
+      : specs_(specs), all_(std::move(all)), first_(first) {}
   int64_t integer(std::string_view name) const;
   double real(std::string_view name) const;  // an integer converts
   bool flag(std::string_view name) const;
   const std::string& text(std::string_view name) const;  // text and choice
   const Value* find(std::string_view name) const;
   const std::vector<ParameterSpec>& specs() const { return *specs_; }
-  const std::vector<Value>& values() const { return values_; }
+  std::span<const Value> values() const {
+    return specs_ ? std::span<const Value>(*all_).subspan(first_, specs_->size()) : std::span<const Value>();
+  }
 
  private:
   const std::vector<ParameterSpec>* specs_ = nullptr;
-  std::vector<Value> values_;
+  std::shared_ptr<const std::vector<Value>> all_;
+  size_t first_ = 0;
 };
 
 // ---- Sizes -----------------------------------------------------------------------------------------------------

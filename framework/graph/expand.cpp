@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "framework/base/same_text.h"
+
 namespace fovea::graph::detail {
 
 using json::Member;
@@ -14,7 +16,7 @@ using Type = json::Value::Type;
 
 Scope::Parameter* Scope::findParameter(std::string_view name) {
   for (Parameter& p : parameters)
-    if (p.name == name) return &p;
+    if (sameText(p.name, name)) return &p;
   return nullptr;
 }
 
@@ -262,11 +264,11 @@ void Expander::expandPass(size_t scope, const Member& member) {
                  "letters, digits, _ and -; `inputs` means the graph's own inputs");
   json::ObjectReader reader(member.value, "passes", member.key, diagnostics_);
   if (!member.value.isObject()) return;
-  const bool graph = reader.has("graph");
-  if (graph && reader.has("type"))
-    error(member.value.find("graph")->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
+  const json::Value* graph = member.value.find("graph");
+  const bool type = reader.has("type");
+  if (graph && type) error(graph->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
   reader.text("comment");
-  if (graph && !reader.has("type"))
+  if (graph && !type)
     expandInstance(scope, member, reader);
   else
     addPass(scope, member, reader);
@@ -276,7 +278,7 @@ void Expander::expandPass(size_t scope, const Member& member) {
 void Expander::addPass(size_t index, const Member& member, json::ObjectReader& reader) {
   Scope& scope = scopes_[index];
   const Trail passes("passes"), path(passes, member.key);
-  PassDescription pass;
+  PassDescription& pass = description_.passes.emplace_back();
   pass.name = scope.prefix.empty() ? intern(member.key) : intern(scope.prefix + member.key);
   pass.place = place(member.keyWhere);
   pass.typePlace = pass.viewPlace = pass.place;
@@ -307,19 +309,21 @@ void Expander::addPass(size_t index, const Member& member, json::ObjectReader& r
     }
   }
   addPassParameters(index, pass, reader.object("params"), {path, "params"});
-  description_.passes.push_back(pass);
 }
 
 void Expander::addPassParameters(size_t index, PassDescription& pass, const json::Value* params,
                                  const Trail& path) {
+  Scope& scope = scopes_[index];
   pass.firstParameter = static_cast<uint32_t>(description_.parameters.size());
   if (params) {
     for (const Member& param : params->members) {
-      ParameterDescription value;
-      if (!readScalar(scopes_[index], param.value, {path, param.key}, value)) continue;
+      ParameterDescription& value = description_.parameters.emplace_back();
+      if (!readScalar(scope, param.value, {path, param.key}, value)) {
+        description_.parameters.pop_back();
+        continue;
+      }
       value.name = intern(param.key);
       value.keyPlace = place(param.keyWhere);
-      description_.parameters.push_back(value);
     }
   }
   overridePass(pass);

@@ -116,6 +116,7 @@ class Expander {
   bool combine(const json::Value& value, const Trail& path, std::string_view member, bool previous,
                WireDescription& wire);
   void resolveOutputs();
+  void describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire);
 
   void error(const json::Position& where, const Trail& path, std::string message, std::string remedy = {});
   std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);

@@ -66,7 +66,7 @@ void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
 void Binder::makeVersions() {
   versions_.reserve(graph_.resources.size());
   for (PortState& port : ports_) {
-    const PortSpec& spec = specOf(port);
+    const PortSpec& spec = *port.spec;
     if (spec.direction != Direction::Output) continue;
     port.firstVersion = static_cast<uint32_t>(versions_.size());
     versions_.insert(versions_.end(), spec.members.size(), 1);
@@ -77,13 +77,13 @@ void Binder::makeVersions() {
   for (const uint32_t p : order_) {
     for (uint32_t i = 0; i < portCount(p); ++i) {
       PortState& port = portsOf(p)[i];
-      const PortSpec& spec = specOf(port);
+      const PortSpec& spec = *port.spec;
       if (spec.direction != Direction::InOut || port.value.first == kNone) continue;
       port.firstVersion = static_cast<uint32_t>(versions_.size());
       for (uint32_t k = 0; k < port.value.count; ++k)
         versions_.push_back(versionSeen(port, port.value.first + k));
       for (uint32_t m = 0; m < spec.members.size(); ++m) {
-        const uint32_t r = resourceOf(port, spec, m);
+        const uint32_t r = resourceOf(port, m);
         if (r == kNone) continue;
         uint32_t& version = versions_[port.firstVersion + (r - port.value.first)];
         if (version != lastVersion_[r])
@@ -98,13 +98,6 @@ void Binder::makeVersions() {
       }
     }
   }
-}
-
-uint32_t Binder::versionSeen(const PortState& port, uint32_t resource) const {
-  if (port.source == kNone) return 0;  // external, before any update
-  const PortState& source = ports_[port.source];
-  if (source.firstVersion == kNone) return 0;  // after a mistake
-  return versions_[source.firstVersion + (resource - source.value.first)];
 }
 
 // With updates in place a reader of version v must run before the update to v + 1. Is there an order at all?
@@ -147,10 +140,10 @@ void Binder::checkInPlace() {
   // Name a reader that waits although its value is about to be overwritten.
   for (const PortState& port : ports_) {
     if (waits[port.pass] == 0 || port.wire == kNone || port.previous || port.value.first == kNone) continue;
-    const PortSpec& spec = specOf(port);
+    const PortSpec& spec = *port.spec;
     if (spec.direction != Direction::Input) continue;
     for (uint32_t m = 0; m < spec.members.size(); ++m) {
-      const uint32_t r = resourceOf(port, spec, m);
+      const uint32_t r = resourceOf(port, m);
       if (r == kNone) continue;
       const uint32_t by = updater[firstVersion[r] + versionSeen(port, r) + 1];
       if (by == kNone || waits[by] == 0) continue;
@@ -158,12 +151,12 @@ void Binder::checkInPlace() {
         return error(
             description_.wires[port.wire].place, wirePath(port),
             fmt::format("`{}` reads and updates `{}`: its input `{}` would be changed before it is read",
-                        graph_.passes[by].name, text(description_.wires[port.wire].text), spec.name),
+                        graph_.passes[by].name, description_.text(description_.wires[port.wire]), spec.name),
             "wire one of the two ports to another value");
       return error(
           description_.wires[port.wire].place, wirePath(port),
           fmt::format("`{}` must read `{}` before `{}` updates it in place, but it also waits for that pass",
-                      graph_.passes[port.pass].name, text(description_.wires[port.wire].text),
+                      graph_.passes[port.pass].name, description_.text(description_.wires[port.wire]),
                       graph_.passes[by].name),
           fmt::format("read the updated value from `{}`, or last frame's with @previous",
                       graph_.passes[by].name));
@@ -205,9 +198,7 @@ void Binder::chooseLayouts() {
         VkImageLayout& shared =
             readLayout[a.previous ? firstVersion[a.resource + 1] - 1 : firstVersion[a.resource] + a.version];
         if (round == 0) {
-          a.layout =
-              accessScope(pass.declaration->kind, s.usage, s.reads, s.writes, isDepthFormat(desc.format))
-                  .layout;
+          a.layout = accessLayout(s.usage, s.reads, s.writes);
           if (s.writes) continue;
           if (shared == VK_IMAGE_LAYOUT_UNDEFINED)
             shared = a.layout;

@@ -31,7 +31,10 @@ VkPipelineStageFlags2 shaderStages(PassKind kind) {
   return 0;
 }
 
-VkImageLayout layoutFor(Usage usage, bool writes) {
+}  // namespace
+
+VkImageLayout accessLayout(Usage usage, bool reads, bool writes) {
+  if (any(usage, Usage::HostWrite) && reads) return VK_IMAGE_LAYOUT_GENERAL;
   auto only = [&](Usage set) { return (uint32_t(usage) & ~uint32_t(set)) == 0; };
   if (usage == Usage::None) return VK_IMAGE_LAYOUT_UNDEFINED;
   if (only(Usage::Sampled)) return VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
@@ -44,8 +47,6 @@ VkImageLayout layoutFor(Usage usage, bool writes) {
   if (only(Usage::TransferWrite | Usage::HostWrite)) return VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   return VK_IMAGE_LAYOUT_GENERAL;
 }
-
-}  // namespace
 
 AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, bool /*depthFormat*/) {
   AccessScope scope;
@@ -73,8 +74,7 @@ AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, boo
       VK_ACCESS_2_TRANSFER_WRITE_BIT);
   // A host pass that updates in place also copies the old contents out.
   if (any(usage, Usage::HostWrite) && reads) scope.access |= VK_ACCESS_2_TRANSFER_READ_BIT;
-  scope.layout = layoutFor(usage, writes);
-  if (any(usage, Usage::HostWrite) && reads) scope.layout = VK_IMAGE_LAYOUT_GENERAL;
+  scope.layout = accessLayout(usage, reads, writes);
   return scope;
 }
 

@@ -131,5 +131,6 @@ struct AccessScope {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, bool depthFormat);
+VkImageLayout accessLayout(Usage usage, bool reads, bool writes);  // the layout alone
 
 }  // namespace fovea::graph

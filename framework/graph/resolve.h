@@ -41,12 +41,17 @@ class SymbolTable {
   void reserve(size_t count);
 
  private:
+  static uint32_t tagOf(uint64_t hash) { return static_cast<uint32_t>(hash >> 32); }
   // The slot that holds the text, or the free one where it belongs.
   size_t slotOf(std::string_view text, uint64_t hash) const;
 
   std::deque<std::string> strings_;
   std::vector<uint64_t> hashes_;
-  std::vector<Symbol> slots_;  // open addressing, a power of two and at most half full; kNone: free
+  struct Slot {
+    uint32_t tag = 0;  // upper half of the hash
+    Symbol symbol = kNone;
+  };
+  std::vector<Slot> slots_;  // open addressing, a power of two and at most half full; kNone: free
 };
 
 // Where something stands in the files, for messages only.
@@ -63,7 +68,7 @@ struct WireDescription {
   Symbol member = kNone;      // kNone: the whole port
   uint32_t external = kNone;  // index into Description::externals
   bool previous = false;
-  Symbol text = kNone;  // as written, for messages
+  uint32_t firstCharacter = 0, characters = 0;  // as written, for messages: Description::wireTexts
   Place keyPlace, place;
 };
 
@@ -103,11 +108,15 @@ struct Description {
   SymbolTable symbols;
   std::vector<PassDescription> passes;  // declaration order, sub-graphs expanded in place
   std::vector<WireDescription> wires;
+  std::string wireTexts;  // one after the other; nobody looks them up, so they are no symbols
   std::vector<ParameterDescription> parameters;
   std::vector<WireDescription> outputs;
   std::vector<ExternalDescription> externals;
 
   SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
+  std::string_view text(const WireDescription& wire) const {
+    return std::string_view(wireTexts).substr(wire.firstCharacter, wire.characters);
+  }
   // "deferred" of "left/deferred": what the pass is called inside its document.
   std::string_view localName(const PassDescription& pass) const {
     const std::string_view name = symbols[pass.name];

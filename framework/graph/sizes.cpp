@@ -105,8 +105,9 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   desc.stride = from.stride;
   constexpr int64_t kMaxExtent = 1 << 24, kMaxCount = int64_t(1) << 40;
   auto size = [&](const SizeExpr& expr, const char* what, int64_t limit, auto& out) {
-    int64_t value = 0;
-    if (!evaluateSize(p, spec, member, expr, what, limit, value, depth)) return false;
+    int64_t value = sizeAtOnce(p, expr);
+    if ((value < 1 || value > limit) && !evaluateSize(p, spec, member, expr, what, limit, value, depth))
+      return false;
     out = static_cast<std::remove_reference_t<decltype(out)>>(value);
     return true;
   };
@@ -122,6 +123,17 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   // More levels than the size has would be refused by the device; expressions may ask for "enough".
   desc.mips = std::min(desc.mips, uint32_t(std::bit_width(std::max({desc.width, desc.height, desc.depth}))));
   return good;
+}
+
+// Most sizes are a number or the view's; 0: not one of these.
+int64_t Binder::sizeAtOnce(uint32_t pass, const SizeExpr& size) const {
+  if (size.terms().size() != 1) return 0;
+  const SizeExpr::Term& term = size.terms()[0];
+  if (term.op == SizeExpr::Op::Constant) return term.constant;
+  const VkExtent2D view = viewExtents_[graph_.passes[pass].view];
+  return term.op == SizeExpr::Op::ViewWidth    ? view.width
+         : term.op == SizeExpr::Op::ViewHeight ? view.height
+                                               : 0;
 }
 
 // One size of a resource, from 1 to `limit`; false, and a message, when it is not.
@@ -214,7 +226,7 @@ bool Binder::sizeOfPort(uint32_t p, const SizeExpr::Term& term, int64_t& out, in
     }
     for (uint32_t m = 0; m < specs[i].members.size(); ++m) {
       if (specs[i].members[m].name != memberName) continue;
-      const uint32_t r = resourceOf(port, specs[i], m);
+      const uint32_t r = resourceOf(port, m);
       if (r == kNone) return false;
       const uint32_t producer = resourcePass_[r];
       if (producer != kNone && sized_[producer] == 1) {

@@ -11,14 +11,17 @@ namespace {
 constexpr std::string_view kPrevious = "@previous";
 constexpr int kMaxHops = 64;  // through sub-graph inputs and outputs
 
+// "pass.port.member" up to an '@'.
 WireParts split(std::string_view text) {
   WireParts parts;
-  for (;;) {
-    const size_t dot = text.find('.');
-    parts.push_back(text.substr(0, dot));
-    if (dot == std::string_view::npos) return parts;
-    text.remove_prefix(dot + 1);
+  size_t first = 0, at = 0;
+  for (; at < text.size() && text[at] != '@'; ++at) {
+    if (text[at] != '.') continue;
+    parts.push_back(text.substr(first, at - first));
+    first = at + 1;
   }
+  parts.push_back(text.substr(first, at - first));
+  return parts;
 }
 
 }  // namespace
@@ -27,6 +30,7 @@ void Expander::resolveWires() {
   isPass_.assign(description_.symbols.size(), false);
   for (const PassDescription& pass : description_.passes) isPass_[pass.name] = true;
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
+  description_.wires.reserve(rawWires_.size());
   for (size_t p = 0; p < description_.passes.size(); ++p) {
     PassDescription& pass = description_.passes[p];
     pass.firstInput = static_cast<uint32_t>(description_.wires.size());
@@ -34,14 +38,14 @@ void Expander::resolveWires() {
         inputsPath(passPath, "inputs");
     for (uint32_t i = rawFirst_[p]; i < rawFirst_[p + 1]; ++i) {
       const RawWire& raw = rawWires_[i];
-      WireDescription wire;
+      WireDescription& wire = description_.wires.emplace_back();
       const Trail path(inputsPath, description_.symbols[raw.target]);
-      if (!resolveWire(raw.scope, *raw.value, path, wire, 0)) continue;
+      if (!resolveWire(raw.scope, *raw.value, path, wire, 0)) {
+        description_.wires.pop_back();
+        continue;
+      }
       wire.target = raw.target;
-      wire.text = intern(raw.value->string);
-      wire.keyPlace = raw.keyPlace;
-      wire.place = place(raw.value->where);
-      description_.wires.push_back(wire);
+      describeWire(*raw.value, raw.keyPlace, wire);
     }
     pass.inputCount = static_cast<uint32_t>(description_.wires.size()) - pass.firstInput;
   }
@@ -67,12 +71,18 @@ void Expander::resolveOutputs() {
         continue;
       }
       wire.target = intern(member.key);
-      wire.text = intern(member.value.string);
-      wire.keyPlace = place(member.keyWhere);
-      wire.place = place(member.value.where);
+      describeWire(member.value, place(member.keyWhere), wire);
       description_.outputs.push_back(wire);
     }
   }
+}
+
+void Expander::describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire) {
+  wire.firstCharacter = static_cast<uint32_t>(description_.wireTexts.size());
+  wire.characters = static_cast<uint32_t>(value.string.size());
+  description_.wireTexts += value.string;
+  wire.keyPlace = keyPlace;
+  wire.place = place(value.where);
 }
 
 // False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
@@ -80,15 +90,12 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& 
                            int depth) {
   if (depth > kMaxHops)
     return error(value.where, path, "this wire runs in a circle through sub-graphs"), false;
-  std::string_view text = value.string;
-  bool previous = false;
-  if (const size_t at = text.find('@'); at != std::string_view::npos) {
-    if (text.substr(at) != kPrevious)
-      return error(value.where, path, fmt::format("`{}`: only `@previous` may follow a port", text)), false;
-    previous = true;
-    text = text.substr(0, at);
-  }
-  const WireParts parts = split(text);
+  const WireParts parts = split(value.string);
+  const char* end = parts[parts.size() - 1].data() + parts[parts.size() - 1].size();
+  const std::string_view text = value.string, rest = text.substr(static_cast<size_t>(end - text.data()));
+  const bool previous = rest == kPrevious;
+  if (!previous && !rest.empty())
+    return error(value.where, path, fmt::format("`{}`: only `@previous` may follow a port", text)), false;
   if (parts.size() > 3 ||
       std::any_of(parts.begin(), parts.end(), [](std::string_view p) { return p.empty(); }))
     return error(value.where, path, fmt::format("`{}` is no wire", value.string),
