@@ -402,12 +402,14 @@ double BenchRunner::errorWith(const Job& job, uint32_t count) {
 Json BenchRunner::search(Job& job) {
   const Match match = *job.match;
   Job like = job;
-  like.graph = match.likeGraph, like.set = match.likeSet;
+  like.graph = match.likeGraph, like.set = match.likeSet, like.warmup = match.likeWarmup;
   std::erase_if(job.set, [&](const auto& entry) { return entry.first == match.parameter; });
   const double target = errorWith(like, 0);
   Json steps = Json::array();
+  Job last = job;  // whose error counts
+  last.first += job.frames - 1, last.frames = 1;
   const auto reaches = [&](uint32_t count) {
-    const double error = errorWith(job, count);
+    const double error = errorWith(last, count);
     steps.push_back({{"value", count}, {"error", number(error)}});
     return error <= target;
   };

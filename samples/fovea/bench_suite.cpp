@@ -29,6 +29,7 @@ struct GraphEntry {
   std::string graph, label;
   std::vector<std::pair<std::string, std::vector<std::string>>> set;
   std::optional<Match> match;
+  std::optional<uint32_t> warmup;  // in place of the sweep's
   SourceLocation where;
 };
 
@@ -148,6 +149,7 @@ class SuiteReader {
       if (entry.graph.empty()) messages_.error(entry.where, path, "which graph?", "add \"graph\": \"ours\"");
       entry.label = r.text("label", fs::path(entry.graph).stem().string());
       readSet(r, entry.set);
+      if (r.has("warmup")) entry.warmup = uint32_t(r.integer("warmup", 0, 0, kMaxFrames));
       if (const Value* match = r.object("match")) entry.match = readMatch(*match, r.pathOf("match"));
       r.finish();
     } else {
@@ -276,7 +278,8 @@ class SuiteReader {
     const auto has = [&](const char* m) { return std::count(s.measures.begin(), s.measures.end(), m) > 0; };
     if (has("temporal") && s.frames < 2)
       complain("`temporal` compares consecutive frames: `frames` must be at least 2");
-    if (s.warmup > s.first)
+    const auto warmsTooLong = [&](const GraphEntry& g) { return g.warmup.value_or(s.warmup) > s.first; };
+    if (std::any_of(s.graphs.begin(), s.graphs.end(), warmsTooLong))
       complain("`warmup` frames come before frame `first`, which has not as many before it");
     for (const GraphEntry& graph : s.graphs)
       if (graph.match) checkMatch(graph, s, has("error"));
@@ -348,6 +351,7 @@ class SuiteReader {
     for (const GraphEntry& like : s.graphs) {
       if (like.label != job.match->like) continue;
       job.match->likeGraph = like.graph;
+      job.match->likeWarmup = like.warmup.value_or(s.warmup);
       const auto own = [](const GraphEntry& g, const std::string& key) {
         return std::any_of(g.set.begin(), g.set.end(), [&](const auto& e) { return e.first == key; });
       };
@@ -362,7 +366,7 @@ class SuiteReader {
     const auto has = [&](const char* m) { return std::count(s.measures.begin(), s.measures.end(), m) > 0; };
     Job job;
     job.sweep = sweep, job.scene = scene.value, job.graph = graph.graph, job.label = graph.label;
-    job.first = s.first, job.frames = s.frames, job.warmup = s.warmup;
+    job.first = s.first, job.frames = s.frames, job.warmup = graph.warmup.value_or(s.warmup);
     job.spp = s.spp, job.depth = s.depth;
     job.error = has("error"), job.temporal = has("temporal"), job.pictures = has("pictures");
     job.match = graph.match;

@@ -22,6 +22,7 @@ struct Match {
   uint32_t from = 250, to = 16000;
   std::string likeGraph;                                     // file or name behind the label `like`
   std::vector<std::pair<std::string, std::string>> likeSet;  // its parameters
+  uint32_t likeWarmup = 0;
 };
 
 // What is measured, and everything that decides what comes out.

@@ -79,7 +79,7 @@ TEST(BenchSuite, SizeAndSeedsOfTheCommandLine) {
 TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
   const Suite suite = parseSuite(
       R"({"scenes": ["a"], "set": {"kernel": "disc", "map_size": [16, 32]}, "sweeps": [{"name": "n", "graphs": [
-    {"graph": "ours.json", "label": "o", "set": {"voxels": 64}},
+    {"graph": "ours.json", "label": "o", "set": {"voxels": 64}, "warmup": 7},
     {"graph": "ir", "set": {"layout": "tiled"}, "match": {"like": "o", "from": 3, "to": 9}}]}]})",
       "s.json");
   ASSERT_EQ(suite.jobs.size(), 4u);
@@ -90,6 +90,9 @@ TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
               ElementsAre(Pair("kernel", "disc"), Pair("map_size", "32"),
                           Pair("voxels", "64")));
   EXPECT_EQ(suite.jobs[3].match->to, 9u);
+  EXPECT_EQ(suite.jobs[3].match->likeWarmup, 7u);
+  EXPECT_EQ(suite.jobs[3].warmup, 0u);
+  EXPECT_EQ(suite.jobs[0].warmup, 7u);
 }
 
 struct Mistake {
@@ -152,6 +155,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"WarmupBeforeTheFirst",
                 "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": "
                 "[{\"name\": \"n\", \"first\": 3, \"warmup\": 4}]}",
+                "`warmup` frames come before frame `first`"},
+        Mistake{"WarmupOfAGraphBeforeTheFirst",
+                "{\"scenes\": [\"a\"], \"graphs\": [{\"graph\": \"g\", \"warmup\": 4}], \"sweeps\": "
+                "[{\"name\": \"n\", \"first\": 3}]}",
                 "`warmup` frames come before frame `first`"},
         Mistake{
             "MatchWithoutLike",
