@@ -8,6 +8,7 @@
 #include "common/scene.glsl"
 
 const int kTile = 16;
+const float kSameRow = 1e-3;  // texels
 const int kRows = 4;  // pixels of an invocation, below each other; all in one tile
 
 layout(local_size_x = 64) in;
@@ -40,13 +41,17 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
   ivec2 size = imageSize(sourceGbufferPosition);
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
   if (any(lessThanEqual(at, vec2(-1.0))) || any(greaterThanEqual(at, vec2(size)))) return vec4(0.0);
+  // Eyes beside each other see a point in the same row, up to rounding: then two texels are all.
+  bool sameRow = abs(at.y - round(at.y)) < kSameRow;
+  at.y = sameRow ? round(at.y) : at.y;
+  int texels = sameRow ? 2 : 4;
   ivec2 first = ivec2(floor(at));
   vec2 f = at - floor(at);
   float tolerance = planeTolerance * position.w;
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
   bool found = false;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < texels; ++i) {
     ivec2 d = ivec2(i & 1, i >> 1), q = first + d, inside = clamp(q, ivec2(0), size - 1);
     vec4 p = imageLoad(sourceGbufferPosition, inside);
     bool same = q == inside && p.w > 0.0 && abs(dot(p.xyz - position.xyz, face)) <= tolerance &&
