@@ -1,4 +1,5 @@
-// The executor on a real device, through passes made for these tests: what the plan promises must come out as values.
+// The executor on a real device, through passes made for these tests: what the plan promises must come out as
+// values.
 #include "framework/graph/execute.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/gpu_scene.h"
+#include "places.h"
 #include "tests/support/device.h"
 
 namespace fovea::graph {

@@ -10,6 +10,7 @@
 #include "framework/base/paths.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "places.h"
 #include "tests/support/pass_test.h"
 #include "tests/support/path_reference.h"
 #include "tests/support/shapes.h"

@@ -8,6 +8,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/movers.h"
 #include "framework/scene/voxel_grid.h"
+#include "places.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/pass_test.h"
 

@@ -11,6 +11,7 @@
 
 #include "framework/scene/load.h"
 #include "framework/scene/vpl.h"
+#include "places.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/pass_test.h"
 

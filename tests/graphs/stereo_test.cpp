@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "framework/scene/load.h"
+#include "places.h"
 #include "tests/support/pass_test.h"
 
 namespace fovea::test {

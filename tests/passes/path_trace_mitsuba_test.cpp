@@ -11,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "passes/path-trace/path_tracer.h"
+#include "places.h"
 
 namespace fovea::test {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/shader.h"
+#include "places.h"
 #include "tests/support/device.h"
 
 namespace fovea::test {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "places.h"
+
 namespace fovea::cli {
 namespace {
 
@@ -206,4 +208,4 @@ TEST(BenchSuite, Globs) {
 }
 
 } // namespace
-} // namespace fovea::cli
+}  // namespace fovea::cli

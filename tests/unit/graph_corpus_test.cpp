@@ -2,6 +2,7 @@
 // doubled.
 #include <gtest/gtest.h>
 
+#include "places.h"
 #include "tests/fuzz/graph_fuzz.h"
 
 namespace fovea::graph::test {

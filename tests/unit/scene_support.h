@@ -13,6 +13,7 @@
 
 #include "framework/base/diagnostic.h"
 #include "framework/scene/load.h"
+#include "places.h"
 
 namespace fovea::test {
 
