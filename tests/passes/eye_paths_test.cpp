@@ -208,8 +208,9 @@ TEST(EyePaths, StartsMoveOnInTurns) {
     PassTest test("eye-paths");
     test.param("paths", 500).param("points", 100).param("renew_frames", 4).param("fovea_radius", 0.1);
     test.viewSize(32, 32).scene(look.scene);
-    test.beforeFrame(
-        [](PassTest&, scene::Frame& f) { f.views[0].gaze = f.index < 3 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f); });
+    test.beforeFrame([](PassTest&, scene::Frame& f) {
+      f.views[0].gaze = f.index < 3 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f);
+    });
     test.run(3 + moved);  // the jump comes with the fourth frame, number 3
     const auto got = test.values<EyePathEnd>("paths.ends");
     for (uint32_t i = 0; i < got.size(); ++i) {
@@ -221,6 +222,26 @@ TEST(EyePaths, StartsMoveOnInTurns) {
     }
   }
   EXPECT_NE(before[0].position, after[0].position);
+}
+
+// After a cut of the camera nothing stays.
+TEST(EyePaths, ACutMovesAllStarts) {
+  const Look look(litRoom(true), {32, 32});
+  const auto ends = [&](uint32_t renewFrames, bool cut) {
+    PassTest test("eye-paths");
+    test.param("paths", 256).param("points", 64).param("renew_frames", int(renewFrames));
+    test.viewSize(32, 32).scene(look.scene);
+    test.beforeFrame([cut](PassTest&, scene::Frame& f) {
+      f.views[0].gaze = f.index < 2 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f);
+      f.cameraCut = cut && f.index == 2;
+    });
+    test.run(3);
+    std::vector<glm::vec3> positions;
+    for (const EyePathEnd& e : test.values<EyePathEnd>("paths.ends")) positions.push_back(e.position);
+    return positions;
+  };
+  EXPECT_EQ(ends(50, true), ends(1, false));
+  EXPECT_NE(ends(50, false), ends(1, false));
 }
 
 }  // namespace
