@@ -292,7 +292,7 @@ void Bench::finish() {
     throw Error(ExitCode::BadInput,
                 fmt::format("`{}` has no results of suite `{}`", folder_.path().string(), suite_.name),
                 "run it without --report");
-  writeTables(folder_, suite_, results, missingScenes(results), command());
+  say("{}", writeTables(folder_, suite_, results, missingScenes(results), command()));
   say("{} of {} jobs have results\nwrote {}/tables\n", results.size(), suite_.jobs.size(),
       folder_.path().string());
   makePage();

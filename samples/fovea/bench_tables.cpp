@@ -153,6 +153,51 @@ std::string csvOf(const Table& table, const Json& paper, const std::string& pape
   return text;
 }
 
+// What a terminal shows of a table: the errors, frame time and ratios, a row for each graph of a scene.
+std::string shownOf(const std::string& sweep, const Table& table, const Json& paper,
+                    const std::string& paperTable) {
+  std::vector<std::string> measures;
+  for (const char* wanted :
+       {"error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime",
+        "temporal.fovea.excess", "temporal.periphery.excess", "time.wall_ms", "match.value", "speed_up."})
+    for (const Row& row : table.rows)
+      for (const std::string& name : row.order)
+        if (name.starts_with(wanted) && !name.ends_with("_over_ours") &&
+            std::find(measures.begin(), measures.end(), name) == measures.end())
+          measures.push_back(name);
+  std::vector<std::vector<std::string>> lines = {{"scene", "graph"}};
+  lines[0].insert(lines[0].end(), measures.begin(), measures.end());
+  for (const Row& row : table.rows) {
+    std::string graph = row.graph;
+    for (size_t i = 0; i < table.axes.size(); ++i) graph += " " + table.axes[i] + "=" + row.axes[i];
+    std::vector<std::string>& line = lines.emplace_back(std::vector{row.scene, graph});
+    for (const std::string& name : measures) {
+      std::string& text = line.emplace_back();
+      if (!row.values.contains(name)) continue;
+      const Mean mean = meanOf(row.values.at(name));
+      const auto shown = [](double value) {
+        return std::abs(value) < 100 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+      };
+      text = shown(mean.mean);
+      if (std::isfinite(mean.halfWidth)) text += " +- " + shown(mean.halfWidth);
+      if (!likeThePaper(table, row)) continue;
+      if (const auto known = paperNumber(paper, paperTable, row.scene, row.graph, name))
+        text += fmt::format(" [{:.3g}]", *known);
+    }
+  }
+  std::vector<size_t> widths(lines[0].size(), 0);
+  for (const auto& line : lines)
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text = sweep + ": means +- half the 95% interval over seeds";
+  text += paperTable.empty() ? "\n" : " [the paper's]\n";
+  for (const auto& line : lines) {
+    std::string padded;
+    for (size_t i = 0; i < line.size(); ++i) padded += fmt::format("{:<{}}  ", line[i], widths[i]);
+    text += padded.substr(0, padded.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> numbersOf(const Json& result) {
@@ -193,13 +238,15 @@ Mean meanOf(const std::vector<double>& values) {
   return result;
 }
 
-void writeTables(const BenchFolder& folder, const Suite& suite, const std::vector<StoredResult>& results,
-                 const std::map<std::string, std::string>& missingScenes, const std::string& command) {
+std::string writeTables(const BenchFolder& folder, const Suite& suite,
+                        const std::vector<StoredResult>& results,
+                        const std::map<std::string, std::string>& missingScenes, const std::string& command) {
   const Json paper = readPaper();
   std::vector<std::string> sweeps;
   for (const Job& job : suite.jobs)
     if (std::find(sweeps.begin(), sweeps.end(), job.sweep) == sweeps.end()) sweeps.push_back(job.sweep);
   Json written = Json::array();
+  std::string shown;
   for (const std::string& sweep : sweeps) {
     Table table = tableOf(sweep, results);
     for (const SpeedUp& wanted : suite.speedUps)
@@ -207,6 +254,7 @@ void writeTables(const BenchFolder& folder, const Suite& suite, const std::vecto
     for (const char* measure : {"error.fovea.mse", "temporal.fovea.excess"}) addDifferences(measure, table);
     writeText(folder.table(sweep), csvOf(table, paper, suite.paper));
     written.push_back({{"sweep", sweep}, {"axes", table.axes}});
+    if (!table.rows.empty()) shown += shownOf(sweep, table, paper, suite.paper);
   }
   Json files = Json::array();
   for (const StoredResult& result : results) files.push_back(result.file.filename().string());
@@ -220,6 +268,7 @@ void writeTables(const BenchFolder& folder, const Suite& suite, const std::vecto
                        {"sweeps", written},
                        {"results", files}};
   writeText(folder.path() / "report.json", report.dump(1) + "\n");
+  return shown;
 }
 
 }  // namespace fovea::cli

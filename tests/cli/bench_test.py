@@ -42,6 +42,8 @@ class Suites(CliTest):
         run = self.succeeds("bench", "tiny.json", "-o", "out")
         self.assertIn("[4/4] all-cornellbox_moving-ir_1000-s1", run.stdout)
         self.assertIn("4 of 4 jobs have results", run.stdout)
+        self.assertRegex(run.stdout, r"(?m)^cornellbox_moving +ir_1000 .*\d")  # the table on the terminal
+        self.assertRegex(run.stdout, r"(?m)^scene +graph .*error\.fovea\.mse")
         results = self.results()
         self.assertEqual(len(results), 4)
         for result in results.values():
