@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <thread>
 
 #include "framework/base/random.h"
 #include "framework/scene/fovea.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/paraboloid.h"
+#include "passes/eye-paths/surface_tracer.h"
 
 namespace fovea::passes {
 namespace {
@@ -18,87 +17,26 @@ using namespace scene;
 
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // of the random numbers
 constexpr uint32_t kPointsAtOnce = 16;                                      // that a thread takes
-constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
 const glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);
 
-glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u) {
-  const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
-  return toWorld(orthonormalFrame(normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - u.x)});
-}
-
-// Point `turn` of the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018)
-// from a start of the stream's own.
-glm::vec2 streamSequence(uint32_t stream, uint32_t turn) {
-  return {uniformFloat(hashCombine(stream, 0u) + turn * 3242174889u),
-          uniformFloat(hashCombine(stream, 1u) + turn * 2447445414u)};
-}
-
-struct Vertex {
-  bool there = false;
-  glm::vec3 origin{0};  // of rays that leave it, just off the surface
-  glm::vec3 position{0};
-  glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side that was reached
-  glm::vec2 uv{0};
-  const Material* material = nullptr;
-};
-
-// What passes path-trace and emit take for granted holds here, too: the eye looks through the back of a
-// single-sided material, for light it is black.
 class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const EyePathSettings& settings)
-      : frame_(frame), view_(view), rays_(rays), settings_(settings) {
-    for (const Material& m : frame.scene->materials) shines_ = shines_ || m.emission != glm::vec3(0);
-  }
+      : view_(view), rays_(rays), settings_(settings), surfaces_(frame, view, rays) {}
 
-  EyePathStart look(glm::vec2 pixel, uint64_t& rays) const;
+  EyePathStart look(glm::vec2 pixel, uint64_t& rays) const {
+    const TracedSurface v = surfaces_.look(pixel, rays);
+    return v.there ? EyePathStart{v.position, 1, v.normal, 0, v.face, 0} : EyePathStart{};
+  }
   bool stands(const EyePathStart& start, uint64_t& rays) const;
   EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const;
 
  private:
-  Vertex arrive(glm::vec3 origin, glm::vec3 direction, uint64_t& rays) const;
-  Vertex vertexAt(const RayHit& hit, glm::vec3 direction) const;
-  glm::vec3 irradiance(const Vertex& v, uint64_t& rays) const;
-  glm::vec3 direct(const Vertex& v, glm::vec3 rho, uint64_t& rays) const;
-  glm::vec3 gather(const Vertex& v, uint32_t bounces, uint32_t count, uint32_t stream, uint64_t& rays) const;
-
-  const Frame& frame_;
   const View& view_;
   const RayScene& rays_;
   const EyePathSettings& settings_;
-  bool shines_ = false;  // any material
+  SurfaceTracer surfaces_;
 };
-
-Vertex Tracer::vertexAt(const RayHit& hit, glm::vec3 direction) const {
-  const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
-  const Material& material = frame_.scene->materials[s.material];
-  const bool front = glm::dot(s.geometricNormal, direction) < 0;
-  Vertex v;
-  if (!front && !material.doubleSided) return v;
-  const float side = front ? 1.0f : -1.0f;
-  v.there = true;
-  v.position = s.position;
-  v.normal = side * s.shadingNormal;
-  v.face = side * s.geometricNormal;
-  v.origin = s.position + (v.face - direction) * rays_.epsilon();
-  v.uv = s.uv;
-  v.material = &material;
-  return v;
-}
-
-EyePathStart Tracer::look(glm::vec2 pixel, uint64_t& rays) const {
-  Ray ray;
-  ray.origin = view_.eye;
-  ray.direction = glm::normalize(view_.rayDirection(pixel));
-  for (;;) {
-    ++rays;
-    const RayHit hit = rays_.intersect(ray);
-    if (!hit) return {};
-    if (const Vertex v = vertexAt(hit, ray.direction); v.there)
-      return {v.position, 1, v.normal, 0, v.face, 0};
-    ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
-  }
-}
 
 // Whether the surface is still where a start was found, or the background: things move.
 bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
@@ -112,51 +50,6 @@ bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
   return bool(rays_.intersect(ray));
 }
 
-Vertex Tracer::arrive(glm::vec3 origin, glm::vec3 direction, uint64_t& rays) const {
-  ++rays;
-  const RayHit hit = rays_.intersect({origin, direction});
-  return hit ? vertexAt(hit, direction) : Vertex{};
-}
-
-glm::vec3 Tracer::irradiance(const Vertex& v, uint64_t& rays) const {
-  glm::vec3 sum(0);
-  for (const Light& light : frame_.lights) {
-    const LightSample l = sampleLight(light, v.position);
-    const float cosine = glm::dot(v.normal, l.direction);
-    if (cosine <= 0 || glm::dot(v.face, l.direction) <= 0 || l.irradiance == glm::vec3(0)) continue;
-    Ray ray;
-    ray.origin = v.origin;
-    ray.direction = l.direction;
-    if (l.distance < kFarAway) ray.far = l.distance * kShadowEnd;
-    ++rays;
-    if (!rays_.occluded(ray)) sum += l.irradiance * cosine;
-  }
-  return sum;
-}
-
-glm::vec3 Tracer::direct(const Vertex& v, glm::vec3 rho, uint64_t& rays) const {
-  glm::vec3 sum = rho * glm::one_over_pi<float>() * irradiance(v, rays);
-  if (shines_) sum += emission(*frame_.scene, *v.material, v.uv);
-  return sum;
-}
-
-// Mean radiance that reaches v over its hemisphere, in proportion to the cosine, after `bounces` reflections
-// at most.
-glm::vec3 Tracer::gather(const Vertex& v, uint32_t bounces, uint32_t count, uint32_t stream,
-                         uint64_t& rays) const {
-  glm::vec3 sum(0);
-  for (uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, i));
-    if (glm::dot(direction, v.face) <= 0) continue;
-    const Vertex next = arrive(v.origin, direction, rays);
-    if (!next.there) continue;
-    const glm::vec3 rho(reflectance(*frame_.scene, *next.material, next.uv));
-    sum += direct(next, rho, rays);
-    if (bounces > 1) sum += rho * gather(next, bounces - 1, 1, hashCombine(stream, i + 2), rays);
-  }
-  return sum / float(count);
-}
-
 EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const {
   EyePathEnd end;
   const glm::vec3 direction =
@@ -164,14 +57,14 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   if (glm::dot(direction, start.face) <= 0) return end;
   const glm::vec3 origin =
       start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
-  const Vertex v = arrive(origin, direction, rays);
+  const TracedSurface v = surfaces_.arrive(origin, direction, kFarAway, rays);
   if (!v.there) return end;
-  const glm::vec3 rho(reflectance(*frame_.scene, *v.material, v.uv));
-  end.radiance = direct(v, rho, rays);
+  const glm::vec3 rho = surfaces_.reflectance(v);
+  end.radiance = surfaces_.direct(v, rho, rays);
   end.kind = end.radiance == glm::vec3(0) ? 1.0f : 2.0f;
   if (settings_.bounces > 1)
-    end.radiance += rho * gather(v, settings_.bounces - 1, settings_.gathered,
-                                 randomStream(turn, 0, kGatherStream, point), rays);
+    end.radiance += rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
+                                           randomStream(turn, 0, kGatherStream, point), rays);
   end.position = v.position;
   end.normal = v.face;
   end.luminance = glm::dot(end.radiance, kLuminance);

@@ -1,54 +1,103 @@
 // The light of what is near, which VPLs shaded as discs leave out.
+#include <algorithm>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "framework/base/diagnostic.h"
 #include "framework/graph/registry.h"
-#include "framework/scene/voxel_grid.h"
+#include "framework/scene/frame.h"
+#include "passes/near-field/near_field_tracer.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
+constexpr double kLengthKept = 7 / 8.0;  // of the mean length of the rays, from frame to frame
+
 class NearField : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
         "near-field",
-        "light from voxels around what the eye sees, in the part that VPLs shaded as discs take "
-        "from light so near");
+        "light of what is near to what the eye sees, in the part that VPLs shaded as discs take "
+        "from it: rays through the triangles, few a frame",
+        PassKind::Host);
     d.view();
-    const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
-    d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead)},
-            "surfaces seen by the eye");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "what the rays meet");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each voxel side");
-    d.input("spread", buffer("VplSpread", 16), Usage::TexelRead, "area of the discs, of pass weights");
     d.output(
-        "irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
-        "rgb: irradiance / pi, W/(sr m^2), by one ray a pixel in the fovea, one for four outside: for pass "
-        "deferred to filter");
+        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
+        Usage::HostWrite,
+        "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2, or of each `spacing` x `spacing` "
+        "outside "
+        "the fovea; a: 2, `spacing`, 0 where that pixel shows no surface; for pass temporal-accumulation");
+    d.output("spread", buffer("VplSpread", 16, 1), Usage::HostWrite,
+             "x: area of the discs, m^2, which none may be smaller than: for pass weights");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("reach", real(2, 0.1, 100), "length of the rays, in radii of the discs");
+    d.parameter("spacing", integer(4, 2, 8), "pixels between rays outside the fovea: 2, 4 or 8");
+    d.parameter("vpls", integer(1000, 1, 1 << 20), "how many there are");
     d.parameter(
-        "most", real(0, 0, 1e6),
-        "times the mean of its 16x16 pixels that a ray can bring, so that the few that meet something "
-        "bright do not show as sparks; 0: no limit");
+        "share", real(50, 0.01, 1e6),
+        "area of all discs together, in squares of the mean distance between what the eye sees and what is "
+        "seen from there");
+    d.parameter("bounces", integer(2, 1, 64),
+                "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "
+                "depth 4 sees");
+    d.parameter("first_samples", integer(16, 1, 1024),
+                "rays in place of one after a camera cut, when there is no "
+                "frame before to take more from");
+    d.counter("rays", "rays traced, towards lights, too");
+    d.counter("shaded", "rays from what the eye sees at whose ends light was looked for");
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("near-field/near_field.comp"); }
-  void record(RecordContext& ctx) override {
-    const VkExtent3D size = ctx.extent("irradiance");
-    ctx.use(kernel_).dispatch((size.width + 15) / 16, (size.height + 15) / 16);
+  void execute(HostContext& ctx) override {
+    const scene::Frame& frame = ctx.frame();
+    const Parameters& p = ctx.parameters();
+    const bool first = ctx.firstFrame();
+    const auto samples = ctx.outputAs<uint64_t>("samples");
+    image_.resize(samples.size());
+    NearFieldSettings settings;
+    settings.foveaRadius = float(p.real("fovea_radius"));
+    settings.spacing = uint32_t(p.integer("spacing"));
+    if ((settings.spacing & (settings.spacing - 1)) != 0)
+      throw Error(ExitCode::BadInput,
+                  "pass `near-field`: spacing " + std::to_string(settings.spacing) + " is not a power of two",
+                  "use 2, 4 or 8");
+    settings.bounces = uint32_t(p.integer("bounces"));
+    settings.turn = uint32_t(ctx.frameNumber());
+    settings.seed = frame.seed;
+    NearFieldStatistics statistics;
+    double area = 0;
+    if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
+      const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+      const auto trace = [&] {
+        area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
+        settings.area = float(area);
+        return traceNearField(frame, ctx.view(), *rays, settings, image_);
+      };
+      if (first) {  // the length first
+        length_ = 0;
+        statistics = trace();
+        length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
+        settings.samples = uint32_t(p.integer("first_samples"));
+      }
+      statistics = trace();
+      if (statistics.hits > 0)
+        length_ = kLengthKept * length_ + (1 - kLengthKept) * statistics.length / statistics.hits;
+    } else {
+      std::ranges::fill(image_, glm::vec4(0));
+    }
+    std::ranges::transform(image_, samples.begin(), [](glm::vec4 v) {
+      return glm::packHalf4x16(glm::vec4(glm::min(glm::vec3(v), 65504.0f), v.a));
+    });
+    ctx.outputAs<glm::vec4>("spread")[0] = glm::vec4(area, 0, 0, 0);
+    ctx.counter("rays", double(statistics.rays));
+    ctx.counter("shaded", double(statistics.shaded));
   }
 
  private:
-  Kernel kernel_;
+  double length_ = 0;  // m, mean of the rays of the frames so far
+  std::vector<glm::vec4> image_;
 };
 
 FOVEA_PASS(NearField);

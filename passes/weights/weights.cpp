@@ -38,7 +38,6 @@ class Weights : public Pass {
 
   std::string strategy_;
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
-  uint32_t tried_ = 0;   // eye paths of this frame
   bool traced_ = false;  // the paths come from pass eye-paths
   Kernel tally_, finish_;
   Kernel points_, escapes_, density_, median_, pdf_,
@@ -79,10 +78,13 @@ PassDeclaration Weights::declaration() {
           "through the "
           "voxels from points of its own and of the VPLs' own light")
       .makeOptional();
+  d.input(
+       "spread", buffer("VplSpread", 16), Usage::TexelRead,
+       "x: area, m^2: the picture gets the light of what is near from pass near-field, as much as discs of "
+       "this area leave out, and no disc of `importance-area` is smaller")
+      .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
-  d.output("spread", buffer("VplSpread", 16, 1), Usage::StorageWrite,
-           "x: area of the discs that pass near-field makes up for, m^2");
   addScratch(d);
   d.parameter("strategy", choice("pdf", {"constant", "pdf", "area", "importance-area"}),
               "A_l: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N p), p "
@@ -110,10 +112,6 @@ PassDeclaration Weights::declaration() {
       "kernel", choice("disc", {"disc", "clamp"}),
       "what `importance-area` takes the VPLs to be shaded with, as in pass deferred: with `clamp` the "
       "region's mean gets the light back that the clamp takes");
-  d.parameter(
-      "near_field", real(0, 0, 100),
-      "above 0: the picture gets the light of what is near from pass near-field, as much as discs of so "
-      "many median areas leave out, and no disc of `importance-area` is smaller");
   d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "of the kernel `clamp`");
   d.parameter("sides", choice("lit", {"lit", "all"}),
               "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such "
@@ -200,8 +198,10 @@ void Weights::prepare(PrepareContext& ctx) {
                 "give weights.points and eye-paths.points the same number");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   const bool discs = shared == "1" && p.text("kernel") == "disc";
-  finish_ = ctx.compute("weights/finish.comp",
-                        {{"SHARED", shared}, {"TRACED", traced}, {"GAINS", discs ? "1" : "0"}});
+  const std::string near = discs && ctx.has("spread") ? "1" : "0";
+  finish_ =
+      ctx.compute("weights/finish.comp",
+                  {{"SHARED", shared}, {"TRACED", traced}, {"GAINS", discs ? "1" : "0"}, {"NEAR", near}});
   if (area) {
     brick_ = ctx.compute("weights/bricks.comp");
     nearest_ = ctx.compute("weights/nearest.comp", {{"LIT_ONLY", lit}});
@@ -218,7 +218,7 @@ void Weights::prepare(PrepareContext& ctx) {
   if (strategy_ == "importance-area") {
     if (!traced_) paths_ = ctx.compute("weights/paths.comp");
     share_ = ctx.compute("weights/share.comp", {{"TRACED", traced}, {"PATHS", std::to_string(kSharedPaths)}});
-    if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", p.real("near_field") > 0 ? "1" : "0"}});
+    if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", near}});
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");
   }
@@ -229,9 +229,9 @@ void Weights::recordDensities(RecordContext& ctx) {
   const Parameters& p = ctx.parameters();
   const bool shared = strategy_ == "importance-area";
   const uint32_t points = uint32_t(p.integer("points"));
-  const uint32_t tried = tried_ = traced_  ? uint32_t(ctx.count("traced.ends"))
-                                  : shared ? uint32_t(p.integer("paths"))
-                                           : std::min(points, kEscapePoints);
+  const uint32_t tried = traced_  ? uint32_t(ctx.count("traced.ends"))
+                         : shared ? uint32_t(p.integer("paths"))
+                                  : std::min(points, kEscapePoints);
   ctx.use(points_).dispatchThreads(points);
   ctx.barrier();
   if (shared && !traced_) ctx.use(paths_).dispatchThreads(tried);
@@ -256,10 +256,7 @@ void Weights::recordDensities(RecordContext& ctx) {
   ctx.use(pdf_).constant("vplCount", vplCount_).constant("tried", tried).dispatchThreads(vplCount_);
   ctx.barrier();
   if (shared && !clamped) {
-    ctx.use(discs_)
-        .constant("vplCount", vplCount_)
-        .constant("tried", tried)
-        .dispatch(row, (vplCount_ + row - 1) / row);
+    ctx.use(discs_).constant("vplCount", vplCount_).dispatch(row, (vplCount_ + row - 1) / row);
     ctx.barrier();
   }
   if (strategy_ != "constant") return;
@@ -300,7 +297,7 @@ void Weights::record(RecordContext& ctx) {
     recordVoronoi(ctx);
   else
     recordDensities(ctx);
-  ctx.use(finish_).constant("vplCount", vplCount_).constant("tried", tried_).dispatchThreads(vplCount_);
+  ctx.use(finish_).constant("vplCount", vplCount_).dispatchThreads(vplCount_);
 }
 
 FOVEA_PASS(Weights);

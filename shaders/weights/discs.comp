@@ -1,6 +1,6 @@
 // Strategy `importance-area` with the kernel `disc`, last step but one: the disc of a VPL's own area sends the region less
 // than one of a voxel would, wherever it is close. How much more the VPL has to shine for it. One work group a VPL.
-// NEAR 1: pass near-field adds what discs of the median area would send less than those of a voxel.
+// NEAR 1: pass near-field adds what discs of the area `spread` would send less than those of a voxel.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 #include "weights/landing.glsl"
@@ -13,15 +13,12 @@ layout(set = 0) uniform usamplerBuffer seen;
 layout(set = 0, std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) writeonly buffer GainsBlock { float list[]; } gains;
 #if NEAR
-layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
-layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
+layout(set = 0) uniform samplerBuffer spread;  // x: area, m^2
 #endif
 
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
-  uint tried;  // eye paths
-  float nearField;
   float areaCap;
 };
 
@@ -40,7 +37,7 @@ void main() {
   if (before > 0.0 && area > 0.0) {
     vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
 #if NEAR
-    float cell = voxelsGrid().cell, near = max(nearArea(totals.value, kept.median, tried, nearField), cell * cell);
+    float cell = voxelsGrid().cell, near = max(texelFetch(spread, 0).x, cell * cell);
 #endif
     uint word = (slot * 64u + lane) * laneWords(points), bits = 0u, turn = 0u;
     for (uint i = lane; i < points; i += 64u, ++turn) {

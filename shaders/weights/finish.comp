@@ -1,6 +1,6 @@
 // VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's place.
 // Defines: SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with what
-// discs.comp found.
+// discs.comp found; NEAR 0/1: no disc is smaller than pass near-field says.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 #include "common/finite.glsl"
@@ -11,8 +11,9 @@ layout(set = 0) uniform samplerBuffer placed;
 layout(set = 0, std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(set = 0, std430) writeonly buffer EmittersBlock { Vpl list[]; } emitters;
 layout(set = 0, std430) readonly buffer TotalsBlock { Totals value; } totals;
-layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
-layout(set = 0, std430) writeonly buffer SpreadBlock { vec4 area; } spread;
+#if NEAR
+layout(set = 0) uniform samplerBuffer spread;  // x: area, m^2
+#endif
 layout(set = 0, std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
 
 #if GAINS
@@ -57,8 +58,6 @@ vec3 intensityOf(uint slot, vec3 own, float area) { return own * area; }
 
 layout(push_constant) uniform Constants {
   uint vplCount;
-  uint tried;  // eye paths, 0: none
-  float nearField;
 };
 
 const float kBrightest = 1e18;  // W/sr: far from any real light, and its products stay finite where it is shaded
@@ -75,12 +74,13 @@ void main() {
 #endif
   Vpl vpl = Vpl(vec4(0.0), vec4(0.0), vec4(0.0));
   if (place.w > 0.0 && finite(vec4(intensity, area))) {
-    vpl.positionArea = vec4(place.xyz, max(area, nearArea(totals.value, kept.median, tried, nearField)));
+#if NEAR
+    area = max(area, texelFetch(spread, 0).x);
+#endif
+    vpl.positionArea = vec4(place.xyz, area);
     vpl.normal = texelFetch(placed, first + 1);
     vpl.intensity = clamp(vec4(intensity, 0.0), vec4(0.0), vec4(kBrightest));
   }
   emitters.list[slot] = vpl;
-  if (slot != 0u) return;
-  counters.alive = totals.value.alive;
-  spread.area = vec4(nearArea(totals.value, kept.median, tried, nearField), 0.0, 0.0, 0.0);
+  if (slot == 0u) counters.alive = totals.value.alive;
 }

@@ -39,13 +39,6 @@ const float kPathUnits = 1024.0, kMostLight = 16.0;
 // traced through the triangles (pass eye-paths), has a third one: radiance, w: the unit of its sums.
 const int kEndTexels = 2, kTracedEndTexels = 3;
 
-// Area of the discs that pass near-field makes up for, m^2, which none is smaller than: `share` times that of a VPL of the median
-// density when all have as many eye paths.
-float nearArea(Totals totals, float median, uint tried, float share) {
-  float found = totals.found > 0u ? float(totals.alive) * float(tried) / float(totals.found) : 0.0;
-  return found * median > 0.0 ? share / (found * median) : 0.0;
-}
-
 // Paths that a VPL is given, in parts of a path; their light: in lightX as lightUnits(), of traced paths rgb in their unit.
 struct PathSum {
   uint paths;

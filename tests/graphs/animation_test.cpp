@@ -19,18 +19,20 @@ constexpr double kRate = 42;  // Hz
 constexpr uint32_t kSide = 48;
 
 // Excess of change, see blockExcess(), x 1e-3: the median and the most of all pairs of frames, and the most
-// of those in which the gaze jumps. A third above what seeds 1 to 3 show. With a fifth of the VPLs and a
-// 450th of the pixels everything flickers more than in a picture of full size; and `ours`, as the paper has
-// it, replaces as many VPLs at once as the gaze asks for.
+// of those in which the gaze jumps. For `ours` a third above what seeds 1 to 3 show, for `foveal` half above
+// what seed 1 does. With a fifth of the VPLs and a 450th of the pixels everything flickers more than in a
+// picture of full size; and `ours`, as the paper has it, replaces as many VPLs at once as the gaze asks for.
 struct Case {
   const char* scene;
   const char* graph;
   double median, most, jump;
 };
-const Case kCases[] = {
-    {"cornellbox_moving", "ours", 0.13, 2.7, 6}, {"cornellbox_moving", "foveal", 0.07, 0.6, 1.5},
-    {"atrium", "foveal", 0.35, 1.2, 1.9},        {"balcony", "foveal", 0.24, 0.5, 0.9},
-    {"room", "foveal", 0.6, 2.4, 2.8},           {"yard", "foveal", 0.26, 1.25, 1.25}};
+const Case kCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
+                       {"cornellbox_moving", "foveal", 0.056, 0.46, 1},
+                       {"atrium", "foveal", 0.27, 1.3, 0.34},
+                       {"balcony", "foveal", 0.2, 0.46, 0.43},
+                       {"room", "foveal", 0.54, 2, 2.3},
+                       {"yard", "foveal", 0.25, 0.72, 0.3}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
   return scene::makeFrame(s, geometry, {kSide, kSide}, kFirst + index, 1, kRate);
@@ -171,7 +173,7 @@ struct Jump {
 
 TEST(GazeJump, LightDoesNotJumpWithIt) {
   constexpr uint64_t kJump = 24;
-  for (const Jump& bound : {Jump{"atrium", 0.03, 0.007}, Jump{"room", 0.067, 0.011}}) {
+  for (const Jump& bound : {Jump{"atrium", 0.023, 0.007}, Jump{"room", 0.059, 0.01}}) {
     Diagnostics warnings;
     const scene::Scene s = scene::load(bound.scene, warnings);
     GraphRunOptions options;

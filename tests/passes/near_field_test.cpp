@@ -1,147 +1,204 @@
-// Light of what is near: every ray against the same one on the CPU, and what there must be none of.
+// Light of what is near: the part that discs leave out, by rays, against plain rays in rooms that shine.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <set>
 
+#include "framework/base/diagnostic.h"
 #include "framework/base/random.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/weights_reference.h"
 
 namespace fovea::test {
 namespace {
 
-struct Near {
-  Room room = closedRoom(true, 24, glm::ivec2(96, 72));
-  std::vector<glm::vec4> radiance;
-  float area = 0.5f, foveaRadius = 0.15f;
-  double reach = 2, most = 0;
+using passes::NearFieldSettings;
+using passes::NearFieldStatistics;
 
-  Near() {
-    for (const scene::VoxelSide& side : room.voxels.surface)
-      radiance.emplace_back(glm::abs(side.position) + 0.1f, 1.0f);
+// Walls that shine {1, 2, 4} and reflect half of what they get: after n bounces a wall sends (2 - 1 /
+// 2^(n-1)) of its own.
+scene::Scene shiningRoom(bool block) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+  s.materials[m].emission = {1, 2, 4};
+  addRoom(s, walls, 2);
+  if (block) addBox(s, m, {-1.1f, -2, -1.6f}, {0.2f, -0.4f, -0.7f});
+  return s;
+}
+
+struct Look {
+  Room room;
+  std::unique_ptr<scene::RayScene> rays;
+  scene::Frame frame;
+
+  explicit Look(scene::Scene s, glm::ivec2 size = glm::ivec2(32)) : room(lookInto(std::move(s), 8, size)) {
+    rays = std::make_unique<scene::RayScene>(room.scene, room.geometry);
+    frame = scene::makeFrame(room.scene, room.geometry, glm::uvec2(size), 0, 1);
   }
-  std::vector<float> run() const {
-    PassTest test("near-field");
-    std::vector<float> position;
-    std::vector<uint16_t> normal;
-    std::vector<int16_t> face;
-    for (const Seen& s : room.pixels) {
-      position.insert(position.end(), {s.position.x, s.position.y, s.position.z, s.there ? 1.0f : 0.0f});
-      for (const float x : {s.normal.x, s.normal.y, s.normal.z, 0.0f}) normal.push_back(glm::packHalf1x16(x));
-      const glm::vec2 oct = s.normal.z >= -0.5f ? glm::vec2(s.normal) : glm::vec2(1);
-      for (const float x : {oct.x, oct.y}) face.push_back(int16_t(std::lround(32767 * x)));
+  std::vector<glm::vec4> trace(const NearFieldSettings& settings) {
+    std::vector<glm::vec4> image(size_t((room.size.x + 1) / 2) * size_t((room.size.y + 1) / 2),
+                                 glm::vec4(-1));
+    statistics = passes::traceNearField(frame, frame.views[0], *rays, settings, image);
+    return image;
+  }
+  // Mean of A / (pi d^2 + A) over the cosine-weighted hemisphere of a pixel, and of d.
+  std::pair<double, double> part(const Seen& seen, double area, int count) const {
+    double sum = 0, length = 0;
+    for (int i = 0; i < count; ++i) {
+      const float u = (float(i) + 0.5f) / float(count), v = uniformFloat(uint32_t(i) * 2654435769u);
+      const float r = std::sqrt(u), phi = glm::two_pi<float>() * v;
+      const glm::dvec3 d(scene::toWorld(scene::orthonormalFrame(seen.normal),
+                                        {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)}));
+      const RayHit hit =
+          castRay(room.scene, room.geometry, glm::dvec3(seen.position) + 1e-5 * glm::dvec3(seen.normal), d);
+      EXPECT_TRUE(hit);
+      sum += area / (glm::pi<double>() * hit.t * hit.t + area);
+      length += hit.t;
     }
-    const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
-    test.viewSize(w, h).scene(room.scene).param("reach", reach).param("fovea_radius", double(foveaRadius));
-    test.param("most", most);
-    test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
-    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
-    test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
-    setVoxels(test, room.voxels);
-    test.buffer("radiance", radiance, "VoxelRadiance");
-    test.buffer("spread", std::vector<glm::vec4>{{area, 0, 0, 0}}, "VplSpread");
-    test.run();
-    return test.floats("irradiance");
+    return {sum / count, length / count};
   }
+  NearFieldStatistics statistics;
 };
 
-glm::vec2 stratified(glm::uvec2 at, uint32_t side) {
-  const uint32_t bits = randomStream(side, 0x6e656172u, at.x, at.y), x = at.x % side, y = at.y % side;
-  return (glm::vec2(x, (y + 2 * x + x / 2) % side) +
-          glm::vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)))) /
-         float(side);
-}
-
-glm::vec3 lightOf(const Near& in, const Seen& seen, glm::vec2 u) {
-  if (!seen.there) return glm::vec3(0);
-  const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y, radius2 = in.area / glm::pi<float>();
-  const glm::vec3 d = glm::normalize(scene::toWorld(
-      scene::orthonormalFrame(seen.normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)}));
-  const scene::VoxelHit hit =
-      scene::traceVoxels(in.room.view(), seen.position, d, seen.normal, float(in.reach) * std::sqrt(radius2));
-  if (hit.side == scene::kNoSide) return glm::vec3(0);
-  return glm::vec3(in.radiance[hit.side]) * radius2 / (hit.distance * hit.distance + radius2);
-}
-
-// A ray for each pixel of the work groups (16 x 16 pixels) that the fovea reaches into, one for four
-// elsewhere.
-TEST(NearField, EveryRayEqualsTheReference) {
-  const Near in;
-  const auto got = in.run();
-  const scene::Fovea fovea = scene::makeFovea(glm::vec2(0.5f), in.room.size, in.foveaRadius);
-  int wrong = 0, lit = 0, sparse = 0;
-  for (int y = 0; y < in.room.size.y; ++y)
-    for (int x = 0; x < in.room.size.x; ++x) {
-      const glm::vec2 low(x / 16 * 16, y / 16 * 16), high = low + glm::vec2(16);
-      const bool each = glm::distance(glm::clamp(fovea.centre, low, high), fovea.centre) <= fovea.radius;
-      const int px = each ? x : x / 2 * 2, py = each ? y : y / 2 * 2;
-      const glm::vec2 u = each ? stratified({x, y}, 4) : stratified({x / 2, y / 2}, 2);
-      const glm::vec3 want = lightOf(in, in.room.pixels[size_t(py) * in.room.size.x + px], u);
-      const float* pixel = &got[4 * (size_t(y) * in.room.size.x + x)];
-      wrong +=
-          glm::distance(want, glm::vec3(pixel[0], pixel[1], pixel[2])) > 2e-3f * glm::length(want) + 1e-6f;
-      lit += want != glm::vec3(0);
-      sparse += !each;
+TEST(NearField, ThePartThatDiscsLeaveOut) {
+  Look look(shiningRoom(true), glm::ivec2(8));
+  NearFieldSettings settings;
+  settings.foveaRadius = 2;
+  settings.samples = 16384;  // each pixel of a block gets a quarter of them
+  const double series[] = {1, 1.5, 1.75};
+  for (const auto& [area, bounces] : {std::pair(0.05f, 2u), {0.5f, 1u}, {0.5f, 2u}, {0.5f, 3u}, {5.0f, 2u}}) {
+    settings.area = area;
+    settings.bounces = bounces;
+    const auto got = look.trace(settings);
+    double all = 0, wantAll = 0;
+    const auto bound = [&](double part,
+                           int texels) {  // a ray goes on with a probability of at most 8 times its part
+      return 0.01 + 4.5 / std::sqrt(8 * part * settings.samples * texels);
+    };
+    for (int i = 0; i < 16; ++i) {
+      double want = 0;
+      for (int k = 0; k < 4; ++k)
+        want += look.part(look.room.pixels[size_t((i / 4 * 2 + k / 2) * 8 + i % 4 * 2 + k % 2)], area, 2000)
+                    .first /
+                4;
+      EXPECT_EQ(got[i].a, 2);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(got[i][c] / (series[bounces - 1] * (1 << c) * want), 1, bound(want, 1))
+            << i << ", area " << area << ", bounces " << bounces;
+      wantAll += want / 16;
+      all += got[i].r / series[bounces - 1] / 16;
     }
-  EXPECT_GT(lit, 500);
-  EXPECT_GT(sparse, 1000);
-  EXPECT_LT(sparse, in.room.size.x * in.room.size.y / 2 + 2000);
-  EXPECT_LE(wrong, in.room.size.x * in.room.size.y / 200);  // rays that graze a voxel
-}
-
-// No pixel is brighter than so many times the mean of its work group; those that are not stay as they are.
-TEST(NearField, NoSparksWithALimit) {
-  Near in;
-  in.room = closedRoom(true, 24, glm::ivec2(96, 80));
-  for (size_t i = 0; i < in.radiance.size(); i += 40) in.radiance[i] *= 100;
-  const auto free = in.run();
-  in.most = 3;
-  const auto got = in.run();
-  const auto at = [&](const std::vector<float>& image, int x, int y) {
-    const float* p = &image[4 * (size_t(y) * in.room.size.x + x)];
-    return glm::vec3(p[0], p[1], p[2]);
-  };
-  const auto luminance = [](glm::vec3 v) { return glm::dot(v, glm::vec3(0.2126f, 0.7152f, 0.0722f)); };
-  int limited = 0, wrong = 0;
-  for (int y = 0; y < in.room.size.y; ++y)
-    for (int x = 0; x < in.room.size.x; ++x) {
-      float mean = 0;
-      for (int k = 0; k < 256; ++k)
-        mean += luminance(at(free, x / 16 * 16 + k % 16, y / 16 * 16 + k / 16)) / 256;
-      const glm::vec3 was = at(free, x, y),
-                      want = was * std::min(1.0f, 3 * mean / std::max(luminance(was), 1e-30f));
-      limited += luminance(was) > 3 * mean;
-      wrong += glm::distance(at(got, x, y), want) > 3e-3f * glm::length(want) + 1e-6f;
-    }
-  EXPECT_GT(limited, 50);
-  EXPECT_EQ(wrong, 0);
-}
-
-// In a closed room of one radiance the discs' light and this add up: with a reach that ends nowhere, the mean
-// over the pixels is that of A / (pi d^2 + A), and a larger disc leaves more to it.
-TEST(NearField, GrowsWithTheDisc) {
-  Near in;
-  in.radiance.assign(in.radiance.size(), glm::vec4(1));
-  in.reach = 100;
-  double before = 0;
-  for (const float area : {0.01f, 1.0f, 100.0f, 1e6f}) {
-    in.area = area;
-    double mean = 0;
-    const auto got = in.run();
-    for (size_t i = 0; i < got.size(); i += 4) mean += got[i] / double(got.size() / 4);
-    EXPECT_GT(mean, before);
-    before = mean;
+    EXPECT_NEAR(all / wantAll, 1, bound(wantAll, 16)) << "area " << area << ", bounces " << bounces;
   }
-  EXPECT_NEAR(before, 1, 5e-3);  // all of it, but for rays from within a quarter of a cell of an edge
 }
 
-TEST(NearField, NoneWithoutDiscsOrSurfaces) {
-  Near in;
-  in.area = 0;
-  for (const float x : in.run()) EXPECT_EQ(x, 0);
-  in.area = 1;
-  for (Seen& s : in.room.pixels) s.there = false;
-  for (const float x : in.run()) EXPECT_EQ(x, 0);
+// Few rays go far, and yet on average as far as they would all go.
+TEST(NearField, MeanLengthWithoutItsRays) {
+  Look look(shiningRoom(true));
+  NearFieldSettings settings;
+  settings.foveaRadius = 2;
+  settings.area = 0;
+  settings.samples = 16;
+  look.trace(settings);
+  double want = 0;
+  for (const Seen& seen : look.room.pixels)
+    want += look.part(seen, 1, 64).second / double(look.room.pixels.size());
+  EXPECT_NEAR(look.statistics.length / look.statistics.hits, want, 0.02 * want);
+  EXPECT_EQ(look.statistics.shaded, 0u);
+  settings.area = 0.02f;
+  look.trace(settings);
+  EXPECT_NEAR(look.statistics.length / look.statistics.hits, want, 0.04 * want);
+  EXPECT_LT(look.statistics.shaded, 4096 / 3);
+}
+
+// One sample for 2 x 2 pixels in the fovea, for a tile outside; nothing where the pixel shows the background.
+TEST(NearField, SamplesWhereTheEyeLooks) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f));
+  s.materials[m].emission = glm::vec3(1);
+  addBox(s, m, {-0.8f, -0.8f, -4}, {0.8f, 0.8f, -3});
+  addBox(s, m, {-0.8f, -1.6f, -3.2f}, {0.8f, -0.8f, -2});
+  Look look(std::move(s), glm::ivec2(70, 50));  // tiles hang over
+  NearFieldSettings settings;
+  settings.foveaRadius = 0.1f;
+  settings.spacing = 8;
+  for (settings.turn = 0; settings.turn < 64; settings.turn += 7) {
+    const auto got = look.trace(settings);
+    const scene::Fovea fovea = scene::makeFovea(glm::vec2(0.5f), look.room.size, settings.foveaRadius);
+    int counts[3] = {};
+    for (int y = 0; y < 25; ++y)
+      for (int x = 0; x < 35; ++x) {
+        const glm::ivec2 tile = glm::ivec2(x, y) / 4 * 8;
+        const glm::vec2 nearest = glm::clamp(fovea.centre, glm::vec2(tile), glm::vec2(tile + 8));
+        const bool inside = glm::distance(nearest, fovea.centre) <= fovea.radius;
+        const int side = inside ? 2 : 8;
+        const glm::ivec2 p =
+            glm::ivec2(2 * x, 2 * y) / side * side + glm::ivec2(passes::samplePixel(settings.turn, side));
+        const bool there = p.x < 70 && p.y < 50 && look.room.pixels[size_t(p.y * 70 + p.x)].there;
+        const glm::vec4 v = got[size_t(y * 35 + x)];
+        ASSERT_EQ(v.a, there ? side : 0) << x << " " << y;
+        if (!there) {
+          EXPECT_EQ(glm::vec3(v), glm::vec3(0));
+        }
+        if (!inside) {
+          EXPECT_EQ(v, got[size_t(y / 4 * 4 * 35 + x / 4 * 4)]);
+        }
+        ++counts[!there ? 0 : inside ? 1 : 2];
+      }
+    for (const int n : counts) EXPECT_GT(n, 10);
+  }
+}
+
+TEST(NearField, EveryPixelOfABlockHasItsTurn) {
+  for (const uint32_t side : {2u, 4u, 8u}) {
+    std::set<uint32_t> seen;
+    for (uint32_t turn = 0; turn < side * side; ++turn) {
+      const glm::uvec2 p = passes::samplePixel(turn, side);
+      ASSERT_TRUE(p.x < side && p.y < side);
+      seen.insert(p.y * side + p.x);
+      EXPECT_EQ(passes::samplePixel(turn + side * side, side), p);
+    }
+    EXPECT_EQ(seen.size(), side * side);
+  }
+}
+
+TEST(NearField, TheSameWhateverTheThreads) {
+  Look look(shiningRoom(true));
+  NearFieldSettings settings;
+  settings.turn = 3;
+  settings.threads = 1;
+  const auto one = look.trace(settings);
+  const NearFieldStatistics statistics = look.statistics;
+  settings.threads = 5;
+  EXPECT_EQ(look.trace(settings), one);
+  EXPECT_EQ(look.statistics.rays, statistics.rays);
+  EXPECT_EQ(look.statistics.length, statistics.length);
+}
+
+TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
+  const Look look(shiningRoom(false), glm::ivec2(16));
+  double length = 0;
+  for (const Seen& seen : look.room.pixels) length += look.part(seen, 1, 64).second / 256;
+  for (const int vpls : {100, 1000}) {
+    PassTest test("near-field");
+    test.viewSize(16, 16).scene(look.room.scene).param("vpls", vpls).param("fovea_radius", 2.0);
+    test.run(3);
+    const double want = 50 * length * length / vpls;
+    EXPECT_NEAR(test.values<glm::vec4>("spread")[0].x, want, 0.1 * want);
+  }
+}
+
+TEST(NearField, SpacingIsAPowerOfTwo) {
+  PassTest test("near-field");
+  test.viewSize(16, 16).scene(shiningRoom(false)).param("spacing", 6);
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("spacing 6"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace

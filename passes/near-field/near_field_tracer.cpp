@@ -1,0 +1,141 @@
+#include "passes/near-field/near_field_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <thread>
+#include <vector>
+
+#include "framework/base/random.h"
+#include "framework/scene/fovea.h"
+#include "framework/scene/lights.h"
+#include "passes/eye-paths/surface_tracer.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace scene;
+
+constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u;
+constexpr float kSure = 8;  // times their part of the light: how probably rays go on
+
+class Tracer {
+ public:
+  Tracer(const Frame& frame, const View& view, const RayScene& rays, const NearFieldSettings& settings,
+         std::span<glm::vec4> image)
+      : view_(view),
+        settings_(settings),
+        surfaces_(frame, view, rays),
+        image_(image),
+        columns_((view.size.x + 1) / 2),
+        rows_((view.size.y + 1) / 2),
+        fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)) {}
+
+  // All tiles of `spacing` pixels in one row of them.
+  void traceTiles(uint32_t row, NearFieldStatistics& statistics) const {
+    const uint32_t spacing = settings_.spacing, step = spacing / 2;
+    for (uint32_t x = 0; x < view_.size.x; x += spacing) {
+      const glm::uvec2 tile(x, row * spacing);
+      const glm::vec2 nearest = glm::clamp(fovea_.centre, glm::vec2(tile), glm::vec2(tile) + float(spacing));
+      const bool inFovea = glm::distance(nearest, fovea_.centre) <= fovea_.radius;
+      const glm::vec4 shared = inFovea ? glm::vec4(0) : sampleOf(tile, spacing, statistics);
+      for (uint32_t i = 0; i < step * step; ++i) {
+        const glm::uvec2 texel = tile / 2u + glm::uvec2(i % step, i / step);
+        if (texel.x >= columns_ || texel.y >= rows_) continue;
+        image_[size_t(texel.y) * columns_ + texel.x] = inFovea ? sampleOf(2u * texel, 2, statistics) : shared;
+      }
+    }
+  }
+  uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
+
+ private:
+  // Mean over the turns whose pixel shows a surface.
+  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
+    glm::vec3 sum(0);
+    uint32_t found = 0;
+    for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn) {
+      const glm::uvec2 pixel = corner + samplePixel(turn, side);
+      if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
+      const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
+      if (!v.there) continue;
+      ++found;
+      sum += lightAt(v, corner / side, turn, statistics);
+    }
+    return found > 0 ? glm::vec4(sum / float(found), side) : glm::vec4(0);
+  }
+
+  // Blocks next to each other, 4 x 4 of them, take turns in one sequence.
+  glm::vec3 lightAt(const TracedSurface& v, glm::uvec2 block, uint32_t turn,
+                    NearFieldStatistics& statistics) const {
+    const glm::uvec2 group = block / 4u, place = block % 4u;
+    const uint32_t order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
+    const uint32_t stream = randomStream(settings_.seed, group.x, kNearStream, group.y);
+    const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, 16 * turn + order));
+    if (glm::dot(direction, v.face) <= 0) return glm::vec3(0);
+    // As far as it is worth it: beyond, a ray is as good as one that finds nothing.
+    const float radius2 = settings_.area * glm::one_over_pi<float>();
+    const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
+    const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
+    const TracedSurface hit = surfaces_.arrive(v.origin, direction, reach, statistics.rays);
+    if (!hit.there) return glm::vec3(0);
+    const float distance = glm::distance(hit.position, v.position);
+    const float part = radius2 / (distance * distance + radius2);
+    const float probability = radius2 > 0 ? std::min(kSure * part, 1.0f) : 1.0f;
+    statistics.hits += 1 / probability;
+    statistics.length += distance / probability;
+    if (!(radius2 > 0)) return glm::vec3(0);
+    ++statistics.shaded;
+    const glm::vec3 rho = surfaces_.reflectance(hit);
+    glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
+    if (settings_.bounces > 1)
+      radiance += rho * surfaces_.gather(hit, settings_.bounces - 1, 1,
+                                         randomStream(stream, turn, kGatherStream, order), statistics.rays);
+    return radiance * (part / probability);
+  }
+
+  const View& view_;
+  const NearFieldSettings& settings_;
+  SurfaceTracer surfaces_;
+  std::span<glm::vec4> image_;
+  uint32_t columns_, rows_;
+  Fovea fovea_;
+};
+
+}  // namespace
+
+glm::uvec2 samplePixel(uint32_t turn, uint32_t side) {
+  glm::uvec2 p(0);
+  for (uint32_t bit = side / 2; bit > 0; bit /= 2, turn /= 4) {
+    p.x += (turn & 1u) * bit;
+    p.y += ((turn ^ turn >> 1) & 1u) * bit;
+  }
+  return p;
+}
+
+NearFieldStatistics traceNearField(const Frame& frame, const View& view, const RayScene& rays,
+                                   const NearFieldSettings& settings, std::span<glm::vec4> image) {
+  const Tracer tracer(frame, view, rays, settings, image);
+  std::vector<NearFieldStatistics> rows(tracer.tileRows());
+  std::atomic<uint32_t> next = 0;
+  const auto work = [&] {
+    for (uint32_t row = next++; row < rows.size(); row = next++) tracer.traceTiles(row, rows[row]);
+  };
+  {
+    const uint32_t cores =
+        std::max(settings.threads != 0 ? settings.threads : std::thread::hardware_concurrency(), 1u);
+    std::vector<std::jthread> helpers;
+    for (uint32_t i = 1; i < std::min(cores, uint32_t(rows.size())); ++i) helpers.emplace_back(work);
+    work();
+  }
+  NearFieldStatistics sum;  // in a fixed order
+  for (const NearFieldStatistics& row : rows) {
+    sum.rays += row.rays;
+    sum.shaded += row.shaded;
+    sum.hits += row.hits;
+    sum.length += row.length;
+  }
+  return sum;
+}
+
+}  // namespace fovea::passes

@@ -1,0 +1,138 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Running mean, at every pixel, of samples that few pixels get in a frame. A pixel takes over the mean of the frame before from
+// where its surface was then, if that was the same surface, and the sample of its block if that was taken on its surface.
+//
+// Of the four texels around the place where it was one is taken at random, as probably as it is near: so that what moves by
+// parts of a pixel moves on average, at the price of one load. Images and not textures: those cost several times as much on a
+// CPU device.
+#include "common/scene.glsl"
+#include "common/random.glsl"
+
+layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
+layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
+layout(set = 0, r32ui) uniform readonly uimage2D gbufferId;
+layout(set = 0, rgba32f) uniform readonly image2D previousPosition;
+layout(set = 0, rgba16f) uniform readonly image2D previousNormal;
+layout(set = 0, rgba16f) uniform readonly image2D samples;
+layout(set = 0, rgba16f) uniform readonly image2D history;
+layout(location = 0) out vec4 mean;
+
+layout(push_constant) uniform Constants {
+  uint frameIndex;
+  uint turn;             // of the pixels of a block
+  float weight;          // of a sample
+  float frames;          // that the mean goes back
+  float planeTolerance;  // in parts of the distance to the eye
+  float leastCos;
+  int scale;             // pixels a side of a texel of `samples`
+};
+
+const uint kJitterStream = 0x74656d70u;
+const float kSamePlace = 1e-3;  // pixels: stands still
+
+// As samplePixel() in passes/near-field.
+ivec2 samplePixel(uint t, int side) {
+  ivec2 p = ivec2(0);
+  for (int bit = side / 2; bit > 0; bit /= 2, t /= 4u) {
+    p.x += int(t & 1u) * bit;
+    p.y += int((t ^ t >> 1u) & 1u) * bit;
+  }
+  return p;
+}
+
+bool sameSurface(vec4 position, vec3 normal, vec4 other, vec3 otherNormal) {
+  return other.w > 0.0 && abs(dot(other.xyz - position.xyz, normal)) <= planeTolerance * position.w &&
+         dot(normal, otherNormal) >= leastCos;
+}
+
+// Where the surface was in the frame before; of one that deforms, where it is.
+vec3 positionBefore(vec3 position, uint id) {
+  uint object = id >> 16;
+  for (int turn_ = 0; turn_ < int(object != 0u); ++turn_)  // as a loop, for a CPU device walks through a branch that no lane takes
+    if (!objectDeforms(object)) position = previousObjectTransform(object) * vec4(toObject(object, position), 1.0);
+  return position;
+}
+
+// rgb: mean, a: frames in it, 0: none.
+vec4 fromHistory(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
+  vec4 before = vec4(positionBefore(position.xyz, imageLoad(gbufferId, p).r), position.w);
+  vec4 clip = view.previousWorldToClip * vec4(before.xyz, 1.0);
+  if (!(clip.w > 0.0)) return vec4(0.0);
+  vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
+  uint bits = randomStream(uint(p.x), frameIndex, kJitterStream, uint(p.y));
+  vec2 still = round(at), corner = floor(at);
+  at = mix(at, still, lessThan(abs(at - still), vec2(kSamePlace)));
+  ivec2 first = ivec2(floor(at + vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)))) - corner);
+  vec4 result = vec4(0.0);
+  bool found = false;
+  for (int i = 0; i < 4 && !found; ++i) {
+    ivec2 q = ivec2(corner) + (first ^ ivec2(i & 1, i >> 1)), inside = clamp(q, ivec2(0), size - 1);
+    found = q == inside && sameSurface(before, normal, imageLoad(previousPosition, inside), imageLoad(previousNormal, inside).xyz);
+    if (found) result = imageLoad(history, inside);
+  }
+  return result;
+}
+
+struct Sample {
+  vec3 value;
+  int side;  // of the block it was taken for, 0: there is none
+  bool own;  // of the pixel's surface
+};
+
+Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
+  ivec2 inside = clamp(p, ivec2(0), size - 1);
+  vec4 value = imageLoad(samples, inside / scale);
+  int side = p == inside ? int(value.a) : 0, block = max(side, 1);
+  ivec2 from = min(inside / block * block + samplePixel(turn, side), size - 1);
+  bool own = side > 0 && sameSurface(position, normal, imageLoad(gbufferPosition, from), imageLoad(gbufferNormal, from).xyz);
+  return Sample(value.rgb, side, own);
+}
+
+float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+
+// Sum of samples, their number, and the brightest of them.
+struct Around {
+  vec4 sum;
+  vec3 brightest;
+};
+
+void add(inout Around around, Sample s, bool wanted) {
+  around.sum += wanted ? vec4(s.value, 1.0) : vec4(0.0);
+  if (wanted && luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
+}
+
+// Without the brightest, if there are others: one that meets something sunlit would be a spark.
+vec3 robustMean(Around around) {
+  float left = around.sum.a - 1.0;
+  return left > 0.0 ? (around.sum.rgb - around.brightest) / left : around.sum.rgb;
+}
+
+// Where there is no mean yet: that of the samples of the pixel's surface in the blocks around; of other surfaces if there are
+// none, but it counts for nothing.
+vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side) {
+  Around own = Around(vec4(0.0), vec3(0.0)), all = own;
+  for (int i = 0; i < 9; ++i) {
+    Sample s = sampleAt(p + max(side, scale) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
+    add(own, s, s.own);
+    add(all, s, s.side > 0);
+  }
+  return own.sum.a > 0.0 ? vec4(robustMean(own), own.sum.a * weight) : vec4(robustMean(all), 0.0);
+}
+
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferPosition);
+  vec4 position = imageLoad(gbufferPosition, p);
+  vec3 normal = imageLoad(gbufferNormal, p).xyz;
+  bool surface = position.w > 0.0;
+  vec4 old = surface ? fromHistory(p, position, normal, size) : vec4(0.0);
+  Sample s = sampleAt(p, position, normal, size);
+  // Larger blocks change all at once: less each time.
+  float most = frames * float(max(s.side, scale)) / float(scale);
+  float count = s.own ? min(old.a + weight, most) : old.a;
+  vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(weight / count, 1.0)), count) : old;
+  int without = surface && !(old.a > 0.0) ? 1 : 0;  // a loop of no turns is skipped where a branch is not, on a CPU device
+  for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side);
+  mean = surface ? result : vec4(0.0);
+}
