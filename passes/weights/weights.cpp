@@ -217,7 +217,9 @@ void Weights::prepare(PrepareContext& ctx) {
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
     if (!traced_) paths_ = ctx.compute("weights/paths.comp");
-    share_ = ctx.compute("weights/share.comp", {{"TRACED", traced}, {"PATHS", std::to_string(kSharedPaths)}});
+    share_ = ctx.compute(
+        "weights/share.comp",
+        {{"TRACED", traced}, {"NEAR", traced_ ? near : "0"}, {"PATHS", std::to_string(kSharedPaths)}});
     if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", near}});
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");

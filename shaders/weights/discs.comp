@@ -1,6 +1,6 @@
 // Strategy `importance-area` with the kernel `disc`, last step but one: the disc of a VPL's own area sends the region less
 // than one of a voxel would, wherever it is close. How much more the VPL has to shine for it. One work group a VPL.
-// NEAR 1: pass near-field adds what discs of the area `spread` would send less than those of a voxel.
+// NEAR 1: no disc is smaller than `spread`, for which pass near-field makes up: the paths were given without that light.
 #include "common/scene.glsl"
 #include "weights/weights.glsl"
 #include "weights/landing.glsl"
@@ -22,11 +22,6 @@ layout(push_constant) uniform Constants {
   float areaCap;
 };
 
-// What one VPL has to make up for: with pass near-field next to nothing, and what is more would be a bright spot.
-#if NEAR
-const float kNearGain = 1.25;
-#endif
-
 shared float sums[64];
 
 void main() {
@@ -37,17 +32,12 @@ void main() {
   if (before > 0.0 && area > 0.0) {
     vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
 #if NEAR
-    float cell = voxelsGrid().cell, near = max(texelFetch(spread, 0).x, cell * cell);
+    area = max(area, texelFetch(spread, 0).x);
 #endif
     uint word = (slot * 64u + lane) * laneWords(points), bits = 0u, turn = 0u;
     for (uint i = lane; i < points; i += 64u, ++turn) {
       if ((turn & 31u) == 0u) bits = texelFetch(seen, int(word + turn / 32u)).r;
-#if NEAR
-      float p = landing(i, position, normal, max(area, near), 0.0);
-      p += landing(i, position, normal, cell * cell, 0.0) - landing(i, position, normal, near, 0.0);
-#else
       float p = landing(i, position, normal, area, 0.0);
-#endif
       sum += (bits >> (turn & 31u) & 1u) != 0u ? p : 0.0;
     }
   }
@@ -57,11 +47,6 @@ void main() {
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }
-#if NEAR
-  float mostGain = kNearGain;
-#else
-  float mostGain = areaCap;
-#endif
   float after = sums[0] / float(points);
-  if (lane == 0u && inside) gains.list[slot] = after > 0.0 ? min(before / after, mostGain) : 1.0;
+  if (lane == 0u && inside) gains.list[slot] = after > 0.0 ? min(before / after, areaCap) : 1.0;
 }

@@ -36,6 +36,11 @@ layout(set = 0, std430) buffer TotalsBlock { Totals value; } totals;
 layout(set = 0, std430) buffer SumsBlock { PathSum list[]; } sums;
 layout(set = 0, std430) readonly buffer KeptBlock { float total, median; } kept;
 
+#if NEAR
+layout(set = 0) uniform samplerBuffer screen;  // see points.comp
+layout(set = 0) uniform samplerBuffer spread;  // x: area, m^2
+#endif
+
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint tried;  // paths
@@ -64,6 +69,12 @@ void give(uint vpl, uint path, float luminance, uint pathUnits) {
 #if TRACED
   vec4 radiance = endTexel(path, 2);
   if (!(radiance.w > 0.0)) return;
+#if NEAR
+  // What pass near-field brings of it comes from no VPL.
+  vec3 away = endTexel(path, 0).xyz - texelFetch(screen, int(3u * (path % points))).xyz;
+  float d2 = dot(away, away);
+  radiance.rgb *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
+#endif
   uvec3 light = uvec3(radiance.rgb / radiance.w * (float(pathUnits) / kPathUnits) + 0.5);
   atomicAdd(sums.list[vpl].lightX, light.x);
   atomicAdd(sums.list[vpl].lightY, light.y);
