@@ -29,7 +29,7 @@ struct Case {
 };
 const Case kCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
                        {"cornellbox_moving", "foveal", 0.056, 0.46, 1},
-                       {"atrium", "foveal", 0.27, 1.3, 0.34},
+                       {"atrium", "foveal", 0.27, 1.2, 0.34},
                        {"balcony", "foveal", 0.2, 0.46, 0.43},
                        {"room", "foveal", 0.54, 2, 2.3},
                        {"yard", "foveal", 0.25, 0.72, 0.3}};
