@@ -83,7 +83,8 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
                                 const EyePathSettings& settings, const EyePathLists& lists) {
   const Tracer tracer(frame, view, rays, settings);
   const std::span<EyePathEnd> ends = lists.ends;
-  const uint32_t points = uint32_t(lists.starts.size()), renew = std::max(settings.renewFrames, 1u);
+  const uint32_t points = uint32_t(lists.starts.size()), renew = std::max(settings.renewFrames, 1u),
+                 trace = std::max(settings.traceFrames, 1u);
   const Fovea fovea = makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0;
@@ -94,10 +95,12 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
          first = next.fetch_add(kPointsAtOnce))
       for (uint32_t point = first; point < std::min(first + kPointsAtOnce, points); ++point) {
         EyePathStart& start = lists.starts[point];
-        if (point % renew == settings.turn % renew || !tracer.stands(start, count))
+        const bool anew = point % renew == settings.turn % renew || !tracer.stands(start, count);
+        if (anew)
           start = tracer.look(
               glm::vec2(screenPoint(settings.region, point, points, fovea, glm::ivec2(view.size))) + 0.5f,
               count);
+        if (!anew && point % trace != settings.turn % trace) continue;
         for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)
           ends[path] = start.there > 0 ? tracer.end(start, point, turn, count) : EyePathEnd{};
       }

@@ -20,7 +20,8 @@ struct EyePathSettings {
   uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees
   uint32_t gathered = 2;                  // rays by which the second of them is found
   uint32_t renewFrames = 1;               // in which all starts are looked for anew, a share in each
-  uint32_t turn = 0;                      // of them
+  uint32_t traceFrames = 1;               // in which all paths are traced anew, likewise
+  uint32_t turn = 0;                      // of both
   uint32_t threads = 0;                   // 0: one a core; the result does not depend on it
 };
 
@@ -56,7 +57,7 @@ struct EyePathLists {
 };
 
 // Fills the lists. A start whose number is not `turn` modulo renewFrames stays where it is as long as there
-// is a surface; its paths are traced anew like all.
+// is a surface; its paths stay, too, if its number is not `turn` modulo traceFrames.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);

@@ -41,6 +41,10 @@ class EyePaths : public Pass {
         "renew_frames", integer(1, 1, 1000),
         "in which all paths get new starts, a share of the points in each frame; the others start where "
         "they did, so that a jump of the gaze comes in gradually");
+    d.parameter(
+        "trace_frames", integer(1, 1, 1000),
+        "in which all paths are traced anew, those of a share of the points in each frame; the others, "
+        "unless their start is a new one, keep the light that they found");
     d.counter("rays", "rays traced, towards lights, too");
     d.counter("ends", "paths that found a surface");
     return d;
@@ -59,22 +63,25 @@ class EyePaths : public Pass {
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.gathered = uint32_t(p.integer("gathered"));
     settings.renewFrames = ctx.firstFrame() ? 1 : uint32_t(p.integer("renew_frames"));
-    settings.turn = uint32_t(ctx.frameNumber() % settings.renewFrames);
+    settings.traceFrames = uint32_t(p.integer("trace_frames"));
+    settings.turn = uint32_t(ctx.frameNumber());
     starts_.resize(ctx.count("paths.starts"));
-    const auto ends = ctx.outputAs<EyePathEnd>("paths.ends");
+    ends_.resize(ctx.count("paths.ends"));
     EyePathStatistics statistics;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
       statistics = traceEyePaths(frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry),
-                                 settings, {starts_, ends});
+                                 settings, {starts_, ends_});
     else
-      std::ranges::fill(starts_, EyePathStart{}), std::ranges::fill(ends, EyePathEnd{});
+      std::ranges::fill(starts_, EyePathStart{}), std::ranges::fill(ends_, EyePathEnd{});
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
+    std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("ends", double(statistics.ends));
   }
 
  private:
   std::vector<EyePathStart> starts_;  // as they were handed on last
+  std::vector<EyePathEnd> ends_;
 };
 
 FOVEA_PASS(EyePaths);

@@ -1,5 +1,6 @@
 // The light of what is near, which VPLs shaded as discs leave out.
 #include <algorithm>
+#include <bit>
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
@@ -24,12 +25,11 @@ class NearField : public Pass {
         "from it: rays through the triangles, few a frame",
         PassKind::Host);
     d.view();
-    d.output(
-        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
-        Usage::HostWrite,
-        "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2, or of each `spacing` x `spacing` "
-        "outside "
-        "the fovea; a: 2, `spacing`, 0 where that pixel shows no surface; for pass temporal-accumulation");
+    d.output("samples",
+             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
+             Usage::HostWrite,
+             "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2, or of each `spacing` x `spacing` "
+             "outside the fovea; a: which, and whether it shows a surface, for pass temporal-accumulation");
     d.output("spread", buffer("VplSpread", 16, 1), Usage::HostWrite,
              "x: area of the discs, m^2, which none may be smaller than: for pass weights");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
@@ -59,7 +59,7 @@ class NearField : public Pass {
     NearFieldSettings settings;
     settings.foveaRadius = float(p.real("fovea_radius"));
     settings.spacing = uint32_t(p.integer("spacing"));
-    if ((settings.spacing & (settings.spacing - 1)) != 0)
+    if (!std::has_single_bit(settings.spacing))
       throw Error(ExitCode::BadInput,
                   "pass `near-field`: spacing " + std::to_string(settings.spacing) + " is not a power of two",
                   "use 2, 4 or 8");

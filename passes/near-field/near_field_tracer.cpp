@@ -62,7 +62,8 @@ class Tracer {
       ++found;
       sum += lightAt(v, corner / side, turn, statistics);
     }
-    return found > 0 ? glm::vec4(sum / float(found), side) : glm::vec4(0);
+    return {sum / float(std::max(found, 1u)),
+            float(sampleCode(side, samplePixel(settings_.turn, side), found > 0))};
   }
 
   // Blocks next to each other, 4 x 4 of them, take turns in one sequence.

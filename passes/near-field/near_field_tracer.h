@@ -34,14 +34,21 @@ struct NearFieldStatistics {
 // part is small only as many as are worth it.
 //
 // image: a texel for a block of 2 x 2 pixels, rows of (size.x + 1) / 2. rgb: irradiance / pi at one pixel of
-// the block, or, outside the fovea, of the `spacing` x `spacing` pixels that hold it: samplePixel(). a: side
-// of what the sample is for, 2 or `spacing`; 0: the pixel shows no surface.
+// the block, or, outside the fovea, of the `spacing` x `spacing` pixels that hold it; 0 if there is no
+// sample. a: sampleCode().
 NearFieldStatistics traceNearField(const scene::Frame& frame, const scene::View& view,
                                    const scene::RayScene& rays, const NearFieldSettings& settings,
                                    std::span<glm::vec4> image);
 
+// What a sample is for, as pass temporal-accumulation reads it; exact as a half. Bits 0 to 3: side of the
+// block in pixels, at most 8; 4 to 6 and 7 to 9: x and y in it of the pixel that was sampled; 10: that pixel
+// shows no surface, so there is no sample.
+constexpr uint32_t sampleCode(uint32_t side, glm::uvec2 pixel, bool found) {
+  return side | pixel.x << 4 | pixel.y << 7 | (found ? 0u : 1u) << 10;
+}
+
 // Which pixel of a block of side x side pixels, a power of two, has its turn: neighbours come far from each
-// other. As in shaders/temporal-accumulation/temporal_accumulation.frag.
+// other.
 glm::uvec2 samplePixel(uint32_t turn, uint32_t side);
 
 }  // namespace fovea::passes

@@ -1,4 +1,5 @@
 // Few samples a frame become many over the frames: they stay on the surfaces where they were taken.
+#include <bit>
 #include <cmath>
 
 #include "framework/graph/registry.h"
@@ -28,10 +29,10 @@ class TemporalAccumulation : public Pass {
             {position(), normal(), member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("previous", "gbuffer", {position(), normal()}, "those of the frame before");
-    d.input("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: of one pixel of a block; a: side of the block in pixels, 0: there is none; which pixel of "
-            "a block "
-            "has its turn is as in pass near-field");
+    d.input(
+        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+        "rgb: of one pixel of a block; a: which, as pass near-field says it; a power of two times smaller "
+        "than `mean`");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the frame before");
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
@@ -57,11 +58,10 @@ class TemporalAccumulation : public Pass {
   void record(RecordContext& ctx) override {
     const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
     ctx.use(kernel_)
-        .constant("turn", uint32_t(ctx.frameNumber()))
         .constant("weight", ctx.firstFrame() ? float(ctx.parameters().integer("first_samples")) : 1.0f)
         .constant("frames", float(ctx.parameters().real("frames")))
         .constant("leastCos", std::cos(float(ctx.parameters().real("normal_angle")) * 0.017453293f))
-        .constant("scale", int32_t((pixels + texels - 1) / texels))
+        .constant("shift", int32_t(std::bit_width((pixels + texels - 1) / texels - 1)))
         .drawFullscreen();
   }
 

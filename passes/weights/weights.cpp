@@ -81,7 +81,7 @@ PassDeclaration Weights::declaration() {
   d.input(
        "spread", buffer("VplSpread", 16), Usage::TexelRead,
        "x: area, m^2: the picture gets the light of what is near from pass near-field, as much as discs of "
-       "this area leave out, and no disc of `importance-area` is smaller")
+       "this area leave out, and no disc of `importance-area` is smaller; with `traced` and kernel `disc`")
       .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
            "VPLs to shade with, in their slots; an empty slot is all zeros");
@@ -198,7 +198,14 @@ void Weights::prepare(PrepareContext& ctx) {
                 "give weights.points and eye-paths.points the same number");
   tally_ = ctx.compute("weights/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   const bool discs = shared == "1" && p.text("kernel") == "disc";
-  const std::string near = discs && ctx.has("spread") ? "1" : "0";
+  const std::string near = ctx.has("spread") ? "1" : "0";
+  if (ctx.has("spread") && !(traced_ && discs))
+    throw Error(
+        ExitCode::BadInput,
+        "pass `weights`: input `spread` says that other rays bring the light of what is near, but nothing "
+        "takes it from these VPLs' light",
+        "wire `traced` and choose strategy `importance-area` and kernel `disc`, or leave out `spread` and "
+        "pass near-field, as graphs/foveal_no_near_field.json does");
   finish_ =
       ctx.compute("weights/finish.comp",
                   {{"SHARED", shared}, {"TRACED", traced}, {"GAINS", discs ? "1" : "0"}, {"NEAR", near}});
@@ -217,9 +224,8 @@ void Weights::prepare(PrepareContext& ctx) {
   pdf_ = ctx.compute("weights/pdf.comp", {{"SHARED", shared}});
   if (strategy_ == "importance-area") {
     if (!traced_) paths_ = ctx.compute("weights/paths.comp");
-    share_ = ctx.compute(
-        "weights/share.comp",
-        {{"TRACED", traced}, {"NEAR", traced_ ? near : "0"}, {"PATHS", std::to_string(kSharedPaths)}});
+    share_ = ctx.compute("weights/share.comp",
+                         {{"TRACED", traced}, {"NEAR", near}, {"PATHS", std::to_string(kSharedPaths)}});
     if (discs) discs_ = ctx.compute("weights/discs.comp", {{"NEAR", near}});
   } else {
     escapes_ = ctx.compute("weights/escapes.comp");

@@ -21,26 +21,15 @@ layout(location = 0) out vec4 mean;
 
 layout(push_constant) uniform Constants {
   uint frameIndex;
-  uint turn;             // of the pixels of a block
   float weight;          // of a sample
   float frames;          // that the mean goes back
   float planeTolerance;  // in parts of the distance to the eye
   float leastCos;
-  int scale;             // pixels a side of a texel of `samples`
+  int shift;             // a texel of `samples` is 2^shift pixels wide
 };
 
 const uint kJitterStream = 0x74656d70u;
 const float kSamePlace = 1e-3;  // pixels: stands still
-
-// As samplePixel() in passes/near-field.
-ivec2 samplePixel(uint t, int side) {
-  ivec2 p = ivec2(0);
-  for (int bit = side / 2; bit > 0; bit /= 2, t /= 4u) {
-    p.x += int(t & 1u) * bit;
-    p.y += int((t ^ t >> 1u) & 1u) * bit;
-  }
-  return p;
-}
 
 bool sameSurface(vec4 position, vec3 normal, vec4 other, vec3 otherNormal) {
   return other.w > 0.0 && abs(dot(other.xyz - position.xyz, normal)) <= planeTolerance * position.w &&
@@ -77,17 +66,20 @@ vec4 fromHistory(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
 
 struct Sample {
   vec3 value;
-  int side;  // of the block it was taken for, 0: there is none
-  bool own;  // of the pixel's surface
+  int side;    // of the block it is for
+  bool found;  // there is one
+  bool own;    // of the pixel's surface
 };
 
+// As sampleCode() in passes/near-field. No divisions: a CPU device makes them one by one.
 Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   ivec2 inside = clamp(p, ivec2(0), size - 1);
-  vec4 value = imageLoad(samples, inside / scale);
-  int side = p == inside ? int(value.a) : 0, block = max(side, 1);
-  ivec2 from = min(inside / block * block + samplePixel(turn, side), size - 1);
-  bool own = side > 0 && sameSurface(position, normal, imageLoad(gbufferPosition, from), imageLoad(gbufferNormal, from).xyz);
-  return Sample(value.rgb, side, own);
+  vec4 value = imageLoad(samples, inside >> shift);
+  int code = int(value.a), side = max(code & 15, 1);
+  bool found = p == inside && code >> 10 == 0;
+  ivec2 from = min((inside & -side) + ivec2(code >> 4 & 7, code >> 7 & 7), size - 1);
+  bool own = found && sameSurface(position, normal, imageLoad(gbufferPosition, from), imageLoad(gbufferNormal, from).xyz);
+  return Sample(value.rgb, side, found, own);
 }
 
 float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
@@ -114,9 +106,9 @@ vec3 robustMean(Around around) {
 vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side) {
   Around own = Around(vec4(0.0), vec3(0.0)), all = own;
   for (int i = 0; i < 9; ++i) {
-    Sample s = sampleAt(p + max(side, scale) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
+    Sample s = sampleAt(p + max(side, 1 << shift) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
     add(own, s, s.own);
-    add(all, s, s.side > 0);
+    add(all, s, s.found);
   }
   return own.sum.a > 0.0 ? vec4(robustMean(own), own.sum.a * weight) : vec4(robustMean(all), 0.0);
 }
@@ -129,7 +121,7 @@ void main() {
   vec4 old = surface ? fromHistory(p, position, normal, size) : vec4(0.0);
   Sample s = sampleAt(p, position, normal, size);
   // Larger blocks change all at once: less each time.
-  float most = frames * float(max(s.side, scale)) / float(scale);
+  float most = frames * float(max(s.side >> shift, 1));
   float count = s.own ? min(old.a + weight, most) : old.a;
   vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(weight / count, 1.0)), count) : old;
   int without = surface && !(old.a > 0.0) ? 1 : 0;  // a loop of no turns is skipped where a branch is not, on a CPU device

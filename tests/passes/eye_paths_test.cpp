@@ -224,6 +224,31 @@ TEST(EyePaths, StartsMoveOnInTurns) {
   EXPECT_NE(before[0].position, after[0].position);
 }
 
+// The light goes out between two frames: in each frame a share of the points finds that out.
+TEST(EyePaths, PathsAreTracedInTurns) {
+  const Look look(litRoom(true), {32, 32});
+  for (uint32_t dark = 1; dark <= 4; ++dark) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
+    test.viewSize(32, 32).scene(look.scene);
+    test.beforeFrame([](PassTest&, scene::Frame& f) {
+      if (f.index >= 3) f.lights.clear();
+    });
+    test.run(3 + dark);  // frame f traces the points f, f + 4..
+    const auto got = test.values<EyePathEnd>("paths.ends");
+    int lit = 0;
+    for (uint32_t i = 0; i < got.size(); ++i) {
+      if ((i % 100 + 4 - 3) % 4 < dark) {
+        EXPECT_EQ(got[i].radiance, glm::vec3(0)) << dark << " " << i;
+      }
+      lit += got[i].radiance != glm::vec3(0);
+    }
+    EXPECT_GE(lit, 490 * int(4 - dark) / 4);
+    EXPECT_LE(lit, 125 * int(4 - dark));
+    if (dark == 1) EXPECT_LT(test.counter("rays"), 100 + 125 * 8);
+  }
+}
+
 // After a cut of the camera nothing stays.
 TEST(EyePaths, ACutMovesAllStarts) {
   const Look look(litRoom(true), {32, 32});

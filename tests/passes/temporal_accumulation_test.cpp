@@ -97,17 +97,21 @@ bool sameSurface(const SurfacePixel& a, const SurfacePixel& b) {
          glm::dot(a.normal, b.normal) > 0.9f;
 }
 
+const glm::vec4 kNone(0, 0, 0, passes::sampleCode(2, {1, 0}, false));
+
 // Stands still: of n frames each has the same weight, up to eight; then the newest one has an eighth.
 TEST(TemporalAccumulation, MeanOfTheFramesSoFar) {
   const Eye eye({0, 0, 0});
-  for (const float count : {1.0f, 5.0f, 8.0f, 20.0f}) {
+  for (const auto& [count, place] :
+       {std::pair(1.0f, glm::uvec2(0, 0)), {5, {1, 0}}, {8, {0, 1}}, {20, {1, 1}}}) {
     const auto got =
-        accumulate(eye, eye, everywhere(kSize / 2, {4, 2, 1, 2}), everywhere(kSize, {1, 1, 3, count}));
+        accumulate(eye, eye, everywhere(kSize / 2, {4, 2, 1, passes::sampleCode(2, place, true)}),
+                   everywhere(kSize, {1, 1, 3, count}));
     int own = 0, other = 0;
     for (int y = 0; y < kSize.y; ++y)
       for (int x = 0; x < kSize.x; ++x) {
         const float* v = &got[4 * size_t(y * kSize.x + x)];
-        const glm::ivec2 from = glm::ivec2(x, y) / 2 * 2 + glm::ivec2(passes::samplePixel(0, 2));
+        const glm::ivec2 from = glm::ivec2(x, y) / 2 * 2 + glm::ivec2(place);
         const bool mine = sameSurface(eye.seen.at(x, y), eye.seen.at(from.x, from.y));
         const float n = std::min(count + 1, 8.0f);
         const glm::vec3 sample(4, 2, 1), old(1, 1, 3);
@@ -170,7 +174,7 @@ TEST(TemporalAccumulation, FollowsSurfacesAsTheEyeMoves) {
   const Eye now({0.13f, 0.05f, 0}), before({0, 0, 0});
   std::vector<glm::vec4> history;
   for (int i = 0; i < kSize.x * kSize.y; ++i) history.emplace_back(i % kSize.x + 1, i / kSize.x + 1, 1, 5);
-  const auto got = accumulate(now, before, everywhere(kSize / 2, glm::vec4(0)), history);
+  const auto got = accumulate(now, before, everywhere(kSize / 2, kNone), history);
   int followed = 0, lost = 0;
   std::map<bool, glm::dvec2> away;  // on the box, on the wall: sum of the differences
   std::map<bool, int> counts;
@@ -213,13 +217,12 @@ TEST(TemporalAccumulation, FollowsObjects) {
   const glm::vec3 moved(0.4f, 0, 0);  // all that is seen is object 1, since the frame before
   std::vector<glm::vec4> history;
   for (int i = 0; i < kSize.x * kSize.y; ++i) history.emplace_back(i % kSize.x + 1, i / kSize.x + 1, 1, 5);
-  const auto got =
-      accumulate(eye, eye, everywhere(kSize / 2, glm::vec4(0)), history, 1, [&](scene::Frame& frame) {
-        scene::ObjectTransform object;
-        object.toWorld = glm::translate(glm::mat4(1), moved);
-        object.toObject = glm::inverse(object.toWorld);
-        frame.objects.at(1) = object;
-      });
+  const auto got = accumulate(eye, eye, everywhere(kSize / 2, kNone), history, 1, [&](scene::Frame& frame) {
+    scene::ObjectTransform object;
+    object.toWorld = glm::translate(glm::mat4(1), moved);
+    object.toObject = glm::inverse(object.toWorld);
+    frame.objects.at(1) = object;
+  });
   int checked = 0;
   for (int y = 0; y < kSize.y; ++y)
     for (int x = 0; x < kSize.x; ++x) {

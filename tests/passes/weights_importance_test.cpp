@@ -258,6 +258,29 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   }
 }
 
+// Else the light of what is near would be in the picture twice.
+TEST(Weights, SpreadNeedsPathsAndDiscs) {
+  const Room room = closedRoom(false, 32);
+  WeightSettings settings;
+  const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 100, settings)));
+  const auto points = screenPoints(room, settings);
+  const auto ends = colouredEnds(room, points, 256);
+  for (const bool traced : {false, true}) try {
+      PassTest test("weights");
+      settings.clamp = traced ? 1.5f : 0;
+      wire(test, in, "importance-area", settings);
+      test.buffer("spread", std::vector<glm::vec4>{{0.1f, 0, 0, 0}}, "VplSpread");
+      if (traced)
+        test.buffer("traced.starts", std::vector<passes::EyePathStart>(points.size()), "ScreenPoint")
+            .buffer("traced.ends", ends, "EyePathEnd");
+      test.run();
+      FAIL();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::BadInput);
+      EXPECT_NE(std::string(e.what()).find("`spread`"), std::string::npos) << e.what();
+    }
+}
+
 // Behind a block some VPLs are seen from here and others from there: a path goes to one that its own start
 // sees.
 TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
