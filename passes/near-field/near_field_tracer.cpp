@@ -18,7 +18,7 @@ namespace {
 using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u;
-constexpr float kSure = 8;  // times their part of the light: how probably rays go on
+constexpr float kSure = 4;  // times their part of the light: how probably rays go on
 
 class Tracer {
  public:
