@@ -65,7 +65,7 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
   Look look(shiningRoom(true), glm::ivec2(8));
   NearFieldSettings settings;
   settings.foveaRadius = 2;
-  settings.samples = 16384;  // each pixel of a block gets a quarter of them
+  settings.samples = 32768;  // each pixel of a block gets a quarter of them
   const double series[] = {1, 1.5, 1.75};
   for (const auto& [area, bounces] : {std::pair(0.05f, 2u), {0.5f, 1u}, {0.5f, 2u}, {0.5f, 3u}, {5.0f, 2u}}) {
     settings.area = area;
