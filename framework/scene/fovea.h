@@ -35,7 +35,10 @@ inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
 
 // Parameter `region`.
 inline constexpr uint32_t kRegionFovea = 0u, kRegionImage = 1u;
-inline constexpr uint32_t kRegionMixed = 2u;  // every fifth sample from the image
+inline constexpr uint32_t kRegionMixed = 2u;  // a share of the samples from the image
+
+// Parameter `image_share` as the shaders take it.
+inline uint32_t imageShare64ths(double share) { return uint32_t(std::lround(64 * share)); }
 
 // Numbers [0, kRegionDraws) of a random stream belong to regionSample.
 inline constexpr uint32_t kRegionTries = 32u, kRegionDraws = 2u * kRegionTries + 2u;
@@ -66,16 +69,18 @@ inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 i
 }
 
 // Of the fixed points on screen that pass weights looks from, number i of `points`:
-// shaders/weights/points.comp.
-inline glm::ivec2 screenPoint(uint32_t region, uint32_t i, uint32_t points, const Fovea& fovea,
-                              glm::ivec2 imageSize) {
+// shaders/weights/points.comp. share64ths: of `mixed`, of the image.
+inline glm::ivec2 screenPoint(uint32_t region, uint32_t share64ths, uint32_t i, uint32_t points,
+                              const Fovea& fovea, glm::ivec2 imageSize) {
   constexpr uint32_t kPointsStream = 0x77656967u;
   const auto sequence = [](uint32_t k) {
     return glm::vec2(uniformFloat(0x80000000u + k * 3242174889u),
                      uniformFloat(0x80000000u + k * 2447445414u));
   };
-  const uint32_t part = region != kRegionMixed ? region : i % 5u == 4u ? kRegionImage : kRegionFovea;
-  const uint32_t number = region != kRegionMixed ? i : i % 5u == 4u ? i / 5u : i - i / 5u;
+  const uint32_t before = i * share64ths >> 6;
+  const bool mixed = region == kRegionMixed, image = (i + 1) * share64ths >> 6 != before;
+  const uint32_t part = !mixed ? region : image ? kRegionImage : kRegionFovea;
+  const uint32_t number = !mixed ? i : image ? before : i - before;
   const glm::vec2 high(imageSize);
   if (part == kRegionImage)
     return glm::clamp(glm::ivec2(high * sequence(number)), glm::ivec2(0), imageSize - 1);

@@ -1,5 +1,6 @@
 // Where VPLs could be: one diffuse bounce from what is looked at (METHOD: candidates).
 #include "framework/graph/registry.h"
+#include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/voxel_grid.h"
 #include "framework/scene/vpl.h"
@@ -37,7 +38,8 @@ class Candidates : public Pass {
              "one an attempt; those that met nothing have no side and are zero otherwise");
     d.parameter("count", integer(1000, 1, 65536), "attempts: one pixel and one ray each");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
-                "pixels to start from; mixed: four in five from the fovea, one from the whole image");
+                "pixels to start from; mixed: a share from the whole image, the rest from the fovea");
+    d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: that share, in 64ths");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "of the disc around the gaze");
     d.parameter("per_frame", flag(true), "new random numbers every frame; false: the same ones");
     d.parameter("second_view", text("right"),
@@ -59,6 +61,7 @@ class Candidates : public Pass {
     const Parameters& p = ctx.parameters();
     const scene::View* second = ctx.frame().findView(p.text("second_view"));
     ctx.use(kernel_)
+        .constant("imageShare64ths", scene::imageShare64ths(p.real("image_share")))
         .constant("secondGaze", (second ? *second : ctx.view()).gaze)
         .constant("streamFrame", p.flag("per_frame") ? uint32_t(ctx.frame().index) : 0u)
         .dispatchThreads(uint32_t(p.integer("count")));

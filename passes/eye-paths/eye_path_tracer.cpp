@@ -97,9 +97,10 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
         EyePathStart& start = lists.starts[point];
         const bool anew = point % renew == settings.turn % renew || !tracer.stands(start, count);
         if (anew)
-          start = tracer.look(
-              glm::vec2(screenPoint(settings.region, point, points, fovea, glm::ivec2(view.size))) + 0.5f,
-              count);
+          start = tracer.look(glm::vec2(screenPoint(settings.region, settings.imageShare64ths, point, points,
+                                                    fovea, glm::ivec2(view.size))) +
+                                  0.5f,
+                              count);
         if (!anew && point % trace != settings.turn % trace) continue;
         for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)
           ends[path] = start.there > 0 ? tracer.end(start, point, turn, count) : EyePathEnd{};

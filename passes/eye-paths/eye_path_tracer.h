@@ -15,6 +15,7 @@ namespace fovea::passes {
 
 struct EyePathSettings {
   uint32_t region = scene::kRegionFovea;  // of the image that the paths start in
+  uint32_t imageShare64ths = 26;          // of region `mixed`, of the whole image
   float foveaRadius = 0.25f;              // image widths
   uint32_t points = 1024;                 // screen points, the same in every frame: scene::screenPoint()
   uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees

@@ -30,6 +30,7 @@ class EyePaths : public Pass {
         "`points` apart");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "where the eye paths start: as in pass candidates");
+    d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: starts from the whole image, in 64ths");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("points", integer(1024, 1, 65536), "screen points: where pass weights has as many");
     d.parameter("paths", integer(8192, 64, 65536), "eye paths");
@@ -58,6 +59,7 @@ class EyePaths : public Pass {
     settings.region = region == "fovea"   ? scene::kRegionFovea
                       : region == "image" ? scene::kRegionImage
                                           : scene::kRegionMixed;
+    settings.imageShare64ths = scene::imageShare64ths(p.real("image_share"));
     settings.foveaRadius = float(p.real("fovea_radius"));
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));

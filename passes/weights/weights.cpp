@@ -6,6 +6,7 @@
 #include "framework/base/diagnostic.h"
 #include "framework/gpu/resources.h"
 #include "framework/graph/registry.h"
+#include "framework/scene/fovea.h"
 #include "framework/scene/voxel_grid.h"
 #include "framework/scene/vpl.h"
 
@@ -93,6 +94,7 @@ PassDeclaration Weights::declaration() {
               "there: however the VPLs were chosen, the region gets the light that its eye paths find");
   d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
               "where the eye paths start: as in pass candidates");
+  d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: starts from the whole image, in 64ths");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter(
       "points", integer(2048, 64, 4096),
@@ -240,7 +242,9 @@ void Weights::recordDensities(RecordContext& ctx) {
   const uint32_t tried = traced_  ? uint32_t(ctx.count("traced.ends"))
                          : shared ? uint32_t(p.integer("paths"))
                                   : std::min(points, kEscapePoints);
-  ctx.use(points_).dispatchThreads(points);
+  Commands start = ctx.use(points_);
+  if (!traced_) start.constant("imageShare64ths", scene::imageShare64ths(p.real("image_share")));
+  start.dispatchThreads(points);
   ctx.barrier();
   if (shared && !traced_) ctx.use(paths_).dispatchThreads(tried);
   if (!shared) ctx.use(escapes_).constant("escapePoints", tried).dispatchThreads(tried);

@@ -33,6 +33,7 @@ layout(push_constant) uniform Push {
   vec2 secondGaze;
   float foveaRadius;
   uint region;
+  uint imageShare64ths;
   uint seed;
   uint streamFrame;
   uint count;
@@ -55,7 +56,7 @@ void main() {
   if (i >= count) return;
   Candidate candidate = Candidate(vec4(vec3(0.0), uintBitsToFloat(kNoSide)), vec4(0.0), vec4(0.0), vec4(0.0));
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
-  uint from = regionOf(region, TWO_EYES != 0 ? i / 2u : i);
+  uint number, from = regionOf(region, imageShare64ths, TWO_EYES != 0 ? i / 2u : i, number);
 #if TWO_EYES
   Seen seen;
   if ((i & 1u) == 0u)

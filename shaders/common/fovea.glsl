@@ -27,11 +27,17 @@ float foveaWeight(Fovea fovea, vec2 position) {
 // Parameter `region`.
 const uint kRegionFovea = 0u;
 const uint kRegionImage = 1u;
-const uint kRegionMixed = 2u;  // every fifth sample from the image: METHOD section 3
+const uint kRegionMixed = 2u;  // a share of the samples, evenly among the others, from the image: METHOD section 3
 
-// Of sample i: kRegionFovea or kRegionImage.
-uint regionOf(uint region, uint i) {
-  return region != kRegionMixed ? region : i % 5u == 4u ? kRegionImage : kRegionFovea;
+// Of sample i: kRegionFovea or kRegionImage, and how many samples before it are of the same. imageShare64ths: parameter
+// `image_share`.
+uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
+  number = i;
+  if (region != kRegionMixed) return region;
+  uint before = i * imageShare64ths >> 6;
+  bool image = (i + 1u) * imageShare64ths >> 6 != before;
+  number = image ? before : i - before;
+  return image ? kRegionImage : kRegionFovea;
 }
 
 // Numbers [0, kRegionDraws) of a random stream belong to regionSample: at most two a try.

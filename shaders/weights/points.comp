@@ -27,6 +27,7 @@ void main() {
 #else
 layout(push_constant) uniform Constants {
   uint region;
+  uint imageShare64ths;
   float foveaRadius;
   uint points;
 };
@@ -35,12 +36,6 @@ const uint kPointsStream = 0x77656967u;
 
 vec2 sequencePoint(uint i) {
   return vec2(uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u));
-}
-
-// Which part of the region a point lies in, and its number there.
-uint partOf(uint i, out uint number) {
-  number = region != kRegionMixed ? i : i % 5u == 4u ? i / 5u : i - i / 5u;
-  return regionOf(region, i);
 }
 
 // Point i of the region takes points i, i + points, i + 2 points.. of the sequence until one lies inside.
@@ -62,7 +57,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= points) return;
   ivec2 size = textureSize(gbufferPosition, 0);
-  uint number, part = partOf(i, number);
+  uint number, part = regionOf(region, imageShare64ths, i, number);
   ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze.xy, vec2(size), foveaRadius), size);
   vec4 position = texelFetch(gbufferPosition, pixel, 0);
   bool there = position.w > 0.0;

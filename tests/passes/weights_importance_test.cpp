@@ -148,7 +148,8 @@ TEST(Weights, ImportanceAreasOfTheMixedRegion) {
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, settings)));
   for (uint32_t i = 0; i < in.vpls.size(); ++i)
     in.vpls[i].position += 0.1f * (glm::vec3(sobol(i, 0, 1), sobol(i, 1, 1), sobol(i, 2, 1)) - 0.5f);
-  settings.region = kRegionMixed;
+  settings.region = scene::kRegionMixed;
+  settings.imageShare = 0.3;
   const auto points = screenPoints(room, settings);
   in.maps = tracedMaps(room, in.vpls);
   const SharedAreas want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings);

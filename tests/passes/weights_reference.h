@@ -72,10 +72,9 @@ inline glm::vec2 sequencePoint(uint32_t i) {
   return {uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u)};
 }
 
-inline constexpr uint32_t kRegionMixed = 2u;  // four points in five from the fovea, one from the image
-
 struct WeightSettings {
   uint32_t region = scene::kRegionFovea;
+  double imageShare = 0.4;  // of region `mixed`
   float foveaRadius = 0.25f;
   uint32_t points = 1024;
   double areaCap = 4, normalWeight = 0.5;
@@ -90,11 +89,14 @@ inline std::vector<Seen> screenPoints(const Room& room, const WeightSettings& se
   const glm::vec2 low = glm::max(glm::vec2(0), fovea.centre - fovea.radius),
                   up = glm::min(high, fovea.centre + fovea.radius);
   std::vector<Seen> points;
+  uint32_t counts[2] = {}, due = 0;  // samples of the fovea, of the image; 64ths of the next one of the image
   for (uint32_t i = 0; i < settings.points; ++i) {
     glm::ivec2 pixel(-1);
-    const bool mixed = settings.region == kRegionMixed,
-               image = mixed ? i % 5 == 4 : settings.region == scene::kRegionImage;
-    const uint32_t number = !mixed ? i : image ? i / 5 : i - i / 5;
+    const bool mixed = settings.region == scene::kRegionMixed;
+    due += uint32_t(std::lround(64 * settings.imageShare));
+    const bool image = mixed ? due >= 64 : settings.region == scene::kRegionImage;
+    due %= 64;
+    const uint32_t number = counts[image]++;
     if (image) pixel = glm::ivec2(high * sequencePoint(number));
     for (uint32_t k = 0; pixel.x < 0 && k < scene::kRegionTries; ++k) {
       const glm::vec2 p = glm::mix(low, up, sequencePoint(number + k * settings.points));

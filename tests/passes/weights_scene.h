@@ -105,9 +105,10 @@ inline void wire(PassTest& test, const Inputs& in, const char* strategy, const W
   }
   const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
   test.param("strategy", strategy)
-      .param("region", settings.region == kRegionMixed          ? "mixed"
+      .param("region", settings.region == scene::kRegionMixed   ? "mixed"
                        : settings.region == scene::kRegionImage ? "image"
                                                                 : "fovea");
+  test.param("image_share", settings.imageShare);
   test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
   test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
   test.param("sides", settings.litOnly ? "lit" : "all");
