@@ -247,7 +247,9 @@ TEST(EyePaths, PathsAreTracedInTurns) {
     }
     EXPECT_GE(lit, 490 * int(4 - dark) / 4);
     EXPECT_LE(lit, 125 * int(4 - dark));
-    if (dark == 1) EXPECT_LT(test.counter("rays"), 100 + 125 * 8);
+    if (dark == 1) {
+      EXPECT_LT(test.counter("rays"), 100 + 125 * 8);
+    }
   }
 }
 
