@@ -95,10 +95,11 @@ void add(inout Around around, Sample s, bool wanted) {
   if (wanted && luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
 }
 
-// Without the brightest, if there are others: one that meets something sunlit would be a spark.
+// Of single rays without the brightest, if there are others: one that meets something sunlit would be a spark. Samples that are
+// means of several rays lose light that way, and need it less.
 vec3 robustMean(Around around) {
-  float left = around.sum.a - 1.0;
-  return left > 0.0 ? (around.sum.rgb - around.brightest) / left : around.sum.rgb;
+  bool dropped = weight < 2.0 && around.sum.a > 1.0;
+  return dropped ? (around.sum.rgb - around.brightest) / (around.sum.a - 1.0) : around.sum.rgb / max(around.sum.a, 1.0);
 }
 
 // Where there is no mean yet: that of the samples of the pixel's surface in the blocks around; of other surfaces if there are

@@ -139,8 +139,8 @@ TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   EXPECT_GT(own, 1000);
 }
 
-// Where there is no mean yet the samples around make one, without the brightest: so many as lie on the same
-// surface count, each of a first frame for many.
+// Where there is no mean yet the samples around make one, of single rays without the brightest: so many as lie on
+// the same surface count, each of a first frame for many.
 TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
   const Eye eye({0, 0, 0});
   auto samples = everywhere(kSize / 2, {4, 2, 1, 2});
@@ -154,12 +154,18 @@ TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
       for (int x = 2; x < kSize.x - 2; ++x) {
         const float* v = &got[4 * size_t(y * kSize.x + x)];
         int same = 0;
+        float sum = 0, all = 0;
         for (int k = 0; k < 9; ++k) {
-          const glm::ivec2 from = glm::ivec2(x + 2 * (k % 3 - 1), y + 2 * (k / 3 - 1)) / 2 * 2;
-          same += sameSurface(eye.seen.at(x, y), eye.seen.at(from.x, from.y));
+          const glm::ivec2 block = glm::ivec2(x + 2 * (k % 3 - 1), y + 2 * (k / 3 - 1)) / 2;
+          const float value = samples[size_t(block.y * (kSize.x / 2) + block.x)].z;
+          const bool own = sameSurface(eye.seen.at(x, y), eye.seen.at(2 * block.x, 2 * block.y));
+          same += own, sum += own ? value : 0, all += value;
         }
         EXPECT_EQ(v[3], float(same * first)) << x << " " << y;
-        if (same != 1) {  // of one sample nobody knows
+        const float mean = same > 0 ? sum / float(same) : all / 9;
+        if (first > 1) {
+          EXPECT_NEAR(v[2], mean, 1e-3 * mean) << x << " " << y;
+        } else if (same != 1) {  // of one sample nobody knows
           EXPECT_EQ(glm::vec3(v[0], v[1], v[2]), glm::vec3(4, 2, 1)) << x << " " << y;
         }
         counted += same > 0;
