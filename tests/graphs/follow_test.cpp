@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -97,12 +98,18 @@ scene::Scene waving(bool coarse = false) {
 
 // `ours` with what it keeps of its VPLs as one more output.
 std::string graphWithState() {
-  const auto folder = std::filesystem::temp_directory_path() / "fovea-follow";
-  std::filesystem::create_directories(folder);
+  static const struct Folder {  // tests run beside each other: one for each
+    std::string name = (std::filesystem::temp_directory_path() / "fovea-follow-XXXXXX").string();
+    Folder() { EXPECT_NE(mkdtemp(name.data()), nullptr); }
+    ~Folder() {
+      std::error_code ec;
+      std::filesystem::remove_all(name, ec);
+    }
+  } folder;
   for (const auto& graphs : dataFolders("graphs")) {
     std::error_code ec;
     if (!std::filesystem::exists(graphs / "ours.json", ec)) continue;
-    const auto file = folder / "ours_state.json";
+    const auto file = std::filesystem::path(folder.name) / "ours_state.json";
     std::ofstream(file) << R"({"extends": ")" << (graphs / "ours.json").string()
                         << R"(", "outputs": {"state": "manage"}})";
     return file.string();
