@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "framework/base/paths.h"
 #include "framework/scene/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/pass_test.h"
 #include "tests/support/shapes.h"
+#include "tests/unit/graph_support.h"
 
 namespace fovea::test {
 namespace {
@@ -98,21 +97,14 @@ scene::Scene waving(bool coarse = false) {
 
 // `ours` with what it keeps of its VPLs as one more output.
 std::string graphWithState() {
-  static const struct Folder {  // tests run beside each other: one for each
-    std::string name = (std::filesystem::temp_directory_path() / "fovea-follow-XXXXXX").string();
-    Folder() { EXPECT_NE(mkdtemp(name.data()), nullptr); }
-    ~Folder() {
-      std::error_code ec;
-      std::filesystem::remove_all(name, ec);
-    }
-  } folder;
+  static const graph::test::TempFolder folder;  // tests run beside each other: one for each
   for (const auto& graphs : dataFolders("graphs")) {
     std::error_code ec;
     if (!std::filesystem::exists(graphs / "ours.json", ec)) continue;
-    const auto file = std::filesystem::path(folder.name) / "ours_state.json";
-    std::ofstream(file) << R"({"extends": ")" << (graphs / "ours.json").string()
-                        << R"(", "outputs": {"state": "manage"}})";
-    return file.string();
+    return folder
+        .write("ours_state.json", R"({"extends": ")" + (graphs / "ours.json").string() +
+                                      R"(", "outputs": {"state": "manage"}})")
+        .string();
   }
   return {};
 }

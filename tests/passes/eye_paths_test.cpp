@@ -54,7 +54,8 @@ TEST(EyePaths, StartFromTheScreenPointsOfPassWeights) {
       const auto points = screenPoints(room, settings);
       const scene::Fovea fovea = scene::makeFovea(gaze, room.size, settings.foveaRadius);
       for (uint32_t i = 0; i < points.size(); ++i) {
-        const glm::ivec2 p = scene::screenPoint(region, scene::imageShare64ths(settings.imageShare), i, settings.points, fovea, room.size);
+        const glm::ivec2 p = scene::screenPoint(region, scene::imageShare64ths(settings.imageShare), i,
+                                                settings.points, fovea, room.size);
         ASSERT_EQ(points[i].position, room.pixels[size_t(p.y) * room.size.x + p.x].position) << i;
       }
     }
@@ -104,7 +105,8 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   glm::dvec3 want(0), got(0);
   for (uint32_t i = 0; i < settings.points; ++i) {
     const glm::ivec2 p =
-        scene::screenPoint(settings.region, settings.imageShare64ths, i, settings.points, fovea, glm::ivec2(view.size));
+        scene::screenPoint(settings.region, settings.imageShare64ths, i, settings.points, fovea,
+                           glm::ivec2(view.size));
     const glm::vec3 d = view.rayDirection(glm::vec2(p) + 0.5f);
     const RayHit hit = castRay(look.scene, look.geometry, view.eye, d);
     const glm::dvec3 rho(look.scene.materials[look.geometry.triangles[hit.triangle].material()].baseColor);
