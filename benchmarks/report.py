@@ -46,13 +46,14 @@ MEASURES = {
     "speed_up.ir_eq": ("speed-up over ir_eq", 1, "frame time of instant radiosity with as small a foveal error / of this graph"),
     "match.value": ("N of ir_eq", 1, "VPLs with which instant radiosity reaches the foveal error of ours, by bisection"),
     "second_eye.ms": ("second eye ms", 1, "passes of the second eye"),
+    "second_eye.of_first": ("second eye / first", 1, "passes of the second eye over all others: the first eye's whole frame"),
     "second_eye.new_pixels": ("new pixels", 1, "share of the second eye's pixels that the first one has not seen"),
 }
 NOTES = {"error.fovea.mse": "error.fovea.mse_over_ours", "temporal.fovea.excess": "temporal.fovea.excess_over_ours"}  # told inside the other's cell
 HIGHER = {"speed_up.ir_1000", "speed_up.ir_eq", "match.value"}
 NEUTRAL = {"error.fovea.direct_floor", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime", "temporal.fovea.reference_mse_prime",
-           "temporal.periphery.reference_mse_prime", "match.value", "second_eye.ms", "second_eye.new_pixels"}
-CSV_COLUMNS = {"scene", "graph", "measure", "mean", "half_width", "seeds", "paper", "ratio"}
+           "temporal.periphery.reference_mse_prime", "match.value", "second_eye.ms", "second_eye.of_first", "second_eye.new_pixels"}
+CSV_COLUMNS = {"scene", "graph", "measure", "mean", "half_width", "seeds", "paper", "ratio", "bound"}
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1180px;padding:0 1em;color:#1b1b1f}
 table{border-collapse:collapse;margin:1em 0;font-size:13px}th,td{border-bottom:1px solid #ddd;padding:.3em .7em;text-align:right;vertical-align:top}
 th{background:#f3f3f6}td:first-child,th:first-child,.names td:nth-child(2),.names th:nth-child(2){text-align:left}small{color:#667;display:block}
@@ -151,7 +152,8 @@ class Report:
         if not row or not row["mean"]:
             return "<td>-</td>"
         spread = lambda r: f" ± {number(r['half_width'])}" if float(r["half_width"] or 0) > 0 else ""
-        text = f"<span{' class=best' if best else ''}>{number(row['mean'])}</span><small>{spread(row)}</small>"
+        bound = html.escape(row["bound"]) + " " if row.get("bound") else ""
+        text = f"<span{' class=best' if best else ''}>{bound}{number(row['mean'])}</span><small>{spread(row)}</small>"
         if note and note["mean"]:
             text += f"<small>ours {'better' if float(note['mean']) > 0 else 'worse'} by {number(note['mean'].lstrip('-'))}{spread(note)}</small>"
         if row["paper"]:

@@ -82,16 +82,25 @@ std::vector<float> changeErrors(const image::Picture& now, const image::Picture&
   return errors;
 }
 
-// Milliseconds and new pixels of the second eye of stereo graphs.
+// Milliseconds of the second eye of stereo graphs, those as a share of the first eye's whole frame, and its
+// share of new pixels.
 void addSecondEye(Json& time) {
-  double second = 0, pixels = 0, fresh = 0;
+  double first = 0, second = 0, pixels = 0, fresh = 0;
   for (const Json& pass : time["passes"])
-    if (pass["name"].get<std::string>().starts_with("right/"))
-      second += std::max(pass["gpu_ms"]["median"].get<double>(), pass["cpu_ms"]["median"].get<double>());
+    (pass["name"].get<std::string>().starts_with("right/") ? second : first) +=
+        std::max(pass["gpu_ms"]["median"].get<double>(), pass["cpu_ms"]["median"].get<double>());
   if (second <= 0) return;
   pixels = time["counters"].value("right/reproject.pixels", 0.0);
   fresh = time["counters"].value("right/reproject.new_pixels", 0.0);
-  time["second_eye"] = {{"ms", second}, {"new_pixels", pixels > 0 ? Json(fresh / pixels) : Json()}};
+  time["second_eye"] = {{"ms", second},
+                        {"of_first", number(second / first)},
+                        {"new_pixels", pixels > 0 ? Json(fresh / pixels) : Json()}};
+}
+
+// The random numbers of all frames are the same: what noise remains stands still as far as the picture does,
+// so that less of it is in the changes between frames.
+std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& job) {
+  return {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}, {"per_frame", "false"}};
 }
 
 }  // namespace
@@ -177,8 +186,7 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
 // What is stored is what the path tracer, which works on the CPU, hands over: passes after it do not count.
 Json BenchRunner::referenceParts(const Job& job) {
   Diagnostics messages;
-  const auto description = describe(
-      "reference", {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}}, messages);
+  const auto description = describe("reference", referenceParameters(job), messages);
   const auto bound = graph::bind(
       description,
       graph::sceneEnvironment(nullptr, scene_, geometry_, graph::frameViews({job.size.x, job.size.y})),
@@ -288,7 +296,7 @@ bool BenchRunner::makeReference(const Job& job, const Reference& wanted) {
 image::File BenchRunner::reference(const Job& job, uint64_t frame) {
   Job own = job;
   own.graph = "reference", own.match.reset();
-  own.set = {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}};
+  own.set = referenceParameters(job);
   own.seed = kReferenceSeed, own.first = uint32_t(frame), own.frames = 1, own.warmup = 0;
   own.temporal = own.error = false, own.pictures = true;
   return folder_.findOrMakeReference(

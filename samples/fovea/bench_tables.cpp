@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kMatch = "match.value";
+
 // 97.5% points of Student's t for 1, 2, .. degrees of freedom.
 constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
                                2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131};
@@ -61,7 +63,25 @@ struct Row {
   std::vector<std::string> axes;
   std::vector<std::string> order;  // of the numbers
   std::map<std::string, std::vector<double>> values;
+  std::map<std::string, char>
+      bounds;  // those only known to be '>' or '<' their value; '~': now one, now the other
+
+  char bound(const std::string& name) const {
+    const auto found = bounds.find(name);
+    return found == bounds.end() ? ' ' : found->second;
+  }
+  void limit(const std::string& name, char sign) {
+    if (sign == ' ') return;
+    char& known = bounds.try_emplace(name, sign).first->second;
+    if (known != sign) known = '~';
+  }
 };
+
+// Where a search ended at an end of its range the number it was after lies beyond.
+char matchBound(const Json& match) {
+  if (!match.value("reached", true)) return '>';
+  return match.contains("steps") && match["steps"].size() == 1 ? '<' : ' ';
+}
 
 struct Table {
   std::vector<std::string> axes;
@@ -91,11 +111,12 @@ Table tableOf(const std::string& sweep, const std::vector<StoredResult>& results
       if (!row->values.contains(name)) row->order.push_back(name);
       row->values[name].push_back(value);
     }
+    if (result.json.contains("match")) row->limit(kMatch, matchBound(result.json["match"]));
   }
   return table;
 }
 
-// Ratios of frame times, seed by seed.
+// Ratios of frame times, seed by seed; bounds where the number of VPLs of the other graph is one.
 void addSpeedUps(const SpeedUp& wanted, Table& table) {
   const std::string time = "time.wall_ms";
   for (Row& row : table.rows) {
@@ -109,6 +130,7 @@ void addSpeedUps(const SpeedUp& wanted, Table& table) {
       row.order.push_back(name);
       for (size_t i = 0; i < row.values[time].size(); ++i)
         row.values[name].push_back(other->values[time][i] / row.values[time][i]);
+      row.limit(name, other->bound(kMatch));
     }
   }
 }
@@ -129,8 +151,9 @@ void addDifferences(const std::string& measure, Table& table) {
   }
 }
 
-// The paper's numbers are those of its parameters, at 42 frames a second.
-bool likeThePaper(const Table& table, const Row& row) {
+// The paper's numbers are those of its parameters, at 42 frames a second; a bound cannot be set against them.
+bool likeThePaper(const Table& table, const Row& row, const std::string& name) {
+  if (row.bound(name) != ' ') return false;
   for (size_t i = 0; i < table.axes.size(); ++i)
     if (table.axes[i] != "frame_rate" || row.axes[i] != "42") return false;
   return true;
@@ -139,16 +162,19 @@ bool likeThePaper(const Table& table, const Row& row) {
 std::string csvOf(const Table& table, const Json& paper, const std::string& paperTable) {
   std::string text = "scene,graph";
   for (const std::string& axis : table.axes) text += "," + cell(axis);
-  text += ",measure,mean,half_width,seeds,paper,ratio\n";
+  text += ",measure,mean,half_width,seeds,paper,ratio,bound\n";
   for (const Row& row : table.rows)
     for (const std::string& name : row.order) {
       const Mean mean = meanOf(row.values.at(name));
       text += cell(row.scene) + "," + cell(row.graph);
       for (const std::string& axis : row.axes) text += "," + cell(axis);
-      const auto known = likeThePaper(table, row) ? paperNumber(paper, paperTable, row.scene, row.graph, name)
-                                                  : std::nullopt;
-      text += fmt::format(",{},{},{},{},{},{}\n", cell(name), cell(mean.mean), cell(mean.halfWidth),
-                          mean.count, known ? cell(*known) : "", known ? cell(mean.mean / *known) : "");
+      const auto known = likeThePaper(table, row, name)
+                             ? paperNumber(paper, paperTable, row.scene, row.graph, name)
+                             : std::nullopt;
+      const char bound = row.bound(name);
+      text += fmt::format(",{},{},{},{},{},{},{}\n", cell(name), cell(mean.mean), cell(mean.halfWidth),
+                          mean.count, known ? cell(*known) : "", known ? cell(mean.mean / *known) : "",
+                          bound == ' ' ? "" : std::string(1, bound));
     }
   return text;
 }
@@ -157,9 +183,9 @@ std::string csvOf(const Table& table, const Json& paper, const std::string& pape
 std::string shownOf(const std::string& sweep, const Table& table, const Json& paper,
                     const std::string& paperTable) {
   std::vector<std::string> measures;
-  for (const char* wanted :
-       {"error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime", "temporal.periphery.mse_prime",
-        "temporal.fovea.excess", "temporal.periphery.excess", "time.wall_ms", "match.value", "speed_up."})
+  for (const char* wanted : {"error.fovea.mse", "error.periphery.mse", "temporal.fovea.mse_prime",
+                             "temporal.periphery.mse_prime", "temporal.fovea.excess",
+                             "temporal.periphery.excess", "time.wall_ms", kMatch, "speed_up.", "second_eye."})
     for (const Row& row : table.rows)
       for (const std::string& name : row.order)
         if (name.starts_with(wanted) && !name.ends_with("_over_ours") &&
@@ -178,9 +204,10 @@ std::string shownOf(const std::string& sweep, const Table& table, const Json& pa
       const auto shown = [](double value) {
         return std::abs(value) < 100 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
       };
-      text = shown(mean.mean);
+      if (row.bound(name) != ' ') text = fmt::format("{} ", row.bound(name));
+      text += shown(mean.mean);
       if (std::isfinite(mean.halfWidth)) text += " +- " + shown(mean.halfWidth);
-      if (!likeThePaper(table, row)) continue;
+      if (!likeThePaper(table, row, name)) continue;
       if (const auto known = paperNumber(paper, paperTable, row.scene, row.graph, name))
         text += fmt::format(" [{:.3g}]", *known);
     }
@@ -211,7 +238,7 @@ std::vector<std::pair<std::string, double>> numbersOf(const Json& result) {
         if (measures.is_object())
           for (const auto& [name, value] : measures.items())
             add(fmt::format("{}.{}.{}", part, region, name), value);
-  if (result.contains("match")) add("match.value", result["match"].value("value", Json()));
+  if (result.contains("match")) add(kMatch, result["match"].value("value", Json()));
   if (!result.contains("time")) return list;
   const Json& time = result["time"];
   for (const auto& [name, spread] : time["frame"].items())

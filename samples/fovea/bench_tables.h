@@ -22,9 +22,11 @@ struct Mean {
 Mean meanOf(const std::vector<double>& values);
 
 // tables/SWEEP.csv: a row per scene, graph, combination of the varied parameters, and number; `paper` and
-// `ratio` (ours / the paper's) where benchmarks/paper.json has that number. Also writes report.json, which
-// the report is made from, with the `command` that makes all of it. Returns the tables as a terminal shows
-// them: errors, times and ratios alone. Throws Error(CannotWrite).
+// `ratio` (ours / the paper's) where benchmarks/paper.json has that number; `bound` is `>` or `<` where a
+// number is only known to be above or below what is shown, as when all of a search's range was not enough,
+// `~` where seeds disagree on that. Also writes report.json, which the report is made from, with the
+// `command` that makes all of it. Returns the tables as a terminal shows them: errors, times and ratios
+// alone. Throws Error(CannotWrite).
 std::string writeTables(const BenchFolder& folder, const Suite& suite,
                         const std::vector<StoredResult>& results,
                         const std::map<std::string, std::string>& missingScenes, const std::string& command);

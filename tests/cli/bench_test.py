@@ -250,7 +250,28 @@ class Suites(CliTest):
         self.assertTrue(found["match"]["reached"])
         self.assertEqual(found["match"]["target"], wanted["error"]["whole"]["mse"])
         self.assertLessEqual(found["error"]["whole"]["mse"], wanted["error"]["whole"]["mse"])
-        self.assertEqual(float(self.rows("eq")["cornellbox", "found", "match.value"]["mean"]), found["match"]["value"])
+        row = self.rows("eq")["cornellbox", "found", "match.value"]
+        self.assertEqual((float(row["mean"]), row["bound"]), (found["match"]["value"], ""))
+
+    def test_match_out_of_range(self):
+        """What the range of a bisection does not hold is a bound, of the speed-up too, and is not set against the paper's number."""
+        matched = {"like": "ours", "measure": "error.whole.mse"}
+        self.suite(scenes=["cornellbox"], paper="table2", measures=["error"], frames=1, reference={"spp": 32, "depth": 3}, sweeps=[
+            {"name": "eq", "set": {"map_size": 16}, "speed_up": {"of": "ours", "over": ["ir_eq", "few"]}, "graphs": [
+                {"graph": "ir_1000", "label": "ours", "set": {"vpl_count": 40}},
+                {"graph": "ir_1000", "label": "ir_eq", "match": dict(matched, **{"from": 1, "to": 2})},
+                {"graph": "ir_1000", "label": "few", "match": dict(matched, **{"from": 400, "to": 500})}]}])
+        shown = self.succeeds("bench", "tiny.json", "-o", "out").stdout
+        rows = self.rows("eq")
+        for label, value, sign in (("ir_eq", "2", ">"), ("few", "400", "<")):
+            found = rows["cornellbox", label, "match.value"]
+            self.assertEqual((found["mean"], found["bound"], found["paper"] and found["ratio"]), (value, sign, ""))
+            self.assertEqual(rows["cornellbox", "ours", "speed_up." + label]["bound"], sign)
+            self.assertRegex(shown, rf"{label} .*{sign} {value}")
+        self.assertEqual(rows["cornellbox", "ours", "speed_up.ir_eq"]["ratio"], "")
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("&gt; 2", page)
+        self.assertIn("&lt; 400", page)
 
     def test_mistakes_before_anything_runs(self):
         self.suite(scenes=["cornellbox", "cornelbox"])
