@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "framework/base/memory.h"
 #include "framework/graph/alias.h"
 #include "framework/graph/barriers.h"
 #include "framework/graph/compile.h"
@@ -191,6 +192,9 @@ void sizes(benchmark::internal::Benchmark* b) {
   for (const int shape : {kChain, kDiamond, kFanIn})
     for (const int passes : {19, 100, 500}) b->Args({shape, passes});
 }
+
+// As program fovea does.
+const bool kKeepsMemory = (keepFreedMemory(), true);
 
 BENCHMARK(parse)->Name("Parse")->Apply(sizes);
 BENCHMARK(resolveDocument)->Name("Resolve")->Apply(sizes);

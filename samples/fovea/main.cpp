@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/base/diagnostic.h"
+#include "framework/base/memory.h"
 #include "framework/graph/registry.h"
 #include "samples/fovea/commands.h"
 
@@ -103,6 +104,7 @@ ExitCode run(int argc, char** argv) {
 }  // namespace fovea::cli
 
 int main(int argc, char** argv) {
+  fovea::keepFreedMemory();
   const fovea::ExitCode code = fovea::cli::run(argc, argv);
   if (std::fflush(stdout) != 0 && code == fovea::ExitCode::Ok) {
     std::fputs("fovea: error: standard output could not be written\n", stderr);
