@@ -1,5 +1,6 @@
-// The listed blocks of BLOCK x BLOCK pixels: a work group takes the same pixel of 256 of them, so that all its invocations
-// want the same subset of VPLs; its place in the block is the row of the dispatch. Bindings 8 and 9.
+// The listed blocks of BLOCK x BLOCK pixels, a row of the dispatch for a pixel of a block and a column for 256 blocks. Bindings
+// 8 and 9. Shading takes the same pixel of 256 blocks in a work group, so that all its invocations want the same subset of
+// VPLs; filtering takes pixels below each other, whose windows overlap.
 #ifndef FOVEA_DEFERRED_BLOCKS_GLSL
 #define FOVEA_DEFERRED_BLOCKS_GLSL
 
@@ -16,6 +17,19 @@ ivec2 listedPixel(int k, ivec2 size) {
   if (item >= texelFetch(shadeDispatch, 0).w) return size;
   uint block = texelFetch(shadeBlocks, int(item)).x;
   return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + placeInBlock());
+}
+
+const int kListedColumn = min(BLOCK, int(kListedPixels));     // pixels below each other, of one block
+const int kListedColumns = int(kListedPixels) / kListedColumn;  // of an invocation
+
+// The first pixel of the k-th column of this invocation; past the end of the list: `size`.
+ivec2 listedColumn(int k, ivec2 size) {
+  const uint kInBlock = BLOCK * BLOCK / kListedColumn;
+  uint group = (k * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  uint column = group * 64u + gl_LocalInvocationIndex, item = column / kInBlock, place = column % kInBlock;
+  if (item >= texelFetch(shadeDispatch, 0).w) return size;
+  uint block = texelFetch(shadeBlocks, int(item)).x;
+  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + uvec2(place % BLOCK, place / BLOCK * kListedColumn));
 }
 
 #endif

@@ -24,10 +24,13 @@
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
-#if EDGES
-const int kPixels = 1;  // that are filtered together
+// Pixels below each other that an invocation filters together, as their windows overlap.
+#if !EDGES
+const int kPixels = 4;
+#elif MASKED
+const int kPixels = kListedColumn;
 #else
-const int kPixels = 4;  // an invocation filters so many pixels below each other, whose windows overlap
+const int kPixels = 1;
 #endif
 const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
@@ -284,8 +287,8 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
 
 #if EDGES
 #if MASKED
-const int kItems = int(kListedPixels);
-ivec2 itemAt(int k, ivec2 size) { return listedPixel(k, size); }
+const int kItems = kListedColumns;
+ivec2 itemAt(int k, ivec2 size) { return listedColumn(k, size); }
 #else
 const int kItems = 1;
 ivec2 itemAt(int k, ivec2 size) {
@@ -300,15 +303,18 @@ void main() {
   ivec2 size = imageSize(gbufferPosition);
   uint surfaces = 0u, found = 0u;
   for (int k = 0; k < kItems; ++k) {
-    ivec2 p = itemAt(k, size);  // past the end of the list: `size`
+    ivec2 first = itemAt(k, size);  // past the end of the list: `size`
     Centre centres[kPixels];
-    centres[0] = centreAt(p, size);
-    filterWindows(centres, p, size);
-    bool surface = centres[0].plane >= 0.0, incomplete;
-    vec3 mean = meanOfSubsets(centres[0], min(p, size - 1), size, surface, incomplete);
-    if (all(lessThan(p, size))) imageStore(irradiance, p, vec4(surface ? mean : vec3(0.0), 1.0));
-    surfaces += subgroupBallotBitCount(subgroupBallot(surface));
-    found += subgroupBallotBitCount(subgroupBallot(incomplete));
+    for (int i = 0; i < kPixels; ++i) centres[i] = centreAt(first + ivec2(0, i), size);
+    filterWindows(centres, first, size);
+    for (int i = 0; i < kPixels; ++i) {
+      ivec2 p = first + ivec2(0, i);
+      bool surface = centres[i].plane >= 0.0, incomplete;
+      vec3 mean = meanOfSubsets(centres[i], min(p, size - 1), size, surface, incomplete);
+      if (all(lessThan(p, size))) imageStore(irradiance, p, vec4(surface ? mean : vec3(0.0), 1.0));
+      surfaces += subgroupBallotBitCount(subgroupBallot(surface));
+      found += subgroupBallotBitCount(subgroupBallot(incomplete));
+    }
   }
   if (subgroupElect() && found > 0u) atomicAdd(counters[0], found);
 #if MASKED
