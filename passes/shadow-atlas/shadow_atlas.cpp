@@ -153,6 +153,10 @@ PassDeclaration ShadowAtlas::declaration() {
       "static_maps", flag(false),
       "keeps a map of what never moves for each VPL, as much memory again: where the VPL stands still, "
       "its map is drawn again by drawing what moves over that (needs `state`)");
+  d.parameter(
+      "mover_slack", real(0, 0, 100, "frames"),
+      "what moves is drawn farther from the VPL by its way in so many frames, at most by a quarter of the "
+      "distance, so that it throws no shadow on itself from maps that are some frames old; 0: where it is");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
@@ -169,6 +173,7 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
   gpu::Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
   if (simplified) defines["SIMPLIFIED"] = "1";
   if (toStaticMaps) defines["STATIC_MAPS"] = "1";
+  if (!simplified && !toStaticMaps && ctx.parameters().real("mover_slack") > 0) defines["MOVER_SLACK"] = "1";
   Kernels k;
   k.cull = ctx.compute("shadow-atlas/cull.comp", defines);
   k.small = ctx.compute("shadow-atlas/small.comp", defines);

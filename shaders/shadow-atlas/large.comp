@@ -13,6 +13,9 @@ layout(push_constant) uniform Constants {
   int size;
   uint slice, slices;  // of every pair's blocks: loops end after 65,535 turns in all on some devices
   float planeEpsilon;
+#ifdef MOVER_SLACK
+  float moverSlack;  // frames
+#endif
 };
 
 void main() {
@@ -27,7 +30,11 @@ void main() {
     else atomicAdd(counters.large, count);
   }
   if (entry >= count) return;
-  Pair pair = loadPair(pairs.list[largePlace(entry, capacity, kMasked)], size, planeEpsilon, true);
+  Pair pair = loadPair(pairs.list[largePlace(entry, capacity, kMasked)], size, planeEpsilon, true
+#ifdef MOVER_SLACK
+                       , moverSlack
+#endif
+  );
   if (isEmpty(pair.box)) return;
 
   int width = int(pair.box.hi.x - pair.box.lo.x) / 8 + 1;

@@ -1,4 +1,4 @@
-// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it.
+// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it. MOVER_SLACK: with push constant moverSlack.
 #ifndef FOVEA_SHADOW_ATLAS_PAIR_GLSL
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 
@@ -30,10 +30,23 @@ struct Pair {
   ivec3 origin;  // of the VPL's map in the atlas
   uint material;
   vec2 uvA, uvB, uvC;
+#ifdef MOVER_SLACK
+  float slack;  // m
+#endif
 };
 
-// clipped: the triangle may be of any size.
-Pair loadPair(uint word, int size, float planeEpsilon, bool clipped) {
+#ifdef MOVER_SLACK
+const float kMostSlack = 0.25;  // of a distance: what jumps still throws shadows
+
+float wayOf(uint vertex, vec3 position) { return distance(position, scenePreviousPosition(vertex)); }
+#endif
+
+// clipped: the triangle may be of any size. The way of its fastest corner since the frame before, times moverSlack, is the slack.
+Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
+#ifdef MOVER_SLACK
+              , float moverSlack
+#endif
+) {
   Pair pair;
   VplView view = batch.views[word >> kTriangleBits];
   Triangle triangle = loadTriangle(word & kTriangleMask);
@@ -47,6 +60,10 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped) {
   pair.test = rayTest(view, triangle, planeEpsilon);
   pair.origin = atlasTexel(uint(view.positionSlot.w), ivec2(0), atlasLayout(imageSize(atlas)));
   pair.material = triangle.material;
+#ifdef MOVER_SLACK
+  pair.slack = moverSlack * max(max(wayOf(triangle.vertices.x, triangle.a), wayOf(triangle.vertices.y, triangle.b)),
+                                wayOf(triangle.vertices.z, triangle.c));
+#endif
 #ifdef MASKED
   pair.uvA = texelFetch(sceneAttributes, int(triangle.vertices.x)).zw;
   pair.uvB = texelFetch(sceneAttributes, int(triangle.vertices.y)).zw;
@@ -62,6 +79,9 @@ void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
 #ifdef MASKED
   weights /= weights.x + weights.y + weights.z;
   hit = hit && alphaTest(pair.material, weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB);
+#endif
+#ifdef MOVER_SLACK
+  distance_ += min(pair.slack, kMostSlack * distance_);
 #endif
   if (hit) imageAtomicMin(atlas, pair.origin + ivec3(texel, 0), floatBitsToUint(distance_));
 }

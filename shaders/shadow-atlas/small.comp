@@ -11,6 +11,9 @@ layout(push_constant) uniform Constants {
   uint capacity;
   int size;
   float planeEpsilon;
+#ifdef MOVER_SLACK
+  float moverSlack;  // frames
+#endif
 };
 
 void main() {
@@ -25,7 +28,11 @@ void main() {
     else atomicAdd(counters.small, count);
   }
   if (entry >= count) return;
-  Pair pair = loadPair(pairs.list[smallPlace(entry, capacity, kMasked)], size, planeEpsilon, false);
+  Pair pair = loadPair(pairs.list[smallPlace(entry, capacity, kMasked)], size, planeEpsilon, false
+#ifdef MOVER_SLACK
+                       , moverSlack
+#endif
+  );
 
   vec2 texel = pair.box.lo;
   float toMap = 2.0 / float(size);

@@ -294,5 +294,40 @@ TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
   EXPECT_EQ(stale.counter("maps"), 0);
 }
 
+// Slack holds for what moves, in the frames in which it does, and leaves everything else where it is.
+TEST(ShadowAtlasRefresh, MoversAreDrawnFartherByTheirWay) {
+  const float way = 6 / 0.2f / 42;  // m a frame
+  MoverBehindWall world(60), away(60);
+  for (scene::MotionKey& key : away.scene.movers[0].keys) key.translation += glm::vec3(100);  // behind the walls
+  int moved = 0, cut = 0;
+  for (const float slack : {0.05f, 3.0f}) {
+    PassTest whole("shadow-atlas"), still("shadow-atlas"), slackened("shadow-atlas"), overlaid("shadow-atlas");
+    for (PassTest* test : {&whole, &still, &slackened, &overlaid})
+      test->scene(test == &still ? away.scene : world.scene).param("size", 32).buffer("vpls", world.vpls, "Vpl");
+    slackened.param("refresh", "all").param("mover_slack", slack);
+    overlaid.param("refresh", "stale").param("refresh_share", 1.0).param("static_maps", true);
+    overlaid.param("mover_slack", slack).buffer("state", world.state, "VplState");
+    for (PassTest* test : {&whole, &still, &slackened, &overlaid}) test->run(4);
+    const std::vector<float> exact = whole.values<float>("atlas"), behind = still.values<float>("atlas"),
+                             found = slackened.values<float>("atlas");
+    EXPECT_EQ(found, overlaid.values<float>("atlas"));
+    for (size_t i = 0; i < exact.size(); ++i) {
+      if (exact[i] == behind[i]) {
+        ASSERT_EQ(found[i], exact[i]);
+        continue;
+      }
+      const float farther = exact[i] + std::min(slack * way, 0.25f * exact[i]);
+      ASSERT_NEAR(found[i], std::min(farther, behind[i]), 1e-5f * farther);
+      ++moved;
+      cut += slack * way > 0.25f * exact[i];
+    }
+    for (PassTest* test : {&whole, &slackened}) test->run(10);  // it stands still
+    EXPECT_EQ(slackened.values<float>("atlas"), whole.values<float>("atlas"));
+  }
+  EXPECT_GT(moved, 200);
+  EXPECT_GT(cut, 50);
+  EXPECT_LT(cut, moved);
+}
+
 }  // namespace
 }  // namespace fovea::test
