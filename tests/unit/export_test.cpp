@@ -48,7 +48,9 @@ void expectSameMaterials(const Scene& a, const Scene& b) {
     EXPECT_FLOAT_EQ(x.metallic, y.metallic);
     EXPECT_LE(distance(x.emission, y.emission), 1e-6f * glm::length(x.emission));
     EXPECT_EQ(x.masked, y.masked);
-    if (x.masked) EXPECT_FLOAT_EQ(x.alphaCutoff, y.alphaCutoff);
+    if (x.masked) {
+      EXPECT_FLOAT_EQ(x.alphaCutoff, y.alphaCutoff);
+    }
     EXPECT_EQ(x.doubleSided, y.doubleSided);
     expectSameTexture(a, x.baseColorTexture, b, y.baseColorTexture);
     if (x.emission != glm::vec3(0)) expectSameTexture(a, x.emissionTexture, b, y.emissionTexture);
@@ -66,7 +68,9 @@ void expectSameLights(const std::vector<Light>& a, const std::vector<Light>& b) 
       EXPECT_FLOAT_EQ(a[i].range, b[i].range);
       EXPECT_LT(distance(a[i].position, b[i].position), 1e-5f);
     }
-    if (a[i].type != LightType::Point) EXPECT_LT(distance(a[i].direction, b[i].direction), 1e-5f);
+    if (a[i].type != LightType::Point) {
+      EXPECT_LT(distance(a[i].direction, b[i].direction), 1e-5f);
+    }
     if (a[i].type == LightType::Spot) {
       EXPECT_FLOAT_EQ(a[i].innerConeAngle, b[i].innerConeAngle);
       EXPECT_FLOAT_EQ(a[i].outerConeAngle, b[i].outerConeAngle);
