@@ -11,25 +11,27 @@ const uint kListedPixels = 4u;  // of an invocation; work groups have 64
 
 uvec2 placeInBlock() { return uvec2(gl_WorkGroupID.y % BLOCK, gl_WorkGroupID.y / BLOCK); }
 
-// The k-th pixel of this invocation; past the end of the list: `size`, which is outside the image.
-ivec2 listedPixel(int k, ivec2 size) {
-  uint item = (gl_WorkGroupID.x * kListedPixels + k) * 64u + gl_LocalInvocationIndex;
+// A pixel of the item-th block; past the end of the list: `size`, which is outside the image.
+ivec2 inListedBlock(uint item, uvec2 place, ivec2 size) {
   if (item >= texelFetch(shadeDispatch, 0).w) return size;
   uint block = texelFetch(shadeBlocks, int(item)).x;
-  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + placeInBlock());
+  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + place);
 }
 
-const int kListedColumn = min(BLOCK, int(kListedPixels));     // pixels below each other, of one block
+// The k-th pixel of this invocation.
+ivec2 listedPixel(int k, ivec2 size) {
+  return inListedBlock((gl_WorkGroupID.x * kListedPixels + k) * 64u + gl_LocalInvocationIndex, placeInBlock(), size);
+}
+
+const int kListedColumn = min(BLOCK, int(kListedPixels));       // pixels below each other, of one block
 const int kListedColumns = int(kListedPixels) / kListedColumn;  // of an invocation
 
-// The first pixel of the k-th column of this invocation; past the end of the list: `size`.
+// The first pixel of the k-th column of this invocation.
 ivec2 listedColumn(int k, ivec2 size) {
   const uint kInBlock = BLOCK * BLOCK / kListedColumn;
   uint group = (k * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  uint column = group * 64u + gl_LocalInvocationIndex, item = column / kInBlock, place = column % kInBlock;
-  if (item >= texelFetch(shadeDispatch, 0).w) return size;
-  uint block = texelFetch(shadeBlocks, int(item)).x;
-  return ivec2(uvec2(block & 0xffffu, block >> 16u) * BLOCK + uvec2(place % BLOCK, place / BLOCK * kListedColumn));
+  uint column = group * 64u + gl_LocalInvocationIndex, place = column % kInBlock;
+  return inListedBlock(column / kInBlock, uvec2(place % BLOCK, place / BLOCK * kListedColumn), size);
 }
 
 #endif
