@@ -61,9 +61,8 @@ class Occupancy {
     }
   }
 
-  static uint64_t alignUp(uint64_t v, uint64_t alignment) {
-    return (v + alignment - 1) / alignment * alignment;
-  }
+  // Vulkan's alignments are powers of two.
+  static uint64_t alignUp(uint64_t v, uint64_t alignment) { return (v + alignment - 1) & ~(alignment - 1); }
 
  private:
   detail::ScratchVector<SmallVector<Range, 2>> levels_;

@@ -60,6 +60,7 @@ class Planner {
     bool history = false;
     for (const BoundResource& r : graph_.resources) history |= r.history;
     if (history) previous_.assign(graph_.resources.size(), {});
+    markLasting();
     // Copies that change places need two rounds until both carry the state of a whole frame.
     for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) frame<false>();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
@@ -79,7 +80,8 @@ class Planner {
  private:
   void collectTouches();
   void makeSegments();
-  // Without `record` only the states are followed.
+  void markLasting();
+  // Without `record` only the states that last beyond the frame are followed.
   template <bool record>
   void frame();
   template <bool record>
@@ -116,7 +118,8 @@ class Planner {
       scratch_};  // per placement: [first, last)
   detail::ScratchVector<Segment> segments_{scratch_};
   detail::ScratchVector<uint32_t> leaving_{scratch_},
-      leavingFirst_{scratch_};  // resources by the last level of their life
+      leavingFirst_{scratch_};                        // resources by the last level of their life
+  detail::ScratchVector<uint8_t> lasting_{scratch_};  // per resource
 };
 
 void Planner::collectTouches() {
@@ -182,8 +185,9 @@ void Planner::makeSegments() {
   // Few boundaries are distinct where memory is shared, and neighbours meet in one.
   detail::ScratchVector<uint64_t> bounds(scratch_);  // heap and offset, ascending
   const auto add = [&](uint64_t bound) {
+    if (bounds.empty() || bound > bounds.back()) return bounds.push_back(bound);
     const auto at = std::lower_bound(bounds.begin(), bounds.end(), bound);
-    if (at == bounds.end() || *at != bound) bounds.insert(at, bound);
+    if (*at != bound) bounds.insert(at, bound);
   };
   for (uint32_t i = 0; i < plan_.placements.size(); ++i) {
     const Placement& p = plan_.placements[i];
@@ -191,13 +195,17 @@ void Planner::makeSegments() {
     add(uint64_t(p.heap) << 56 | p.offset);
     add(uint64_t(p.heap) << 56 | (p.offset + p.bytes));
   }
-  const auto segmentAt = [&](uint64_t bound) {
+  const auto segmentAt = [&](uint64_t bound, uint32_t guess) {
+    if (guess < bounds.size() && bounds[guess] == bound) return guess;
     return static_cast<uint32_t>(std::lower_bound(bounds.begin(), bounds.end(), bound) - bounds.begin());
   };
   placementSegments_.reserve(plan_.placements.size());
-  for (const Placement& p : plan_.placements)
-    placementSegments_.emplace_back(segmentAt(uint64_t(p.heap) << 56 | p.offset),
-                                    segmentAt(uint64_t(p.heap) << 56 | (p.offset + p.bytes)));
+  uint32_t next = 0;  // placements often lie one behind the other, in pieces that nothing splits
+  for (const Placement& p : plan_.placements) {
+    const uint32_t first = segmentAt(uint64_t(p.heap) << 56 | p.offset, next);
+    next = segmentAt(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
+    placementSegments_.emplace_back(first, next);
+  }
   segments_.assign(bounds.size(), {});
   // Resources by the last level of their life; outputs leave after the end of the frame.
   leavingFirst_.assign(levels_ + 2, 0);
@@ -206,6 +214,21 @@ void Planner::makeSegments() {
   detail::ScratchVector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end(), scratch_);
   leaving_.resize(plan_.placements.size());
   for (const Placement& p : plan_.placements) leaving_[at[intervals_[p.resource].last]++] = p.resource;
+}
+
+// How a frame leaves a resource matters to the next one when its contents stay, or when it is the last to
+// lie in some piece of memory.
+void Planner::markLasting() {
+  lasting_.assign(graph_.resources.size(), 0);
+  detail::ScratchVector<uint32_t> last(segments_.size(), kNone, scratch_);
+  for (const uint32_t r : leaving_) {
+    const auto [first, end] = placementSegments_[placementOf_[r]];
+    for (uint32_t s = first; s < end; ++s) last[s] = r;
+  }
+  for (const uint32_t r : last)
+    if (r != kNone) lasting_[r] = 1;
+  for (size_t r = 0; r < graph_.resources.size(); ++r)
+    if (!isTransient(graph_.resources[r])) lasting_[r] = 1;
 }
 
 void Planner::occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const {
@@ -231,8 +254,11 @@ void Planner::frame() {
   BarrierBatch unrecorded;
   for (uint32_t l = 0; l < levels_; ++l) {
     BarrierBatch& batch = record ? plan_.levels.emplace_back().before : unrecorded;
-    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch<record>(touches_[i], batch);
-    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
+    if (record) batch.images.reserve(touchFirst_[l + 1] - touchFirst_[l]);
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i)
+      if (record || lasting_[touches_[i].resource]) touch<record>(touches_[i], batch);
+    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i)
+      if (record || lasting_[leaving_[i]]) leave(leaving_[i]);
     if (!record) continue;
     plan_.levels.back().passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
                                       schedule_.order.begin() + schedule_.levelFirst[l + 1]);
@@ -249,7 +275,8 @@ void Planner::frame() {
     read<record>(t, current_[output.resource], transfer, batch);
   }
   if (record) plan_.end = batch;
-  for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i) leave(leaving_[i]);
+  for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i)
+    if (record || lasting_[leaving_[i]]) leave(leaving_[i]);
   for (size_t r = 0; r < previous_.size(); ++r)
     if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
 }

@@ -114,7 +114,7 @@ void Binder::declare() {
 
 void Binder::bindView(BoundPass& pass, const PassDescription& from) {
   if (from.view == kNone) return;
-  const std::string& name = text(from.view);
+  const std::string_view name = text(from.view);
   const auto at = std::find(graph_.views.begin(), graph_.views.end(), name);
   pass.view = static_cast<uint32_t>(at - graph_.views.begin());
   if (at == graph_.views.end()) {
@@ -130,7 +130,7 @@ void Binder::bindView(BoundPass& pass, const PassDescription& from) {
             fmt::format("there is: {}", fmt::join(names, ", ")));
       return;
     }
-    graph_.views.push_back(name);
+    graph_.views.emplace_back(name);
     viewExtents_.push_back(known->second);
   }
   if (!from.ownView || pass.declaration->usesView) return;
@@ -153,7 +153,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   size_t guess = 0;
   for (uint32_t i = 0; i < from.parameterCount; ++i) {
     const ParameterDescription& given = description_.parameters[from.firstParameter + i];
-    const std::string& name = text(given.name);
+    const std::string_view name = text(given.name);
     size_t k = 0;
     for (; k < specs.size(); ++k, ++guess) {
       if (guess >= specs.size()) guess = 0;
@@ -168,7 +168,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
     for (const ParameterSpec& spec : specs) names.push_back(spec.name);
     const std::string nearest = nearestName(name, names);
     const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
-    error(given.keyPlace, passPath(p, "params." + name),
+    error(given.keyPlace, passPath(p, json::joinPath("params", name)),
           fmt::format("`{}` has no parameter `{}`", pass.declaration->type, name),
           !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
           : names.empty()  ? std::string("it has none")
@@ -189,13 +189,12 @@ std::string describeGiven(const ParameterDescription& given, const SymbolTable& 
     case json::Value::Type::Real:
       return fmt::format("{}", given.real);
     default:
-      return "`" + symbols[given.text] + "`";
+      return fmt::format("`{}`", symbols[given.text]);
   }
 }
 
 // Command-line text as a number or flag; leaves what cannot be read a text.
-ParameterDescription parseTyped(ParameterDescription given, const std::string& text,
-                                ParameterSpec::Type type) {
+ParameterDescription parseTyped(ParameterDescription given, std::string_view text, ParameterSpec::Type type) {
   const char* end = text.data() + text.size();
   if (type == ParameterSpec::Type::Bool &&
       (text == "true" || text == "false" || text == "0" || text == "1")) {
@@ -278,11 +277,11 @@ bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given
       if (given.type != Json::String ||
           std::find(spec.choices.begin(), spec.choices.end(), text(given.text)) == spec.choices.end())
         return false;
-      out = text(given.text);
+      out.emplace<std::string>(text(given.text));
       return true;
     case Type::Text:
       if (given.type != Json::String) return false;
-      out = text(given.text);
+      out.emplace<std::string>(text(given.text));
       return true;
   }
   return false;
@@ -296,7 +295,7 @@ void Binder::makeExternals() {
     for (size_t m = 0; m < external.members.size(); ++m) {
       BoundResource& resource = graph_.resources.emplace_back();
       resource.name = text(external.name);
-      if (!text(external.members[m]).empty()) resource.name += "." + text(external.members[m]);
+      if (!text(external.members[m]).empty()) (resource.name += '.') += text(external.members[m]);
       resource.desc = external.resources[m];
       if (resource.desc.kind == ResourceKind::Image && resource.desc.width == 0)
         resource.desc.width = viewExtents_[0].width;
@@ -385,7 +384,6 @@ void Binder::addAccesses(BoundPass& pass, const PortState& port) {
 void Binder::bindOutputs() {
   graph_.outputs.reserve(description_.outputs.size());
   for (const WireDescription& wire : description_.outputs) {
-    const std::string path = "outputs." + text(wire.target);
     PortState port;
     port.pass = kNone;
     connectWire(port, wire);
@@ -399,7 +397,7 @@ void Binder::bindOutputs() {
       output.resource = resource;
       output.version = versionSeen(port, resource);
       if (output.version != lastVersion_[resource])
-        error(wire.place, path,
+        error(wire.place, json::joinPath("outputs", text(wire.target)),
               fmt::format("`{}` is updated in place later in the frame", description_.text(wire)),
               "wire the output to the last pass that updates it");
       graph_.resources[resource].output = true;

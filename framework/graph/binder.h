@@ -103,7 +103,7 @@ class Binder {
   std::string parametersOf(const ResourceSpec& spec) const;
   std::string otherChoices(uint32_t p, const ResourceSpec& spec) const;
 
-  const std::string& text(Symbol symbol) const { return description_.symbols[symbol]; }
+  std::string_view text(Symbol symbol) const { return description_.symbols[symbol]; }
   void error(const Place& place, std::string path, std::string message, std::string remedy = {});
   std::string passPath(uint32_t pass, std::string_view rest = {}) const;
   std::string wirePath(const PortState& port) const;

@@ -36,7 +36,7 @@ std::string Binder::describeValue(const PortValue& value) const {
   if (value.origin && !value.origin->bundle.empty() && value.member == kNone)
     return fmt::format("a bundle `{}`", value.origin->bundle);
   if (value.external != kNone && value.member == kNone) {
-    const std::string& bundle = text(description_.externals[value.external].bundle);
+    const std::string_view bundle = text(description_.externals[value.external].bundle);
     if (!bundle.empty()) return fmt::format("a bundle `{}`", bundle);
   }
   if (value.origin) {
@@ -55,7 +55,7 @@ std::string Binder::describeWanted(const PortSpec& spec) const {
 
 std::string Binder::wirePath(const PortState& port) const {
   const WireDescription& wire = description_.wires[port.wire];
-  return passPath(port.pass, "inputs." + text(wire.target));
+  return passPath(port.pass, json::joinPath("inputs", text(wire.target)));
 }
 
 // ---- From names to ports -----------------------------------------------------------------------------
@@ -70,7 +70,7 @@ void Binder::assignWires() {
     size_t guess = 0;
     for (uint32_t i = 0; i < from.inputCount; ++i) {
       const WireDescription& wire = description_.wires[from.firstInput + i];
-      const std::string& name = text(wire.target);
+      const std::string_view name = text(wire.target);
       size_t k = 0;
       for (; k < specs.size(); ++k, ++guess) {
         if (guess >= specs.size()) guess = 0;
@@ -88,7 +88,7 @@ void Binder::assignWires() {
         if (spec.direction == Direction::Input || spec.direction == Direction::InOut)
           names.push_back(spec.name);
       const std::string nearest = nearestName(name, names);
-      error(wire.keyPlace, passPath(p, "inputs." + name),
+      error(wire.keyPlace, passPath(p, json::joinPath("inputs", name)),
             k < specs.size() ? fmt::format("`{}` is an output of `{}`, not an input", name, declaration->type)
                              : fmt::format("`{}` has no input `{}`", declaration->type, name),
             !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
@@ -125,9 +125,9 @@ bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& po
 }
 
 void Binder::connectWire(PortState& port, const WireDescription& wire) {
-  const std::string path = port.pass == kNone ? "outputs." + text(wire.target) : std::string();
   auto wrong = [&](std::string message, std::string remedy) {
-    error(wire.place, port.pass == kNone ? path : wirePath(port), std::move(message), std::move(remedy));
+    error(wire.place, port.pass == kNone ? json::joinPath("outputs", text(wire.target)) : wirePath(port),
+          std::move(message), std::move(remedy));
     port.state = 2;
   };
   port.previous = wire.previous;
@@ -154,7 +154,7 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
   uint32_t index, member;
   if (!selectPort(wire, pass, index, member)) {
     std::vector<std::string> names;
-    const std::string& name = text(description_.passes[pass].name);
+    const std::string name(text(description_.passes[pass].name));
     for (const PortSpec& spec : graph_.passes[pass].declaration->ports) {
       if (!producing(spec)) continue;
       names.push_back(name + "." + spec.name);

@@ -404,11 +404,8 @@ bool Expander::containsItself(size_t scope, const std::filesystem::path& file) c
 }
 
 void Expander::reportUnused() {
-  std::vector<std::string> names;
-  for (Scope& scope : scopes_) {
+  for (const Scope& scope : scopes_) {
     for (const Scope::Parameter& p : scope.parameters) {
-      names.push_back(scope.prefix.empty() ? p.name
-                                           : scope.prefix.substr(0, scope.prefix.size() - 1) + "." + p.name);
       if (!p.used)
         diagnostics_.warning(description_.location(p.value.keyPlace), "parameters." + p.name,
                              fmt::format("nothing uses the graph parameter `{}`", p.name));
@@ -420,9 +417,13 @@ void Expander::reportUnused() {
   }
   for (const PendingOverride& o : overrides_) {
     if (o.used) continue;
-    std::vector<std::string> targets;
+    std::vector<std::string> names, targets;
+    for (const Scope& scope : scopes_)
+      for (const Scope::Parameter& p : scope.parameters)
+        names.push_back(
+            scope.prefix.empty() ? p.name : scope.prefix.substr(0, scope.prefix.size() - 1) + "." + p.name);
     for (const PassDescription& pass : description_.passes)
-      targets.push_back(description_.symbols[pass.name]);
+      targets.emplace_back(description_.symbols[pass.name]);
     const SourceLocation where{fmt::format("--set {}={}", o.source->name, o.source->value), 0, 0};
     const std::string nearest = nearestName(o.target, targets);
     const bool pass = !o.target.empty() && !nearest.empty();

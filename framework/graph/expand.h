@@ -12,6 +12,7 @@
 
 #include "framework/base/small_vector.h"
 #include "framework/graph/resolve.h"
+#include "framework/graph/scratch.h"
 
 namespace fovea::graph::detail {
 
@@ -131,15 +132,16 @@ class Expander {
   Description& description_;
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
-  std::deque<Scope> scopes_;  // documents are pointed into
-  std::vector<RawWire> rawWires_;
-  std::vector<uint32_t> rawFirst_;  // per pass
+  Scratch scratch_;
+  std::deque<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // documents are pointed into
+  ScratchVector<RawWire> rawWires_{scratch_};
+  ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
   std::vector<PendingOverride> overrides_;
   // Files met and their numbers; held, so that no address is used again.
-  std::vector<std::pair<std::shared_ptr<const std::string>, uint32_t>> files_;
+  ScratchVector<std::pair<std::shared_ptr<const std::string>, uint32_t>> files_{scratch_};
   const std::string* latestFile_ = nullptr;  // of place(), and its index
   uint32_t latestIndex_ = kNone;
-  std::vector<bool> isPass_;  // by symbol
+  ScratchVector<uint8_t> isPass_{scratch_};  // by symbol
   bool full_ = false;
 };
 

@@ -25,7 +25,7 @@ int64_t Expander::readSize(Scope& scope, json::ObjectReader& reader, const char*
   if (!readScalar(scope, *value, reader.pathOf(key), size)) return fallback;
   int64_t number = size.integer;
   if (size.type == json::Value::Type::String && size.fromCommandLine) {
-    const std::string& text = description_.symbols[size.text];
+    const std::string_view text = description_.symbols[size.text];
     const auto [at, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (ec == std::errc() && at == text.data() + text.size()) size.type = json::Value::Type::Int;
   }

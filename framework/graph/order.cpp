@@ -56,7 +56,7 @@ void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
     std::string names;
     for (const uint32_t p : circle) names += graph_.passes[p].name + " <- ";
     const WireDescription& w = description_.wires[wire[circle[0]]];
-    error(w.place, passPath(circle[0], "inputs." + text(w.target)),
+    error(w.place, passPath(circle[0], json::joinPath("inputs", text(w.target))),
           fmt::format("these passes wait for each other: {}{}", names, graph_.passes[circle[0]].name),
           "one of these wires must read last frame's value: append @previous");
   }

@@ -141,7 +141,7 @@ MemoryNeed estimateMemory(const ResourceDesc& desc) {
 
 Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& options) {
   Plan plan;
-  const Schedule order = schedule(*graph, options.randomOrder);
+  Schedule order = schedule(*graph, options.randomOrder);
   const std::vector<Interval> intervals = lifetimes(*graph, order);
   detail::Hasher hash;
   hash.add(graph->hash);
@@ -165,9 +165,9 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
   plan.heaps = std::move(placed.heaps);
   plan.bytesAliased = placed.bytesAliased;
   plan.bytesUnaliased = placed.bytesUnaliased;
-  plan.passLive.assign(order.passLive.begin(), order.passLive.end());
-  plan.resourceLive.assign(order.resourceLive.begin(), order.resourceLive.end());
   placeBarriers(*graph, order, intervals, plan);
+  plan.passLive = std::move(order.passLive);
+  plan.resourceLive = std::move(order.resourceLive);
   plan.hash = hash.value();
   plan.graph = std::move(graph);
   return plan;

@@ -113,7 +113,7 @@ struct Plan {
     uint32_t memoryTypeBits = ~0u;
   };
   std::vector<Heap> heaps;
-  std::vector<bool> passLive, resourceLive;
+  std::vector<uint8_t> passLive, resourceLive;  // 1 or 0
   // Layout of each live image at the end of a frame, hence at the start of the next: [0] current copy, [1] previous
   // copy as it stands at the start of the frame. Kept and history images are put into it when they are zeroed.
   std::vector<std::array<VkImageLayout, 2>> startLayout;

@@ -2,7 +2,6 @@
 // overrides put in. Names are interned, wires are split; nothing is known about pass types yet.
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -34,10 +33,10 @@ class SymbolTable {
  public:
   Symbol intern(std::string_view text);
   Symbol find(std::string_view text) const;  // kNone when unknown
-  // Stays where it is while others are added.
-  const std::string& operator[](Symbol symbol) const { return strings_[symbol]; }
-  size_t size() const { return strings_.size(); }
-  uint64_t hash(Symbol symbol) const { return hashes_[symbol]; }
+  // Stays where it is while others are added and the table is moved.
+  std::string_view operator[](Symbol symbol) const { return entries_[symbol].text; }
+  size_t size() const { return entries_.size(); }
+  uint64_t hash(Symbol symbol) const { return entries_[symbol].hash; }
   void reserve(size_t count);
 
  private:
@@ -45,8 +44,19 @@ class SymbolTable {
   // The slot that holds the text, or the free one where it belongs.
   size_t slotOf(std::string_view text, uint64_t hash) const;
 
-  std::deque<std::string> strings_;
-  std::vector<uint64_t> hashes_;
+  [[gnu::noinline]] Symbol add(std::string_view text, uint64_t hash, size_t slot);
+  const char* keep(std::string_view text);
+
+  struct Entry {
+    std::string_view text;
+    uint64_t hash;
+  };
+  std::vector<Entry> entries_;
+  struct Block {
+    std::unique_ptr<char[]> characters;
+    size_t size = 0, used = 0;
+  };
+  std::vector<Block> blocks_;  // the texts themselves
   struct Slot {
     uint32_t tag = 0;  // upper half of the hash
     Symbol symbol = kNone;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "framework/graph/binder.h"
 
@@ -63,10 +64,10 @@ void Binder::evaluateSizes() {
       const ResourceDesc& d = graph_.resources[externalFirst_[e] + m].desc;
       const uint32_t limit = d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D;
       if (bytesOf(d) > kMaxBytes)
-        error(description_.externals[e].place, "inputs." + text(description_.externals[e].name),
+        error(description_.externals[e].place, json::joinPath("inputs", text(description_.externals[e].name)),
               "this is more than any device holds", "lower its size");
       else if (d.kind == ResourceKind::Image && limit && std::max({d.width, d.height, d.depth}) > limit)
-        error(description_.externals[e].place, "inputs." + text(description_.externals[e].name),
+        error(description_.externals[e].place, json::joinPath("inputs", text(description_.externals[e].name)),
               fmt::format("{}x{}x{} exceeds this device's maximum image size {}", d.width, d.height, d.depth,
                           limit));
     }
@@ -79,15 +80,16 @@ bool Binder::evaluatePass(uint32_t p, int depth) {
   if (!declaration || depth > kMaxDepth) return false;
   sized_[p] = 1;
   bool good = true;
-  for (uint32_t i = 0; i < declaration->ports.size(); ++i) {
-    const PortSpec& spec = declaration->ports[i];
+  for (const PortState& port : std::span(portsOf(p), portCount(p))) {
+    const PortSpec& spec = *port.spec;
     if (spec.direction != Direction::Output && spec.direction != Direction::Scratch) continue;
-    for (uint32_t m = 0; m < spec.members.size(); ++m) {
-      BoundResource& resource = graph_.resources[portsOf(p)[i].value.first + m];
-      if (evaluateResource(p, spec, spec.members[m], resource, depth))
-        checkLimits(p, spec, spec.members[m], resource);
+    BoundResource* resource = &graph_.resources[port.value.first];
+    for (const MemberSpec& member : spec.members) {
+      if (evaluateResource(p, spec, member, *resource, depth))
+        checkLimits(p, spec, member, *resource);
       else
         good = false;
+      ++resource;
     }
   }
   sized_[p] = good ? 2 : 3;

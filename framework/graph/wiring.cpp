@@ -27,8 +27,8 @@ WireParts split(std::string_view text) {
 }  // namespace
 
 void Expander::resolveWires() {
-  isPass_.assign(description_.symbols.size(), false);
-  for (const PassDescription& pass : description_.passes) isPass_[pass.name] = true;
+  isPass_.assign(description_.symbols.size(), 0);
+  for (const PassDescription& pass : description_.passes) isPass_[pass.name] = 1;
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
   description_.wires.reserve(rawWires_.size());
   for (size_t p = 0; p < description_.passes.size(); ++p) {
@@ -117,10 +117,10 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& 
     std::vector<std::string> names = {"inputs"};
     for (const auto& [instance, position] : scope.instances) names.push_back(instance);
     for (const PassDescription& p : description_.passes) {
-      const std::string& full = description_.symbols[p.name];
+      const std::string_view full = description_.symbols[p.name];
       const bool own =
           full.starts_with(scope.prefix) && full.find('/', scope.prefix.size()) == std::string::npos;
-      if (own || inner) names.push_back(own ? full.substr(scope.prefix.size()) : full);
+      if (own || inner) names.emplace_back(own ? full.substr(scope.prefix.size()) : full);
     }
     std::sort(names.begin(), names.end());
     return error(value.where, path, fmt::format("no pass `{}`", name), nearestRemedy(name, names)), false;

@@ -35,7 +35,7 @@ ExitCode check(const CheckOptions& options) {
     fmt::print("{}", graph::planJson(plan));
   } else {
     size_t live = 0;
-    for (const bool l : plan.passLive) live += l;
+    for (const uint8_t l : plan.passLive) live += l;
     std::vector<std::string> outputs;
     for (const graph::BoundOutput& output : bound->outputs) outputs.push_back(output.name);
     fmt::print("graph `{}` is right: {} passes ({} run), outputs {}\n", bound->name, bound->passes.size(),

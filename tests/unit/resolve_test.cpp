@@ -104,7 +104,7 @@ TEST(Merge, PlacesPointIntoTheFileTheValueCameFrom) {
 struct Loaded {
   Description description;
   Diagnostics messages;
-  std::string text(Symbol s) const { return s == kNone ? "-" : description.symbols[s]; }
+  std::string text(Symbol s) const { return std::string(s == kNone ? "-" : description.symbols[s]); }
   // "pass.port.member@previous"
   std::string wire(const WireDescription& w) const {
     std::string t =
