@@ -34,7 +34,8 @@ class Direct : public Pass {
         "direct",
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
         Usage::ColorAttachment,
-        "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1");
+        "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1, or 0 where the edge "
+        "of a shadow lies between texels of a map");
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 "
                 "such (softer)");

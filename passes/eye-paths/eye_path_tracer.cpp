@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "framework/base/random.h"
+#include "framework/base/threads.h"
 #include "framework/scene/fovea.h"
 #include "framework/scene/lights.h"
-#include "passes/eye-paths/surface_tracer.h"
+#include "framework/scene/surface_tracer.h"
 
 namespace fovea::passes {
 namespace {
@@ -107,14 +107,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
       }
     traced += count;
   };
-  {
-    const uint32_t cores =
-        std::max(settings.threads != 0 ? settings.threads : std::thread::hardware_concurrency(), 1u);
-    std::vector<std::jthread> helpers;
-    for (uint32_t i = 1; i < std::min(cores, (points + kPointsAtOnce - 1) / kPointsAtOnce); ++i)
-      helpers.emplace_back(work);
-    work();
-  }
+  onThreads(std::min(threadCount(settings.threads), (points + kPointsAtOnce - 1) / kPointsAtOnce), work);
   EyePathStatistics statistics{traced, 0};
   const float unit = sumUnit(ends);
   for (EyePathEnd& e : ends) {

@@ -4,13 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <thread>
 #include <vector>
 
 #include "framework/base/random.h"
+#include "framework/base/threads.h"
 #include "framework/scene/fovea.h"
 #include "framework/scene/lights.h"
-#include "passes/eye-paths/surface_tracer.h"
+#include "framework/scene/surface_tracer.h"
 
 namespace fovea::passes {
 namespace {
@@ -54,16 +54,19 @@ class Tracer {
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
     glm::vec3 sum(0);
     uint32_t found = 0;
-    for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn) {
+    const glm::uvec2 block = corner / side;
+    const uint32_t frame = settings_.turn + ((block.x ^ block.y) & 1u) * (settings_.interval - 1);
+    const uint32_t first = frame / settings_.interval;
+    const bool now = settings_.samples > 1 || frame % settings_.interval == 0;
+    for (uint32_t turn = first; now && turn < first + settings_.samples; ++turn) {
       const glm::uvec2 pixel = corner + samplePixel(turn, side);
       if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
       if (!v.there) continue;
       ++found;
-      sum += lightAt(v, corner / side, turn, statistics);
+      sum += lightAt(v, block, turn, statistics);
     }
-    return {sum / float(std::max(found, 1u)),
-            float(sampleCode(side, samplePixel(settings_.turn, side), found > 0))};
+    return {sum / float(std::max(found, 1u)), float(sampleCode(side, samplePixel(first, side), found > 0))};
   }
 
   // Blocks next to each other, 4 x 4 of them, take turns in one sequence.
@@ -122,13 +125,7 @@ NearFieldStatistics traceNearField(const Frame& frame, const View& view, const R
   const auto work = [&] {
     for (uint32_t row = next++; row < rows.size(); row = next++) tracer.traceTiles(row, rows[row]);
   };
-  {
-    const uint32_t cores =
-        std::max(settings.threads != 0 ? settings.threads : std::thread::hardware_concurrency(), 1u);
-    std::vector<std::jthread> helpers;
-    for (uint32_t i = 1; i < std::min(cores, uint32_t(rows.size())); ++i) helpers.emplace_back(work);
-    work();
-  }
+  onThreads(std::min(threadCount(settings.threads), uint32_t(rows.size())), work);
   NearFieldStatistics sum;  // in a fixed order
   for (const NearFieldStatistics& row : rows) {
     sum.rays += row.rays;

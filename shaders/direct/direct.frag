@@ -19,11 +19,14 @@ layout(set = 0, binding = 3, rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D gbufferEmission;
 layout(location = 0) out vec4 direct;
 
-vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face) {
+// doubt: set where the map's texels disagree.
+vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face, inout bool doubt) {
   LightSample e = sampleLight(light, position);
   float cosine = dot(normal, e.direction);
   if (cosine <= 0.0 || e.irradiance == vec3(0.0)) return vec3(0.0);
-  return e.irradiance * (cosine * lightVisibility(light, firstShadowLayer(light), position, face));
+  float visibility = lightVisibility(light, firstShadowLayer(light), position, face);
+  doubt = doubt || (visibility > 0.0 && visibility < 1.0);
+  return e.irradiance * (cosine * visibility);
 }
 
 void main() {
@@ -32,12 +35,13 @@ void main() {
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   vec3 face = octDecode(imageLoad(gbufferFace, p).xy);
   vec3 irradiance = vec3(0.0);
+  bool doubt = false;
 #if ONE_LIGHT
-  if (position.w > 0.0) irradiance = irradianceFrom(lights[0], position.xyz, normal, face);
+  if (position.w > 0.0) irradiance = irradianceFrom(lights[0], position.xyz, normal, face, doubt);
 #else
   uint lightCount = position.w > 0.0 ? frame.lightCount : 0u;  // background: nothing to light
-  for (uint i = 0u; i < lightCount; ++i) irradiance += irradianceFrom(lights[i], position.xyz, normal, face);
+  for (uint i = 0u; i < lightCount; ++i) irradiance += irradianceFrom(lights[i], position.xyz, normal, face, doubt);
 #endif
   vec3 radiance = imageLoad(gbufferEmission, p).rgb + imageLoad(gbufferAlbedo, p).rgb * irradiance * (1.0 / kPi);
-  direct = vec4(min(radiance, 65504.0), 1.0);
+  direct = vec4(min(radiance, 65504.0), doubt ? 0.0 : 1.0);
 }

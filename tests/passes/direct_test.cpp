@@ -314,5 +314,27 @@ TEST(Direct, FilterSoftensTheRim) {
   EXPECT_GT(between("pcf"), between("bilinear"));
 }
 
+// a is 0 just where the map's texels disagree: on the rim of the shadow, and nowhere else.
+TEST(Direct, TellsWhatIsInDoubt) {
+  const std::vector<scene::Light> lights = {sun({0.5f, -1, 0.2f})};
+  const auto views = shadowViews(lights);
+  const auto depth = shadowDepth(views, 1);
+  const double full = kEmission.r + kAlbedo.r / glm::pi<double>() * irradiance(lights[0], {}).r;
+  const auto radiance = shade(lights, views, depth, "bilinear");
+  int doubts = 0;
+  for (size_t i = 0; i < radiance.size(); i += 4) {
+    const bool between = radiance[i] > kEmission.r * 1.002 && radiance[i] < full * 0.998;
+    const bool near = std::abs(radiance[i] - kEmission.r) < 0.01 || std::abs(radiance[i] - full) < 0.01;
+    doubts += radiance[i + 3] == 0;
+    ASSERT_TRUE(radiance[i + 3] == 0 || radiance[i + 3] == 1);
+    EXPECT_TRUE(!between || radiance[i + 3] == 0) << "pixel " << i / 4;
+    EXPECT_TRUE(radiance[i + 3] == 1 || between || near) << "pixel " << i / 4;
+  }
+  EXPECT_GT(doubts, 10);
+  EXPECT_LT(doubts, kWidth * kHeight / 10);
+  const auto jagged = shade(lights, views, depth, "none");
+  for (size_t i = 0; i < jagged.size(); i += 4) ASSERT_EQ(jagged[i + 3], 1);
+}
+
 }  // namespace
 }  // namespace fovea::test

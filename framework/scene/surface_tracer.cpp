@@ -1,4 +1,4 @@
-#include "passes/eye-paths/surface_tracer.h"
+#include "framework/scene/surface_tracer.h"
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -7,9 +7,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/paraboloid.h"
 
-namespace fovea::passes {
-
-using namespace scene;
+namespace fovea::scene {
 
 namespace {
 constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
@@ -108,4 +106,4 @@ glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32
   return sum / float(count);
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::scene

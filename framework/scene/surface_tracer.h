@@ -8,7 +8,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/ray_scene.h"
 
-namespace fovea::passes {
+namespace fovea::scene {
 
 // A surface as the ray that reached it sees it.
 struct TracedSurface {
@@ -17,7 +17,7 @@ struct TracedSurface {
   glm::vec3 origin{0};           // of rays that leave it, just off the surface
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side that was reached
   glm::vec2 uv{0};
-  const scene::Material* material = nullptr;
+  const Material* material = nullptr;
 };
 
 // Point `turn` of the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018)
@@ -29,7 +29,7 @@ glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u);
 // single-sided material, for light it is black. `rays` counts.
 class SurfaceTracer {
  public:
-  SurfaceTracer(const scene::Frame& frame, const scene::View& view, const scene::RayScene& rays);
+  SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays);
 
   // What the eye sees at `pixel` (pixels, centres at +0.5).
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
@@ -45,13 +45,13 @@ class SurfaceTracer {
                    uint64_t& rays) const;
 
  private:
-  TracedSurface surfaceOf(const scene::RayHit& hit, glm::vec3 direction) const;
+  TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
   glm::vec3 irradiance(const TracedSurface& v, uint64_t& rays) const;
 
-  const scene::Frame& frame_;
-  const scene::View& view_;
-  const scene::RayScene& rays_;
+  const Frame& frame_;
+  const View& view_;
+  const RayScene& rays_;
   bool shines_ = false;  // any material
 };
 
-}  // namespace fovea::passes
+}  // namespace fovea::scene

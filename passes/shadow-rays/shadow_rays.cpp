@@ -1,0 +1,71 @@
+// Sharp edges of shadows: where shadow maps cannot tell, rays do.
+#include <algorithm>
+#include <atomic>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "framework/base/threads.h"
+#include "framework/graph/registry.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/surface_tracer.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class ShadowRays : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d(
+        "shadow-rays",
+        "direct light by rays through the triangles, at the pixels for which shadow maps cannot "
+        "tell: the edges of shadows, which maps widen and move in steps of their texels",
+        PassKind::Host);
+    d.view();
+    d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
+            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where it is in doubt, which becomes 1");
+    d.counter("pixels", "that were in doubt");
+    d.counter("rays", "rays traced, from the eye and towards lights");
+    return d;
+  }
+
+  void execute(HostContext& ctx) override {
+    const scene::Frame& frame = ctx.frame();
+    const auto direct = ctx.outputAs<uint64_t>("direct");
+    if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays);
+    const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
+    std::atomic<uint32_t> next = 0;
+    std::atomic<uint64_t> pixels = 0, traced = 0;
+    onThreads(std::min(threadCount(0), height), [&] {
+      uint64_t doubted = 0, count = 0;
+      for (uint32_t y = next++; y < height; y = next++)
+        for (uint32_t x = 0; x < width; ++x) {
+          uint64_t& pixel = direct[size_t(y) * width + x];
+          if (pixel >> 48 == kSure) continue;
+          ++doubted;
+          const scene::TracedSurface v = surfaces.look(glm::vec2(x, y) + 0.5f, count);
+          if (v.there) {
+            const glm::vec3 radiance = surfaces.direct(v, surfaces.reflectance(v), count);
+            pixel = glm::packHalf4x16(glm::vec4(glm::min(radiance, 65504.0f), 1));
+          } else {  // between two triangles, for rays; as the maps have it
+            pixel = (pixel & 0xffffffffffffu) | kSure << 48;
+          }
+        }
+      pixels += doubted;
+      traced += count;
+    });
+    ctx.counter("pixels", double(pixels));
+    ctx.counter("rays", double(traced));
+  }
+
+ private:
+  static constexpr uint64_t kSure = 0x3c00;  // 1 as a half
+};
+
+FOVEA_PASS(ShadowRays);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,99 @@
+// Edges of shadows by rays: the pixels in doubt against plain rays, the others untouched.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include "framework/base/random.h"
+#include "framework/scene/lights.h"
+#include "tests/passes/weights_reference.h"
+#include "tests/support/pass_test.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr glm::ivec2 kSize(80, 60);
+const glm::vec3 kRho(0.5f, 0.25f, 0.75f), kEmission(0.125f, 0, 0.25f);
+
+// Two boxes on a floor that ends before the horizon, under a sun and a lamp.
+Room litBoxes() {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, kRho);
+  s.materials[m].emission = kEmission;
+  addBox(s, m, {-1.5f, -1.2f, -5}, {1.5f, -1, -2});
+  addBox(s, m, {-0.6f, -1, -3.5f}, {0, -0.2f, -3});
+  addBox(s, m, {0.3f, -1, -4}, {0.6f, 0.3f, -3.5f});
+  scene::Light sun;
+  sun.direction = glm::normalize(glm::vec3(0.5f, -1, -0.3f));
+  sun.color = {1, 0.5f, 0.25f};
+  sun.intensity = 3;
+  scene::Light lamp = sun;
+  lamp.type = scene::LightType::Point;
+  lamp.position = {-1, 0.5f, -2.5f};
+  lamp.intensity = 5;
+  s.lights = {sun, lamp};
+  return lookInto(std::move(s), 8, kSize);
+}
+
+glm::dvec3 radiance(const Room& room, const Seen& seen) {
+  glm::dvec3 e(0);
+  for (const scene::Light& light : room.scene.lights) {
+    const scene::LightSample l = scene::sampleLight(light, seen.position);
+    const double cosine = glm::dot(glm::dvec3(seen.normal), glm::dvec3(l.direction));
+    if (cosine <= 0) continue;
+    RayOptions options;
+    if (light.type == scene::LightType::Point) options.tMax = l.distance;
+    const glm::dvec3 origin = glm::dvec3(seen.position) + 1e-5 * glm::dvec3(seen.normal);
+    if (!castRay(room.scene, room.geometry, origin, glm::dvec3(l.direction), options))
+      e += cosine * glm::dvec3(l.irradiance);
+  }
+  return glm::dvec3(kEmission) + glm::dvec3(kRho) / glm::pi<double>() * e;
+}
+
+TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
+  const Room room = litBoxes();
+  std::vector<uint64_t> before;
+  for (uint32_t i = 0; i < room.pixels.size(); ++i)
+    before.push_back(glm::packHalf4x16(
+        {uniformFloat(hashPcg(i)), uniformFloat(hashPcg(i + 10000)), 7, i % 3 == 0 ? 0.0f : 1.0f}));
+  PassTest test("shadow-rays");
+  test.viewSize(kSize.x, kSize.y).scene(room.scene);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1, before);
+  test.run();
+  const auto after = test.values<uint64_t>("direct");
+  int lit = 0, shadowed = 0, background = 0;
+  for (uint32_t i = 0; i < before.size(); ++i) {
+    if (i % 3 != 0) {
+      ASSERT_EQ(after[i], before[i]) << "pixel " << i << " was in no doubt";
+      continue;
+    }
+    const glm::vec4 got = glm::unpackHalf4x16(after[i]);
+    EXPECT_EQ(got.a, 1);
+    const Seen& seen = room.pixels[i];
+    if (!seen.there) {
+      ++background;
+      EXPECT_EQ(after[i] & 0xffffffffffffu, before[i] & 0xffffffffffffu);
+      continue;
+    }
+    const glm::dvec3 want = radiance(room, seen);
+    ++(want.r > kEmission.r + 0.01 ? lit : shadowed);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 2e-3 * want[c]) << "pixel " << i;
+  }
+  EXPECT_GT(lit, 100);
+  EXPECT_GT(shadowed, 10);
+  EXPECT_GT(background, 50);
+  EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
+}
+
+TEST(ShadowRays, AnEmptySceneIsLeftAsItIs) {
+  const std::vector<uint64_t> before(64, glm::packHalf4x16({1, 2, 3, 0}));
+  PassTest test("shadow-rays");
+  test.viewSize(8, 8);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, before);
+  test.run();
+  EXPECT_EQ(test.values<uint64_t>("direct"), before);
+}
+
+}  // namespace
+}  // namespace fovea::test
