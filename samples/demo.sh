@@ -6,5 +6,5 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 "$top/samples/setup.sh"
 "$top/samples/build.sh" fovea
-# A frame of warm-up, so that the times are those of rendering rather than of compiling shaders.
-exec "$top/build/release/bin/fovea" render ir_1000 --scene atrium --warmup 1 -o fovea-demo.png "$@"
+# Frames of warm-up, so that VPLs and near light have settled, and the times are not those of compiling shaders.
+exec "$top/build/release/bin/fovea" render foveal --scene atrium --warmup 16 -o fovea-demo.png "$@"
