@@ -34,8 +34,6 @@ class NearField : public Pass {
              "x: area of the discs, m^2, which none may be smaller than: for pass weights");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("spacing", integer(4, 2, 8), "pixels between rays outside the fovea: 2, 4 or 8");
-    d.parameter("interval", integer(1, 1, 2),
-                "frames from one ray of a block to its next; 2: every other block");
     d.parameter("vpls", integer(1000, 1, 1 << 20), "how many there are");
     d.parameter(
         "share", real(50, 0.01, 1e6),
@@ -65,7 +63,6 @@ class NearField : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `near-field`: spacing " + std::to_string(settings.spacing) + " is not a power of two",
                   "use 2, 4 or 8");
-    settings.interval = uint32_t(p.integer("interval"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.turn = uint32_t(ctx.frameNumber());
     settings.seed = frame.seed;

@@ -54,19 +54,15 @@ class Tracer {
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
     glm::vec3 sum(0);
     uint32_t found = 0;
-    const glm::uvec2 block = corner / side;
-    const uint32_t frame = settings_.turn + ((block.x ^ block.y) & 1u) * (settings_.interval - 1);
-    const uint32_t first = frame / settings_.interval;
-    const bool now = settings_.samples > 1 || frame % settings_.interval == 0;
-    for (uint32_t turn = first; now && turn < first + settings_.samples; ++turn) {
+    for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn) {
       const glm::uvec2 pixel = corner + samplePixel(turn, side);
       if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
       if (!v.there) continue;
       ++found;
-      sum += lightAt(v, block, turn, statistics);
+      sum += lightAt(v, corner / side, turn, statistics);
     }
-    return {sum / float(std::max(found, 1u)), float(sampleCode(side, samplePixel(first, side), found > 0))};
+    return {sum / float(std::max(found, 1u)), float(sampleCode(side, samplePixel(settings_.turn, side), found > 0))};
   }
 
   // Blocks next to each other, 4 x 4 of them, take turns in one sequence.

@@ -17,7 +17,6 @@ struct NearFieldSettings {
   uint32_t spacing = 4;            // outside the fovea one pixel of so many squared has a ray: 2, 4 or 8
   uint32_t bounces = 2;            // reflections of light on its way to what the eye sees
   float area = 1;                  // of the discs, m^2; 0: no light, but `length`
-  uint32_t interval = 1;           // frames from one ray of a block to its next: 1, or 2, neighbours in turns
   uint32_t turn = 0, samples = 1;  // of all that a pixel ever gets: the first one, and how many now
   uint32_t seed = 0;
   uint32_t threads = 0;  // 0: one a core; the result does not depend on it

@@ -28,11 +28,11 @@ struct Case {
   double median, most, jump;
 };
 const Case kCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
-                       {"cornellbox_moving", "foveal", 0.056, 0.46, 1},
-                       {"atrium", "foveal", 0.27, 1.2, 0.34},
-                       {"balcony", "foveal", 0.2, 0.46, 0.43},
-                       {"room", "foveal", 0.54, 2, 2.3},
-                       {"yard", "foveal", 0.25, 0.72, 0.3}};
+                       {"cornellbox_moving", "foveal", 0.056, 0.27, 0.083},
+                       {"atrium", "foveal", 0.18, 0.9, 0.26},
+                       {"balcony", "foveal", 0.11, 0.29, 0.13},
+                       {"room", "foveal", 0.39, 1.9, 1.8},
+                       {"yard", "foveal", 0.092, 0.24, 0.17}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
   return scene::makeFrame(s, geometry, {kSide, kSide}, kFirst + index, 1, kRate);

@@ -168,31 +168,6 @@ TEST(NearField, EveryPixelOfABlockHasItsTurn) {
   }
 }
 
-// With an interval of 2 neighbours have their rays in turns: those that they would have had, in twice the time.
-TEST(NearField, EveryOtherBlockInEveryOtherFrame) {
-  Look look(shiningRoom(true));
-  NearFieldSettings settings;
-  settings.foveaRadius = 2;
-  for (uint32_t frame = 0; frame < 8; ++frame) {
-    settings.interval = 1;
-    settings.turn = frame / 2;
-    const auto now = look.trace(settings);
-    settings.turn = (frame + 1) / 2;
-    const auto next = look.trace(settings);
-    settings.interval = 2;
-    settings.turn = frame;
-    const auto got = look.trace(settings);
-    for (uint32_t i = 0; i < 256; ++i) {
-      const bool odd = ((i % 16) ^ (i / 16)) & 1;
-      if (odd == (frame % 2 == 1)) {
-        ASSERT_EQ(got[i], odd ? next[i] : now[i]) << "frame " << frame << ", block " << i;
-      } else {
-        ASSERT_EQ(int(got[i].a) >> 10, 1) << "frame " << frame << ", block " << i << " has a sample";
-      }
-    }
-  }
-}
-
 TEST(NearField, TheSameWhateverTheThreads) {
   Look look(shiningRoom(true));
   NearFieldSettings settings;
