@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <atomic>
 #include <glm/gtc/packing.hpp>
+#include <string>
 #include <vector>
 
+#include "framework/base/diagnostic.h"
 #include "framework/base/threads.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
@@ -37,6 +39,11 @@ class ShadowRays : public Pass {
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
     const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays);
     const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
+    if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
+      throw Error(ExitCode::BadInput,
+                  "pass `shadow-rays`: `direct` has " + std::to_string(width) + "x" + std::to_string(height) +
+                      " pixels, its view " + std::to_string(size.x) + "x" + std::to_string(size.y),
+                  "wire direct light of the view that the pass looks through");
     std::atomic<uint32_t> next = 0;
     std::atomic<uint64_t> pixels = 0, traced = 0;
     onThreads(std::min(threadCount(0), height), [&] {

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
 
+#include "framework/base/diagnostic.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
 #include "tests/passes/weights_reference.h"
@@ -84,6 +85,19 @@ TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   EXPECT_GT(shadowed, 10);
   EXPECT_GT(background, 50);
   EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
+}
+
+TEST(ShadowRays, SizeIsTheViews) {
+  PassTest test("shadow-rays");
+  test.viewSize(16, 8).scene(litBoxes().scene);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, std::vector<uint64_t>(64));
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("8x8 pixels, its view 16x8"), std::string::npos) << e.what();
+  }
 }
 
 TEST(ShadowRays, AnEmptySceneIsLeftAsItIs) {
