@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <optional>
 
 #include "framework/base/diagnostic.h"
 #include "framework/base/paths.h"
@@ -73,7 +74,8 @@ struct Slot {
   uint64_t frame = 0;
   double cpuMs = 0, animateCpuMs = 0;
   Clock::time_point submitted;
-  std::vector<double> passCpuMs;                   // in execution order
+  std::vector<double> passCpuMs;                   // in execution order, without waiting for the device
+  std::vector<double> passHostMs;                  // of that, while the device waits in the midst of the pass
   std::vector<std::vector<double>> counterValues;  // per pass, as set by the CPU
   std::vector<std::vector<bool>> counterSet;
 };
@@ -111,7 +113,8 @@ struct Executor::Impl {
   void submitSegment(Slot& slot, bool last);
   void emitBarriers(const BarrierBatch& batch);
   void runPass(Slot& slot, PassInstance& pass, const scene::Frame& frame, uint32_t position);
-  void runHostPass(Slot& slot, PassInstance& pass, const scene::Frame& frame);
+  // Milliseconds spent on waiting for the device; nothing when the pass reads nothing of it.
+  std::optional<double> runHostPass(Slot& slot, PassInstance& pass, const scene::Frame& frame);
   void recordReadback(Slot& slot);
   void bindViews(const scene::Frame& frame);
   void finish(uint32_t slotIndex);
@@ -236,6 +239,7 @@ void Executor::Impl::buildSlot(Slot& slot) {
   slot.counterValues.resize(order.size());
   slot.counterSet.resize(order.size());
   slot.passCpuMs.resize(order.size());
+  slot.passHostMs.resize(order.size());
 }
 
 void Executor::Impl::bindViews(const scene::Frame& frame) {
@@ -313,8 +317,9 @@ void Executor::Impl::emitBarriers(const BarrierBatch& batch) {
   vkCmdPipelineBarrier2(cmd, &info);
 }
 
-void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Frame& frame) {
+std::optional<double> Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Frame& frame) {
   bool waits = false;
+  std::optional<double> waited;
   for (size_t i = 0; i < pass.staging.size(); ++i) {
     const Access& a = pass.bound->accesses[i];
     if (!a.reads) continue;
@@ -325,7 +330,9 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
   if (waits) {
     memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+    const auto start = Clock::now();
     submitSegment(slot, false);
+    waited = millisecondsSince(start);
   }
   HostContext context(pass, frame, frameCount);
   pass.pass->execute(context);
@@ -335,6 +342,7 @@ void Executor::Impl::runHostPass(Slot& slot, PassInstance& pass, const scene::Fr
     copyFromStaging(cmd, state.resources[a.resource], state.copyIndex(a), a.layout,
                     pass.staging[i].slots[state.slot], resourceBytes(pass.desc(a)));
   }
+  return waited;
 }
 
 // Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty
@@ -358,20 +366,22 @@ void Executor::Impl::recordMoves(Slot& slot) {
 
 void Executor::Impl::runPass(Slot& slot, PassInstance& pass, const scene::Frame& frame, uint32_t position) {
   const auto start = Clock::now();
+  std::optional<double> waited;
   std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
   device.beginLabel(cmd, pass.bound->name.c_str());
   vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 1 + 2 * position);
   flushTimestamp();
   if (pass.bound->declaration->kind == PassKind::Host) {
     device.endLabel(cmd);  // a label cannot span two command buffers
-    runHostPass(slot, pass, frame);
+    waited = runHostPass(slot, pass, frame);
   } else {
     RecordContext context(pass, cmd, frame, frameCount);
     pass.pass->record(context);
     device.endLabel(cmd);
   }
   vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot.queries, 2 + 2 * position);
-  slot.passCpuMs[position] = millisecondsSince(start);
+  slot.passCpuMs[position] = millisecondsSince(start) - waited.value_or(0);
+  slot.passHostMs[position] = waited ? slot.passCpuMs[position] : 0;
   slot.counterValues[position] = pass.counterValues;
   slot.counterSet[position] = pass.counterSet;
 }
@@ -426,7 +436,8 @@ void Executor::Impl::finish(uint32_t slotIndex) {
   for (size_t i = 0; i < order.size(); ++i) {
     const PassInstance& pass = *passes[order[i]];
     result.passes.push_back(
-        {order[i], double(ticks[2 + 2 * i] - ticks[1 + 2 * i]) * toMs, slot.passCpuMs[i]});
+        {order[i], std::max(double(ticks[2 + 2 * i] - ticks[1 + 2 * i]) * toMs - slot.passHostMs[i], 0.0),
+         slot.passCpuMs[i]});
     const auto& counters = pass.bound->declaration->counters;
     for (size_t c = 0; c < counters.size(); ++c) {
       uint32_t counted;

@@ -40,7 +40,8 @@ struct ExecutorOptions {
 };
 
 // Milliseconds. gpu: between the timestamps around the pass; cpu: recording it, or executing it if it is a
-// host pass.
+// host pass. While a host pass executes between two parts of a frame the device waits for it, and it has
+// waited for the device: neither counts twice.
 struct PassTiming {
   uint32_t pass = 0;  // index into BoundGraph::passes
   double gpuMs = 0, cpuMs = 0;

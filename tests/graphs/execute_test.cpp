@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "framework/base/diagnostic.h"
 #include "framework/base/random.h"
@@ -87,6 +90,21 @@ class MixOnHost : public Pass {
   }
 };
 FOVEA_PASS(MixOnHost);
+
+class SlowOnHost : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("test-slow-host", "Copies, and takes 40 ms for it.", PassKind::Host);
+    d.input("a", image2D(kFormat), Usage::HostRead, "what to copy");
+    d.output("value", image(), Usage::HostWrite, "the copy");
+    return d;
+  }
+  void execute(HostContext& context) override {
+    std::ranges::copy(context.inputAs<uint32_t>("a"), context.outputAs<uint32_t>("value").begin());
+    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  }
+};
+FOVEA_PASS(SlowOnHost);
 
 class CountUp : public Pass {
  public:
@@ -267,6 +285,20 @@ TEST(Execute, TimingsNameEveryLivePass) {
   EXPECT_EQ(runner.plan->graph->passes[result.passes[1].pass].name, "mix");
   EXPECT_GT(result.gpuMs, 0);
   EXPECT_GE(result.gpuMs * 1.001 + 1e-3, result.passes[0].gpuMs + result.passes[1].gpuMs);
+}
+
+// Neither what a host pass waits for nor that the device waits for it counts as more of its time.
+TEST(Execute, HostPassesCountTheirOwnTimeOnce) {
+  Runner runner(R"({"passes": {
+    "fill": {"type": "test-fill"}, "first": {"type": "test-slow-host", "inputs": {"a": "fill"}},
+    "second": {"type": "test-slow-host", "inputs": {"a": "first"}}}, "outputs": {"x": "second"}})");
+  const FrameResult result = runner.frame();
+  ASSERT_EQ(result.passes.size(), 3u);
+  for (size_t i : {1, 2}) {
+    EXPECT_GE(result.passes[i].cpuMs, 40);
+    EXPECT_LT(result.passes[i].cpuMs, 75);
+    EXPECT_LT(result.passes[i].gpuMs, 30);
+  }
 }
 
 // Random graphs of mixing passes: every value is a hash of everything upstream, so a missing barrier, an overlap in
