@@ -20,15 +20,7 @@ class Occupancy {
 
   // Tightest gap for `bytes` that is free in all levels of the interval; aligned.
   uint64_t findGap(const Interval& interval, uint64_t bytes, uint64_t alignment) {
-    std::span<const Range> taken = levels_[interval.first];
-    if (interval.last > interval.first) {
-      merged_.clear();
-      for (uint32_t l = interval.first; l <= interval.last; ++l)
-        merged_.insert(merged_.end(), levels_[l].begin(), levels_[l].end());
-      std::sort(merged_.begin(), merged_.end(),
-                [](const Range& a, const Range& b) { return a.begin < b.begin; });
-      taken = merged_;
-    }
+    const std::span<const Range> taken = takenDuring(interval);
     uint64_t end = 0, best = 0, bestRoom = ~0ull;
     for (const Range& range : taken) {
       const uint64_t at = alignUp(end, alignment);
@@ -65,6 +57,32 @@ class Occupancy {
   static uint64_t alignUp(uint64_t v, uint64_t alignment) { return (v + alignment - 1) & ~(alignment - 1); }
 
  private:
+  // What is taken in some level of the interval, sorted.
+  std::span<const Range> takenDuring(const Interval& interval) {
+    uint32_t filled = 0, latestFilled = interval.first;
+    for (uint32_t l = interval.first; l <= interval.last; ++l) {
+      if (levels_[l].empty()) continue;
+      latestFilled = l;
+      ++filled;
+    }
+    if (filled <= 1)
+      return levels_[latestFilled];  // when images of one size come in the order of their lives
+    merged_.clear();
+    uint64_t latest = 0;
+    bool sorted = true;
+    for (uint32_t l = interval.first; l <= interval.last; ++l) {
+      for (const Range& range : levels_[l]) {
+        sorted &= range.begin >= latest;
+        latest = range.begin;
+        merged_.push_back(range);
+      }
+    }
+    if (!sorted)
+      std::sort(merged_.begin(), merged_.end(),
+                [](const Range& a, const Range& b) { return a.begin < b.begin; });
+    return merged_;
+  }
+
   detail::ScratchVector<SmallVector<Range, 2>> levels_;
   detail::ScratchVector<Range> merged_;
 };
