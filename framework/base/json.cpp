@@ -277,17 +277,16 @@ std::string joinPath(std::string_view path, std::string_view key) {
 // ---- ObjectReader ------------------------------------------------------------------------------------
 
 ObjectReader::ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics)
-    : ObjectReader(value, std::move(path), {}, diagnostics) {}
-
-ObjectReader::ObjectReader(const Value& value, std::string path, std::string_view key,
-                           Diagnostics& diagnostics)
-    : value_(value), path_(std::move(path)), key_(key), diagnostics_(diagnostics) {
-  if (!value.isObject())
-    diagnostics_.error(value.where.location(), this->path(),
-                       fmt::format("expected an object, found {}", value.describe()));
+    : value_(value), path_(std::move(path)), diagnostics_(diagnostics) {
+  if (!value.isObject()) reportKind();
 }
 
-std::string ObjectReader::path() const { return key_.empty() ? path_ : joinPath(path_, key_); }
+void ObjectReader::reportKind() {
+  diagnostics_.error(value_.where.location(), path(),
+                     fmt::format("expected an object, found {}", value_.describe()));
+}
+
+std::string ObjectReader::path() const { return key_.empty() ? path_ : joinPath(parent_, key_); }
 
 std::string ObjectReader::pathOf(std::string_view key) const { return joinPath(path(), key); }
 

@@ -96,8 +96,11 @@ class ObjectReader {
  public:
   // Reports when `value` is no object; every member is then absent. `path` is the place inside the document.
   ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics);
-  // The same at "path.key"; `key` is kept by reference.
-  ObjectReader(const Value& value, std::string path, std::string_view key, Diagnostics& diagnostics);
+  // The same at "parent.key"; both are kept by reference.
+  ObjectReader(const Value& value, std::string_view parent, std::string_view key, Diagnostics& diagnostics)
+      : value_(value), parent_(parent), key_(key), diagnostics_(diagnostics) {
+    if (!value.isObject()) reportKind();
+  }
 
   [[gnu::always_inline]] const Value* find(std::string_view key) {  // any type; nullptr when absent
     known_.push_back(key);
@@ -145,11 +148,12 @@ class ObjectReader {
   void wrong(std::string_view key, const Value& value, const std::string& expected);
   const Value* notObject(std::string_view key, const Value& value);
   std::string textOf(std::string_view key, const Value& value, std::string fallback);
+  void reportKind();
   void reportMissing(std::string_view key);
   void reportUnknown();
   const Value& value_;
-  std::string path_;
-  std::string_view key_;
+  std::string path_;  // unless there is a key
+  std::string_view parent_, key_;
   Diagnostics& diagnostics_;
   SmallVector<std::string_view, 8> known_;
   uint64_t asked_ = 0;  // of the first 64 members, those that somebody asked for
