@@ -53,9 +53,13 @@ class SmallVector {
   void reserve(size_t count) {
     if (count > capacity_) grow(count);
   }
-  [[gnu::always_inline]] void push_back(T value) {
+  [[gnu::always_inline]] void push_back(T value) { emplace_back(value); }
+  // Made in place, for a copy of what has just been written field by field would have to wait for it. No
+  // argument may be part of this list.
+  template <class... Arguments>
+  [[gnu::always_inline]] T& emplace_back(Arguments&&... arguments) {
     if (size_ == capacity_) grow(size_ + 1);
-    new (data() + size_++) T(value);
+    return *new (data() + size_++) T{std::forward<Arguments>(arguments)...};
   }
   template <class Iterator>
   void assign(Iterator first, Iterator last) {
@@ -63,7 +67,13 @@ class SmallVector {
     reserve(last - first);
     for (T* to = data(); first != last; ++first, ++size_) new (to++) T(*first);
   }
-  T* insert(const T* where, T value) { return insert(where, &value, &value + 1); }
+  T* insert(const T* where, T value) {
+    const size_t at = where - data();
+    reserve(size_ + 1);
+    T* place = data() + at;
+    std::memmove(static_cast<void*>(place + 1), place, (size_++ - at) * sizeof(T));
+    return new (place) T(value);
+  }
   // [first, last) must not be part of this list.
   template <class Iterator>
   T* insert(const T* where, Iterator first, Iterator last) {
