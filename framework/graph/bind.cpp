@@ -398,7 +398,7 @@ void Binder::bindOutputs() {
       output.version = versionSeen(port, resource);
       if (output.version != lastVersion_[resource])
         error(wire.place, json::joinPath("outputs", text(wire.target)),
-              fmt::format("`{}` is updated in place later in the frame", description_.text(wire)),
+              fmt::format("`{}` is updated in place later in the frame", wire.written),
               "wire the output to the last pass that updates it");
       graph_.resources[resource].output = true;
       graph_.resources[resource].usage |= static_cast<uint32_t>(Usage::TransferRead);
@@ -426,7 +426,7 @@ void Binder::markHistory() {
               "wire it without `@previous`, or make its pass declare it without keep()");
       else if (port.source != kNone && versionSeen(port, r) != lastVersion_[r])
         error(wire.place, wirePath(port),
-              fmt::format("`{}` is updated in place later in the frame", description_.text(wire)),
+              fmt::format("`{}` is updated in place later in the frame", wire.written),
               "`@previous` holds the last update: wire the pass that makes it");
     }
   }

@@ -162,10 +162,9 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
       for (const MemberSpec& m : spec.members)
         if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
     }
-    const std::string nearest = nearestName(description_.text(wire), names);
-    return wrong(wire.port == kNone
-                     ? fmt::format("`{}` has {} outputs: name one", description_.text(wire), names.size())
-                     : fmt::format("no output `{}`", description_.text(wire)),
+    const std::string nearest = nearestName(wire.written, names);
+    return wrong(wire.port == kNone ? fmt::format("`{}` has {} outputs: name one", wire.written, names.size())
+                                    : fmt::format("no output `{}`", wire.written),
                  !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
                  : names.empty()                        ? fmt::format("`{}` has no outputs", name)
                                  : fmt::format("there is: {}", fmt::join(names, ", ")));
@@ -297,11 +296,11 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
       const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
       if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
           remedy.empty())
-        remedy = fmt::format("wire a member of it, such as `{}.{}`", description_.text(wire), member.name);
+        remedy = fmt::format("wire a member of it, such as `{}.{}`", wire.written, member.name);
     }
   error(wire.place, wirePath(port),
-        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec),
-                    description_.text(wire), describeValue(port.value), why.empty() ? why : ": " + why),
+        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), wire.written,
+                    describeValue(port.value), why.empty() ? why : ": " + why),
         remedy);
 }
 

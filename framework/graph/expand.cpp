@@ -76,18 +76,17 @@ void Expander::expandRoot(const json::Value& document, const std::filesystem::pa
   Scope& root = scopes_.emplace_back();
   root.file = file;
   root.document = &document;
-  readParameters(0, nullptr, {});
+  readParameters(root, nullptr, {});
   readRootInputs(root);
-  expandScope(0);
+  expandScope(root);
 }
 
-void Expander::expandScope(size_t index) {
-  Scope& scope = scopes_[index];
+void Expander::expandScope(Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, diagnostics_);
   reader.text("$schema");
   reader.find("extends");  // merged by now
   const std::string text = reader.text("description");
-  if (index == 0) description_.description = text;
+  if (!scope.parent) description_.description = text;
   reader.object("parameters");  // read by readParameters
   reader.object("inputs");      // read by readRootInputs or readInputs
   reader.object("outputs");     // read by wiring
@@ -98,13 +97,12 @@ void Expander::expandScope(size_t index) {
     description_.symbols.reserve(2 * count);
     rawFirst_.reserve(count + 1);
     rawWires_.reserve(2 * count);
-    for (const Member& member : passes->members) expandPass(index, member);
+    for (const Member& member : passes->members) expandPass(scope, member);
   }
   reader.finish();
 }
 
-void Expander::readParameters(size_t index, const json::Value* given, const Trail& givenPath) {
-  Scope& scope = scopes_[index];
+void Expander::readParameters(Scope& scope, const json::Value* given, const Trail& givenPath) {
   if (const json::Value* own = scope.document->find("parameters"); own && own->isObject()) {
     for (const Member& member : own->members) {
       const Trail parent("parameters"), path(parent, member.key);
@@ -136,7 +134,7 @@ void Expander::readParameters(size_t index, const json::Value* given, const Trai
         continue;
       }
       ParameterDescription value;
-      if (!readScalar(scopes_[scope.parent], member.value, path, value)) continue;
+      if (!readScalar(*scope.parent, member.value, path, value)) continue;
       const bool number = value.type == Type::Int || value.type == Type::Real;
       const bool wanted = parameter->value.type == Type::Int || parameter->value.type == Type::Real;
       if (number != wanted || (!number && value.type != parameter->value.type && !value.fromCommandLine)) {
@@ -252,7 +250,7 @@ Symbol Expander::readView(Scope& scope, const json::Value& value, const Trail& p
 
 // ---- Passes ------------------------------------------------------------------------------------------
 
-void Expander::expandPass(size_t scope, const Member& member) {
+void Expander::expandPass(Scope& scope, const Member& member) {
   if (full_) return;
   const Trail passes("passes"), path(passes, member.key);
   if (description_.passes.size() + scopes_.size() > kMaxPasses) {
@@ -264,26 +262,22 @@ void Expander::expandPass(size_t scope, const Member& member) {
                  "letters, digits, _ and -; `inputs` means the graph's own inputs");
   json::ObjectReader reader(member.value, "passes", member.key, diagnostics_);
   if (!member.value.isObject()) return;
-  const json::Value* graph = member.value.find("graph");
-  const bool type = reader.has("type");
-  if (graph && type) error(graph->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
   reader.text("comment");
-  if (graph && !type)
-    expandInstance(scope, member, reader);
+  const json::Value* graph = reader.find("graph");
+  const bool both = graph && reader.has("type");
+  if (both) error(graph->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
+  if (graph && !both)
+    expandInstance(scope, member, *graph, reader);
   else
-    addPass(scope, member, reader);
+    addPass(scope, member, path, reader);
   reader.finish();
 }
 
-void Expander::addPass(size_t index, const Member& member, json::ObjectReader& reader) {
-  Scope& scope = scopes_[index];
-  const Trail passes("passes"), path(passes, member.key);
+void Expander::addPass(Scope& scope, const Member& member, const Trail& path, json::ObjectReader& reader) {
   PassDescription& pass = description_.passes.emplace_back();
   pass.name = scope.prefix.empty() ? intern(member.key) : intern(scope.prefix + member.key);
-  pass.place = place(member.keyWhere);
-  pass.typePlace = pass.viewPlace = pass.place;
+  pass.place = pass.typePlace = pass.viewPlace = place(member.keyWhere);
   pass.view = scope.view;
-  reader.find("graph");  // so that it is offered as a name
   if (const json::Value* type = reader.require("type")) {
     pass.typePlace = place(type->where);
     if (type->isString())
@@ -302,18 +296,17 @@ void Expander::addPass(size_t index, const Member& member, json::ObjectReader& r
     const Trail inputsPath(path, "inputs");
     for (const Member& input : inputs->members) {
       if (input.value.isString())
-        rawWires_.push_back({index, intern(input.key), &input.value, place(input.keyWhere)});
+        rawWires_.emplace_back(&scope, member.key, intern(input.key), &input.value, place(input.keyWhere));
       else
         error(input.value.where, {inputsPath, input.key},
               fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
     }
   }
-  addPassParameters(index, pass, reader.object("params"), {path, "params"});
+  addPassParameters(scope, pass, reader.object("params"), {path, "params"});
 }
 
-void Expander::addPassParameters(size_t index, PassDescription& pass, const json::Value* params,
+void Expander::addPassParameters(Scope& scope, PassDescription& pass, const json::Value* params,
                                  const Trail& path) {
-  Scope& scope = scopes_[index];
   pass.firstParameter = static_cast<uint32_t>(description_.parameters.size());
   if (params) {
     for (const Member& param : params->members) {
@@ -348,9 +341,9 @@ void Expander::overridePass(PassDescription& pass) {
   }
 }
 
-void Expander::expandInstance(size_t parent, const Member& member, json::ObjectReader& reader) {
+void Expander::expandInstance(Scope& parent, const Member& member, const json::Value& graph,
+                              json::ObjectReader& reader) {
   const std::string path = json::joinPath("passes", member.key);
-  const json::Value& graph = *reader.find("graph");
   const json::Value* parameters = reader.object("parameters");
   const json::Value* inputs = reader.object("inputs");
   const json::Value* view = reader.find("view");
@@ -358,7 +351,7 @@ void Expander::expandInstance(size_t parent, const Member& member, json::ObjectR
     return error(graph.where, json::joinPath(path, "graph"),
                  fmt::format("expected a file name, found {}", graph.describe()));
   const std::filesystem::path from =
-      graph.where.file ? std::filesystem::path(*graph.where.file) : scopes_[parent].file;
+      graph.where.file ? std::filesystem::path(*graph.where.file) : parent.file;
   const std::filesystem::path file =
       findGraphFile(graph.string, from, options_.searchPaths).lexically_normal();
   if (file.empty())
@@ -374,33 +367,31 @@ void Expander::expandInstance(size_t parent, const Member& member, json::ObjectR
     for (const Diagnostic& d : e.diagnostics()) diagnostics_.add(d);
     return;
   }
-  const size_t child = scopes_.size();
   Scope& scope = scopes_.emplace_back();
   scope.file = file;
-  scope.parent = parent;
+  scope.parent = &parent;
   scope.path = path;
-  scope.prefix = scopes_[parent].prefix + member.key + "/";
-  scope.view = view ? readView(scopes_[parent], *view, json::joinPath(path, "view")) : scopes_[parent].view;
+  scope.prefix = parent.prefix + member.key + "/";
+  scope.view = view ? readView(parent, *view, json::joinPath(path, "view")) : parent.view;
   scope.parsed = std::move(parsed);
   scope.document = &mergeExtends(scope.parsed, file, options_, diagnostics_, scope.merged);
-  scopes_[parent].instances.emplace(member.key, child);
-  readParameters(child, parameters, json::joinPath(path, "parameters"));
-  readInputs(child, inputs);
-  for (const Scope::Input& input : scopes_[child].inputs)
+  parent.instances.emplace(member.key, &scope);
+  readParameters(scope, parameters, json::joinPath(path, "parameters"));
+  readInputs(scope, inputs);
+  for (const Scope::Input& input : scope.inputs)
     if (!input.wire && !input.optional)
       error(member.keyWhere, path,
             fmt::format("input `{}` of the sub-graph `{}` is not wired", input.name, member.key),
             fmt::format("add \"inputs\": {{\"{}\": \"pass.port\"}}", input.name));
-  expandScope(child);
+  expandScope(scope);
 }
 
 // Is this the file of the scope, or of one that it lies in? Also when they lie in each other too deep.
-bool Expander::containsItself(size_t scope, const std::filesystem::path& file) const {
-  for (int depth = 0; depth <= kMaxInstanceDepth; ++depth, scope = scopes_[scope].parent) {
-    if (scopes_[scope].file.lexically_normal() == file) return true;
-    if (scope == 0) return false;
-  }
-  return true;
+bool Expander::containsItself(const Scope& scope, const std::filesystem::path& file) {
+  int depth = 0;
+  for (const Scope* at = &scope; at; at = at->parent)
+    if (depth++ > kMaxInstanceDepth || at->file.lexically_normal() == file) return true;
+  return false;
 }
 
 void Expander::reportUnused() {

@@ -49,16 +49,16 @@ struct Scope {
     Place place;
   };
 
-  std::string prefix;  // "" or "left/"
-  std::string path;    // in the parent's document: "passes.left"
-  size_t parent = 0;   // itself for the whole graph
+  std::string prefix;       // "" or "left/"
+  std::string path;         // in the parent's document: "passes.left"
+  Scope* parent = nullptr;  // nullptr for the whole graph
   std::filesystem::path file;
   const json::Value* document = nullptr;
   json::Value parsed, merged;  // a sub-graph's document is one of them
   Symbol view = kNone;
   std::vector<Parameter> parameters;
   std::vector<Input> inputs;
-  std::map<std::string, size_t, std::less<>> instances;  // name -> scope
+  std::map<std::string, Scope*, std::less<>> instances;
 
   Parameter* findParameter(std::string_view name);
   Input* findInput(std::string_view name);
@@ -67,11 +67,15 @@ struct Scope {
 using WireParts = SmallVector<std::string_view, 4>;  // of "pass.port.member"
 
 struct RawWire {
-  size_t scope;
+  Scope* scope;
+  std::string_view pass;  // as its document calls it
   Symbol target;
   const json::Value* value;
   Place keyPlace;
 };
+
+// Hidden, for nobody outside the library calls it: its functions call each other directly or are inlined.
+class [[gnu::visibility("hidden")]] Expander;
 
 class Expander {
  public:
@@ -91,16 +95,17 @@ class Expander {
     bool used = false;
   };
 
-  void expandScope(size_t scope);
-  void readParameters(size_t scope, const json::Value* given, const Trail& givenPath);
+  void expandScope(Scope& scope);
+  void readParameters(Scope& scope, const json::Value* given, const Trail& givenPath);
   void overrideParameters(Scope& scope);
   void readRootInputs(Scope& scope);
-  void readInputs(size_t scope, const json::Value* wires);
-  void expandPass(size_t scope, const json::Member& member);
-  void addPass(size_t scope, const json::Member& member, json::ObjectReader& reader);
-  void addPassParameters(size_t scope, PassDescription& pass, const json::Value* params, const Trail& path);
+  void readInputs(Scope& scope, const json::Value* wires);
+  void expandPass(Scope& scope, const json::Member& member);
+  void addPass(Scope& scope, const json::Member& member, const Trail& path, json::ObjectReader& reader);
+  void addPassParameters(Scope& scope, PassDescription& pass, const json::Value* params, const Trail& path);
   void overridePass(PassDescription& pass);
-  void expandInstance(size_t scope, const json::Member& member, json::ObjectReader& reader);
+  void expandInstance(Scope& parent, const json::Member& member, const json::Value& graph,
+                      json::ObjectReader& reader);
   ResourceDesc readResource(Scope& scope, json::ObjectReader& reader);
   int64_t readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback);
   Symbol readView(Scope& scope, const json::Value& value, const Trail& path);
@@ -108,11 +113,11 @@ class Expander {
   bool readScalar(Scope& scope, const json::Value& value, const Trail& path, ParameterDescription& out);
   ParameterDescription overrideValue(const ParameterDescription& current, const Override& source);
 
-  bool resolveWire(size_t scope, const json::Value& value, const Trail& path, WireDescription& wire,
+  bool resolveWire(Scope& scope, const json::Value& value, const Trail& path, WireDescription& wire,
                    int depth);
-  bool resolveInput(size_t scope, const json::Value& value, const Trail& path, const WireParts& parts,
+  bool resolveInput(Scope& scope, const json::Value& value, const Trail& path, const WireParts& parts,
                     WireDescription& wire, int depth);
-  bool resolveInstance(size_t child, const json::Value& value, const Trail& path, const WireParts& parts,
+  bool resolveInstance(Scope& child, const json::Value& value, const Trail& path, const WireParts& parts,
                        WireDescription& wire, int depth);
   bool combine(const json::Value& value, const Trail& path, std::string_view member, bool previous,
                WireDescription& wire);
@@ -126,14 +131,14 @@ class Expander {
     return {latestIndex_, position.line, position.column};
   }
   void enterFile(const std::shared_ptr<const std::string>& file);
-  bool containsItself(size_t scope, const std::filesystem::path& file) const;
+  static bool containsItself(const Scope& scope, const std::filesystem::path& file);
   Symbol intern(std::string_view text) { return description_.symbols.intern(text); }
 
   Description& description_;
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
   Scratch scratch_;
-  std::deque<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // documents are pointed into
+  std::deque<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // they and their documents are pointed to
   ScratchVector<RawWire> rawWires_{scratch_};
   ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
   std::vector<PendingOverride> overrides_;

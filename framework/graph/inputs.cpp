@@ -115,8 +115,7 @@ void Expander::readRootInputs(Scope& scope) {
   }
 }
 
-void Expander::readInputs(size_t index, const json::Value* wires) {
-  Scope& scope = scopes_[index];
+void Expander::readInputs(Scope& scope, const json::Value* wires) {
   if (const json::Value* inputs = scope.document->find("inputs"); inputs && inputs->isObject()) {
     for (const Member& member : inputs->members) {
       json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), diagnostics_);

@@ -151,12 +151,12 @@ void Binder::checkInPlace() {
         return error(
             description_.wires[port.wire].place, wirePath(port),
             fmt::format("`{}` reads and updates `{}`: its input `{}` would be changed before it is read",
-                        graph_.passes[by].name, description_.text(description_.wires[port.wire]), spec.name),
+                        graph_.passes[by].name, description_.wires[port.wire].written, spec.name),
             "wire one of the two ports to another value");
       return error(
           description_.wires[port.wire].place, wirePath(port),
           fmt::format("`{}` must read `{}` before `{}` updates it in place, but it also waits for that pass",
-                      graph_.passes[port.pass].name, description_.text(description_.wires[port.wire]),
+                      graph_.passes[port.pass].name, description_.wires[port.wire].written,
                       graph_.passes[by].name),
           fmt::format("read the updated value from `{}`, or last frame's with @previous",
                       graph_.passes[by].name));

@@ -13,7 +13,12 @@
 namespace fovea::graph {
 namespace {
 
-inline uint64_t hashOf(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
+[[gnu::noinline]] uint64_t hashOfLong(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
+
+// Two calls, so that the code for long texts does not burden the short ones.
+inline uint64_t hashOf(std::string_view text) {
+  return text.size() <= 16 ? XXH3_64bits(text.data(), text.size()) : hashOfLong(text);
+}
 
 }  // namespace
 
@@ -35,7 +40,7 @@ inline size_t SymbolTable::slotOf(std::string_view text, uint64_t hash) const {
   }
 }
 
-const char* SymbolTable::keep(std::string_view text) {
+std::string_view SymbolTable::keep(std::string_view text) {
   if (blocks_.empty() || blocks_.back().size - blocks_.back().used < text.size()) {
     const size_t size = std::max<size_t>(1024, text.size());
     blocks_.push_back({std::make_unique_for_overwrite<char[]>(size), size, 0});
@@ -43,11 +48,11 @@ const char* SymbolTable::keep(std::string_view text) {
   Block& block = blocks_.back();
   char* kept = block.characters.get() + std::exchange(block.used, block.used + text.size());
   std::copy(text.begin(), text.end(), kept);
-  return kept;
+  return {kept, text.size()};
 }
 
 Symbol SymbolTable::intern(std::string_view text) {
-  if (slots_.size() < 2 * (entries_.size() + 1)) reserve(std::max<size_t>(32, 2 * entries_.size()));
+  if (slots_.empty()) reserve(32);
   const uint64_t hash = hashOf(text);
   const size_t slot = slotOf(text, hash);
   const Symbol known = slots_[slot].symbol;
@@ -56,9 +61,13 @@ Symbol SymbolTable::intern(std::string_view text) {
 
 // A text that is not there yet, at the free slot where it belongs.
 Symbol SymbolTable::add(std::string_view text, uint64_t hash, size_t slot) {
+  if (slots_.size() < 2 * (entries_.size() + 1)) {
+    reserve(2 * entries_.size());
+    slot = slotOf(text, hash);
+  }
   const auto symbol = static_cast<Symbol>(entries_.size());
   slots_[slot] = {tagOf(hash), symbol};
-  entries_.push_back({{keep(text), text.size()}, hash});
+  entries_.emplace_back(keep(text), hash);
   return symbol;
 }
 

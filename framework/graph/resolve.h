@@ -36,6 +36,8 @@ class SymbolTable {
   // Stays where it is while others are added and the table is moved.
   std::string_view operator[](Symbol symbol) const { return entries_[symbol].text; }
   size_t size() const { return entries_.size(); }
+  // A copy that lives as long as the table, of what nobody looks up.
+  std::string_view keep(std::string_view text);
   uint64_t hash(Symbol symbol) const { return entries_[symbol].hash; }
   void reserve(size_t count);
 
@@ -45,7 +47,6 @@ class SymbolTable {
   size_t slotOf(std::string_view text, uint64_t hash) const;
 
   [[gnu::noinline]] Symbol add(std::string_view text, uint64_t hash, size_t slot);
-  const char* keep(std::string_view text);
 
   struct Entry {
     std::string_view text;
@@ -78,7 +79,7 @@ struct WireDescription {
   Symbol member = kNone;      // kNone: the whole port
   uint32_t external = kNone;  // index into Description::externals
   bool previous = false;
-  uint32_t firstCharacter = 0, characters = 0;  // as written, for messages: Description::wireTexts
+  std::string_view written;  // for messages; kept by Description::symbols
   Place keyPlace, place;
 };
 
@@ -118,15 +119,11 @@ struct Description {
   SymbolTable symbols;
   std::vector<PassDescription> passes;  // declaration order, sub-graphs expanded in place
   std::vector<WireDescription> wires;
-  std::string wireTexts;  // one after the other; nobody looks them up, so they are no symbols
   std::vector<ParameterDescription> parameters;
   std::vector<WireDescription> outputs;
   std::vector<ExternalDescription> externals;
 
   SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
-  std::string_view text(const WireDescription& wire) const {
-    return std::string_view(wireTexts).substr(wire.firstCharacter, wire.characters);
-  }
   // "deferred" of "left/deferred": what the pass is called inside its document.
   std::string_view localName(const PassDescription& pass) const {
     const std::string_view name = symbols[pass.name];

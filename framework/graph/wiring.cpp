@@ -31,16 +31,16 @@ void Expander::resolveWires() {
   for (const PassDescription& pass : description_.passes) isPass_[pass.name] = 1;
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
   description_.wires.reserve(rawWires_.size());
+  const Trail passesPath("passes");
   for (size_t p = 0; p < description_.passes.size(); ++p) {
     PassDescription& pass = description_.passes[p];
     pass.firstInput = static_cast<uint32_t>(description_.wires.size());
-    const Trail passesPath("passes"), passPath(passesPath, description_.localName(pass)),
-        inputsPath(passPath, "inputs");
     for (uint32_t i = rawFirst_[p]; i < rawFirst_[p + 1]; ++i) {
       const RawWire& raw = rawWires_[i];
       WireDescription& wire = description_.wires.emplace_back();
-      const Trail path(inputsPath, description_.symbols[raw.target]);
-      if (!resolveWire(raw.scope, *raw.value, path, wire, 0)) {
+      const Trail passPath(passesPath, raw.pass), inputsPath(passPath, "inputs"),
+          path(inputsPath, description_.symbols[raw.target]);
+      if (!resolveWire(*raw.scope, *raw.value, path, wire, 0)) {
         description_.wires.pop_back();
         continue;
       }
@@ -53,8 +53,8 @@ void Expander::resolveWires() {
 }
 
 void Expander::resolveOutputs() {
-  for (size_t s = 0; s < scopes_.size(); ++s) {
-    const json::Value* outputs = scopes_[s].document->find("outputs");
+  for (Scope& scope : scopes_) {
+    const json::Value* outputs = scope.document->find("outputs");
     if (!outputs || !outputs->isObject()) continue;
     for (const json::Member& member : outputs->members) {
       const Trail outputsPath("outputs"), path(outputsPath, member.key);
@@ -64,7 +64,7 @@ void Expander::resolveOutputs() {
         continue;
       }
       WireDescription wire;
-      if (!resolveWire(s, member.value, path, wire, 0) || s != 0) continue;
+      if (!resolveWire(scope, member.value, path, wire, 0) || scope.parent) continue;
       if (wire.external != kNone || wire.previous) {
         error(member.value.where, path, "an output of the graph is what a pass writes in this frame",
               wire.previous ? "drop `@previous`" : "wire it to a pass");
@@ -78,15 +78,13 @@ void Expander::resolveOutputs() {
 }
 
 void Expander::describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire) {
-  wire.firstCharacter = static_cast<uint32_t>(description_.wireTexts.size());
-  wire.characters = static_cast<uint32_t>(value.string.size());
-  description_.wireTexts += value.string;
+  wire.written = description_.symbols.keep(value.string);
   wire.keyPlace = keyPlace;
   wire.place = place(value.where);
 }
 
 // False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
-bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& path, WireDescription& wire,
+bool Expander::resolveWire(Scope& scope, const json::Value& value, const Trail& path, WireDescription& wire,
                            int depth) {
   if (depth > kMaxHops)
     return error(value.where, path, "this wire runs in a circle through sub-graphs"), false;
@@ -101,14 +99,13 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& 
     return error(value.where, path, fmt::format("`{}` is no wire", value.string),
                  "write pass.port, pass, or pass.port.member; @previous after it means last frame's value"),
            false;
-  Scope& scope = scopes_[index];
   if (parts[0] == "inputs") {
-    if (!resolveInput(index, value, path, parts, wire, depth)) return false;
+    if (!resolveInput(scope, value, path, parts, wire, depth)) return false;
     return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
   }
   const std::string_view name = parts[0];
   if (const auto child = scope.instances.find(name); child != scope.instances.end()) {
-    if (!resolveInstance(child->second, value, path, parts, wire, depth)) return false;
+    if (!resolveInstance(*child->second, value, path, parts, wire, depth)) return false;
     return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
   }
   wire.pass = description_.symbols.find(scope.prefix.empty() ? name : scope.prefix + std::string(name));
@@ -131,9 +128,8 @@ bool Expander::resolveWire(size_t index, const json::Value& value, const Trail& 
   return true;
 }
 
-bool Expander::resolveInput(size_t index, const json::Value& value, const Trail& path, const WireParts& parts,
+bool Expander::resolveInput(Scope& scope, const json::Value& value, const Trail& path, const WireParts& parts,
                             WireDescription& wire, int depth) {
-  Scope& scope = scopes_[index];
   Scope::Input* input = parts.size() > 1 ? scope.findInput(parts[1]) : nullptr;
   if (!input && parts.size() == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
   if (!input) {
@@ -144,18 +140,18 @@ bool Expander::resolveInput(size_t index, const json::Value& value, const Trail&
            false;
   }
   input->used = true;
-  if (index == 0) {
+  if (!scope.parent) {
     wire.external = input->external;
     return true;
   }
   if (!input->wire) return false;
-  return resolveWire(scope.parent, *input->wire, json::joinPath(scope.path, "inputs." + input->name), wire,
+  return resolveWire(*scope.parent, *input->wire, json::joinPath(scope.path, "inputs." + input->name), wire,
                      depth + 1);
 }
 
-bool Expander::resolveInstance(size_t child, const json::Value& value, const Trail& path,
+bool Expander::resolveInstance(Scope& child, const json::Value& value, const Trail& path,
                                const WireParts& parts, WireDescription& wire, int depth) {
-  const json::Value* outputs = scopes_[child].document->find("outputs");
+  const json::Value* outputs = child.document->find("outputs");
   const std::vector<json::Member> none;
   const std::vector<json::Member>& members = outputs && outputs->isObject() ? outputs->members : none;
   const json::Member* found = nullptr;
