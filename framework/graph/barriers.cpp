@@ -17,7 +17,7 @@ constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
 // One pass touching one copy of one resource, all its ports taken together.
 struct Touch {
   uint32_t resource;
-  uint32_t version;  // index into Planner::groups_: the version read or made
+  uint32_t slot;  // of the version read or made
   AccessScope scope;
   bool reads, writes, previous;
 };
@@ -38,7 +38,7 @@ struct State {
 struct ReadGroup {
   VkPipelineStageFlags2 stage = 0;
   VkAccessFlags2 access = 0;
-  bool served = false;
+  uint32_t served = 0;  // the last round in which a barrier has been placed for them
 };
 
 // Piece of a heap that no placement splits, and how its last occupant left it.
@@ -62,7 +62,7 @@ class Planner {
     if (history) previous_.assign(graph_.resources.size(), {});
     markLasting();
     // Copies that change places need two rounds until both carry the state of a whole frame.
-    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) frame<false>();
+    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) settle();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
     plan_.endLayout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
     for (size_t r = 0; r < graph_.resources.size(); ++r) {
@@ -70,7 +70,7 @@ class Planner {
       plan_.startLayout[r][0] = current_[r].layout;
       if (graph_.resources[r].history) plan_.startLayout[r][1] = previous_[r].layout;
     }
-    frame<true>();
+    record();
     for (size_t r = 0; r < graph_.resources.size(); ++r) {
       const bool swapped = graph_.resources[r].history;
       plan_.endLayout[r] = swapped ? previous_[r].layout : current_[r].layout;
@@ -81,13 +81,15 @@ class Planner {
   void collectTouches();
   void makeSegments();
   void markLasting();
-  // Without `record` only the states that last beyond the frame are followed.
+  void settle();
+  void record();
+  void endFrame();
   template <bool record>
-  void frame();
+  BarrierBatch readOutputs();
   template <bool record>
   void touch(const Touch& t, BarrierBatch& batch);
   template <bool record>
-  void read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch);
+  void read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch& batch);
   template <bool record>
   void write(const Touch& t, State& state, BarrierBatch& batch);
   void occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const;
@@ -107,11 +109,11 @@ class Planner {
   const std::vector<Interval>& intervals_;
   Plan& plan_;
   const uint32_t levels_;
+  uint32_t round_ = 0;  // frames followed so far
   detail::Scratch scratch_;
   detail::ScratchVector<Touch> touches_{scratch_};
   detail::ScratchVector<uint32_t> touchFirst_{scratch_};  // per level
-  detail::ScratchVector<ReadGroup> groups_{scratch_};  // per resource: versions 0.., then last frame's copy
-  detail::ScratchVector<uint32_t> groupFirst_{scratch_};
+  detail::ScratchVector<ReadGroup> groups_{scratch_};     // by slot
   detail::ScratchVector<State> current_{scratch_}, previous_{scratch_};
   detail::ScratchVector<uint32_t> placementOf_{scratch_};  // per resource, kNone
   detail::ScratchVector<std::pair<uint32_t, uint32_t>> placementSegments_{
@@ -123,18 +125,11 @@ class Planner {
 };
 
 void Planner::collectTouches() {
-  const size_t resources = graph_.resources.size();
-  groupFirst_.assign(resources + 1, 2);
-  for (const uint32_t p : schedule_.order)
-    for (const Access& a : graph_.passes[p].accesses)
-      groupFirst_[a.resource] = std::max(groupFirst_[a.resource], a.version + 2);
-  uint32_t sum = 0;
-  for (uint32_t& first : groupFirst_) sum += std::exchange(first, sum);
-  groups_.assign(sum, {});
+  groups_.assign(graph_.slots, {});
   struct Seen {
     uint32_t pass = kNone, touch = 0;
   };
-  detail::ScratchVector<Seen> seen(resources * 2, scratch_);
+  detail::ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
   struct Known {
     PassKind kind = PassKind::Host;
     Usage usage = Usage::None;
@@ -148,25 +143,23 @@ void Planner::collectTouches() {
     touchFirst_[l] = static_cast<uint32_t>(touches_.size());
     for (uint32_t i = schedule_.levelFirst[l]; i < schedule_.levelFirst[l + 1]; ++i) {
       const uint32_t p = schedule_.order[i];
-      const BoundPass& pass = graph_.passes[p];
-      for (const Access& a : pass.accesses) {
+      const PassKind kind = graph_.passes[p].declaration->kind;
+      for (const Access& a : graph_.passes[p].accesses) {
         Known& known = knownScopes[a.writes];
-        if (known.kind != pass.declaration->kind || known.usage != a.usage || known.reads != a.reads)
-          known = {pass.declaration->kind, a.usage, a.reads,
-                   accessScope(pass.declaration->kind, a.usage, a.reads, a.writes,
+        if (known.kind != kind || known.usage != a.usage || known.reads != a.reads)
+          known = {kind, a.usage, a.reads,
+                   accessScope(kind, a.usage, a.reads, a.writes,
                                isDepthFormat(graph_.resources[a.resource].desc.format))};
-        AccessScope scope = known.scope;
-        const uint32_t slot =
-            a.previous ? groupFirst_[a.resource + 1] - 1 : groupFirst_[a.resource] + a.version;
-        scope.layout = a.layout;
+        const AccessScope& scope = known.scope;
         if (!a.writes) {
-          groups_[slot].stage |= scope.stage;
-          groups_[slot].access |= scope.access;
+          groups_[a.slot].stage |= scope.stage;
+          groups_[a.slot].access |= scope.access;
         }
         Seen& s = seen[a.resource * 2 + a.previous];
         if (s.pass != p) {
           s = {p, static_cast<uint32_t>(touches_.size())};
-          touches_.push_back({a.resource, slot, scope, a.reads, a.writes, a.previous});
+          touches_.emplace_back(a.resource, a.slot, AccessScope{scope.stage, scope.access, a.layout}, a.reads,
+                                a.writes, a.previous);
           continue;
         }
         Touch& t = touches_[s.touch];
@@ -247,24 +240,44 @@ void Planner::leave(uint32_t resource) {
   for (uint32_t s = first; s < last; ++s) segments_[s] = left;
 }
 
-template <bool record>
-void Planner::frame() {
-  if (record) plan_.levels.reserve(levels_);
-  for (ReadGroup& group : groups_) group.served = false;
+// A frame without writing barriers: only states that last beyond it are followed. What a resource finds in
+// its memory matters to barriers alone, so all may leave at the end.
+void Planner::settle() {
+  ++round_;
   BarrierBatch unrecorded;
+  for (const Touch& t : touches_)
+    if (lasting_[t.resource]) touch<false>(t, unrecorded);
+  readOutputs<false>();
+  for (const uint32_t r : leaving_)
+    if (lasting_[r]) leave(r);
+  endFrame();
+}
+
+void Planner::record() {
+  ++round_;
+  plan_.levels.reserve(levels_);
   for (uint32_t l = 0; l < levels_; ++l) {
-    BarrierBatch& batch = record ? plan_.levels.emplace_back().before : unrecorded;
-    if (record) batch.images.reserve(touchFirst_[l + 1] - touchFirst_[l]);
-    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i)
-      if (record || lasting_[touches_[i].resource]) touch<record>(touches_[i], batch);
-    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i)
-      if (record || lasting_[leaving_[i]]) leave(leaving_[i]);
-    if (!record) continue;
-    plan_.levels.back().passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
-                                      schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+    Level& level = plan_.levels.emplace_back();
+    level.before.images.reserve(touchFirst_[l + 1] - touchFirst_[l]);
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch<true>(touches_[i], level.before);
+    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
+    level.passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
+                        schedule_.order.begin() + schedule_.levelFirst[l + 1]);
   }
+  plan_.end = readOutputs<true>();
+  endFrame();
+}
+
+// History's copies change places.
+void Planner::endFrame() {
+  for (size_t r = 0; r < previous_.size(); ++r)
+    if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
+}
+
+template <bool record>
+BarrierBatch Planner::readOutputs() {
   BarrierBatch batch;
-  const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, false};
+  const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
   detail::ScratchVector<uint8_t> done(graph_.resources.size(), 0, scratch_);
   for (const BoundOutput& output : graph_.outputs) {
     if (std::exchange(done[output.resource], 1)) continue;
@@ -274,11 +287,7 @@ void Planner::frame() {
                          : VK_IMAGE_LAYOUT_UNDEFINED;
     read<record>(t, current_[output.resource], transfer, batch);
   }
-  if (record) plan_.end = batch;
-  for (uint32_t i = leavingFirst_[levels_]; i < leavingFirst_[levels_ + 1]; ++i)
-    if (record || lasting_[leaving_[i]]) leave(leaving_[i]);
-  for (size_t r = 0; r < previous_.size(); ++r)
-    if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
+  return batch;
 }
 
 template <bool record>
@@ -286,17 +295,17 @@ void Planner::touch(const Touch& t, BarrierBatch& batch) {
   if (t.scope.stage == 0) return;  // only its size is used
   State& state = t.previous ? previous_[t.resource] : current_[t.resource];
   if (t.writes) return write<record>(t, state, batch);
-  ReadGroup& group = groups_[t.version];
-  if (!std::exchange(group.served, true)) read<record>(t, state, group, batch);
+  ReadGroup& group = groups_[t.slot];
+  if (std::exchange(group.served, round_) != round_) read<record>(t, state, group, batch);
 }
 
 template <bool record>
-void Planner::read(const Touch& t, State& state, ReadGroup group, BarrierBatch& batch) {
+void Planner::read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch& batch) {
   const bool image = graph_.resources[t.resource].desc.kind == ResourceKind::Image;
   if (image && state.layout != t.scope.layout) {
     if (record)
-      batch.images.push_back({t.resource, t.previous, state.writeStage | state.readStage, group.stage,
-                              state.writeAccess, group.access, state.layout, t.scope.layout});
+      batch.images.emplace_back(t.resource, t.previous, state.writeStage | state.readStage, group.stage,
+                                state.writeAccess, group.access, state.layout, t.scope.layout);
     // The change of layout is itself a write, which only this barrier's second scope has waited for; who
     // comes later waits for that scope and for the write before it.
     state.writeStage |= group.stage;
@@ -339,8 +348,8 @@ void Planner::write(const Touch& t, State& state, BarrierBatch& batch) {
   if (record && source && (!change || (first && sourceAccess)))
     global(batch, source, sourceAccess, t.scope.stage, t.scope.access);
   if (change && record)
-    batch.images.push_back({t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
-                            state.layout, t.scope.layout});
+    batch.images.emplace_back(t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
+                              state.layout, t.scope.layout);
   state.pendingStage = state.writeStage = t.scope.stage;
   state.pendingAccess = state.writeAccess = t.scope.access & kWrites;
   state.readStage = state.seenStage = 0;

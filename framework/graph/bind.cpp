@@ -75,8 +75,7 @@ void Binder::declare() {
   }
   for (uint32_t p = 0; p < count; ++p) {
     const PassDescription& from = description_.passes[p];
-    BoundPass fresh;  // resize() would fill every byte with zeros first
-    BoundPass& pass = graph_.passes.emplace_back(std::move(fresh));
+    BoundPass& pass = graph_.passes.emplace_back();
     pass.name = text(from.name);
     passBySymbol_[from.name] = p;
     firstPort_[p] = static_cast<uint32_t>(ports_.size());
@@ -223,36 +222,6 @@ std::string rangeText(const ParameterSpec& spec) {
 
 }  // namespace
 
-void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& from,
-                           const PassDescription& pass, Value& out) {
-  const bool typed = from.fromCommandLine && from.type == json::Value::Type::String;
-  if (typed ? assign(spec, parseTyped(from, text(from.text), spec.type), out) : assign(spec, from, out))
-    return;
-  const ParameterDescription given = typed ? parseTyped(from, text(from.text), spec.type) : from;
-  std::string expected, remedy;
-  switch (spec.type) {
-    case ParameterSpec::Type::Bool:
-      expected = "true or false";
-      break;
-    case ParameterSpec::Type::Int:
-    case ParameterSpec::Type::Real:
-      expected = rangeText(spec);
-      break;
-    case ParameterSpec::Type::Choice:
-      expected = fmt::format("one of {}", fmt::join(spec.choices, ", "));
-      if (given.type == json::Value::Type::String) remedy = nearestName(text(given.text), spec.choices);
-      break;
-    case ParameterSpec::Type::Text:
-      expected = "a text";
-      break;
-  }
-  const uint32_t p = static_cast<uint32_t>(&pass - description_.passes.data());
-  error(given.place, passPath(p, "params." + spec.name),
-        fmt::format("parameter `{}`: expected {}, found {}", spec.name, expected,
-                    describeGiven(given, description_.symbols)),
-        remedy.empty() ? std::string() : fmt::format("did you mean `{}`?", remedy));
-}
-
 // False when the value is of another type or out of range.
 bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const {
   using Type = ParameterSpec::Type;
@@ -285,6 +254,42 @@ bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given
       return true;
   }
   return false;
+}
+
+void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& given,
+                           const PassDescription& pass, Value& out) {
+  if (given.fromCommandLine && given.type == json::Value::Type::String) {
+    const ParameterDescription typed = parseTyped(given, text(given.text), spec.type);
+    if (!assign(spec, typed, out)) reportParameter(spec, typed, pass);
+  } else if (!assign(spec, given, out)) {
+    reportParameter(spec, given, pass);
+  }
+}
+
+void Binder::reportParameter(const ParameterSpec& spec, const ParameterDescription& given,
+                             const PassDescription& pass) {
+  std::string expected, remedy;
+  switch (spec.type) {
+    case ParameterSpec::Type::Bool:
+      expected = "true or false";
+      break;
+    case ParameterSpec::Type::Int:
+    case ParameterSpec::Type::Real:
+      expected = rangeText(spec);
+      break;
+    case ParameterSpec::Type::Choice:
+      expected = fmt::format("one of {}", fmt::join(spec.choices, ", "));
+      if (given.type == json::Value::Type::String) remedy = nearestName(text(given.text), spec.choices);
+      break;
+    case ParameterSpec::Type::Text:
+      expected = "a text";
+      break;
+  }
+  const uint32_t p = static_cast<uint32_t>(&pass - description_.passes.data());
+  error(given.place, passPath(p, "params." + spec.name),
+        fmt::format("parameter `{}`: expected {}, found {}", spec.name, expected,
+                    describeGiven(given, description_.symbols)),
+        remedy.empty() ? std::string() : fmt::format("did you mean `{}`?", remedy));
 }
 
 // ---- Resources ---------------------------------------------------------------------------------------
@@ -332,11 +337,11 @@ void Binder::makeResources() {
       ((resource.name += pass) += '.') += spec.name;
       if (!member.name.empty()) (resource.name += '.') += member.name;
       resource.lifetime = spec.lifetime;
+      resource.versions = 1;
       resourcePass_.push_back(port.pass);
       resourceSpec_.push_back(&member);
     }
   }
-  lastVersion_.assign(graph_.resources.size(), 0);
 }
 
 // ---- Accesses ----------------------------------------------------------------------------------------
@@ -346,9 +351,7 @@ void Binder::makeAccesses() {
     BoundPass& pass = graph_.passes[p];
     if (!pass.declaration) continue;
     const std::span<const PortState> ports(portsOf(p), portCount(p));
-    size_t count = 0;
-    for (const PortState& port : ports) count += port.spec->members.size();
-    pass.accesses.reserve(count);
+    pass.accesses.reserve(ports.size());
     for (const PortState& port : ports) addAccesses(pass, port);
   }
 }
@@ -359,9 +362,10 @@ void Binder::addAccesses(BoundPass& pass, const PortState& port) {
   const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
   const bool kept = spec.lifetime != Lifetime::Transient;
   for (uint32_t m = 0; m < spec.members.size(); ++m) {
-    Access access;
-    access.resource = resourceOf(port, m);
-    if (access.resource == kNone) continue;
+    const uint32_t r = resourceOf(port, m);
+    if (r == kNone) continue;
+    Access& access = pass.accesses.emplace_back();
+    access.resource = r;
     access.port = port.index;
     access.member = static_cast<uint16_t>(m);
     access.usage = spec.members[m].usage;
@@ -371,13 +375,14 @@ void Binder::addAccesses(BoundPass& pass, const PortState& port) {
     if (port.previous)
       history_ = true;
     else if (input)
-      access.version = versionSeen(port, access.resource);
+      access.version = versionSeen(port, r);
     else if (inout)
-      access.version = versions_[port.firstVersion + (access.resource - port.value.first)];
+      access.version = versions_[port.firstVersion + (r - port.value.first)];
     else
       access.version = 1;
-    graph_.resources[access.resource].usage |= static_cast<uint32_t>(access.usage);
-    pass.accesses.push_back(access);
+    BoundResource& resource = graph_.resources[r];
+    access.slot = resource.firstSlot + (port.previous ? resource.versions + 1 : access.version);
+    resource.usage |= static_cast<uint32_t>(access.usage);
   }
 }
 
@@ -396,7 +401,7 @@ void Binder::bindOutputs() {
       if (bundle) output.name += "." + port.value.origin->members[m].name;
       output.resource = resource;
       output.version = versionSeen(port, resource);
-      if (output.version != lastVersion_[resource])
+      if (output.version != graph_.resources[resource].versions)
         error(wire.place, json::joinPath("outputs", text(wire.target)),
               fmt::format("`{}` is updated in place later in the frame", wire.written),
               "wire the output to the last pass that updates it");
@@ -424,7 +429,7 @@ void Binder::markHistory() {
         error(wire.place, wirePath(port),
               fmt::format("`{}` is kept and updated in place, so last frame's value is gone", resource.name),
               "wire it without `@previous`, or make its pass declare it without keep()");
-      else if (port.source != kNone && versionSeen(port, r) != lastVersion_[r])
+      else if (port.source != kNone && versionSeen(port, r) != resource.versions)
         error(wire.place, wirePath(port),
               fmt::format("`{}` is updated in place later in the frame", wire.written),
               "`@previous` holds the last update: wire the pass that makes it");

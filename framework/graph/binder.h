@@ -32,6 +32,9 @@ struct PortState {
   uint32_t firstVersion = kNone;  // producing ports: versions_, one per resource of the value
 };
 
+// Hidden, for nobody outside the library calls it: its functions call each other directly or are inlined.
+class [[gnu::visibility("hidden")]] Binder;
+
 class Binder {
  public:
   Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics);
@@ -42,8 +45,10 @@ class Binder {
   void declare();
   void bindView(BoundPass& pass, const PassDescription& from);
   void bindParameters(BoundPass& pass, const PassDescription& from);
-  void readParameter(const ParameterSpec& spec, const ParameterDescription& from, const PassDescription& pass,
-                     Value& out);
+  void readParameter(const ParameterSpec& spec, const ParameterDescription& given,
+                     const PassDescription& pass, Value& out);
+  void reportParameter(const ParameterSpec& spec, const ParameterDescription& given,
+                       const PassDescription& pass);
   bool assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const;
   void makeExternals();
   void makeResources();
@@ -59,6 +64,7 @@ class Binder {
   bool selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member);
   void followValues();
   void followValue(uint32_t port);
+  void takeValue(PortState& port);
   void checkTypes();
   void checkPort(PortState& port, const PortSpec& spec);
   bool fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const;
@@ -78,6 +84,7 @@ class Binder {
   void orderPasses();
   void reportCycle(const ScratchVector<uint32_t>& waiting);
   void makeVersions();
+  void updateInPlace();
   void checkInPlace();
   uint32_t versionSeen(const PortState& port, uint32_t resource) const {
     if (port.source == kNone) return 0;  // external, before any update
@@ -92,7 +99,6 @@ class Binder {
   bool evaluatePass(uint32_t pass, int depth);
   bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
                         BoundResource& resource, int depth);
-  int64_t sizeAtOnce(uint32_t pass, const SizeExpr& size) const;
   bool evaluateSize(uint32_t pass, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
                     const char* what, int64_t limit, int64_t& out, int depth);
   bool evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why);
@@ -122,7 +128,6 @@ class Binder {
   ScratchVector<uint32_t> firstPort_{scratch_};  // per pass, and one past the last
   ScratchVector<PortState> ports_{scratch_};
   ScratchVector<uint32_t> versions_{scratch_};
-  ScratchVector<uint32_t> lastVersion_{scratch_};    // per resource
   ScratchVector<uint32_t> order_{scratch_};          // passes, producers first; incomplete after a cycle
   ScratchVector<uint32_t> externalFirst_{scratch_};  // first resource of each external
   ScratchVector<VkExtent2D> viewExtents_{scratch_};  // per BoundGraph::views

@@ -103,11 +103,14 @@ bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& po
   const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
   port = member = kNone;
   uint32_t only = kNone, offered = 0;
-  for (uint32_t k = 0; k < specs.size(); ++k) {
-    if (!producing(specs[k])) continue;
-    only = k;
-    ++offered;
-    if (wire.port != kNone && sameText(specs[k].name, text(wire.port))) port = k;
+  uint32_t k = 0;
+  for (const PortSpec& spec : specs) {
+    if (producing(spec)) {
+      only = k;
+      ++offered;
+      if (wire.port != kNone && sameText(spec.name, text(wire.port))) port = k;
+    }
+    ++k;
   }
   Symbol memberName = wire.member;
   if (port == kNone && offered == 1 && (wire.port == kNone || wire.member == kNone)) {
@@ -170,15 +173,8 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
                                  : fmt::format("there is: {}", fmt::join(names, ", ")));
   }
   port.source = firstPort_[pass] + index;
-  if (port.pass == kNone) {  // an output of the graph: values are known by now
-    port.value = ports_[port.source].value;
-    port.state = 2;
-  }
-  if (member == kNone) return;
-  if (port.pass != kNone)
-    port.value.member = member;  // applied when the value is followed
-  else if (port.value.first != kNone)
-    port.value = {port.value.first + member, 1, port.value.origin, member, port.value.external};
+  port.value.member = member;
+  if (ports_[port.source].state == 2) takeValue(port);  // else when its value is followed
 }
 
 // ---- Values ------------------------------------------------------------------------------------------
@@ -205,23 +201,24 @@ void Binder::followValue(uint32_t port) {
           "in-place updates wired in a circle: no pass makes the first value",
           "wire one of them to an output");
   }
-  for (size_t i = chain.size(); i-- > 0;) {
-    PortState& state = ports_[chain[i]];
-    const uint32_t member = state.value.member;
-    state.state = 2;
-    state.value = state.source == kNone ? PortValue{} : ports_[state.source].value;
-    if (state.value.first == kNone || member == kNone) continue;
-    // The member's name was looked up in the source's declaration; an in-out port there may list fewer
-    // members.
-    const std::string& name = ports_[state.source].spec->members[member].name;
-    state.value.member = member;
-    const PortSpec* origin = state.value.origin;
-    if (origin)
-      for (uint32_t m = 0; m < origin->members.size(); ++m)
-        if (origin->members[m].name == name) state.value.member = m;
-    state.value.first += state.value.member;
-    state.value.count = 1;
-  }
+  for (size_t i = chain.size(); i-- > 0;) takeValue(ports_[chain[i]]);
+}
+
+// The value of the port's source, or the member of it that the wire names.
+void Binder::takeValue(PortState& port) {
+  const uint32_t member = port.value.member;
+  PortValue& value = port.value;
+  port.state = 2;
+  value = port.source == kNone ? PortValue{} : ports_[port.source].value;
+  if (value.first == kNone || member == kNone) return;
+  // The member's name was looked up in the source's declaration; an in-out port there may list fewer members.
+  const std::string& name = ports_[port.source].spec->members[member].name;
+  value.member = member;
+  if (value.origin)
+    for (uint32_t m = 0; m < value.origin->members.size(); ++m)
+      if (value.origin->members[m].name == name) value.member = m;
+  value.first += value.member;
+  value.count = 1;
 }
 
 uint32_t Binder::resourceNamed(const PortValue& value, const std::string& member) const {
@@ -306,29 +303,23 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
 
 bool Binder::fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const {
   const ResourceSpec& want = wanted.resource;
-  ResourceKind kind = ResourceKind::Image;
-  VkFormat format = VK_FORMAT_UNDEFINED;
-  bool volume = false, array = false;
-  uint32_t stride = 0;
-  std::string_view element;
-  auto read = [&](const auto& have) {
-    kind = have.kind, format = have.format, volume = have.volume, array = have.array, stride = have.stride;
-    element = have.element;
+  const auto compare = [&](const auto& have) {
+    bool good = have.kind == want.kind;
+    if (good && have.kind == ResourceKind::Buffer)
+      good = have.element == want.element && have.stride == want.stride;
+    else if (good)
+      good = have.volume == want.volume && have.array == want.array &&
+             (have.format == want.format ||
+              (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(have.format)));
+    if (!good && !wanted.name.empty())
+      why = fmt::format(
+          "its member `{}` is {}", wanted.name,
+          describeResource(have.kind, have.format, have.volume, have.array, have.element, have.stride));
+    return good;
   };
   // Sizes are evaluated later, so compare declarations.
-  if (const MemberSpec* made = resourceSpec_[resource])
-    read(made->resource);
-  else
-    read(graph_.resources[resource].desc);
-  bool good = kind == want.kind;
-  if (good && kind == ResourceKind::Buffer) good = element == want.element && stride == want.stride;
-  if (good && kind == ResourceKind::Image)
-    good = volume == want.volume && array == want.array &&
-           (format == want.format || (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(format)));
-  if (!good && !wanted.name.empty())
-    why = fmt::format("its member `{}` is {}", wanted.name,
-                      describeResource(kind, format, volume, array, element, stride));
-  return good;
+  const MemberSpec* made = resourceSpec_[resource];
+  return made ? compare(made->resource) : compare(graph_.resources[resource].desc);
 }
 
 std::string Binder::missingRemedy(const PortSpec& spec) const {

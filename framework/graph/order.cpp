@@ -2,15 +2,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "framework/graph/binder.h"
 #include "framework/graph/validate.h"
 
 namespace fovea::graph::detail {
 
-// Kahn's algorithm; among ready passes the order is the declaration's as far as a queue keeps it.
+// The declaration's order where it has producers first, as in most graphs; else Kahn's algorithm.
 void Binder::orderPasses() {
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
+  const bool ordered = std::none_of(ports_.begin(), ports_.end(), [&](const PortState& port) {
+    return port.source != kNone && !port.previous && ports_[port.source].pass >= port.pass;
+  });
+  if (ordered) {
+    order_.resize(count);
+    return std::iota(order_.begin(), order_.end(), 0u);
+  }
   ScratchVector<uint32_t> first(count + 2, 0, scratch_), waits(count, 0, scratch_);
   for (const PortState& port : ports_) {
     if (port.source == kNone || port.previous) continue;
@@ -70,9 +78,15 @@ void Binder::makeVersions() {
     if (spec.direction != Direction::Output) continue;
     port.firstVersion = static_cast<uint32_t>(versions_.size());
     versions_.insert(versions_.end(), spec.members.size(), 1);
-    std::fill_n(lastVersion_.begin() + port.value.first, spec.members.size(), 1u);
   }
-  if (!inPlace_) return;
+  if (inPlace_) updateInPlace();
+  for (BoundResource& r : graph_.resources) {
+    r.firstSlot = graph_.slots;
+    graph_.slots += r.versions + 2;  // version 0 and last frame's copy
+  }
+}
+
+void Binder::updateInPlace() {
   std::vector<uint32_t> updater(graph_.resources.size(), kNone);
   for (const uint32_t p : order_) {
     for (uint32_t i = 0; i < portCount(p); ++i) {
@@ -86,14 +100,14 @@ void Binder::makeVersions() {
         const uint32_t r = resourceOf(port, m);
         if (r == kNone) continue;
         uint32_t& version = versions_[port.firstVersion + (r - port.value.first)];
-        if (version != lastVersion_[r])
+        if (version != graph_.resources[r].versions)
           error(description_.wires[port.wire].place, wirePath(port),
                 fmt::format("`{}` and `{}` both update `{}` in place: their order is open",
                             graph_.passes[updater[r] == kNone ? p : updater[r]].name, graph_.passes[p].name,
                             graph_.resources[r].name),
                 fmt::format("wire one after the other: `{}.{}`",
                             graph_.passes[updater[r] == kNone ? p : updater[r]].name, spec.name));
-        version = ++lastVersion_[r];
+        version = ++graph_.resources[r].versions;
         updater[r] = p;
       }
     }
@@ -104,26 +118,19 @@ void Binder::makeVersions() {
 void Binder::checkInPlace() {
   if (order_.size() < graph_.passes.size()) return;
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
-  // The updater of each version of each resource.
-  std::vector<uint32_t> firstVersion(graph_.resources.size() + 1, 0);
-  for (size_t r = 0; r < graph_.resources.size(); ++r)
-    firstVersion[r + 1] = firstVersion[r] + lastVersion_[r] + 2;
-  std::vector<uint32_t> updater(firstVersion.back(), kNone);
+  std::vector<uint32_t> updater(graph_.slots, kNone);
   for (uint32_t p = 0; p < count; ++p)
     for (const Access& a : graph_.passes[p].accesses)
-      if (a.writes) updater[firstVersion[a.resource] + a.version] = p;
+      if (a.writes) updater[a.slot] = p;
   std::vector<std::pair<uint32_t, uint32_t>> edges;
   for (uint32_t p = 0; p < count; ++p) {
     for (const Access& a : graph_.passes[p].accesses) {
       if (a.previous) continue;
-      const uint32_t made =
-          a.writes && a.version > 0 ? updater[firstVersion[a.resource] + a.version - 1] : kNone;
+      const uint32_t made = a.writes && a.version > 0 ? updater[a.slot - 1] : kNone;
       if (a.writes && made != kNone) edges.emplace_back(made, p);
       if (a.writes) continue;
-      if (const uint32_t by = updater[firstVersion[a.resource] + a.version]; by != kNone)
-        edges.emplace_back(by, p);
-      if (const uint32_t next = updater[firstVersion[a.resource] + a.version + 1]; next != kNone)
-        edges.emplace_back(p, next);
+      if (const uint32_t by = updater[a.slot]; by != kNone) edges.emplace_back(by, p);
+      if (const uint32_t next = updater[a.slot + 1]; next != kNone) edges.emplace_back(p, next);
     }
   }
   std::vector<uint32_t> first(count + 2, 0), waits(count, 0), ready;
@@ -145,7 +152,7 @@ void Binder::checkInPlace() {
     for (uint32_t m = 0; m < spec.members.size(); ++m) {
       const uint32_t r = resourceOf(port, m);
       if (r == kNone) continue;
-      const uint32_t by = updater[firstVersion[r] + versionSeen(port, r) + 1];
+      const uint32_t by = updater[graph_.resources[r].firstSlot + versionSeen(port, r) + 1];
       if (by == kNone || waits[by] == 0) continue;
       if (by == port.pass)
         return error(
@@ -172,12 +179,8 @@ void Binder::chooseLayouts() {
     Usage usage = Usage::None;
     bool reads = false, writes = false;
   };
-  const size_t resources = graph_.resources.size();
-  ScratchVector<uint32_t> firstVersion(resources + 1, 0, scratch_);
-  for (size_t r = 0; r < resources; ++r) firstVersion[r + 1] = firstVersion[r] + lastVersion_[r] + 2;
-  // Per version, and in the last slot of each resource for last frame's copy.
-  ScratchVector<VkImageLayout> readLayout(firstVersion[resources], VK_IMAGE_LAYOUT_UNDEFINED, scratch_);
-  ScratchVector<Seen> seen(resources * 2, scratch_);
+  ScratchVector<VkImageLayout> readLayout(graph_.slots, VK_IMAGE_LAYOUT_UNDEFINED, scratch_);
+  ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
   bool mixed = false;  // some version's readers want different layouts: a second round tells them all
   for (int round = 0; round < (mixed ? 2 : 1); ++round) {
     for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
@@ -195,8 +198,7 @@ void Binder::chooseLayouts() {
         const ResourceDesc& desc = graph_.resources[a.resource].desc;
         if (desc.kind != ResourceKind::Image || a.usage == Usage::None) continue;
         const Seen& s = seen[a.resource * 2 + a.previous];
-        VkImageLayout& shared =
-            readLayout[a.previous ? firstVersion[a.resource + 1] - 1 : firstVersion[a.resource] + a.version];
+        VkImageLayout& shared = readLayout[a.slot];
         if (round == 0) {
           a.layout = accessLayout(s.usage, s.reads, s.writes);
           if (s.writes) continue;

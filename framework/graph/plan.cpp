@@ -9,6 +9,7 @@
 #include "framework/graph/barriers.h"
 #include "framework/graph/compile.h"
 #include "framework/graph/hash.h"
+#include "framework/graph/scratch.h"
 #include "framework/graph/validate.h"
 
 namespace fovea::graph {
@@ -145,7 +146,8 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
   const std::vector<Interval> intervals = lifetimes(*graph, order);
   detail::Hasher hash;
   hash.add(graph->hash);
-  std::vector<AliasRequest> requests;
+  detail::Scratch scratch;
+  detail::ScratchVector<AliasRequest> requests(scratch);
   requests.reserve(graph->resources.size());
   for (uint32_t r = 0; r < graph->resources.size(); ++r) {
     if (!order.resourceLive[r]) continue;
@@ -154,7 +156,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
     const MemoryNeed need = options.memory ? options.memory(r) : estimateMemory(resource.desc);
     hash.add(need.bytes, need.alignment << 32 | need.memoryTypeBits);
     if (isTransient(resource))
-      requests.push_back({r, intervals[r], need});
+      requests.emplace_back(r, intervals[r], need);
     else
       plan.bytesKept += need.bytes * (resource.history ? 2 : 1);
   }

@@ -18,6 +18,9 @@ namespace fovea::graph {
 
 inline constexpr uint32_t kNone = ~0u;
 
+// Constructors below that do nothing are not defaulted: a defaulted one fills every byte with zeros before the members
+// are set, and lists grow by thousands of these.
+
 // A resource with its sizes evaluated.
 struct ResourceDesc {
   ResourceKind kind = ResourceKind::Image;
@@ -30,6 +33,7 @@ struct ResourceDesc {
 };
 
 struct BoundResource {
+  BoundResource() {}
   std::string name;        // "gbuffer.gbuffer.position": pass, port and member of its first version
   ResourceDesc desc;
   Lifetime lifetime = Lifetime::Transient;
@@ -37,6 +41,8 @@ struct BoundResource {
   bool history = false;    // some pass reads last frame's value: two copies that change places every frame
   bool output = false;     // an output of the graph: readable by transfer at the end of the frame
   uint32_t usage = 0;      // all Usage bits over all passes
+  uint32_t versions = 0;   // made by its writers
+  uint32_t firstSlot = 0;  // Access::slot of version 0
 };
 
 // One pass touches one resource.
@@ -47,17 +53,19 @@ struct Access {
   bool reads = false, writes = false;
   bool previous = false;          // last frame's copy
   uint32_t version = 0;           // writes: the version made; reads: the version seen (0: before any write)
+  uint32_t slot = 0;              // the versions of all resources counted through, last frame's copy after the last one
   // Images: the layout while the pass runs, which its descriptors and attachments must name. One layout for all of a
   // pass's accesses to the image, and for all readers of one version (GENERAL when they want different ones).
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
 struct BoundPass {
+  BoundPass() {}
   std::string name;  // "left/deferred" inside a prefixed sub-graph
   const PassDeclaration* declaration = nullptr;
   Parameters parameters;
   uint32_t view = 0;            // index into BoundGraph::views
-  SmallVector<Access, 2> accesses;  // declaration order
+  SmallVector<Access, 4> accesses;  // declaration order
 };
 
 struct BoundOutput {
@@ -72,6 +80,7 @@ struct BoundGraph {
   std::vector<BoundPass> passes;        // declaration order
   std::vector<BoundResource> resources;
   std::vector<BoundOutput> outputs;     // bundles are written out: "gbuffer.position"
+  uint32_t slots = 0;                   // of Access::slot
   uint64_t hash = 0;                    // of everything it was derived from
 };
 
@@ -87,11 +96,12 @@ struct ImageBarrier {
 struct BarrierBatch {
   VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  SmallVector<ImageBarrier, 2> images;  // of a pass alone in its level: what it reads and what it writes
+  SmallVector<ImageBarrier, 4> images;  // of a pass alone in its level: what it reads and what it writes
   bool empty() const { return srcStage == 0 && dstStage == 0 && images.empty(); }
 };
 
 struct Level {
+  Level() {}
   BarrierBatch before;
   SmallVector<uint32_t, 2> passes;  // indices into BoundGraph::passes; no hazards among them
 };

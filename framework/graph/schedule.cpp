@@ -17,33 +17,21 @@ class Scheduler {
   Schedule run(std::optional<uint32_t> seed) {
     findWriters();
     cull();
-    makeEdges();
-    result_.level.assign(passCount_, kNone);
-    if (seed)
-      randomLevels(*seed);
-    else
-      earliestLevels();
+    if (seed || !levelsAsDeclared()) {
+      makeEdges();
+      result_.level.assign(passCount_, kNone);
+      seed ? randomLevels(*seed) : earliestLevels();
+    }
     sortByLevel();
     return std::move(result_);
   }
 
  private:
-  uint32_t& writer(uint32_t resource, uint32_t version) {
-    return writers_[firstVersion_[resource] + version];
-  }
-
   void findWriters() {
-    const size_t resources = graph_.resources.size();
-    firstVersion_.assign(resources + 1, 2);  // version 0 and one past the last
-    for (const BoundPass& pass : graph_.passes)
-      for (const Access& a : pass.accesses)
-        if (a.writes) firstVersion_[a.resource] = std::max(firstVersion_[a.resource], a.version + 2);
-    uint32_t sum = 0;
-    for (uint32_t& first : firstVersion_) sum += std::exchange(first, sum);
-    writers_.assign(sum, kNone);
+    writers_.assign(graph_.slots, kNone);
     for (uint32_t p = 0; p < passCount_; ++p)
       for (const Access& a : graph_.passes[p].accesses)
-        if (a.writes) writer(a.resource, a.version) = p;
+        if (a.writes) writers_[a.slot] = p;
   }
 
   void need(uint32_t pass) {
@@ -54,7 +42,8 @@ class Scheduler {
 
   void needAllWriters(uint32_t resource) {
     if (std::exchange(allWriters_[resource], 1)) return;
-    for (uint32_t w = firstVersion_[resource]; w < firstVersion_[resource + 1]; ++w) need(writers_[w]);
+    const BoundResource& r = graph_.resources[resource];
+    for (uint32_t version = 1; version <= r.versions; ++version) need(writers_[r.firstSlot + version]);
   }
 
   void cull() {
@@ -62,7 +51,8 @@ class Scheduler {
     result_.resourceLive.assign(graph_.resources.size(), 0);
     allWriters_.assign(graph_.resources.size(), 0);
     work_.reserve(passCount_);
-    for (const BoundOutput& output : graph_.outputs) need(writer(output.resource, output.version));
+    for (const BoundOutput& output : graph_.outputs)
+      need(writers_[graph_.resources[output.resource].firstSlot + output.version]);
     for (uint32_t p = 0; p < passCount_; ++p) {
       if (graph_.passes[p].declaration->sideEffects) need(p);
       for (const Access& a : graph_.passes[p].accesses)
@@ -76,9 +66,35 @@ class Scheduler {
         if (a.previous || graph_.resources[a.resource].lifetime != Lifetime::Transient)
           needAllWriters(a.resource);
         else if (a.reads)
-          need(writer(a.resource, a.writes ? a.version - 1 : a.version));
+          need(writers_[a.writes ? a.slot - 1 : a.slot]);
       }
     }
+  }
+
+  bool live(uint32_t pass) const { return pass != kNone && result_.passLive[pass]; }
+
+  // Most graphs declare each pass after those it waits for: then one walk finds the levels. False: not so.
+  bool levelsAsDeclared() {
+    std::vector<uint32_t>& level = result_.level;
+    level.assign(passCount_, kNone);
+    for (uint32_t p = 0; p < passCount_; ++p) {
+      if (!result_.passLive[p]) continue;
+      uint32_t own = level[p] == kNone ? 0 : level[p];  // what a reader of what it overwrites asks for
+      for (const Access& a : graph_.passes[p].accesses) {
+        const uint32_t before = a.previous ? kNone : writers_[a.writes ? a.slot - 1 : a.slot];
+        if (!live(before)) continue;
+        if (before > p) return false;
+        own = std::max(own, level[before] + 1);
+      }
+      level[p] = own;
+      for (const Access& a : graph_.passes[p].accesses) {
+        const uint32_t next = a.previous || a.writes ? kNone : writers_[a.slot + 1];
+        if (!live(next)) continue;
+        if (next < p) return false;
+        level[next] = level[next] == kNone ? own + 1 : std::max(level[next], own + 1);
+      }
+    }
+    return true;
   }
 
   template <class Edge>
@@ -88,12 +104,12 @@ class Scheduler {
       for (const Access& a : graph_.passes[p].accesses) {
         if (a.previous) continue;
         if (a.writes) {
-          const uint32_t before = writer(a.resource, a.version - 1);
-          if (before != kNone && result_.passLive[before]) edge(before, p);
+          const uint32_t before = writers_[a.slot - 1];
+          if (live(before)) edge(before, p);
         } else {
-          const uint32_t made = writer(a.resource, a.version), next = writer(a.resource, a.version + 1);
+          const uint32_t made = writers_[a.slot], next = writers_[a.slot + 1];
           if (made != kNone) edge(made, p);
-          if (next != kNone && result_.passLive[next]) edge(p, next);
+          if (live(next)) edge(p, next);
         }
       }
     }
@@ -178,8 +194,8 @@ class Scheduler {
   const uint32_t passCount_;
   Schedule result_;
   detail::Scratch scratch_;
-  detail::ScratchVector<uint32_t> firstVersion_{scratch_}, writers_{scratch_}, work_{scratch_},
-      edgeFirst_{scratch_}, edges_{scratch_}, waits_{scratch_};
+  detail::ScratchVector<uint32_t> writers_{scratch_};  // by slot
+  detail::ScratchVector<uint32_t> work_{scratch_}, edgeFirst_{scratch_}, edges_{scratch_}, waits_{scratch_};
   detail::ScratchVector<uint8_t> allWriters_{scratch_};
 };
 

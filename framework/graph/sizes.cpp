@@ -52,6 +52,16 @@ bool apply(SizeExpr::Op op, Stack& stack) {
   }
 }
 
+// Most sizes are a number or the view's; 0: not one of these.
+inline int64_t sizeAtOnce(const SizeExpr& size, VkExtent2D view) {
+  if (size.terms().size() != 1) return 0;
+  const SizeExpr::Term& term = size.terms()[0];
+  if (term.op == SizeExpr::Op::Constant) return term.constant;
+  return term.op == SizeExpr::Op::ViewWidth    ? view.width
+         : term.op == SizeExpr::Op::ViewHeight ? view.height
+                                               : 0;
+}
+
 }  // namespace
 
 void Binder::evaluateSizes() {
@@ -105,9 +115,10 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   desc.volume = from.volume;
   desc.array = from.array;
   desc.stride = from.stride;
+  const VkExtent2D view = viewExtents_[graph_.passes[p].view];
   constexpr int64_t kMaxExtent = 1 << 24, kMaxCount = int64_t(1) << 40;
   auto size = [&](const SizeExpr& expr, const char* what, int64_t limit, auto& out) {
-    int64_t value = sizeAtOnce(p, expr);
+    int64_t value = sizeAtOnce(expr, view);
     if ((value < 1 || value > limit) && !evaluateSize(p, spec, member, expr, what, limit, value, depth))
       return false;
     out = static_cast<std::remove_reference_t<decltype(out)>>(value);
@@ -125,17 +136,6 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   // More levels than the size has would be refused by the device; expressions may ask for "enough".
   desc.mips = std::min(desc.mips, uint32_t(std::bit_width(std::max({desc.width, desc.height, desc.depth}))));
   return good;
-}
-
-// Most sizes are a number or the view's; 0: not one of these.
-int64_t Binder::sizeAtOnce(uint32_t pass, const SizeExpr& size) const {
-  if (size.terms().size() != 1) return 0;
-  const SizeExpr::Term& term = size.terms()[0];
-  if (term.op == SizeExpr::Op::Constant) return term.constant;
-  const VkExtent2D view = viewExtents_[graph_.passes[pass].view];
-  return term.op == SizeExpr::Op::ViewWidth    ? view.width
-         : term.op == SizeExpr::Op::ViewHeight ? view.height
-                                               : 0;
 }
 
 // One size of a resource, from 1 to `limit`; false, and a message, when it is not.
