@@ -376,7 +376,7 @@ void Binder::addAccesses(BoundPass& pass, const PortState& port) {
       history_ = true;
     else if (input)
       access.version = versionSeen(port, r);
-    else if (inout)
+    else if (inout && port.firstVersion != kNone)  // else part of a cycle, which has been reported
       access.version = versions_[port.firstVersion + (r - port.value.first)];
     else
       access.version = 1;

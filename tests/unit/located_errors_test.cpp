@@ -223,6 +223,10 @@ const Mistake kMistakes[] = {
     {"SelfCycle", R"({"passes": {"a": {"type": "filter", "inputs": {"image": "a"}}}, "outputs": {"o": "a"}})",
      "g.json:1:57: error: these passes wait for each other: a <- a (at passes.a.inputs.image)\n"
      "  -> one of these wires must read last frame's value: append @previous"},
+    {"CycleThroughAnUpdateInPlace",
+     R"({"passes": {"a": {"type": "filter", "inputs": {"image": "u"}}, "u": {"type": "update", "inputs": {"image": "a"}}}, "outputs": {"o": "a"}})",
+     "g.json:1:57: error: these passes wait for each other: a <- u <- a (at passes.a.inputs.image)\n"
+     "  -> one of these wires must read last frame's value: append @previous"},
     // ---- history and updates in place
     {"HistoryOfAnInput",
      R"({"inputs": {"i": {"format": "rgba16f"}}, "passes": {"f": {"type": "filter", "inputs": {"image": "inputs.i@previous"}}}, "outputs": {"o": "f"}})",
