@@ -46,7 +46,8 @@ PassDeclaration Importance::declaration() {
            member("weight", image3D(VK_FORMAT_R16_SFLOAT, 1, 1, 1), Usage::Sampled)},
           "opacity and weight, averaged; for method `cones`")
       .makeOptional();
-  d.output("candidate_importance", buffer("float", 4, countOf("candidates")), Usage::StorageWrite,
+  d.output("candidate_importance", buffer("float", 4, countOf("candidates")),
+           Usage::StorageWrite | Usage::TransferWrite,
            "I of each candidate, in [0, 1]; 0: an attempt that hit nothing");
   d.output("vpl_importance", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
            "I of each VPL, in [0, 1]; 0: an empty slot");
@@ -57,6 +58,10 @@ PassDeclaration Importance::declaration() {
   d.parameter(
       "luminance", flag(false),
       "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
+  d.parameter(
+      "rate_candidates", flag(true),
+      "false: the importance of all candidates is 0, for a pass manage whose `placement` does not ask "
+      "for it; Eq. 1 then keeps new VPLs in their second frame");
   d.counter("rays", "rays or cones traced");
   return d;
 }
@@ -72,7 +77,7 @@ void Importance::prepare(PrepareContext& ctx) {
                 "wire `mips` to mipmap, or set method to `rays`");
   gpu::Defines defines{{"CONES", cones ? "1" : "0"}, {"LUMINANCE", luminance ? "1" : "0"}};
   defines["CANDIDATES"] = "1";
-  candidates_ = ctx.compute("importance/estimate.comp", defines);
+  if (p.flag("rate_candidates")) candidates_ = ctx.compute("importance/estimate.comp", defines);
   defines["CANDIDATES"] = "0";
   vpls_ = ctx.compute("importance/estimate.comp", defines);
 }
@@ -82,7 +87,10 @@ void Importance::record(RecordContext& ctx) {
     const uint32_t count = uint32_t(ctx.count(port));
     ctx.use(kernel).constant("count", count).dispatch(1, (count + kGroupVpls - 1) / kGroupVpls);
   };
-  estimate(candidates_, "candidates");
+  if (ctx.parameters().flag("rate_candidates"))
+    estimate(candidates_, "candidates");
+  else
+    ctx.fill("candidate_importance", 0);
   estimate(vpls_, "vpls");
 }
 

@@ -196,6 +196,25 @@ INSTANTIATE_TEST_SUITE_P(Variants, AgainstTheCpu, testing::Values(false, true));
 // ---- Scenes whose importance is known
 // ----------------------------------------------------------------------------------
 
+// What nobody asks for costs nothing, and the VPLs are the same.
+TEST(Importance, CandidatesNeedNotBeRated) {
+  const scene::Scene s = clutteredRoom();
+  const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
+  const auto candidates = randomCandidates(100, voxels);
+  std::vector<float> vpls[2];
+  for (const bool rated : {false, true}) {
+    PassTest test("importance");
+    test.scene(s).param("rate_candidates", rated);
+    wire(test, voxels, randomWeights(voxels.surface.size()), candidates, makeVpls(candidates));
+    test.run();
+    vpls[rated] = test.values<float>("vpl_importance");
+    double sum = 0;
+    for (const float importance : test.values<float>("candidate_importance")) sum += importance;
+    EXPECT_EQ(sum > 0, rated);
+  }
+  EXPECT_EQ(vpls[0], vpls[1]);
+}
+
 // Above the middle of a floor: a ceiling of weight 1 is seen by every ray but those that a lid of weight 0
 // takes.
 TEST(Importance, OccludersBlock) {
