@@ -56,6 +56,20 @@ TEST(Bind, OverridesAreTypedByTheDeclaration) {
   EXPECT_EQ(p.text("label"), "12");
 }
 
+// A pass that updates a bundle may list fewer members than there are, in places of its own.
+TEST(Bind, MembersAreReachedThroughAnUpdateOfSomeOfThem) {
+  const Compiled c = bound(R"({"passes": {
+    "d": {"type": "draw"},
+    "b": {"type": "bend", "inputs": {"gbuffer": "d"}},
+    "f": {"type": "filter", "inputs": {"image": "b.gbuffer.normal"}}},
+    "outputs": {"n": "b.gbuffer.normal", "f": "f"}})");
+  const uint32_t normal = c.resource("d.gbuffer.normal");
+  EXPECT_EQ(c.graph->passes[c.pass("b")].accesses[0].resource, normal);
+  EXPECT_EQ(c.graph->passes[c.pass("f")].accesses[0].resource, normal);
+  ASSERT_EQ(c.graph->outputs.size(), 2u);
+  EXPECT_EQ(c.graph->outputs[0].resource, normal);
+}
+
 TEST(Bind, OnePortNeedsNoNameAndMembersAreReached) {
   const Compiled c = bound(R"({"passes": {
     "d": {"type": "draw"},

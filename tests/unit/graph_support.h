@@ -51,6 +51,11 @@ inline void addBasicTypes(Registry& registry) {
   update.inout("image", image2D(kColor), Usage::StorageRead | Usage::StorageWrite, "changed");
   registry.add(update, nullptr);
 
+  PassDeclaration bend("bend", "Changes the normals of a G-buffer in place");
+  bend.inout("gbuffer", "gbuffer",
+             {member("normal", image2D(kColor), Usage::StorageRead | Usage::StorageWrite)}, "surfaces");
+  registry.add(bend, nullptr);
+
   PassDeclaration keep("keep", "Keeps an image from frame to frame");
   keep.input("image", image2D(kColor), Usage::Sampled, "read");
   keep.output("sum", image2D(kColor), Usage::StorageRead | Usage::StorageWrite, "kept").keep(Lifetime::View);
