@@ -13,12 +13,7 @@
 namespace fovea::graph {
 namespace {
 
-[[gnu::noinline]] uint64_t hashOfLong(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
-
-// Two calls, so that the code for long texts does not burden the short ones.
-inline uint64_t hashOf(std::string_view text) {
-  return text.size() <= 16 ? XXH3_64bits(text.data(), text.size()) : hashOfLong(text);
-}
+inline uint64_t hashOf(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
 
 }  // namespace
 

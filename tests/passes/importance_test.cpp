@@ -202,6 +202,7 @@ TEST(Importance, CandidatesNeedNotBeRated) {
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
   const auto candidates = randomCandidates(100, voxels);
   std::vector<float> vpls[2];
+  double rays[2];
   for (const bool rated : {false, true}) {
     PassTest test("importance");
     test.scene(s).param("rate_candidates", rated);
@@ -211,8 +212,11 @@ TEST(Importance, CandidatesNeedNotBeRated) {
     double sum = 0;
     for (const float importance : test.values<float>("candidate_importance")) sum += importance;
     EXPECT_EQ(sum > 0, rated);
+    rays[rated] = test.counter("rays");
   }
   EXPECT_EQ(vpls[0], vpls[1]);
+  EXPECT_GT(rays[0], 0);
+  EXPECT_EQ(rays[1], 2 * rays[0]);  // the VPLs are the candidates
 }
 
 // Above the middle of a floor: a ceiling of weight 1 is seen by every ray but those that a lid of weight 0
