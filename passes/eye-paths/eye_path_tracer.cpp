@@ -17,6 +17,7 @@ using namespace scene;
 
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // of the random numbers
 constexpr uint32_t kPointsAtOnce = 16;                                      // that a thread takes
+constexpr float kSamePlace = 1e-3f;                                         // of the distance to the eye
 const glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);
 
 class Tracer {
@@ -29,6 +30,7 @@ class Tracer {
     return v.there ? EyePathStart{v.position, 1, v.normal, 0, v.face, 0} : EyePathStart{};
   }
   bool stands(const EyePathStart& start, uint64_t& rays) const;
+  bool belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const;
   EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const;
 
  private:
@@ -48,6 +50,19 @@ bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
   ray.far = 2 * reach;
   ++rays;
   return bool(rays_.intersect(ray));
+}
+
+// Whether the eye still sees a start, and near `pixel`, where it is due.
+bool Tracer::belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const {
+  if (settings_.stray == 0 || start.there == 0) return false;
+  const glm::vec4 clip = view_.worldToClip * glm::vec4(start.position, 1);
+  if (!(clip.w > 0)) return false;
+  const glm::vec2 size(view_.size), at = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * size;
+  const bool inside = glm::all(glm::greaterThanEqual(at, glm::vec2(0))) && glm::all(glm::lessThan(at, size));
+  if (!inside || glm::distance(at, pixel) > settings_.stray * size.x) return false;
+  const TracedSurface v = surfaces_.look(at, rays);
+  const float reach = std::max(4 * rays_.epsilon(), kSamePlace * glm::distance(start.position, view_.eye));
+  return v.there && glm::distance(v.position, start.position) <= reach;
 }
 
 EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const {
@@ -95,12 +110,13 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
          first = next.fetch_add(kPointsAtOnce))
       for (uint32_t point = first; point < std::min(first + kPointsAtOnce, points); ++point) {
         EyePathStart& start = lists.starts[point];
-        const bool anew = point % renew == settings.turn % renew || !tracer.stands(start, count);
-        if (anew)
-          start = tracer.look(glm::vec2(screenPoint(settings.region, settings.imageShare64ths, point, points,
-                                                    fovea, glm::ivec2(view.size))) +
-                                  0.5f,
-                              count);
+        const glm::vec2 pixel = glm::vec2(screenPoint(settings.region, settings.imageShare64ths, point,
+                                                      points, fovea, glm::ivec2(view.size))) +
+                                0.5f;
+        const bool due = point % renew == settings.turn % renew;
+        const bool anew = due ? !tracer.belongs(start, pixel, count) || !tracer.stands(start, count)
+                              : !tracer.stands(start, count);
+        if (anew) start = tracer.look(pixel, count);
         if (!anew && point % trace != settings.turn % trace) continue;
         for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)
           ends[path] = start.there > 0 ? tracer.end(start, point, turn, count) : EyePathEnd{};

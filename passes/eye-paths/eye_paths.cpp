@@ -43,6 +43,10 @@ class EyePaths : public Pass {
         "in which all paths get new starts, a share of the points in each frame; the others start where "
         "they did, so that a jump of the gaze comes in gradually");
     d.parameter(
+        "stray", real(0, 0, 1, "image widths"),
+        "how far from where it is due a start may lie on screen: nearer ones that the eye still sees stay on "
+        "their surface when their turn to be renewed comes, with the light that they found");
+    d.parameter(
         "trace_frames", integer(1, 1, 1000),
         "in which all paths are traced anew, those of a share of the points in each frame; the others, "
         "unless their start is a new one, keep the light that they found");
@@ -65,6 +69,7 @@ class EyePaths : public Pass {
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.gathered = uint32_t(p.integer("gathered"));
     settings.renewFrames = ctx.firstFrame() ? 1 : uint32_t(p.integer("renew_frames"));
+    settings.stray = ctx.firstFrame() ? 0 : float(p.real("stray"));
     settings.traceFrames = uint32_t(p.integer("trace_frames"));
     settings.turn = uint32_t(ctx.frameNumber());
     starts_.resize(ctx.count("paths.starts"));

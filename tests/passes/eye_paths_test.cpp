@@ -104,9 +104,8 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   const scene::Fovea fovea = scene::makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
   glm::dvec3 want(0), got(0);
   for (uint32_t i = 0; i < settings.points; ++i) {
-    const glm::ivec2 p =
-        scene::screenPoint(settings.region, settings.imageShare64ths, i, settings.points, fovea,
-                           glm::ivec2(view.size));
+    const glm::ivec2 p = scene::screenPoint(settings.region, settings.imageShare64ths, i, settings.points,
+                                            fovea, glm::ivec2(view.size));
     const glm::vec3 d = view.rayDirection(glm::vec2(p) + 0.5f);
     const RayHit hit = castRay(look.scene, look.geometry, view.eye, d);
     const glm::dvec3 rho(look.scene.materials[look.geometry.triangles[hit.triangle].material()].baseColor);
@@ -226,6 +225,57 @@ TEST(EyePaths, StartsMoveOnInTurns) {
     }
   }
   EXPECT_NE(before[0].position, after[0].position);
+}
+
+// The eye moves past the block. A start that is due stays where the eye still sees it, `stray` from its place
+// at most.
+TEST(EyePaths, StartsStayUntilTheyStray) {
+  const Look before(litRoom(true));
+  scene::Scene moved = litRoom(true);
+  moved.cameras.emplace_back().position = {0.1f, -0.25f, -0.1f};
+  const Look after(std::move(moved));
+  const scene::View& view = after.frame.views[0];
+  const glm::vec2 size(view.size);
+  passes::EyePathSettings settings;
+  settings.region = scene::kRegionMixed;
+  const auto startsOf = [&](const Look& look, float stray, std::vector<EyePathStart> starts) {
+    std::vector<EyePathEnd> ends(settings.points);
+    settings.stray = stray;
+    passes::traceEyePaths(look.frame, look.frame.views[0], *look.rays, settings, {starts, ends});
+    return starts;
+  };
+  const std::vector<EyePathStart> none(settings.points);
+  const auto old = startsOf(before, 0, none), fresh = startsOf(after, 0, none);
+  EXPECT_NE(old[0].position, fresh[0].position);
+  const scene::Fovea fovea = scene::makeFovea(view.gaze, size, settings.foveaRadius);
+  for (const float stray : {0.0f, 0.17f, 0.25f}) {
+    const auto got = startsOf(after, stray, old);
+    int kept = 0, hidden = 0, strayed = 0;
+    for (uint32_t i = 0; i < got.size(); ++i) {
+      const glm::dvec3 eye(view.eye), to = glm::dvec3(old[i].position) - eye;
+      // On the plane of the picture, by the camera's angle; it looks along -Z.
+      const glm::dvec2 at =
+          (glm::dvec2(to.x, -to.y) / (-to.z * 2 * std::tan(view.verticalFov / 2.0)) + 0.5) * double(size.x);
+      const double off =
+          glm::distance(at, glm::dvec2(scene::screenPoint(settings.region, settings.imageShare64ths, i,
+                                                          settings.points, fovea, view.size)) +
+                                0.5);
+      if (std::abs(off - stray * size.x) < 0.01) continue;
+      const bool isHidden = bool(castRay(after.scene, after.geometry, eye, to, {.tMax = 1 - 1e-3})),
+                 isOutside = at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y,
+                 strays = off > stray * size.x || isOutside;
+      EXPECT_EQ(got[i].position, isHidden || strays ? fresh[i].position : old[i].position)
+          << stray << " " << i;
+      kept += !isHidden && !strays;
+      strayed += strays;
+      hidden += isHidden && !strays;
+    }
+    EXPECT_EQ(kept > 100, stray > 0) << stray;
+    EXPECT_GT(strayed, 100);
+    if (stray == 0.25f) {
+      EXPECT_GT(hidden, 3);
+    }
+  }
 }
 
 // The light goes out between two frames: in each frame a share of the points finds that out.
