@@ -38,8 +38,8 @@ class SmallVector {
   }
   ~SmallVector() { release(); }
 
-  T* data() { return capacity_ > N ? heap_ : reinterpret_cast<T*>(here_); }
-  const T* data() const { return capacity_ > N ? heap_ : reinterpret_cast<const T*>(here_); }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
   size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   T* begin() { return data(); }
@@ -65,7 +65,7 @@ class SmallVector {
   void assign(Iterator first, Iterator last) {
     clear();
     reserve(last - first);
-    for (T* to = data(); first != last; ++first, ++size_) new (to++) T(*first);
+    for (; first != last; ++first) new (data_ + size_++) T(*first);
   }
   T* insert(const T* where, T value) {
     const size_t at = where - data();
@@ -96,25 +96,26 @@ class SmallVector {
   [[gnu::noinline]] void grow(size_t count) {  // rare, so that what is not can be inlined
     const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
     T* grown = std::allocator<T>().allocate(capacity);
-    std::memcpy(static_cast<void*>(grown), data(), size_ * sizeof(T));
+    std::memcpy(static_cast<void*>(grown), data_, size_ * sizeof(T));
     release();
-    heap_ = grown;
+    data_ = grown;
     capacity_ = capacity;
   }
   void release() {
-    if (capacity_ > N) std::allocator<T>().deallocate(heap_, capacity_);
+    if (capacity_ > N) std::allocator<T>().deallocate(data_, capacity_);
   }
   void take(SmallVector& other) {
-    std::memcpy(here_, other.here_, sizeof here_);  // the elements, or where they are
+    const bool elsewhere = other.capacity_ > N;
+    data_ = elsewhere ? std::exchange(other.data_, other.here()) : here();
+    if (!elsewhere) std::memcpy(here_, other.here_, sizeof here_);
     size_ = std::exchange(other.size_, 0);
     capacity_ = std::exchange(other.capacity_, N);
   }
+  T* here() { return reinterpret_cast<T*>(here_); }
 
-  union {
-    T* heap_;
-    alignas(T) std::byte here_[std::max(N * sizeof(T), sizeof(T*))];
-  };
+  T* data_ = here();
   uint32_t size_ = 0, capacity_ = N;
+  alignas(T) std::byte here_[N * sizeof(T)];
 };
 
 }  // namespace fovea
