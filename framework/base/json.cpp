@@ -382,9 +382,9 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 
 void ObjectReader::reportUnknown() {
   for (const Member& member : value_.members) {
-    const auto is = [&](std::string_view key) { return key == member.key; };
-    if (std::any_of(known_.begin(), known_.end(), is)) continue;
-    const std::vector<std::string> known(known_.begin(), known_.end());
+    std::vector<std::string> known(listed_.begin(), listed_.end());
+    known.insert(known.end(), known_.begin(), known_.end());
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
     const std::string nearest = nearestName(member.key, known);
     std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
                                          : fmt::format("did you mean `{}`?", nearest);

@@ -3,13 +3,14 @@
 // it.
 #pragma once
 
-#include <bit>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -116,10 +117,32 @@ class ObjectReader {
     return value;
   }
   [[gnu::always_inline]] const Value* object(std::string_view key) {  // nullptr when absent or wrong
-    const Value* value = find(key);
-    return !value || value->isObject() ? value : notObject(key, *value);
+    return object(key, find(key));
   }
   const Value* array(std::string_view key);
+  // Several keys, a constant array, in one walk over the members: the values, nullptr where absent.
+  template <const auto& keys>
+  [[gnu::always_inline]] auto findAll() {
+    listed_ = keys;
+    std::array<const Value*, std::size(keys)> found = {};
+    uint64_t bit = 1;
+    for (const Member& member : value_.members) {
+      const auto isAny = [&]<size_t... I>(std::index_sequence<I...>) {
+        return ((sameText(member.key, keys[I]) && (found[I] = &member.value)) || ...);
+      };
+      if (isAny(std::make_index_sequence<std::size(keys)>())) asked_ |= bit;
+      bit <<= 1;
+    }
+    return found;
+  }
+  // What findAll() found, unless it is of another type, which is reported.
+  const Value* object(std::string_view key, const Value* value) {
+    return !value || value->isObject() ? value : notObject(key, *value);
+  }
+  void expectText(std::string_view key, const Value* value) {
+    if (value && !value->isString()) textOf(key, *value, {});
+  }
+  void reportMissing(std::string_view key);
   [[gnu::always_inline]] bool has(std::string_view key) const { return value_.find(key) != nullptr; }
 
   double number(std::string_view key, double fallback, double min = -std::numeric_limits<double>::infinity(),
@@ -136,7 +159,8 @@ class ObjectReader {
   std::optional<std::vector<double>> numbers(std::string_view key, size_t count);
 
   void finish() {
-    if (static_cast<size_t>(std::popcount(asked_)) != value_.members.size()) reportUnknown();
+    const size_t count = value_.members.size();
+    if (count > 64 || (count > 0 && asked_ != ~uint64_t(0) >> (64 - count))) reportUnknown();
   }
 
   std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
@@ -149,14 +173,14 @@ class ObjectReader {
   const Value* notObject(std::string_view key, const Value& value);
   std::string textOf(std::string_view key, const Value& value, std::string fallback);
   void reportKind();
-  void reportMissing(std::string_view key);
   void reportUnknown();
   const Value& value_;
   std::string path_;  // unless there is a key
   std::string_view parent_, key_;
   Diagnostics& diagnostics_;
   SmallVector<std::string_view, 8> known_;
-  uint64_t asked_ = 0;  // of the first 64 members, those that somebody asked for
+  std::span<const std::string_view> listed_;  // known as well
+  uint64_t asked_ = 0;                        // of the first 64 members, those that somebody asked for
 };
 
 // "a.b", or "b" when path is empty.

@@ -8,7 +8,7 @@
 
 namespace fovea {
 
-inline bool sameText(std::string_view a, std::string_view b) {
+[[gnu::always_inline]] inline bool sameText(std::string_view a, std::string_view b) {
   const size_t size = b.size();  // the one that is a literal, if any
   if (size != a.size()) return false;
   const auto differ = [&]<class Word>(Word, size_t at) {

@@ -7,18 +7,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "framework/base/same_text.h"
-
 namespace fovea::graph::detail {
 
 using json::Member;
 using Type = json::Value::Type;
-
-Scope::Parameter* Scope::findParameter(std::string_view name) {
-  for (Parameter& p : parameters)
-    if (sameText(p.name, name)) return &p;
-  return nullptr;
-}
 
 Scope::Input* Scope::findInput(std::string_view name) {
   for (Input& i : inputs)
@@ -73,6 +65,7 @@ void Expander::enterFile(const std::shared_ptr<const std::string>& file) {
 // ---- Scopes ------------------------------------------------------------------------------------------
 
 void Expander::expandRoot(const json::Value& document, const std::filesystem::path& file) {
+  ++made_;
   Scope& root = scopes_.emplace_back();
   root.file = file;
   root.document = &document;
@@ -85,8 +78,8 @@ void Expander::expandScope(Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, diagnostics_);
   reader.text("$schema");
   reader.find("extends");  // merged by now
-  const std::string text = reader.text("description");
-  if (!scope.parent) description_.description = text;
+  std::string text = reader.text("description");
+  if (!scope.parent) description_.description = std::move(text);
   reader.object("parameters");  // read by readParameters
   reader.object("inputs");      // read by readRootInputs or readInputs
   reader.object("outputs");     // read by wiring
@@ -215,9 +208,7 @@ bool Expander::readScalar(Scope& scope, const json::Value& value, const Trail& p
     case Type::String:
       break;
     default:
-      error(value.where, path,
-            fmt::format("expected true, false, a number or a text, found {}", value.describe()));
-      return false;
+      return reportNoScalar(value, path), false;
   }
   const std::string& text = value.string;
   if (text.size() < 2 || text[0] != '$' || text[1] == '$') {  // "$$" stands for one '$'
@@ -226,18 +217,25 @@ bool Expander::readScalar(Scope& scope, const json::Value& value, const Trail& p
     return true;
   }
   Scope::Parameter* parameter = scope.findParameter(std::string_view(text).substr(1));
-  if (!parameter) {
-    std::vector<std::string> names;
-    for (const Scope::Parameter& p : scope.parameters) names.push_back("$" + p.name);
-    error(value.where, path, fmt::format("no graph parameter `{}`", text), nearestRemedy(text, names));
-    return false;
-  }
+  if (!parameter) return reportNoParameter(scope, value, path), false;
   parameter->used = true;
   const Place here = out.place;
   out = parameter->value;
   // A wrong value is reported where it was typed on the command line, else where it is used.
   if (!out.fromCommandLine) out.place = here;
   return true;
+}
+
+void Expander::reportNoScalar(const json::Value& value, const Trail& path) {
+  error(value.where, path,
+        fmt::format("expected true, false, a number or a text, found {}", value.describe()));
+}
+
+void Expander::reportNoParameter(const Scope& scope, const json::Value& value, const Trail& path) {
+  std::vector<std::string> names;
+  for (const Scope::Parameter& p : scope.parameters) names.push_back("$" + p.name);
+  error(value.where, path, fmt::format("no graph parameter `{}`", value.string),
+        nearestRemedy(value.string, names));
 }
 
 Symbol Expander::readView(Scope& scope, const json::Value& value, const Trail& path) {
@@ -250,59 +248,70 @@ Symbol Expander::readView(Scope& scope, const json::Value& value, const Trail& p
 
 // ---- Passes ------------------------------------------------------------------------------------------
 
+constexpr std::string_view kPassKeys[] = {"comment", "graph", "type", "view", "inputs", "params"};
+
 void Expander::expandPass(Scope& scope, const Member& member) {
   if (full_) return;
   const Trail passes("passes"), path(passes, member.key);
-  if (description_.passes.size() + scopes_.size() > kMaxPasses) {
+  if (made_ > kMaxPasses) {
     full_ = true;
     return error(member.keyWhere, path, fmt::format("more than {} passes", kMaxPasses));
   }
-  if (!isName(member.key) || member.key == "inputs")
+  if (!isName(member.key) || sameText(member.key, "inputs"))
     return error(member.keyWhere, path, fmt::format("`{}` is no name for a pass", member.key),
                  "letters, digits, _ and -; `inputs` means the graph's own inputs");
   json::ObjectReader reader(member.value, "passes", member.key, diagnostics_);
   if (!member.value.isObject()) return;
-  reader.text("comment");
-  const json::Value* graph = reader.find("graph");
-  const bool both = graph && reader.has("type");
-  if (both) error(graph->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
-  if (graph && !both)
-    expandInstance(scope, member, *graph, reader);
-  else
-    addPass(scope, member, path, reader);
-  reader.finish();
-}
-
-void Expander::addPass(Scope& scope, const Member& member, const Trail& path, json::ObjectReader& reader) {
-  PassDescription& pass = description_.passes.emplace_back();
-  pass.name = scope.prefix.empty() ? intern(member.key) : intern(scope.prefix + member.key);
-  pass.place = pass.typePlace = pass.viewPlace = place(member.keyWhere);
-  pass.view = scope.view;
-  if (const json::Value* type = reader.require("type")) {
-    pass.typePlace = place(type->where);
-    if (type->isString())
-      pass.type = intern(type->string);
-    else
-      error(type->where, {path, "type"},
-            fmt::format("expected the name of a pass type, found {}", type->describe()));
+  const auto [comment, graph, type, view, inputs, params] = reader.findAll<kPassKeys>();
+  if (graph && !type) {
+    json::ObjectReader instance(member.value, "passes", member.key, diagnostics_);
+    instance.text("comment");
+    instance.find("graph");
+    expandInstance(scope, member, *graph, instance);
+    return instance.finish();
   }
-  if (const json::Value* view = reader.find("view")) {
+  reader.expectText("comment", comment);
+  if (graph) error(graph->where, {path, "graph"}, "a pass has a `type` or a `graph`, not both");
+  if (!type) reader.reportMissing("type");
+  PassDescription& pass = addPass(scope, member, path, type);
+  if (view) {
     pass.view = readView(scope, *view, {path, "view"});
     pass.viewPlace = place(view->where);
     pass.ownView = true;
   }
+  if (reader.object("inputs", inputs)) addPassInputs(scope, member, inputs->members, path);
+  addPassParameters(scope, pass, reader.object("params", params), {path, "params"});
+  reader.finish();
+}
+
+PassDescription& Expander::addPass(Scope& scope, const Member& member, const Trail& path,
+                                   const json::Value* type) {
+  ++made_;
+  PassDescription& pass = description_.passes.emplace_back();
+  pass.name = scope.prefix.empty() ? intern(member.key) : intern(scope.prefix + member.key);
+  pass.place = pass.typePlace = pass.viewPlace = place(member.keyWhere);
+  pass.view = scope.view;
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
-  if (const json::Value* inputs = reader.object("inputs")) {
-    const Trail inputsPath(path, "inputs");
-    for (const Member& input : inputs->members) {
-      if (input.value.isString())
-        rawWires_.emplace_back(&scope, member.key, intern(input.key), &input.value, place(input.keyWhere));
-      else
-        error(input.value.where, {inputsPath, input.key},
-              fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
-    }
+  if (!type) return pass;
+  pass.typePlace = place(type->where);
+  if (type->isString())
+    pass.type = intern(type->string);
+  else
+    error(type->where, {path, "type"},
+          fmt::format("expected the name of a pass type, found {}", type->describe()));
+  return pass;
+}
+
+void Expander::addPassInputs(Scope& scope, const Member& pass, const std::vector<Member>& inputs,
+                             const Trail& path) {
+  const Trail inputsPath(path, "inputs");
+  for (const Member& input : inputs) {
+    if (input.value.isString())
+      rawWires_.emplace_back(&scope, pass.key, intern(input.key), &input.value, place(input.keyWhere));
+    else
+      error(input.value.where, {inputsPath, input.key},
+            fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
   }
-  addPassParameters(scope, pass, reader.object("params"), {path, "params"});
 }
 
 void Expander::addPassParameters(Scope& scope, PassDescription& pass, const json::Value* params,
@@ -319,7 +328,7 @@ void Expander::addPassParameters(Scope& scope, PassDescription& pass, const json
       value.keyPlace = place(param.keyWhere);
     }
   }
-  overridePass(pass);
+  if (!overrides_.empty()) overridePass(pass);
   pass.parameterCount = static_cast<uint32_t>(description_.parameters.size()) - pass.firstParameter;
 }
 
@@ -367,6 +376,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
     for (const Diagnostic& d : e.diagnostics()) diagnostics_.add(d);
     return;
   }
+  ++made_;
   Scope& scope = scopes_.emplace_back();
   scope.file = file;
   scope.parent = &parent;

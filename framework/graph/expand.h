@@ -1,16 +1,16 @@
 // Inside resolve: scopes (the graph itself and each instance of a sub-graph) and what expanding them needs.
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <functional>
+#include <list>
 #include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "framework/base/small_vector.h"
+#include "framework/base/same_text.h"
 #include "framework/graph/resolve.h"
 #include "framework/graph/scratch.h"
 
@@ -60,11 +60,25 @@ struct Scope {
   std::vector<Input> inputs;
   std::map<std::string, Scope*, std::less<>> instances;
 
-  Parameter* findParameter(std::string_view name);
+  Parameter* findParameter(std::string_view name) {
+    for (Parameter& p : parameters)
+      if (sameText(p.name, name)) return &p;
+    return nullptr;
+  }
   Input* findInput(std::string_view name);
 };
 
-using WireParts = SmallVector<std::string_view, 4>;  // of "pass.port.member"
+// "pass.port.member@previous", split.
+struct WireParts {
+  std::string_view names[3];
+  uint32_t count = 0;     // 4: more than three
+  bool open = false;      // some name is empty
+  std::string_view rest;  // from the '@' on
+
+  std::string_view pass() const { return names[0]; }
+  std::string_view port() const { return names[1]; }
+  std::string_view member() const { return names[2]; }
+};
 
 struct RawWire {
   Scope* scope;
@@ -101,7 +115,10 @@ class Expander {
   void readRootInputs(Scope& scope);
   void readInputs(Scope& scope, const json::Value* wires);
   void expandPass(Scope& scope, const json::Member& member);
-  void addPass(Scope& scope, const json::Member& member, const Trail& path, json::ObjectReader& reader);
+  PassDescription& addPass(Scope& scope, const json::Member& member, const Trail& path,
+                           const json::Value* type);
+  void addPassInputs(Scope& scope, const json::Member& pass, const std::vector<json::Member>& inputs,
+                     const Trail& path);
   void addPassParameters(Scope& scope, PassDescription& pass, const json::Value* params, const Trail& path);
   void overridePass(PassDescription& pass);
   void expandInstance(Scope& parent, const json::Member& member, const json::Value& graph,
@@ -111,10 +128,13 @@ class Expander {
   Symbol readView(Scope& scope, const json::Value& value, const Trail& path);
   // A literal or "$name".
   bool readScalar(Scope& scope, const json::Value& value, const Trail& path, ParameterDescription& out);
+  [[gnu::noinline]] void reportNoScalar(const json::Value& value, const Trail& path);
+  [[gnu::noinline]] void reportNoParameter(const Scope& scope, const json::Value& value, const Trail& path);
   ParameterDescription overrideValue(const ParameterDescription& current, const Override& source);
 
   bool resolveWire(Scope& scope, const json::Value& value, const Trail& path, WireDescription& wire,
                    int depth);
+  Symbol findPass(const Scope& scope, std::string_view name) const;
   bool resolveInput(Scope& scope, const json::Value& value, const Trail& path, const WireParts& parts,
                     WireDescription& wire, int depth);
   bool resolveInstance(Scope& child, const json::Value& value, const Trail& path, const WireParts& parts,
@@ -127,7 +147,7 @@ class Expander {
   void error(const json::Position& where, const Trail& path, std::string message, std::string remedy = {});
   std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
   Place place(const json::Position& position) {
-    if (latestIndex_ == kNone || position.file.get() != latestFile_) enterFile(position.file);
+    if (position.file.get() != latestFile_) enterFile(position.file);
     return {latestIndex_, position.line, position.column};
   }
   void enterFile(const std::shared_ptr<const std::string>& file);
@@ -138,15 +158,17 @@ class Expander {
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
   Scratch scratch_;
-  std::deque<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // they and their documents are pointed to
+  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // they and their documents are pointed to
   ScratchVector<RawWire> rawWires_{scratch_};
   ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
   std::vector<PendingOverride> overrides_;
   // Files met and their numbers; held, so that no address is used again.
   ScratchVector<std::pair<std::shared_ptr<const std::string>, uint32_t>> files_{scratch_};
-  const std::string* latestFile_ = nullptr;  // of place(), and its index
+  const std::string noFile_;                  // where latestFile_ points before any file is met
+  const std::string* latestFile_ = &noFile_;  // of place(), and its index
   uint32_t latestIndex_ = kNone;
   ScratchVector<uint8_t> isPass_{scratch_};  // by symbol
+  size_t made_ = 0;                          // passes and scopes
   bool full_ = false;
 };
 

@@ -13,7 +13,17 @@
 namespace fovea::graph {
 namespace {
 
+constexpr size_t kShort = 16;  // bytes that are hashed and compared without a call
+
 inline uint64_t hashOf(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
+
+// As file.stem(), which would take the path apart first.
+std::string stemOf(const std::filesystem::path& file) {
+  std::string_view name = file.native();
+  name.remove_prefix(name.rfind('/') + 1);
+  const size_t dot = name.rfind('.');
+  return std::string(dot == 0 || name == ".." ? name : name.substr(0, dot));
+}
 
 }  // namespace
 
@@ -35,24 +45,37 @@ inline size_t SymbolTable::slotOf(std::string_view text, uint64_t hash) const {
   }
 }
 
-std::string_view SymbolTable::keep(std::string_view text) {
-  if (blocks_.empty() || blocks_.back().size - blocks_.back().used < text.size()) {
-    const size_t size = std::max<size_t>(1024, text.size());
-    blocks_.push_back({std::make_unique_for_overwrite<char[]>(size), size, 0});
-  }
-  Block& block = blocks_.back();
-  char* kept = block.characters.get() + std::exchange(block.used, block.used + text.size());
-  std::copy(text.begin(), text.end(), kept);
-  return {kept, text.size()};
+void SymbolTable::addBlock(size_t least) {
+  const size_t size = std::max<size_t>(1024, least);
+  blocks_.push_back({std::make_unique_for_overwrite<char[]>(size), size, 0});
 }
 
 Symbol SymbolTable::intern(std::string_view text) {
-  if (slots_.empty()) reserve(32);
+  return slots_.empty() || text.size() > kShort ? internAny(text) : internHere(text);
+}
+
+Symbol SymbolTable::find(std::string_view text) const {
+  if (slots_.empty()) return kNone;
+  return text.size() > kShort ? findLong(text) : findHere(text);
+}
+
+inline Symbol SymbolTable::internHere(std::string_view text) {
   const uint64_t hash = hashOf(text);
   const size_t slot = slotOf(text, hash);
   const Symbol known = slots_[slot].symbol;
   return known != kNone ? known : add(text, hash, slot);
 }
+
+inline Symbol SymbolTable::findHere(std::string_view text) const {
+  return slots_[slotOf(text, hashOf(text))].symbol;
+}
+
+Symbol SymbolTable::internAny(std::string_view text) {
+  if (slots_.empty()) reserve(32);
+  return internHere(text);
+}
+
+Symbol SymbolTable::findLong(std::string_view text) const { return findHere(text); }
 
 // A text that is not there yet, at the free slot where it belongs.
 Symbol SymbolTable::add(std::string_view text, uint64_t hash, size_t slot) {
@@ -66,14 +89,10 @@ Symbol SymbolTable::add(std::string_view text, uint64_t hash, size_t slot) {
   return symbol;
 }
 
-Symbol SymbolTable::find(std::string_view text) const {
-  return slots_.empty() ? kNone : slots_[slotOf(text, hashOf(text))].symbol;
-}
-
 Description resolve(const json::Value& document, const std::filesystem::path& file,
                     const LoadOptions& options, Diagnostics& diagnostics) {
   Description description;
-  description.name = file.stem().string();
+  description.name = stemOf(file);
   json::Value merged;
   detail::Expander expander(description, options, diagnostics);
   expander.expandRoot(mergeExtends(document, file, options, diagnostics, merged), file);

@@ -2,10 +2,12 @@
 // overrides put in. Names are interned, wires are split; nothing is known about pass types yet.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "framework/base/diagnostic.h"
@@ -37,7 +39,13 @@ class SymbolTable {
   std::string_view operator[](Symbol symbol) const { return entries_[symbol].text; }
   size_t size() const { return entries_.size(); }
   // A copy that lives as long as the table, of what nobody looks up.
-  std::string_view keep(std::string_view text);
+  std::string_view keep(std::string_view text) {
+    if (blocks_.empty() || blocks_.back().size - blocks_.back().used < text.size()) addBlock(text.size());
+    Block& block = blocks_.back();
+    char* kept = block.characters.get() + std::exchange(block.used, block.used + text.size());
+    std::copy(text.begin(), text.end(), kept);
+    return {kept, text.size()};
+  }
   uint64_t hash(Symbol symbol) const { return entries_[symbol].hash; }
   void reserve(size_t count);
 
@@ -46,6 +54,12 @@ class SymbolTable {
   // The slot that holds the text, or the free one where it belongs.
   size_t slotOf(std::string_view text, uint64_t hash) const;
 
+  Symbol internHere(std::string_view text);
+  Symbol findHere(std::string_view text) const;
+  // Rare, so that what is not rare calls nothing.
+  [[gnu::noinline]] Symbol internAny(std::string_view text);
+  [[gnu::noinline]] Symbol findLong(std::string_view text) const;
+  [[gnu::noinline]] void addBlock(size_t least);
   [[gnu::noinline]] Symbol add(std::string_view text, uint64_t hash, size_t slot);
 
   struct Entry {

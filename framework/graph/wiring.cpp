@@ -11,20 +11,32 @@ namespace {
 constexpr std::string_view kPrevious = "@previous";
 constexpr int kMaxHops = 64;  // through sub-graph inputs and outputs
 
-// "pass.port.member" up to an '@'.
 WireParts split(std::string_view text) {
   WireParts parts;
-  size_t first = 0, at = 0;
-  for (; at < text.size() && text[at] != '@'; ++at) {
-    if (text[at] != '.') continue;
-    parts.push_back(text.substr(first, at - first));
+  for (size_t first = 0;;) {
+    size_t at = first;
+    while (at < text.size() && text[at] != '.' && text[at] != '@') ++at;
+    parts.open |= at == first;
+    if (parts.count < 3) parts.names[parts.count] = text.substr(first, at - first);
+    if (parts.count < 4) ++parts.count;
     first = at + 1;
+    if (at < text.size() && text[at] == '.') continue;
+    parts.rest = text.substr(at);
+    return parts;
   }
-  parts.push_back(text.substr(first, at - first));
-  return parts;
+}
+
+Symbol findJoined(const SymbolTable& symbols, const std::string& prefix, std::string_view name) {
+  return symbols.find(prefix + std::string(name));
 }
 
 }  // namespace
+
+inline void Expander::describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire) {
+  wire.written = description_.symbols.keep(value.string);
+  wire.keyPlace = keyPlace;
+  wire.place = place(value.where);
+}
 
 void Expander::resolveWires() {
   isPass_.assign(description_.symbols.size(), 0);
@@ -77,10 +89,11 @@ void Expander::resolveOutputs() {
   }
 }
 
-void Expander::describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire) {
-  wire.written = description_.symbols.keep(value.string);
-  wire.keyPlace = keyPlace;
-  wire.place = place(value.where);
+// The pass that a document calls `name`; kNone when there is none.
+inline Symbol Expander::findPass(const Scope& scope, std::string_view name) const {
+  const SymbolTable& symbols = description_.symbols;
+  const Symbol pass = scope.prefix.empty() ? symbols.find(name) : findJoined(symbols, scope.prefix, name);
+  return pass < isPass_.size() && isPass_[pass] ? pass : kNone;
 }
 
 // False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
@@ -89,27 +102,27 @@ bool Expander::resolveWire(Scope& scope, const json::Value& value, const Trail& 
   if (depth > kMaxHops)
     return error(value.where, path, "this wire runs in a circle through sub-graphs"), false;
   const WireParts parts = split(value.string);
-  const char* end = parts[parts.size() - 1].data() + parts[parts.size() - 1].size();
-  const std::string_view text = value.string, rest = text.substr(static_cast<size_t>(end - text.data()));
-  const bool previous = rest == kPrevious;
-  if (!previous && !rest.empty())
-    return error(value.where, path, fmt::format("`{}`: only `@previous` may follow a port", text)), false;
-  if (parts.size() > 3 ||
-      std::any_of(parts.begin(), parts.end(), [](std::string_view p) { return p.empty(); }))
+  const bool previous = parts.rest == kPrevious;
+  if (!previous && !parts.rest.empty())
+    return error(value.where, path, fmt::format("`{}`: only `@previous` may follow a port", value.string)),
+           false;
+  if (parts.count > 3 || parts.open)
     return error(value.where, path, fmt::format("`{}` is no wire", value.string),
                  "write pass.port, pass, or pass.port.member; @previous after it means last frame's value"),
            false;
-  if (parts[0] == "inputs") {
+  const std::string_view name = parts.pass();
+  if (sameText(name, "inputs")) {
     if (!resolveInput(scope, value, path, parts, wire, depth)) return false;
-    return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
+    return combine(value, path, parts.member(), previous, wire);
   }
-  const std::string_view name = parts[0];
-  if (const auto child = scope.instances.find(name); child != scope.instances.end()) {
-    if (!resolveInstance(*child->second, value, path, parts, wire, depth)) return false;
-    return combine(value, path, parts.size() > 2 ? parts[2] : std::string_view(), previous, wire);
+  if (!scope.instances.empty()) {
+    if (const auto child = scope.instances.find(name); child != scope.instances.end()) {
+      if (!resolveInstance(*child->second, value, path, parts, wire, depth)) return false;
+      return combine(value, path, parts.member(), previous, wire);
+    }
   }
-  wire.pass = description_.symbols.find(scope.prefix.empty() ? name : scope.prefix + std::string(name));
-  if (wire.pass >= isPass_.size() || !isPass_[wire.pass]) {
+  wire.pass = findPass(scope, name);
+  if (wire.pass == kNone) {
     const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
     std::vector<std::string> names = {"inputs"};
     for (const auto& [instance, position] : scope.instances) names.push_back(instance);
@@ -122,16 +135,16 @@ bool Expander::resolveWire(Scope& scope, const json::Value& value, const Trail& 
     std::sort(names.begin(), names.end());
     return error(value.where, path, fmt::format("no pass `{}`", name), nearestRemedy(name, names)), false;
   }
-  if (parts.size() > 1) wire.port = intern(parts[1]);
-  if (parts.size() > 2) wire.member = intern(parts[2]);
+  if (parts.count > 1) wire.port = intern(parts.port());
+  if (parts.count > 2) wire.member = intern(parts.member());
   wire.previous = previous;
   return true;
 }
 
 bool Expander::resolveInput(Scope& scope, const json::Value& value, const Trail& path, const WireParts& parts,
                             WireDescription& wire, int depth) {
-  Scope::Input* input = parts.size() > 1 ? scope.findInput(parts[1]) : nullptr;
-  if (!input && parts.size() == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
+  Scope::Input* input = parts.count > 1 ? scope.findInput(parts.port()) : nullptr;
+  if (!input && parts.count == 1 && scope.inputs.size() == 1) input = &scope.inputs[0];
   if (!input) {
     std::vector<std::string> names;
     for (const Scope::Input& i : scope.inputs) names.push_back("inputs." + i.name);
@@ -156,15 +169,16 @@ bool Expander::resolveInstance(Scope& child, const json::Value& value, const Tra
   const std::vector<json::Member>& members = outputs && outputs->isObject() ? outputs->members : none;
   const json::Member* found = nullptr;
   for (const json::Member& m : members)
-    if (parts.size() > 1 ? m.key == parts[1] : members.size() == 1) found = &m;
+    if (parts.count > 1 ? m.key == parts.port() : members.size() == 1) found = &m;
   if (!found) {
     std::vector<std::string> names;
-    for (const json::Member& m : members) names.push_back(fmt::format("{}.{}", parts[0], m.key));
-    return error(value.where, path,
-                 parts.size() > 1
-                     ? fmt::format("the sub-graph `{}` has no output `{}`", parts[0], parts[1])
-                     : fmt::format("the sub-graph `{}` has {} outputs: name one", parts[0], members.size()),
-                 nearestRemedy(value.string, names)),
+    for (const json::Member& m : members) names.push_back(fmt::format("{}.{}", parts.pass(), m.key));
+    return error(
+               value.where, path,
+               parts.count > 1
+                   ? fmt::format("the sub-graph `{}` has no output `{}`", parts.pass(), parts.port())
+                   : fmt::format("the sub-graph `{}` has {} outputs: name one", parts.pass(), members.size()),
+               nearestRemedy(value.string, names)),
            false;
   }
   if (!found->value.isString()) return false;  // reported with the outputs
