@@ -28,6 +28,8 @@ Binder::Binder(const Description& description, const Environment& environment, D
 BoundGraph Binder::run() {
   graph_.name = description_.name;
   graph_.description = description_.description;
+  graph_.values = values_;
+  openViews();
   declare();
   assignWires();
   makeExternals();
@@ -58,6 +60,16 @@ std::string Binder::passPath(uint32_t pass, std::string_view rest) const {
 
 // ---- Passes and parameters ---------------------------------------------------------------------------
 
+void Binder::openViews() {
+  if (environment_.views.empty()) {
+    graph_.views.push_back("main");
+    viewExtents_.push_back({1, 1});
+  } else {
+    graph_.views.push_back(environment_.views[0].first);
+    viewExtents_.push_back(environment_.views[0].second);
+  }
+}
+
 void Binder::declare() {
   const size_t count = description_.passes.size();
   graph_.passes.reserve(count);
@@ -66,17 +78,9 @@ void Binder::declare() {
   ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
   passBySymbol_.assign(description_.symbols.size(), kNone);
   ScratchVector<const PassDeclaration*> types(description_.symbols.size(), nullptr, scratch_);
-  if (environment_.views.empty()) {
-    graph_.views.push_back("main");
-    viewExtents_.push_back({1, 1});
-  } else {
-    graph_.views.push_back(environment_.views[0].first);
-    viewExtents_.push_back(environment_.views[0].second);
-  }
   for (uint32_t p = 0; p < count; ++p) {
     const PassDescription& from = description_.passes[p];
-    BoundPass& pass = graph_.passes.emplace_back();
-    pass.name = text(from.name);
+    BoundPass& pass = graph_.passes.emplace_back(text(from.name));
     passBySymbol_[from.name] = p;
     firstPort_[p] = static_cast<uint32_t>(ports_.size());
     if (from.type == kNone) continue;
@@ -90,13 +94,13 @@ void Binder::declare() {
       continue;
     }
     pass.declaration = type;
-    bindView(pass, from);
+    if (from.view != kNone) bindView(pass, from);
     bindParameters(pass, from);
-    for (size_t i = 0; i < type->ports.size(); ++i) {
-      PortState& port = ports_.emplace_back();
-      port.spec = &type->ports[i];
-      port.pass = p;
-      port.index = static_cast<uint16_t>(i);
+    uint16_t index = 0;
+    for (const PortSpec& spec : type->ports) {
+      ports_.emplace_back(&spec, p, index++);
+      if (makes(spec)) resourceCount_ += spec.members.size();
+      inPlace_ |= spec.direction == Direction::InOut;
     }
   }
   firstPort_[count] = static_cast<uint32_t>(ports_.size());
@@ -112,7 +116,6 @@ void Binder::declare() {
 }
 
 void Binder::bindView(BoundPass& pass, const PassDescription& from) {
-  if (from.view == kNone) return;
   const std::string_view name = text(from.view);
   const auto at = std::find(graph_.views.begin(), graph_.views.end(), name);
   pass.view = static_cast<uint32_t>(at - graph_.views.begin());
@@ -143,37 +146,74 @@ void Binder::bindView(BoundPass& pass, const PassDescription& from) {
         fmt::format("`{}` passes do not look through a camera", pass.declaration->type), "remove `view`");
 }
 
+// False when the value is of another type or out of range.
+inline bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const {
+  using Type = ParameterSpec::Type;
+  using Json = json::Value::Type;
+  const auto inRange = [&] {
+    return given.real >= spec.min && given.real <= spec.max && std::isfinite(given.real);
+  };
+  switch (spec.type) {
+    case Type::Bool:
+      if (given.type != Json::Bool) return false;
+      out = given.integer != 0;
+      return true;
+    case Type::Int:
+      if (given.type != Json::Int || !inRange()) return false;
+      out = given.integer;
+      return true;
+    case Type::Real:
+      if ((given.type != Json::Int && given.type != Json::Real) || !inRange()) return false;
+      out = given.real;
+      return true;
+    default:
+      return given.type == Json::String && assignText(spec, text(given.text), out);
+  }
+}
+
+inline void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& given,
+                                  const PassDescription& pass, Value& out) {
+  if (!assign(spec, given, out)) readOther(spec, given, pass, out);
+}
+
+bool Binder::assignText(const ParameterSpec& spec, std::string_view given, Value& out) const {
+  const std::vector<std::string>& choices = spec.choices;
+  if (spec.type == ParameterSpec::Type::Choice &&
+      std::find(choices.begin(), choices.end(), given) == choices.end())
+    return false;
+  out.emplace<std::string>(given);
+  return true;
+}
+
 void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   const std::vector<ParameterSpec>& specs = pass.declaration->parameters;
-  const size_t first = values_->size();
-  for (const ParameterSpec& spec : specs) values_->push_back(spec.defaultValue);
-  const std::span<Value> values = std::span(*values_).subspan(first);
-  // Parameters are mostly given in the order of the declaration: start looking after the last one found.
-  size_t guess = 0;
-  for (uint32_t i = 0; i < from.parameterCount; ++i) {
-    const ParameterDescription& given = description_.parameters[from.firstParameter + i];
-    const std::string_view name = text(given.name);
-    size_t k = 0;
-    for (; k < specs.size(); ++k, ++guess) {
-      if (guess >= specs.size()) guess = 0;
-      if (sameText(specs[guess].name, name)) break;
-    }
-    if (k < specs.size()) {
-      readParameter(specs[guess], given, from, values[guess]);
-      ++guess;
-      continue;
-    }
-    std::vector<std::string> names;
-    for (const ParameterSpec& spec : specs) names.push_back(spec.name);
-    const std::string nearest = nearestName(name, names);
-    const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
-    error(given.keyPlace, passPath(p, json::joinPath("params", name)),
-          fmt::format("`{}` has no parameter `{}`", pass.declaration->type, name),
-          !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
-          : names.empty()  ? std::string("it has none")
-                           : fmt::format("it has: {}", fmt::join(names, ", ")));
+  pass.parameters = Parameters(&specs, values_.get(), values_->size());
+  const ParameterDescription* given = description_.parameters.data() + from.firstParameter;
+  const ParameterDescription* const end = given + from.parameterCount;
+  for (const ParameterSpec& spec : specs) {  // mostly given in the order of the declaration
+    if (given != end && sameText(spec.name, text(given->name)))
+      readParameter(spec, *given++, from, values_->emplace_back());
+    else
+      values_->push_back(spec.defaultValue);
   }
-  pass.parameters = Parameters(&specs, values_, first);
+  for (; given != end; ++given) bindParameter(specs, *given, from, values_->end() - specs.size());
+}
+
+// One that is given out of order, or unknown.
+void Binder::bindParameter(const std::vector<ParameterSpec>& specs, const ParameterDescription& given,
+                           const PassDescription& from, std::vector<Value>::iterator values) {
+  const std::string_view name = text(given.name);
+  for (const ParameterSpec& spec : specs)
+    if (spec.name == name) return readParameter(spec, given, from, values[&spec - specs.data()]);
+  std::vector<std::string> names;
+  for (const ParameterSpec& spec : specs) names.push_back(spec.name);
+  const std::string nearest = nearestName(name, names);
+  const uint32_t p = static_cast<uint32_t>(&from - description_.passes.data());
+  error(given.keyPlace, passPath(p, json::joinPath("params", name)),
+        fmt::format("`{}` has no parameter `{}`", graph_.passes[p].declaration->type, name),
+        !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
+        : names.empty()  ? std::string("it has none")
+                         : fmt::format("it has: {}", fmt::join(names, ", ")));
 }
 
 namespace {
@@ -222,48 +262,14 @@ std::string rangeText(const ParameterSpec& spec) {
 
 }  // namespace
 
-// False when the value is of another type or out of range.
-bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const {
-  using Type = ParameterSpec::Type;
-  using Json = json::Value::Type;
-  const auto inRange = [&] {
-    return std::isfinite(given.real) && given.real >= spec.min && given.real <= spec.max;
-  };
-  switch (spec.type) {
-    case Type::Bool:
-      if (given.type != Json::Bool) return false;
-      out = given.integer != 0;
-      return true;
-    case Type::Int:
-      if (given.type != Json::Int || !inRange()) return false;
-      out = given.integer;
-      return true;
-    case Type::Real:
-      if ((given.type != Json::Int && given.type != Json::Real) || !inRange()) return false;
-      out = given.real;
-      return true;
-    case Type::Choice:
-      if (given.type != Json::String ||
-          std::find(spec.choices.begin(), spec.choices.end(), text(given.text)) == spec.choices.end())
-        return false;
-      out.emplace<std::string>(text(given.text));
-      return true;
-    case Type::Text:
-      if (given.type != Json::String) return false;
-      out.emplace<std::string>(text(given.text));
-      return true;
-  }
-  return false;
-}
-
-void Binder::readParameter(const ParameterSpec& spec, const ParameterDescription& given,
-                           const PassDescription& pass, Value& out) {
-  if (given.fromCommandLine && given.type == json::Value::Type::String) {
-    const ParameterDescription typed = parseTyped(given, text(given.text), spec.type);
-    if (!assign(spec, typed, out)) reportParameter(spec, typed, pass);
-  } else if (!assign(spec, given, out)) {
-    reportParameter(spec, given, pass);
-  }
+// A text from the command line, or a mistake.
+void Binder::readOther(const ParameterSpec& spec, const ParameterDescription& given,
+                       const PassDescription& pass, Value& out) {
+  const bool typed = given.fromCommandLine && given.type == json::Value::Type::String;
+  const ParameterDescription read = typed ? parseTyped(given, text(given.text), spec.type) : given;
+  if (typed && assign(spec, read, out)) return;
+  out = spec.defaultValue;
+  reportParameter(spec, read, pass);
 }
 
 void Binder::reportParameter(const ParameterSpec& spec, const ParameterDescription& given,
@@ -298,7 +304,7 @@ void Binder::makeExternals() {
   for (const ExternalDescription& external : description_.externals) {
     externalFirst_.push_back(static_cast<uint32_t>(graph_.resources.size()));
     for (size_t m = 0; m < external.members.size(); ++m) {
-      BoundResource& resource = graph_.resources.emplace_back();
+      BoundResource& resource = graph_.resources.emplace_back(Lifetime::Transient, 0);
       resource.name = text(external.name);
       if (!text(external.members[m]).empty()) (resource.name += '.') += text(external.members[m]);
       resource.desc = external.resources[m];
@@ -314,30 +320,26 @@ void Binder::makeExternals() {
 }
 
 void Binder::makeResources() {
-  size_t count = graph_.resources.size();
-  for (const PortState& port : ports_) {
-    const PortSpec& spec = *port.spec;
-    if (spec.direction == Direction::Output || spec.direction == Direction::Scratch)
-      count += spec.members.size();
-  }
+  const size_t count = graph_.resources.size() + resourceCount_;
   graph_.resources.reserve(count);
+  versions_.reserve(count);
   resourcePass_.reserve(count);
   resourceSpec_.reserve(count);
   for (PortState& port : ports_) {
     const PortSpec& spec = *port.spec;
-    if (spec.direction != Direction::Output && spec.direction != Direction::Scratch) continue;
+    if (!makes(spec)) continue;
     port.value = {static_cast<uint32_t>(graph_.resources.size()), static_cast<uint32_t>(spec.members.size()),
                   &spec, kNone, kNone};
     port.state = 2;
+    port.firstVersion = static_cast<uint32_t>(versions_.size());
     const std::string& pass = graph_.passes[port.pass].name;
     for (const MemberSpec& member : spec.members) {
-      BoundResource& resource = graph_.resources.emplace_back();
+      BoundResource& resource = graph_.resources.emplace_back(spec.lifetime, 1);
       const size_t length = pass.size() + spec.name.size() + member.name.size() + 2;
       if (length > resource.name.capacity()) resource.name.reserve(length);
       ((resource.name += pass) += '.') += spec.name;
       if (!member.name.empty()) (resource.name += '.') += member.name;
-      resource.lifetime = spec.lifetime;
-      resource.versions = 1;
+      versions_.push_back(1);
       resourcePass_.push_back(port.pass);
       resourceSpec_.push_back(&member);
     }
@@ -347,50 +349,45 @@ void Binder::makeResources() {
 // ---- Accesses ----------------------------------------------------------------------------------------
 
 void Binder::makeAccesses() {
-  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
-    BoundPass& pass = graph_.passes[p];
-    if (!pass.declaration) continue;
-    const std::span<const PortState> ports(portsOf(p), portCount(p));
-    pass.accesses.reserve(ports.size());
-    for (const PortState& port : ports) addAccesses(pass, port);
+  const PortState* port = ports_.data();
+  for (BoundPass& pass : graph_.passes) {
+    const PortState* const end = port + (pass.declaration ? pass.declaration->ports.size() : 0);
+    pass.accesses.reserve(end - port);
+    for (; port != end; ++port)
+      if (port->value.first != kNone) addAccesses(pass, *port);
   }
 }
 
-void Binder::addAccesses(BoundPass& pass, const PortState& port) {
+inline void Binder::addAccesses(BoundPass& pass, const PortState& port) {
   const PortSpec& spec = *port.spec;
-  if (port.value.first == kNone) return;
   const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
-  const bool kept = spec.lifetime != Lifetime::Transient;
-  for (uint32_t m = 0; m < spec.members.size(); ++m) {
+  const bool reads = input || inout || spec.lifetime != Lifetime::Transient;  // what was there before matters
+  history_ |= port.previous;
+  uint16_t m = 0;
+  for (const MemberSpec& member : spec.members) {
     const uint32_t r = resourceOf(port, m);
-    if (r == kNone) continue;
-    Access& access = pass.accesses.emplace_back();
-    access.resource = r;
-    access.port = port.index;
-    access.member = static_cast<uint16_t>(m);
-    access.usage = spec.members[m].usage;
-    access.reads = input || inout || kept;  // what was there before matters
-    access.writes = !input;
-    access.previous = port.previous;
-    if (port.previous)
-      history_ = true;
-    else if (input)
-      access.version = versionSeen(port, r);
-    else if (inout && port.firstVersion != kNone)  // else part of a cycle, which has been reported
-      access.version = versions_[port.firstVersion + (r - port.value.first)];
-    else
-      access.version = 1;
+    if (r == kNone) {
+      ++m;
+      continue;
+    }
     BoundResource& resource = graph_.resources[r];
-    access.slot = resource.firstSlot + (port.previous ? resource.versions + 1 : access.version);
-    resource.usage |= static_cast<uint32_t>(access.usage);
+    resource.usage |= static_cast<uint32_t>(member.usage);
+    uint32_t version = 1;
+    if (port.previous)
+      version = 0;
+    else if (input)
+      version = versionSeen(port, r);
+    else if (inout && port.firstVersion != kNone)  // else part of a cycle, which has been reported
+      version = versions_[port.firstVersion + (r - port.value.first)];
+    const uint32_t slot = resource.firstSlot + (port.previous ? resource.versions + 1 : version);
+    pass.accesses.emplace_back(r, port.index, m++, member.usage, reads, !input, port.previous, version, slot);
   }
 }
 
 void Binder::bindOutputs() {
   graph_.outputs.reserve(description_.outputs.size());
   for (const WireDescription& wire : description_.outputs) {
-    PortState port;
-    port.pass = kNone;
+    PortState port(nullptr, kNone, 0);
     connectWire(port, wire);
     if (port.value.first == kNone) continue;
     const bool bundle = port.value.origin && port.value.member == kNone && !port.value.origin->bundle.empty();

@@ -21,9 +21,11 @@ struct PortValue {
 };
 
 struct PortState {
-  const PortSpec* spec = nullptr;  // nullptr: an output of the graph
-  uint32_t pass = 0;
-  uint16_t index = 0;  // in the declaration
+  explicit PortState(const PortSpec* declared, uint32_t ofPass, uint16_t number)
+      : spec(declared), pass(ofPass), index(number) {}
+  const PortSpec* spec;  // nullptr: an output of the graph
+  uint32_t pass;
+  uint16_t index;  // in the declaration
   bool previous = false;
   uint8_t state = 0;        // value: 0 unknown, 1 being followed, 2 known
   uint32_t wire = kNone;    // Description::wires
@@ -32,7 +34,13 @@ struct PortState {
   uint32_t firstVersion = kNone;  // producing ports: versions_, one per resource of the value
 };
 
+// Whose members are resources of their own.
+inline bool makes(const PortSpec& spec) {
+  return spec.direction == Direction::Output || spec.direction == Direction::Scratch;
+}
+
 // Hidden, for nobody outside the library calls it: its functions call each other directly or are inlined.
+// What is rare or reports a mistake is not, so that what is called for each pass stays short.
 class [[gnu::visibility("hidden")]] Binder;
 
 class Binder {
@@ -42,14 +50,21 @@ class Binder {
 
  private:
   // bind.cpp: passes, parameters, accesses, outputs
+  void openViews();
   void declare();
   void bindView(BoundPass& pass, const PassDescription& from);
   void bindParameters(BoundPass& pass, const PassDescription& from);
   void readParameter(const ParameterSpec& spec, const ParameterDescription& given,
                      const PassDescription& pass, Value& out);
+  [[gnu::noinline]] void readOther(const ParameterSpec& spec, const ParameterDescription& given,
+                                   const PassDescription& pass, Value& out);
+  [[gnu::noinline]] void bindParameter(const std::vector<ParameterSpec>& specs,
+                                       const ParameterDescription& given, const PassDescription& from,
+                                       std::vector<Value>::iterator values);
   void reportParameter(const ParameterSpec& spec, const ParameterDescription& given,
                        const PassDescription& pass);
   bool assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const;
+  [[gnu::noinline]] bool assignText(const ParameterSpec& spec, std::string_view given, Value& out) const;
   void makeExternals();
   void makeResources();
   void makeAccesses();
@@ -61,13 +76,22 @@ class Binder {
   // connect.cpp: wires
   void assignWires();
   void connectWire(PortState& port, const WireDescription& wire);
+  [[gnu::noinline]] void connectExternal(PortState& port, const WireDescription& wire);
+  [[gnu::noinline]] void reportNoOutput(PortState& port, const WireDescription& wire, uint32_t pass);
+  std::string connectedPath(const PortState& port, const WireDescription& wire) const;
   bool selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member);
+  [[gnu::noinline]] bool selectMember(const PortSpec& spec, Symbol name, uint32_t& member) const;
   void followValues();
   void followValue(uint32_t port);
   void takeValue(PortState& port);
+  [[gnu::noinline]] void takeMember(PortState& port, uint32_t member);
   void checkTypes();
   void checkPort(PortState& port, const PortSpec& spec);
-  bool fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const;
+  std::string_view bundleOf(const PortValue& value) const;
+  bool fits(const MemberSpec& wanted, uint32_t resource) const;
+  void reportUnwired(const PortState& port, const PortSpec& spec);
+  [[gnu::noinline]] void reportMisfit(const PortState& port, const PortSpec& spec, uint32_t m);
+  std::string describeMisfit(const PortState& port, const MemberSpec& wanted, uint32_t m) const;
   // The resource that member `m` of this port stands for; kNone when it has none.
   uint32_t resourceOf(const PortState& port, uint32_t m) const {
     const PortValue& value = port.value;
@@ -97,15 +121,15 @@ class Binder {
   // sizes.cpp
   void evaluateSizes();
   bool evaluatePass(uint32_t pass, int depth);
-  bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
+  bool evaluateResource(uint32_t pass, const PortSpec& spec, const MemberSpec& member, VkExtent2D view,
                         BoundResource& resource, int depth);
   bool evaluateSize(uint32_t pass, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
                     const char* what, int64_t limit, int64_t& out, int depth);
   bool evaluate(uint32_t pass, const SizeExpr& size, int64_t& out, int depth, std::string& why);
   bool evaluateTerm(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);
   bool sizeOfPort(uint32_t pass, const SizeExpr::Term& term, int64_t& out, int depth, std::string& why);
-  void checkLimits(uint32_t pass, const PortSpec& spec, const MemberSpec& member,
-                   const BoundResource& resource);
+  bool withinLimits(const MemberSpec& member, const ResourceDesc& desc) const;
+  void reportLimits(uint32_t pass, const PortSpec& spec, const MemberSpec& member, const ResourceDesc& desc);
   std::string parametersOf(const ResourceSpec& spec) const;
   std::string otherChoices(uint32_t p, const ResourceSpec& spec) const;
 
@@ -121,7 +145,7 @@ class Binder {
   Diagnostics& diagnostics_;
   const Registry& registry_;
   BoundGraph graph_;
-  // Of all passes, which keep it alive; whole before anyone reads it.
+  // Of all passes; whole before anyone reads it.
   std::shared_ptr<std::vector<Value>> values_ = std::make_shared<std::vector<Value>>();
   Scratch scratch_;
   ScratchVector<uint32_t> passBySymbol_{scratch_};
@@ -135,7 +159,9 @@ class Binder {
   ScratchVector<const MemberSpec*> resourceSpec_{scratch_};  // as its producer declares it
   ScratchVector<uint32_t> chain_{scratch_};                  // followValue's
   ScratchVector<uint8_t> sized_{scratch_};  // per pass: 0 not yet, 1 being done, 2 done, 3 failed
+  size_t resourceCount_ = 0;                // made by passes
   bool inPlace_ = false, history_ = false;
+  bool inOrder_ = true;  // all passes are declared after those that they wait for
 };
 
 // "image rgba16f", "buffer of Vpl (64 bytes each)"

@@ -22,6 +22,27 @@ bool producing(const PortSpec& spec) {
   return spec.direction == Direction::Output || spec.direction == Direction::InOut;
 }
 
+uint32_t onlyOutput(const std::vector<PortSpec>& specs) {
+  uint32_t only = kNone, offered = 0, k = 0;
+  for (const PortSpec& spec : specs) {
+    if (producing(spec)) {
+      only = k;
+      ++offered;
+    }
+    ++k;
+  }
+  return offered == 1 ? only : kNone;
+}
+
+uint32_t outputNamed(const std::vector<PortSpec>& specs, std::string_view name) {
+  uint32_t k = 0;
+  for (const PortSpec& spec : specs) {
+    if (producing(spec) && sameText(spec.name, name)) return k;
+    ++k;
+  }
+  return kNone;
+}
+
 }  // namespace
 
 std::string describeResource(ResourceKind kind, VkFormat format, bool volume, bool array,
@@ -66,19 +87,18 @@ void Binder::assignWires() {
     const PassDeclaration* declaration = graph_.passes[p].declaration;
     if (!declaration) continue;
     const std::vector<PortSpec>& specs = declaration->ports;
+    const size_t count = specs.size();
     // Inputs are mostly wired in the order of the declaration: start looking where the last one was found.
     size_t guess = 0;
     for (uint32_t i = 0; i < from.inputCount; ++i) {
       const WireDescription& wire = description_.wires[from.firstInput + i];
       const std::string_view name = text(wire.target);
       size_t k = 0;
-      for (; k < specs.size(); ++k, ++guess) {
-        if (guess >= specs.size()) guess = 0;
+      for (; k < count; ++k, ++guess) {
+        if (guess >= count) guess = 0;
         if (sameText(specs[guess].name, name)) break;
       }
-      const bool wired = k < specs.size() && (specs[guess].direction == Direction::Input ||
-                                              specs[guess].direction == Direction::InOut);
-      if (wired) {
+      if (k < count && !makes(specs[guess])) {
         portsOf(p)[guess].wire = from.firstInput + i;
         ++guess;
         continue;
@@ -89,8 +109,8 @@ void Binder::assignWires() {
           names.push_back(spec.name);
       const std::string nearest = nearestName(name, names);
       error(wire.keyPlace, passPath(p, json::joinPath("inputs", name)),
-            k < specs.size() ? fmt::format("`{}` is an output of `{}`, not an input", name, declaration->type)
-                             : fmt::format("`{}` has no input `{}`", declaration->type, name),
+            k < count ? fmt::format("`{}` is an output of `{}`, not an input", name, declaration->type)
+                      : fmt::format("`{}` has no input `{}`", declaration->type, name),
             !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
             : names.empty()  ? std::string("it has none")
                              : fmt::format("it has: {}", fmt::join(names, ", ")));
@@ -98,83 +118,88 @@ void Binder::assignWires() {
   }
 }
 
-// The port of `pass` that the wire names; false and a message when there is none.
-bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member) {
+// The port of `pass` that the wire names; false when there is none.
+inline bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member) {
   const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
-  port = member = kNone;
-  uint32_t only = kNone, offered = 0;
-  uint32_t k = 0;
-  for (const PortSpec& spec : specs) {
-    if (producing(spec)) {
-      only = k;
-      ++offered;
-      if (wire.port != kNone && sameText(spec.name, text(wire.port))) port = k;
-    }
-    ++k;
-  }
   Symbol memberName = wire.member;
-  if (port == kNone && offered == 1 && (wire.port == kNone || wire.member == kNone)) {
-    port = only;  // "gbuffer", or "gbuffer.position": a member of the only output
-    if (wire.port != kNone) memberName = wire.port;
+  port = wire.port == kNone ? onlyOutput(specs) : outputNamed(specs, text(wire.port));
+  if (port == kNone && wire.port != kNone && wire.member == kNone) {
+    port = onlyOutput(specs);  // "gbuffer.position": a member of the only output
+    memberName = wire.port;
   }
-  if (port != kNone && memberName == kNone) return true;
-  if (port != kNone) {
-    const std::vector<MemberSpec>& members = specs[port].members;
-    for (uint32_t m = 0; m < members.size(); ++m)
-      if (members[m].name == text(memberName)) member = m;
-    if (member != kNone) return true;
-  }
-  return false;
+  member = kNone;
+  return port != kNone && (memberName == kNone || selectMember(specs[port], memberName, member));
+}
+
+bool Binder::selectMember(const PortSpec& spec, Symbol name, uint32_t& member) const {
+  for (uint32_t m = 0; m < spec.members.size(); ++m)
+    if (spec.members[m].name == text(name)) member = m;
+  return member != kNone;
+}
+
+// The value of the port's source, or the member of it that the wire names.
+inline void Binder::takeValue(PortState& port) {
+  const uint32_t member = port.value.member;
+  port.state = 2;
+  port.value = port.source == kNone ? PortValue{} : ports_[port.source].value;
+  if (port.value.first != kNone && member != kNone) takeMember(port, member);
 }
 
 void Binder::connectWire(PortState& port, const WireDescription& wire) {
-  auto wrong = [&](std::string message, std::string remedy) {
-    error(wire.place, port.pass == kNone ? json::joinPath("outputs", text(wire.target)) : wirePath(port),
-          std::move(message), std::move(remedy));
-    port.state = 2;
-  };
   port.previous = wire.previous;
-  if (wire.external != kNone) {
-    const ExternalDescription& external = description_.externals[wire.external];
-    port.value = {externalFirst_[wire.external], static_cast<uint32_t>(external.members.size()), nullptr,
-                  kNone, wire.external};
-    port.state = 2;
-    if (wire.member == kNone) return;
-    const auto at = std::find(external.members.begin(), external.members.end(), wire.member);
-    port.value.member = static_cast<uint32_t>(at - external.members.begin());
-    port.value.first += port.value.member;
-    port.value.count = 1;
-    if (at != external.members.end()) return;
-    port.value = {};
-    return wrong(fmt::format("the input `{}` has no member `{}`", text(external.name), text(wire.member)),
-                 {});
-  }
+  if (wire.external != kNone) return connectExternal(port, wire);
   const uint32_t pass = passBySymbol_[wire.pass];
   if (pass == kNone || !graph_.passes[pass].declaration) {
     port.state = 2;  // the unknown pass or its unknown type has been reported
     return;
   }
   uint32_t index, member;
-  if (!selectPort(wire, pass, index, member)) {
-    std::vector<std::string> names;
-    const std::string name(text(description_.passes[pass].name));
-    for (const PortSpec& spec : graph_.passes[pass].declaration->ports) {
-      if (!producing(spec)) continue;
-      names.push_back(name + "." + spec.name);
-      if (wire.member == kNone && spec.bundle.empty()) continue;
-      for (const MemberSpec& m : spec.members)
-        if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
-    }
-    const std::string nearest = nearestName(wire.written, names);
-    return wrong(wire.port == kNone ? fmt::format("`{}` has {} outputs: name one", wire.written, names.size())
-                                    : fmt::format("no output `{}`", wire.written),
-                 !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
-                 : names.empty()                        ? fmt::format("`{}` has no outputs", name)
-                                 : fmt::format("there is: {}", fmt::join(names, ", ")));
-  }
+  if (!selectPort(wire, pass, index, member)) return reportNoOutput(port, wire, pass);
   port.source = firstPort_[pass] + index;
   port.value.member = member;
+  inOrder_ &= port.previous || pass < port.pass;
   if (ports_[port.source].state == 2) takeValue(port);  // else when its value is followed
+}
+
+void Binder::connectExternal(PortState& port, const WireDescription& wire) {
+  const ExternalDescription& external = description_.externals[wire.external];
+  port.value = {externalFirst_[wire.external], static_cast<uint32_t>(external.members.size()), nullptr, kNone,
+                wire.external};
+  port.state = 2;
+  if (wire.member == kNone) return;
+  const auto at = std::find(external.members.begin(), external.members.end(), wire.member);
+  port.value.member = static_cast<uint32_t>(at - external.members.begin());
+  port.value.first += port.value.member;
+  port.value.count = 1;
+  if (at != external.members.end()) return;
+  port.value = {};
+  error(wire.place, connectedPath(port, wire),
+        fmt::format("the input `{}` has no member `{}`", text(external.name), text(wire.member)));
+}
+
+void Binder::reportNoOutput(PortState& port, const WireDescription& wire, uint32_t pass) {
+  port.state = 2;
+  std::vector<std::string> names;
+  const std::string name(text(description_.passes[pass].name));
+  for (const PortSpec& spec : graph_.passes[pass].declaration->ports) {
+    if (!producing(spec)) continue;
+    names.push_back(name + "." + spec.name);
+    if (wire.member == kNone && spec.bundle.empty()) continue;
+    for (const MemberSpec& m : spec.members)
+      if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
+  }
+  const std::string nearest = nearestName(wire.written, names);
+  error(wire.place, connectedPath(port, wire),
+        wire.port == kNone ? fmt::format("`{}` has {} outputs: name one", wire.written, names.size())
+                           : fmt::format("no output `{}`", wire.written),
+        !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
+        : names.empty()                        ? fmt::format("`{}` has no outputs", name)
+                                               : fmt::format("there is: {}", fmt::join(names, ", ")));
+}
+
+// Where a wire of a pass or of the graph's outputs is written.
+std::string Binder::connectedPath(const PortState& port, const WireDescription& wire) const {
+  return port.pass == kNone ? json::joinPath("outputs", text(wire.target)) : wirePath(port);
 }
 
 // ---- Values ------------------------------------------------------------------------------------------
@@ -182,6 +207,7 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
 void Binder::followValues() {
   for (PortState& port : ports_)
     if (port.wire != kNone) connectWire(port, description_.wires[port.wire]);
+  if (!inPlace_) return;  // the sources of all were outputs
   for (uint32_t i = 0; i < ports_.size(); ++i)
     if (ports_[i].state == 0) followValue(i);
 }
@@ -204,13 +230,8 @@ void Binder::followValue(uint32_t port) {
   for (size_t i = chain.size(); i-- > 0;) takeValue(ports_[chain[i]]);
 }
 
-// The value of the port's source, or the member of it that the wire names.
-void Binder::takeValue(PortState& port) {
-  const uint32_t member = port.value.member;
+void Binder::takeMember(PortState& port, uint32_t member) {
   PortValue& value = port.value;
-  port.state = 2;
-  value = port.source == kNone ? PortValue{} : ports_[port.source].value;
-  if (value.first == kNone || member == kNone) return;
   // The member's name was looked up in the source's declaration; an in-out port there may list fewer members.
   const std::string& name = ports_[port.source].spec->members[member].name;
   value.member = member;
@@ -239,56 +260,57 @@ uint32_t Binder::resourceNamed(const PortValue& value, const std::string& member
 void Binder::checkTypes() {
   for (PortState& port : ports_) {
     const PortSpec& spec = *port.spec;
-    if (spec.direction == Direction::Output || spec.direction == Direction::Scratch) continue;
-    inPlace_ = inPlace_ || spec.direction == Direction::InOut;
-    checkPort(port, spec);
+    if (makes(spec)) continue;
+    if (port.wire == kNone && !spec.optional) reportUnwired(port, spec);
+    if (port.value.first != kNone) checkPort(port, spec);
   }
 }
 
-void Binder::checkPort(PortState& port, const PortSpec& spec) {
-  if (port.wire == kNone) {
-    // A wire that was given but could not be resolved has been reported already.
-    if (spec.optional || diagnostics_.hasErrors()) {
-      const PassDescription& pass = description_.passes[port.pass];
-      const std::string path = passPath(port.pass, "inputs." + spec.name);
-      const bool said = std::any_of(diagnostics_.list().begin(), diagnostics_.list().end(),
-                                    [&](const Diagnostic& d) { return d.path == path; });
-      if (spec.optional || said || pass.type == kNone) return;
-    }
-    error(description_.passes[port.pass].place, passPath(port.pass, "inputs"),
-          fmt::format("`{}`: the input `{}` ({}) is not wired", graph_.passes[port.pass].name, spec.name,
-                      describeWanted(spec)),
-          missingRemedy(spec));
-    return;
+void Binder::reportUnwired(const PortState& port, const PortSpec& spec) {
+  const PassDescription& pass = description_.passes[port.pass];
+  // A wire that was given but could not be resolved has been reported already.
+  if (diagnostics_.hasErrors()) {
+    const std::string path = passPath(port.pass, "inputs." + spec.name);
+    const bool said = std::any_of(diagnostics_.list().begin(), diagnostics_.list().end(),
+                                  [&](const Diagnostic& d) { return d.path == path; });
+    if (said || pass.type == kNone) return;
   }
-  if (port.value.first == kNone) return;
-  const WireDescription& wire = description_.wires[port.wire];
+  error(pass.place, passPath(port.pass, "inputs"),
+        fmt::format("`{}`: the input `{}` ({}) is not wired", graph_.passes[port.pass].name, spec.name,
+                    describeWanted(spec)),
+        missingRemedy(spec));
+}
+
+// The bundle that a value is as a whole; "" for plain ones and for members.
+std::string_view Binder::bundleOf(const PortValue& value) const {
+  if (value.member != kNone) return {};
+  if (value.origin) return value.origin->bundle;
+  return value.external == kNone ? std::string_view() : text(description_.externals[value.external].bundle);
+}
+
+void Binder::checkPort(PortState& port, const PortSpec& spec) {
   if (port.previous && spec.direction == Direction::InOut) {
-    error(wire.place, wirePath(port),
+    error(description_.wires[port.wire].place, wirePath(port),
           fmt::format("`{}` is updated in place, last frame's value cannot be", spec.name),
           "wire it without `@previous`");
     port.value = {};
     return;
   }
-  const bool single = port.value.member != kNone;
-  std::string_view bundle;
-  if (!single && port.value.origin) bundle = port.value.origin->bundle;
-  if (!single && port.value.external != kNone)
-    bundle = text(description_.externals[port.value.external].bundle);
-  std::string why;
-  bool good = bundle == spec.bundle;
-  for (uint32_t m = 0; good && m < spec.members.size(); ++m) {
+  if (!sameText(bundleOf(port.value), spec.bundle)) return reportMisfit(port, spec, kNone);
+  uint32_t m = 0;
+  for (const MemberSpec& member : spec.members) {
     const uint32_t resource = resourceOf(port, m);
-    if (resource == kNone) {
-      good = false;
-      why = fmt::format("it lacks the member `{}`", spec.members[m].name);
-    } else {
-      good = fits(spec.members[m], resource, why);
-    }
+    if (resource == kNone || !fits(member, resource)) return reportMisfit(port, spec, m);
+    ++m;
   }
-  if (good) return;
+}
+
+// `m`: the first member that does not fit, kNone when the value as a whole does not.
+void Binder::reportMisfit(const PortState& port, const PortSpec& spec, uint32_t m) {
+  const std::string why = m == kNone ? std::string() : describeMisfit(port, spec.members[m], m);
+  const WireDescription& wire = description_.wires[port.wire];
   std::string remedy;
-  if (!bundle.empty() && spec.bundle.empty() && port.value.origin)
+  if (!bundleOf(port.value).empty() && spec.bundle.empty() && port.value.origin)
     for (const MemberSpec& member : port.value.origin->members) {
       const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
       if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
@@ -301,25 +323,32 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
         remedy);
 }
 
-bool Binder::fits(const MemberSpec& wanted, uint32_t resource, std::string& why) const {
+// Sizes are evaluated later, so declarations are compared.
+bool Binder::fits(const MemberSpec& wanted, uint32_t resource) const {
   const ResourceSpec& want = wanted.resource;
   const auto compare = [&](const auto& have) {
-    bool good = have.kind == want.kind;
-    if (good && have.kind == ResourceKind::Buffer)
-      good = have.element == want.element && have.stride == want.stride;
-    else if (good)
-      good = have.volume == want.volume && have.array == want.array &&
-             (have.format == want.format ||
-              (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(have.format)));
-    if (!good && !wanted.name.empty())
-      why = fmt::format(
-          "its member `{}` is {}", wanted.name,
-          describeResource(have.kind, have.format, have.volume, have.array, have.element, have.stride));
-    return good;
+    if (have.kind != want.kind) return false;
+    if (have.kind == ResourceKind::Buffer) return have.element == want.element && have.stride == want.stride;
+    return have.volume == want.volume && have.array == want.array &&
+           (have.format == want.format ||
+            (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(have.format)));
   };
-  // Sizes are evaluated later, so compare declarations.
   const MemberSpec* made = resourceSpec_[resource];
   return made ? compare(made->resource) : compare(graph_.resources[resource].desc);
+}
+
+// "" where the value as a whole says it.
+std::string Binder::describeMisfit(const PortState& port, const MemberSpec& wanted, uint32_t m) const {
+  const uint32_t resource = resourceOf(port, m);
+  if (resource == kNone) return fmt::format("it lacks the member `{}`", wanted.name);
+  if (wanted.name.empty()) return {};
+  const auto describe = [&](const auto& have) {
+    return fmt::format(
+        "its member `{}` is {}", wanted.name,
+        describeResource(have.kind, have.format, have.volume, have.array, have.element, have.stride));
+  };
+  const MemberSpec* made = resourceSpec_[resource];
+  return made ? describe(made->resource) : describe(graph_.resources[resource].desc);
 }
 
 std::string Binder::missingRemedy(const PortSpec& spec) const {
@@ -328,8 +357,7 @@ std::string Binder::missingRemedy(const PortSpec& spec) const {
   for (const PortState& port : ports_) {
     const PortSpec& other = *port.spec;
     if (other.direction != Direction::Output || other.bundle != spec.bundle || names.size() >= 6) continue;
-    std::string why;
-    if (spec.bundle.empty() && !fits(wanted, port.value.first, why)) continue;
+    if (spec.bundle.empty() && !fits(wanted, port.value.first)) continue;
     names.push_back(fmt::format("{}.{}", graph_.passes[port.pass].name, other.name));
   }
   if (names.empty()) return "no pass of the graph makes one";

@@ -44,10 +44,10 @@ ParameterSpec text(std::string defaultValue);
 class Parameters {
  public:
   Parameters() = default;
-  // One value for each of `specs`, from `first` on. The passes of a graph share one array: thousands of small ones
-  // would cost more than what is in them.
-  Parameters(const std::vector<ParameterSpec>* specs, std::shared_ptr<const std::vector<Value>> all, size_t first)
-      : specs_(specs), all_(std::move(all)), first_(first) {}
+  // One value for each of `specs`, from `first` on, in an array that the passes of a graph share and the graph owns:
+  // thousands of small ones would cost more than what is in them.
+  Parameters(const std::vector<ParameterSpec>* specs, const std::vector<Value>* all, size_t first)
+      : specs_(specs), all_(all), first_(first) {}
   int64_t integer(std::string_view name) const;
   double real(std::string_view name) const;  // an integer converts
   bool flag(std::string_view name) const;
@@ -60,7 +60,7 @@ class Parameters {
 
  private:
   const std::vector<ParameterSpec>* specs_ = nullptr;
-  std::shared_ptr<const std::vector<Value>> all_;
+  const std::vector<Value>* all_ = nullptr;
   size_t first_ = 0;
 };
 

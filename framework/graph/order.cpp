@@ -12,10 +12,7 @@ namespace fovea::graph::detail {
 // The declaration's order where it has producers first, as in most graphs; else Kahn's algorithm.
 void Binder::orderPasses() {
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
-  const bool ordered = std::none_of(ports_.begin(), ports_.end(), [&](const PortState& port) {
-    return port.source != kNone && !port.previous && ports_[port.source].pass >= port.pass;
-  });
-  if (ordered) {
+  if (inOrder_) {
     order_.resize(count);
     return std::iota(order_.begin(), order_.end(), 0u);
   }
@@ -70,15 +67,9 @@ void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
   }
 }
 
-// Outputs make version 1, each update in place the next one. Two updates of the same version have no order.
+// Outputs made version 1, each update in place makes the next one. Two updates of the same version have no
+// order.
 void Binder::makeVersions() {
-  versions_.reserve(graph_.resources.size());
-  for (PortState& port : ports_) {
-    const PortSpec& spec = *port.spec;
-    if (spec.direction != Direction::Output) continue;
-    port.firstVersion = static_cast<uint32_t>(versions_.size());
-    versions_.insert(versions_.end(), spec.members.size(), 1);
-  }
   if (inPlace_) updateInPlace();
   for (BoundResource& r : graph_.resources) {
     r.firstSlot = graph_.slots;
@@ -181,37 +172,34 @@ void Binder::chooseLayouts() {
   };
   ScratchVector<VkImageLayout> readLayout(graph_.slots, VK_IMAGE_LAYOUT_UNDEFINED, scratch_);
   ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
-  bool mixed = false;  // some version's readers want different layouts: a second round tells them all
-  for (int round = 0; round < (mixed ? 2 : 1); ++round) {
-    for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
-      BoundPass& pass = graph_.passes[p];
-      if (round == 0) {
-        for (const Access& a : pass.accesses) {
-          Seen& s = seen[a.resource * 2 + a.previous];
-          if (s.pass != p) s = {p, Usage::None, false, false};
-          s.usage = s.usage | a.usage;
-          s.reads |= a.reads;
-          s.writes |= a.writes;
-        }
-      }
-      for (Access& a : pass.accesses) {
-        const ResourceDesc& desc = graph_.resources[a.resource].desc;
-        if (desc.kind != ResourceKind::Image || a.usage == Usage::None) continue;
-        const Seen& s = seen[a.resource * 2 + a.previous];
-        VkImageLayout& shared = readLayout[a.slot];
-        if (round == 0) {
-          a.layout = accessLayout(s.usage, s.reads, s.writes);
-          if (s.writes) continue;
-          if (shared == VK_IMAGE_LAYOUT_UNDEFINED)
-            shared = a.layout;
-          else if (shared != a.layout)
-            shared = VK_IMAGE_LAYOUT_GENERAL, mixed = true;
-        } else if (!a.writes) {
-          a.layout = shared;
-        }
-      }
+  const auto isImage = [&](const Access& a) {
+    return graph_.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
+  };
+  bool mixed = false;  // some version's readers want different layouts
+  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+    for (const Access& a : graph_.passes[p].accesses) {
+      Seen& s = seen[a.resource * 2 + a.previous];
+      if (s.pass != p) s = {p, Usage::None, false, false};
+      s.usage = s.usage | a.usage;
+      s.reads |= a.reads;
+      s.writes |= a.writes;
+    }
+    for (Access& a : graph_.passes[p].accesses) {
+      if (!isImage(a)) continue;
+      const Seen& s = seen[a.resource * 2 + a.previous];
+      a.layout = accessLayout(s.usage, s.reads, s.writes);
+      if (s.writes) continue;
+      VkImageLayout& shared = readLayout[a.slot];
+      if (shared == VK_IMAGE_LAYOUT_UNDEFINED)
+        shared = a.layout;
+      else if (shared != a.layout)
+        shared = VK_IMAGE_LAYOUT_GENERAL, mixed = true;
     }
   }
+  if (!mixed) return;
+  for (BoundPass& pass : graph_.passes)
+    for (Access& a : pass.accesses)
+      if (isImage(a) && !a.writes) a.layout = readLayout[a.slot];
 }
 
 }  // namespace fovea::graph::detail

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/base/small_vector.h"
@@ -33,7 +34,7 @@ struct ResourceDesc {
 };
 
 struct BoundResource {
-  BoundResource() {}
+  BoundResource(Lifetime lives, uint32_t made) : lifetime(lives), versions(made) {}
   std::string name;        // "gbuffer.gbuffer.position": pass, port and member of its first version
   ResourceDesc desc;
   Lifetime lifetime = Lifetime::Transient;
@@ -60,7 +61,7 @@ struct Access {
 };
 
 struct BoundPass {
-  BoundPass() {}
+  explicit BoundPass(std::string_view called) : name(called) {}
   std::string name;  // "left/deferred" inside a prefixed sub-graph
   const PassDeclaration* declaration = nullptr;
   Parameters parameters;
@@ -78,6 +79,7 @@ struct BoundGraph {
   std::string name, description;
   std::vector<std::string> views;       // used by some pass; [0] is "main" by default
   std::vector<BoundPass> passes;        // declaration order
+  std::shared_ptr<const std::vector<Value>> values;  // what the parameters of `passes` refer to
   std::vector<BoundResource> resources;
   std::vector<BoundOutput> outputs;     // bundles are written out: "gbuffer.position"
   uint32_t slots = 0;                   // of Access::slot

@@ -84,30 +84,8 @@ void Binder::evaluateSizes() {
   }
 }
 
-bool Binder::evaluatePass(uint32_t p, int depth) {
-  if (sized_[p] != 0) return sized_[p] == 2;
-  const PassDeclaration* declaration = graph_.passes[p].declaration;
-  if (!declaration || depth > kMaxDepth) return false;
-  sized_[p] = 1;
-  bool good = true;
-  for (const PortState& port : std::span(portsOf(p), portCount(p))) {
-    const PortSpec& spec = *port.spec;
-    if (spec.direction != Direction::Output && spec.direction != Direction::Scratch) continue;
-    BoundResource* resource = &graph_.resources[port.value.first];
-    for (const MemberSpec& member : spec.members) {
-      if (evaluateResource(p, spec, member, *resource, depth))
-        checkLimits(p, spec, member, *resource);
-      else
-        good = false;
-      ++resource;
-    }
-  }
-  sized_[p] = good ? 2 : 3;
-  return good;
-}
-
-bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec& member,
-                              BoundResource& resource, int depth) {
+inline bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec& member,
+                                     VkExtent2D view, BoundResource& resource, int depth) {
   const ResourceSpec& from = member.resource;
   ResourceDesc& desc = resource.desc;
   desc.kind = from.kind;
@@ -115,7 +93,6 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   desc.volume = from.volume;
   desc.array = from.array;
   desc.stride = from.stride;
-  const VkExtent2D view = viewExtents_[graph_.passes[p].view];
   constexpr int64_t kMaxExtent = 1 << 24, kMaxCount = int64_t(1) << 40;
   auto size = [&](const SizeExpr& expr, const char* what, int64_t limit, auto& out) {
     int64_t value = sizeAtOnce(expr, view);
@@ -135,6 +112,42 @@ bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const MemberSpec
   good = size(from.mips, "the number of mip levels", 32, desc.mips) && good;
   // More levels than the size has would be refused by the device; expressions may ask for "enough".
   desc.mips = std::min(desc.mips, uint32_t(std::bit_width(std::max({desc.width, desc.height, desc.depth}))));
+  return good;
+}
+
+inline bool Binder::withinLimits(const MemberSpec& member, const ResourceDesc& d) const {
+  if (bytesOf(d) > kMaxBytes) return false;
+  if (d.kind == ResourceKind::Buffer) {
+    const uint64_t limit = environment_.maxStorageBufferRange;
+    // Uniform buffers may be larger than the device's range: passes bind them page by page.
+    return limit == 0 || d.count * d.stride <= limit ||
+           !any(member.usage, Usage::StorageRead | Usage::StorageWrite);
+  }
+  const uint32_t limit = d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D;
+  if (limit && std::max({d.width, d.height, d.depth}) > limit) return false;
+  return !d.array || !environment_.maxImageArrayLayers || d.layers <= environment_.maxImageArrayLayers;
+}
+
+bool Binder::evaluatePass(uint32_t p, int depth) {
+  if (sized_[p] != 0) return sized_[p] == 2;
+  const PassDeclaration* declaration = graph_.passes[p].declaration;
+  if (!declaration || depth > kMaxDepth) return false;
+  sized_[p] = 1;
+  const VkExtent2D view = viewExtents_[graph_.passes[p].view];
+  bool good = true;
+  for (const PortState& port : std::span(portsOf(p), portCount(p))) {
+    const PortSpec& spec = *port.spec;
+    if (!makes(spec)) continue;
+    BoundResource* resource = &graph_.resources[port.value.first];
+    for (const MemberSpec& member : spec.members) {
+      if (!evaluateResource(p, spec, member, view, *resource, depth))
+        good = false;
+      else if (!withinLimits(member, resource->desc))
+        reportLimits(p, spec, member, resource->desc);
+      ++resource;
+    }
+  }
+  sized_[p] = good ? 2 : 3;
   return good;
 }
 
@@ -261,9 +274,7 @@ std::string Binder::parametersOf(const ResourceSpec& spec) const {
   return text;
 }
 
-void Binder::checkLimits(uint32_t p, const PortSpec& spec, const MemberSpec& member,
-                         const BoundResource& resource) {
-  const ResourceDesc& d = resource.desc;
+void Binder::reportLimits(uint32_t p, const PortSpec& spec, const MemberSpec& member, const ResourceDesc& d) {
   std::string what;
   if (bytesOf(d) > kMaxBytes) {
     what = d.kind == ResourceKind::Buffer
@@ -271,23 +282,16 @@ void Binder::checkLimits(uint32_t p, const PortSpec& spec, const MemberSpec& mem
                : fmt::format("{}x{}x{} with {} layers is more than any device holds", d.width, d.height,
                              d.depth, d.layers);
   } else if (d.kind == ResourceKind::Buffer) {
-    const uint64_t bytes = d.count * d.stride;
-    const uint64_t limit = environment_.maxStorageBufferRange;
-    // Uniform buffers may be larger than the device's range: passes bind them page by page.
-    if (limit == 0 || bytes <= limit || !any(member.usage, Usage::StorageRead | Usage::StorageWrite)) return;
     what = fmt::format("{} elements of {} bytes exceed this device's maxStorageBufferRange {}", d.count,
-                       d.stride, limit);
+                       d.stride, environment_.maxStorageBufferRange);
+  } else if (d.array && environment_.maxImageArrayLayers && d.layers > environment_.maxImageArrayLayers) {
+    what = fmt::format("{} layers of {}x{} exceed this device's maxImageArrayLayers {}", d.layers, d.width,
+                       d.height, environment_.maxImageArrayLayers);
   } else {
-    const uint32_t limit = d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D;
-    if (d.array && environment_.maxImageArrayLayers && d.layers > environment_.maxImageArrayLayers)
-      what = fmt::format("{} layers of {}x{} exceed this device's maxImageArrayLayers {}", d.layers, d.width,
-                         d.height, environment_.maxImageArrayLayers);
-    else if (limit && std::max({d.width, d.height, d.depth}) > limit)
-      what = fmt::format("{}x{}{} exceeds this device's {} {}", d.width, d.height,
-                         d.volume ? fmt::format("x{}", d.depth) : std::string(),
-                         d.volume ? "maxImageDimension3D" : "maxImageDimension2D", limit);
-    else
-      return;
+    what = fmt::format("{}x{}{} exceeds this device's {} {}", d.width, d.height,
+                       d.volume ? fmt::format("x{}", d.depth) : std::string(),
+                       d.volume ? "maxImageDimension3D" : "maxImageDimension2D",
+                       d.volume ? environment_.maxImageDimension3D : environment_.maxImageDimension2D);
   }
   const std::string names = parametersOf(member.resource);
   const std::string choices = otherChoices(p, member.resource);
