@@ -36,20 +36,12 @@ class Occupancy {
   void take(const Interval& interval, Range range) {
     for (uint32_t l = interval.first; l <= interval.last; ++l) {
       SmallVector<Range, 2>& taken = levels_[l];
-      auto next = std::lower_bound(taken.begin(), taken.end(), range,
-                                   [](const Range& a, const Range& b) { return a.begin < b.begin; });
-      const bool joinsNext = next != taken.end() && next->begin == range.end;
-      const bool joinsLast = next != taken.begin() && (next - 1)->end == range.begin;
-      if (joinsLast && joinsNext) {
-        (next - 1)->end = next->end;
-        taken.erase(next);
-      } else if (joinsLast) {
-        (next - 1)->end = range.end;
-      } else if (joinsNext) {
-        next->begin = range.begin;
-      } else {
-        taken.insert(next, range);
-      }
+      if (taken.empty() || taken.end()[-1].end < range.begin)
+        taken.push_back(range);
+      else if (taken.end()[-1].end == range.begin)
+        taken.end()[-1].end = range.end;
+      else
+        insert(taken, range);
     }
   }
 
@@ -57,6 +49,24 @@ class Occupancy {
   static uint64_t alignUp(uint64_t v, uint64_t alignment) { return (v + alignment - 1) & ~(alignment - 1); }
 
  private:
+  // A range that begins before the last one does.
+  static void insert(SmallVector<Range, 2>& taken, Range range) {
+    Range* const next = std::lower_bound(taken.begin(), taken.end(), range,
+                                         [](const Range& a, const Range& b) { return a.begin < b.begin; });
+    const bool joinsNext = next->begin == range.end;
+    const bool joinsLast = next != taken.begin() && next[-1].end == range.begin;
+    if (joinsLast && joinsNext) {
+      next[-1].end = next->end;
+      taken.erase(next);
+    } else if (joinsLast) {
+      next[-1].end = range.end;
+    } else if (joinsNext) {
+      next->begin = range.begin;
+    } else {
+      taken.insert(next, range);
+    }
+  }
+
   // What is taken in some level of the interval, sorted.
   std::span<const Range> takenDuring(const Interval& interval) {
     uint32_t filled = 0, latestFilled = interval.first;
@@ -109,28 +119,32 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
   };
   // Images of one size, as most are, come in this order already.
   if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
+  uint32_t h = 0;
   for (uint32_t i = 0; i < requests.size(); ++i) {  // heaps in the order of appearance
-    uint32_t h = 0;
-    while (h < result.heaps.size() && result.heaps[h].memoryTypeBits != requests[i].need.memoryTypeBits) ++h;
-    if (h == result.heaps.size()) {
-      result.heaps.push_back({0, requests[i].need.memoryTypeBits});
-      heaps.emplace_back(scratch, alias ? levels : 1);
+    const uint32_t types = requests[i].need.memoryTypeBits;
+    if (i == 0 || types != requests[i - 1].need.memoryTypeBits) {
+      for (h = 0; h < result.heaps.size() && result.heaps[h].memoryTypeBits != types;) ++h;
+      if (h == result.heaps.size()) {
+        result.heaps.push_back({0, types});
+        heaps.emplace_back(scratch, alias ? levels : 1);
+      }
     }
     result.placements[i].heap = h;
   }
+  const Interval always{0, 0};
   for (const uint32_t i : order) {
     const AliasRequest& request = requests[i];
     Placement& placement = result.placements[i];
     const uint64_t alignment = std::max<uint64_t>({request.need.alignment, granularity, 1});
     const uint64_t bytes = Occupancy::alignUp(std::max<uint64_t>(request.need.bytes, 1), alignment);
-    const Interval interval = alias ? request.interval : Interval{0, 0};
+    const Interval& interval = alias ? request.interval : always;
     Occupancy& heap = heaps[placement.heap];
     placement.resource = request.resource;
     placement.bytes = bytes;
     placement.offset = heap.findGap(interval, bytes, alignment);
     heap.take(interval, {placement.offset, placement.offset + bytes});
-    result.heaps[placement.heap].bytes =
-        std::max(result.heaps[placement.heap].bytes, placement.offset + bytes);
+    uint64_t& size = result.heaps[placement.heap].bytes;
+    size = std::max(size, placement.offset + bytes);
     result.bytesUnaliased += bytes;
   }
   for (const Plan::Heap& heap : result.heaps) result.bytesAliased += heap.bytes;

@@ -47,6 +47,10 @@ struct Segment {
   VkAccessFlags2 access = 0;
 };
 
+struct SegmentRange {
+  uint32_t first = 0, end = 0;
+};
+
 class Planner {
  public:
   Planner(const BoundGraph& graph, const Schedule& schedule, const std::vector<Interval>& intervals,
@@ -56,25 +60,23 @@ class Planner {
   void run() {
     collectTouches();
     makeSegments();
-    current_.assign(graph_.resources.size(), {});
-    bool history = false;
-    for (const BoundResource& r : graph_.resources) history |= r.history;
-    if (history) previous_.assign(graph_.resources.size(), {});
     markLasting();
+    const bool history =
+        std::any_of(kept_.begin(), kept_.end(), [&](uint32_t r) { return graph_.resources[r].history; });
+    current_.assign(graph_.resources.size(), {});
+    if (history) previous_.assign(graph_.resources.size(), {});
     // Copies that change places need two rounds until both carry the state of a whole frame.
     for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) settle();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
-    plan_.endLayout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
-    for (size_t r = 0; r < graph_.resources.size(); ++r) {
-      if (isTransient(graph_.resources[r])) continue;
+    for (const uint32_t r : kept_) {
       plan_.startLayout[r][0] = current_[r].layout;
       if (graph_.resources[r].history) plan_.startLayout[r][1] = previous_[r].layout;
     }
     record();
-    for (size_t r = 0; r < graph_.resources.size(); ++r) {
-      const bool swapped = graph_.resources[r].history;
-      plan_.endLayout[r] = swapped ? previous_[r].layout : current_[r].layout;
-    }
+    plan_.endLayout.reserve(graph_.resources.size());
+    for (const State& state : current_) plan_.endLayout.push_back(state.layout);
+    for (const uint32_t r : kept_)
+      if (graph_.resources[r].history) plan_.endLayout[r] = previous_[r].layout;
   }
 
  private:
@@ -93,7 +95,12 @@ class Planner {
   template <bool record>
   void write(const Touch& t, State& state, BarrierBatch& batch);
   void occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const;
-  void leave(uint32_t resource);
+  Segment leftBy(uint32_t resource) const;
+  void leave(uint32_t resource, uint32_t level) {
+    if (intervals_[resource].last != level) return;
+    const auto [first, end] = segmentsOf_[resource];
+    for (uint32_t s = first; s < end; ++s) segments_[s] = leftBy(resource);
+  }
 
   static void global(BarrierBatch& batch, VkPipelineStageFlags2 srcStage, VkAccessFlags2 srcAccess,
                      VkPipelineStageFlags2 dstStage, VkAccessFlags2 dstAccess) {
@@ -115,12 +122,10 @@ class Planner {
   detail::ScratchVector<uint32_t> touchFirst_{scratch_};  // per level
   detail::ScratchVector<ReadGroup> groups_{scratch_};     // by slot
   detail::ScratchVector<State> current_{scratch_}, previous_{scratch_};
-  detail::ScratchVector<uint32_t> placementOf_{scratch_};  // per resource, kNone
-  detail::ScratchVector<std::pair<uint32_t, uint32_t>> placementSegments_{
-      scratch_};  // per placement: [first, last)
+  detail::ScratchVector<SegmentRange> segmentsOf_{scratch_};  // per resource; none where nothing is shared
   detail::ScratchVector<Segment> segments_{scratch_};
-  detail::ScratchVector<uint32_t> leaving_{scratch_},
-      leavingFirst_{scratch_};                        // resources by the last level of their life
+  detail::ScratchVector<uint32_t> latest_{scratch_};  // per segment: who lies there at the end of a frame
+  detail::ScratchVector<uint32_t> kept_{scratch_};    // resources that are not transient
   detail::ScratchVector<uint8_t> lasting_{scratch_};  // per resource
 };
 
@@ -131,25 +136,24 @@ void Planner::collectTouches() {
   };
   detail::ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
   struct Known {
-    PassKind kind = PassKind::Host;
-    Usage usage = Usage::None;
-    bool reads = false;
+    uint32_t key = kNone;
     AccessScope scope;
   };
   Known knownScopes[2];  // the latest reader's and the latest writer's: most passes are alike
   touchFirst_.assign(levels_ + 1, 0);
   touches_.reserve(schedule_.order.size() * 2);
+  uint32_t count = 0;  // of touches
   for (uint32_t l = 0; l < levels_; ++l) {
-    touchFirst_[l] = static_cast<uint32_t>(touches_.size());
+    touchFirst_[l] = count;
     for (uint32_t i = schedule_.levelFirst[l]; i < schedule_.levelFirst[l + 1]; ++i) {
       const uint32_t p = schedule_.order[i];
       const PassKind kind = graph_.passes[p].declaration->kind;
       for (const Access& a : graph_.passes[p].accesses) {
         Known& known = knownScopes[a.writes];
-        if (known.kind != kind || known.usage != a.usage || known.reads != a.reads)
-          known = {kind, a.usage, a.reads,
-                   accessScope(kind, a.usage, a.reads, a.writes,
-                               isDepthFormat(graph_.resources[a.resource].desc.format))};
+        const uint32_t key = uint32_t(a.usage) << 8 | uint32_t(kind) << 1 | uint32_t(a.reads);
+        if (known.key != key)
+          known = {key, accessScope(kind, a.usage, a.reads, a.writes,
+                                    isDepthFormat(graph_.resources[a.resource].desc.format))};
         const AccessScope& scope = known.scope;
         if (!a.writes) {
           groups_[a.slot].stage |= scope.stage;
@@ -157,7 +161,8 @@ void Planner::collectTouches() {
         }
         Seen& s = seen[a.resource * 2 + a.previous];
         if (s.pass != p) {
-          s = {p, static_cast<uint32_t>(touches_.size())};
+          s.pass = p;
+          s.touch = count++;
           touches_.emplace_back(a.resource, a.slot, AccessScope{scope.stage, scope.access, a.layout}, a.reads,
                                 a.writes, a.previous);
           continue;
@@ -170,74 +175,70 @@ void Planner::collectTouches() {
       }
     }
   }
-  touchFirst_[levels_] = static_cast<uint32_t>(touches_.size());
+  touchFirst_[levels_] = count;
 }
 
 void Planner::makeSegments() {
-  placementOf_.assign(graph_.resources.size(), kNone);
   // Few boundaries are distinct where memory is shared, and neighbours meet in one.
   detail::ScratchVector<uint64_t> bounds(scratch_);  // heap and offset, ascending
-  const auto add = [&](uint64_t bound) {
-    if (bounds.empty() || bound > bounds.back()) return bounds.push_back(bound);
-    const auto at = std::lower_bound(bounds.begin(), bounds.end(), bound);
-    if (*at != bound) bounds.insert(at, bound);
-  };
-  for (uint32_t i = 0; i < plan_.placements.size(); ++i) {
-    const Placement& p = plan_.placements[i];
-    placementOf_[p.resource] = i;
-    add(uint64_t(p.heap) << 56 | p.offset);
-    add(uint64_t(p.heap) << 56 | (p.offset + p.bytes));
-  }
-  const auto segmentAt = [&](uint64_t bound, uint32_t guess) {
+  // Placements often lie one behind the other, in pieces that nothing splits: where to look first.
+  const auto find = [&](uint64_t bound, uint32_t guess) {
     if (guess < bounds.size() && bounds[guess] == bound) return guess;
     return static_cast<uint32_t>(std::lower_bound(bounds.begin(), bounds.end(), bound) - bounds.begin());
   };
-  placementSegments_.reserve(plan_.placements.size());
-  uint32_t next = 0;  // placements often lie one behind the other, in pieces that nothing splits
+  const auto add = [&](uint64_t bound, uint32_t guess) {
+    const uint32_t at = find(bound, guess);
+    if (at == bounds.size() || bounds[at] != bound) bounds.insert(bounds.begin() + at, bound);
+    return at;
+  };
+  uint32_t next = 0;
   for (const Placement& p : plan_.placements) {
-    const uint32_t first = segmentAt(uint64_t(p.heap) << 56 | p.offset, next);
-    next = segmentAt(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
-    placementSegments_.emplace_back(first, next);
+    const uint32_t first = add(uint64_t(p.heap) << 56 | p.offset, next);
+    next = add(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
   }
-  segments_.assign(bounds.size(), {});
-  // Resources by the last level of their life; outputs leave after the end of the frame.
-  leavingFirst_.assign(levels_ + 2, 0);
-  for (const Placement& p : plan_.placements) ++leavingFirst_[intervals_[p.resource].last + 1];
-  for (uint32_t l = 1; l < levels_ + 2; ++l) leavingFirst_[l] += leavingFirst_[l - 1];
-  detail::ScratchVector<uint32_t> at(leavingFirst_.begin(), leavingFirst_.end(), scratch_);
-  leaving_.resize(plan_.placements.size());
-  for (const Placement& p : plan_.placements) leaving_[at[intervals_[p.resource].last]++] = p.resource;
+  segmentsOf_.resize(graph_.resources.size());
+  next = 0;
+  for (const Placement& p : plan_.placements) {
+    const uint32_t first = find(uint64_t(p.heap) << 56 | p.offset, next);
+    next = find(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
+    segmentsOf_[p.resource] = {first, next};
+  }
+  segments_.resize(bounds.size());
 }
 
 // How a frame leaves a resource matters to the next one when its contents stay, or when it is the last to
 // lie in some piece of memory.
 void Planner::markLasting() {
   lasting_.assign(graph_.resources.size(), 0);
-  detail::ScratchVector<uint32_t> last(segments_.size(), kNone, scratch_);
-  for (const uint32_t r : leaving_) {
-    const auto [first, end] = placementSegments_[placementOf_[r]];
-    for (uint32_t s = first; s < end; ++s) last[s] = r;
+  for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    if (isTransient(graph_.resources[r])) continue;
+    kept_.push_back(r);
+    lasting_[r] = 1;
   }
-  for (const uint32_t r : last)
+  latest_.assign(segments_.size(), kNone);
+  for (const Placement& p : plan_.placements) {
+    const auto [first, end] = segmentsOf_[p.resource];
+    for (uint32_t s = first; s < end; ++s) {
+      uint32_t& latest = latest_[s];
+      if (latest == kNone || intervals_[latest].last < intervals_[p.resource].last) latest = p.resource;
+    }
+  }
+  for (const uint32_t r : latest_)
     if (r != kNone) lasting_[r] = 1;
-  for (size_t r = 0; r < graph_.resources.size(); ++r)
-    if (!isTransient(graph_.resources[r])) lasting_[r] = 1;
 }
 
 void Planner::occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const {
-  const auto [first, last] = placementSegments_[placementOf_[resource]];
-  for (uint32_t s = first; s < last; ++s) {
+  const auto [first, end] = segmentsOf_[resource];
+  for (uint32_t s = first; s < end; ++s) {
     stage |= segments_[s].stage;
     access |= segments_[s].access;
   }
 }
 
 // Whoever comes next waits for this occupant, which itself waited for the one before.
-void Planner::leave(uint32_t resource) {
-  const auto [first, last] = placementSegments_[placementOf_[resource]];
+Segment Planner::leftBy(uint32_t resource) const {
   const State& state = current_[resource];
-  const Segment left{state.pendingStage | state.readStage, state.pendingAccess};
-  for (uint32_t s = first; s < last; ++s) segments_[s] = left;
+  return {state.pendingStage | state.readStage, state.pendingAccess};
 }
 
 // A frame without writing barriers: only states that last beyond it are followed. What a resource finds in
@@ -248,8 +249,8 @@ void Planner::settle() {
   for (const Touch& t : touches_)
     if (lasting_[t.resource]) touch<false>(t, unrecorded);
   readOutputs<false>();
-  for (const uint32_t r : leaving_)
-    if (lasting_[r]) leave(r);
+  for (uint32_t s = 0; s < segments_.size(); ++s)
+    if (latest_[s] != kNone) segments_[s] = leftBy(latest_[s]);
   endFrame();
 }
 
@@ -260,9 +261,10 @@ void Planner::record() {
     Level& level = plan_.levels.emplace_back();
     level.before.images.reserve(touchFirst_[l + 1] - touchFirst_[l]);
     for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch<true>(touches_[i], level.before);
-    for (uint32_t i = leavingFirst_[l]; i < leavingFirst_[l + 1]; ++i) leave(leaving_[i]);
-    level.passes.assign(schedule_.order.begin() + schedule_.levelFirst[l],
-                        schedule_.order.begin() + schedule_.levelFirst[l + 1]);
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) leave(touches_[i].resource, l);
+    const uint32_t first = schedule_.levelFirst[l], end = schedule_.levelFirst[l + 1];
+    level.passes.reserve(end - first);
+    for (uint32_t i = first; i < end; ++i) level.passes.push_back(schedule_.order[i]);
   }
   plan_.end = readOutputs<true>();
   endFrame();

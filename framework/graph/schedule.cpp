@@ -15,6 +15,8 @@ class Scheduler {
       : graph_(graph), passCount_(static_cast<uint32_t>(graph.passes.size())) {}
 
   Schedule run(std::optional<uint32_t> seed) {
+    result_.passLive.assign(passCount_, 0);
+    work_.reserve(passCount_);
     findWriters();
     cull();
     if (seed || !levelsAsDeclared()) {
@@ -29,9 +31,16 @@ class Scheduler {
  private:
   void findWriters() {
     writers_.assign(graph_.slots, kNone);
-    for (uint32_t p = 0; p < passCount_; ++p)
-      for (const Access& a : graph_.passes[p].accesses)
-        if (a.writes) writers_[a.slot] = p;
+    for (uint32_t p = 0; p < passCount_; ++p) {
+      if (graph_.passes[p].declaration->sideEffects) need(p);
+      for (const Access& a : graph_.passes[p].accesses) {
+        if (!a.writes) continue;
+        writers_[a.slot] = p;
+        const bool external = graph_.resources[a.resource].external;
+        if (external) need(p);
+        updates_ |= external || a.version > 1;
+      }
+    }
   }
 
   void need(uint32_t pass) {
@@ -47,17 +56,10 @@ class Scheduler {
   }
 
   void cull() {
-    result_.passLive.assign(passCount_, 0);
     result_.resourceLive.assign(graph_.resources.size(), 0);
     allWriters_.assign(graph_.resources.size(), 0);
-    work_.reserve(passCount_);
     for (const BoundOutput& output : graph_.outputs)
       need(writers_[graph_.resources[output.resource].firstSlot + output.version]);
-    for (uint32_t p = 0; p < passCount_; ++p) {
-      if (graph_.passes[p].declaration->sideEffects) need(p);
-      for (const Access& a : graph_.passes[p].accesses)
-        if (a.writes && graph_.resources[a.resource].external) need(p);
-    }
     while (!work_.empty()) {
       const uint32_t p = work_.back();
       work_.pop_back();
@@ -87,6 +89,7 @@ class Scheduler {
         own = std::max(own, level[before] + 1);
       }
       level[p] = own;
+      if (!updates_) continue;  // nobody waits for readers
       for (const Access& a : graph_.passes[p].accesses) {
         const uint32_t next = a.previous || a.writes ? kNone : writers_[a.slot + 1];
         if (!live(next)) continue;
@@ -180,14 +183,14 @@ class Scheduler {
       ++live;
     }
     std::vector<uint32_t>& first = result_.levelFirst;
-    first.assign(levels + 1, 0);
+    first.assign(levels + 2, 0);
     for (const uint32_t l : result_.level)
-      if (l != kNone) ++first[l + 1];
-    for (uint32_t l = 1; l <= levels; ++l) first[l] += first[l - 1];
-    detail::ScratchVector<uint32_t> at(first.begin(), first.end(), scratch_);
+      if (l != kNone) ++first[l + 2];
+    for (uint32_t l = 2; l <= levels; ++l) first[l] += first[l - 1];
     result_.order.resize(live);
     for (uint32_t p = 0; p < passCount_; ++p)
-      if (result_.level[p] != kNone) result_.order[at[result_.level[p]]++] = p;
+      if (result_.level[p] != kNone) result_.order[first[result_.level[p] + 1]++] = p;
+    first.pop_back();
   }
 
   const BoundGraph& graph_;
@@ -197,6 +200,7 @@ class Scheduler {
   detail::ScratchVector<uint32_t> writers_{scratch_};  // by slot
   detail::ScratchVector<uint32_t> work_{scratch_}, edgeFirst_{scratch_}, edges_{scratch_}, waits_{scratch_};
   detail::ScratchVector<uint8_t> allWriters_{scratch_};
+  bool updates_ = false;  // some resource is written more than once, or over what the caller put there
 };
 
 }  // namespace
