@@ -292,12 +292,19 @@ TEST(Execute, HostPassesCountTheirOwnTimeOnce) {
   Runner runner(R"({"passes": {
     "fill": {"type": "test-fill"}, "first": {"type": "test-slow-host", "inputs": {"a": "fill"}},
     "second": {"type": "test-slow-host", "inputs": {"a": "first"}}}, "outputs": {"x": "second"}})");
-  const FrameResult result = runner.frame();
-  ASSERT_EQ(result.passes.size(), 3u);
+  double leastCpu[3] = {1e9, 1e9, 1e9}, leastGpu[3] = {1e9, 1e9, 1e9};  // a busy machine delays some frames
+  for (int frame = 0; frame < 5; ++frame) {
+    const FrameResult result = runner.frame();
+    ASSERT_EQ(result.passes.size(), 3u);
+    for (size_t i : {1, 2}) {
+      EXPECT_GE(result.passes[i].cpuMs, 40);
+      leastCpu[i] = std::min(leastCpu[i], double(result.passes[i].cpuMs));
+      leastGpu[i] = std::min(leastGpu[i], double(result.passes[i].gpuMs));
+    }
+  }
   for (size_t i : {1, 2}) {
-    EXPECT_GE(result.passes[i].cpuMs, 40);
-    EXPECT_LT(result.passes[i].cpuMs, 75);
-    EXPECT_LT(result.passes[i].gpuMs, 30);
+    EXPECT_LT(leastCpu[i], 75);
+    EXPECT_LT(leastGpu[i], 30);
   }
 }
 
