@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "framework/graph/scratch.h"
-#include "framework/graph/validate.h"
 
 namespace fovea::graph {
 namespace {
@@ -151,9 +150,7 @@ void Planner::collectTouches() {
       for (const Access& a : graph_.passes[p].accesses) {
         Known& known = knownScopes[a.writes];
         const uint32_t key = uint32_t(a.usage) << 8 | uint32_t(kind) << 1 | uint32_t(a.reads);
-        if (known.key != key)
-          known = {key, accessScope(kind, a.usage, a.reads, a.writes,
-                                    isDepthFormat(graph_.resources[a.resource].desc.format))};
+        if (known.key != key) known = {key, accessScope(kind, a.usage, a.reads, a.writes)};
         const AccessScope& scope = known.scope;
         if (!a.writes) {
           groups_[a.slot].stage |= scope.stage;

@@ -49,7 +49,7 @@ VkImageLayout accessLayout(Usage usage, bool reads, bool writes) {
   return VK_IMAGE_LAYOUT_GENERAL;
 }
 
-AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, bool /*depthFormat*/) {
+AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes) {
   AccessScope scope;
   const VkPipelineStageFlags2 shaders = shaderStages(kind);
   auto add = [&](Usage bit, VkPipelineStageFlags2 stage, VkAccessFlags2 access) {

@@ -142,7 +142,7 @@ struct AccessScope {
   VkAccessFlags2 access = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
-AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes, bool depthFormat);
+AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes);
 VkImageLayout accessLayout(Usage usage, bool reads, bool writes);  // the layout alone
 
 }  // namespace fovea::graph

@@ -114,8 +114,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
                                                       points, fovea, glm::ivec2(view.size))) +
                                 0.5f;
         const bool due = point % renew == settings.turn % renew;
-        const bool anew = due ? !tracer.belongs(start, pixel, count) || !tracer.stands(start, count)
-                              : !tracer.stands(start, count);
+        const bool anew = (due && !tracer.belongs(start, pixel, count)) || !tracer.stands(start, count);
         if (anew) start = tracer.look(pixel, count);
         if (!anew && point % trace != settings.turn % trace) continue;
         for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)

@@ -21,8 +21,7 @@ struct EyePathSettings {
   uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees
   uint32_t gathered = 2;                  // rays by which the second of them is found
   uint32_t renewFrames = 1;               // in which all starts are looked for anew, a share in each
-  float stray =
-      0;  // image widths: starts that are due and lie no farther from their place stay if still seen
+  float stray = 0;           // image widths from where it is due: a start that is still seen there stays
   uint32_t traceFrames = 1;  // in which all paths are traced anew, likewise
   uint32_t turn = 0;         // of both
   uint32_t threads = 0;      // 0: one a core; the result does not depend on it

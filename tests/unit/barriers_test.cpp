@@ -191,18 +191,18 @@ TEST(Barriers, AnInputUpdatedInPlaceGoesRoundTheFrame) {
 }
 
 TEST(AccessScope, LayoutsOfCombinedUsages) {
-  auto layout = [](Usage usage, bool writes, bool depth = false) {
-    return layoutText(accessScope(PassKind::ComputeAndGraphics, usage, true, writes, depth).layout);
+  auto layout = [](Usage usage, bool writes) {
+    return layoutText(accessScope(PassKind::ComputeAndGraphics, usage, true, writes).layout);
   };
   EXPECT_EQ(layout(Usage::Sampled, false), "sampled");
   EXPECT_EQ(layout(Usage::Sampled | Usage::StorageRead, false), "general");
   EXPECT_EQ(layout(Usage::StorageWrite, true), "general");
   EXPECT_EQ(layout(Usage::ColorAttachment, true), "color");
   EXPECT_EQ(layout(Usage::ColorAttachment | Usage::Sampled, true), "general");
-  EXPECT_EQ(layout(Usage::DepthAttachment, true, true), "depth");
-  EXPECT_EQ(layout(Usage::DepthAttachment, false, true), "depth-read");
-  EXPECT_EQ(layout(Usage::DepthAttachment | Usage::Sampled, false, true), "depth-read");
-  EXPECT_EQ(layout(Usage::DepthAttachment | Usage::Sampled, true, true), "general");
+  EXPECT_EQ(layout(Usage::DepthAttachment, true), "depth");
+  EXPECT_EQ(layout(Usage::DepthAttachment, false), "depth-read");
+  EXPECT_EQ(layout(Usage::DepthAttachment | Usage::Sampled, false), "depth-read");
+  EXPECT_EQ(layout(Usage::DepthAttachment | Usage::Sampled, true), "general");
   EXPECT_EQ(layout(Usage::TransferRead, false), "source");
   EXPECT_EQ(layout(Usage::TransferWrite, true), "target");
   EXPECT_EQ(layout(Usage::TransferWrite | Usage::StorageWrite, true), "general");
@@ -210,7 +210,7 @@ TEST(AccessScope, LayoutsOfCombinedUsages) {
 
 TEST(AccessScope, StagesFollowFromThePassKind) {
   auto stage = [](PassKind kind, Usage usage) {
-    return stageText(accessScope(kind, usage, true, false, false).stage);
+    return stageText(accessScope(kind, usage, true, false).stage);
   };
   EXPECT_EQ(stage(PassKind::Compute, Usage::Sampled), "compute");
   EXPECT_EQ(stage(PassKind::Graphics, Usage::Uniform), "vertex+fragment");

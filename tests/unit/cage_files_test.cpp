@@ -12,6 +12,7 @@ namespace {
 using namespace test;  // NOLINT: cages
 using fovea::test::appendBytes;
 using fovea::test::errorOf;
+using fovea::test::loadsChanged;
 using fovea::test::loadText;
 using fovea::test::TemporaryFolder;
 using fovea::test::TriangleDocument;
@@ -249,18 +250,8 @@ TEST(CageFiles, EveryByteOfACageChanged) {
   int loaded = 0, refused = 0;
   for (size_t i = extras; i < good.size(); ++i) {
     if (i == extras + 120) i = std::max(i, indices);
-    for (const int change : {0x01, 0x10, 0xff}) {
-      std::string bad = good;
-      bad[i] = char(bad[i] ^ change);
-      Diagnostics warnings;
-      try {
-        flatten(loadText(folder, bad, warnings, "model.glb"));
-        ++loaded;
-      } catch (const Error& e) {
-        EXPECT_EQ(int(e.code()), int(ExitCode::BadInput)) << "byte " << i << ": " << e.what();
-        ++refused;
-      }
-    }
+    for (const int change : {0x01, 0x10, 0xff})
+      (loadsChanged(folder, good, i, change) ? loaded : refused) += 1;
   }
   EXPECT_GT(refused, 300);
   EXPECT_GT(loaded, 10);

@@ -10,6 +10,7 @@ namespace {
 
 using test::errorOf;
 using test::errorOfText;
+using test::loadsChanged;
 using test::loadText;
 using test::TemporaryFolder;
 using test::TriangleDocument;
@@ -275,18 +276,8 @@ TEST(GltfHostile, EveryByteChanged) {
   TemporaryFolder folder;
   int loaded = 0, refused = 0;
   for (size_t i = 0; i < good.size(); ++i) {
-    for (const int change : {0x01, 0x80, 0xff}) {
-      std::string bad = good;
-      bad[i] = char(bad[i] ^ change);
-      Diagnostics warnings;
-      try {
-        flatten(loadText(folder, bad, warnings, "model.glb"));
-        ++loaded;
-      } catch (const Error& e) {
-        EXPECT_EQ(int(e.code()), int(ExitCode::BadInput)) << "byte " << i << ": " << e.what();
-        ++refused;
-      }
-    }
+    for (const int change : {0x01, 0x80, 0xff})
+      (loadsChanged(folder, good, i, change) ? loaded : refused) += 1;
   }
   EXPECT_GT(refused, 1000);
   EXPECT_GT(loaded, 10);

@@ -152,4 +152,19 @@ inline std::string errorOfText(const std::string& text, const std::string& name 
   return errorOf([&] { loadText(folder, text, warnings, name); });
 }
 
+// Whether a binary document in which one byte is changed still loads; if not, its message must be one about
+// bad input.
+inline bool loadsChanged(const TemporaryFolder& folder, const std::string& good, size_t at, int change) {
+  std::string bad = good;
+  bad[at] = char(bad[at] ^ change);
+  Diagnostics warnings;
+  try {
+    flatten(loadText(folder, bad, warnings, "model.glb"));
+    return true;
+  } catch (const Error& e) {
+    EXPECT_EQ(int(e.code()), int(ExitCode::BadInput)) << "byte " << at << ": " << e.what();
+    return false;
+  }
+}
+
 }  // namespace fovea::test
