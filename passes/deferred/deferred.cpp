@@ -97,7 +97,7 @@ class Deferred : public Pass {
     if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
     filter["EDGES"] = "1";
     edges_ = ctx.compute("deferred/resolve.comp", filter);
-    compose_ = ctx.fullscreen("deferred/compose.frag", {"indirect", "radiance"},
+    compose_ = ctx.fullscreen("compose/compose.frag", {"indirect", "radiance"},
                               {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);

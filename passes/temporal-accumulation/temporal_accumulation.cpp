@@ -1,4 +1,5 @@
-// Few samples a frame become many over the frames: they stay on the surfaces where they were taken.
+// Few samples a frame become many over the frames: they stay on the surfaces where they were taken. Of an
+// image with a sample for every pixel it is what changes from frame to frame that becomes less.
 #include <bit>
 #include <cmath>
 
@@ -14,25 +15,21 @@ class TemporalAccumulation : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d(
         "temporal-accumulation",
-        "running mean, at every pixel, of samples that few pixels get in a frame; it follows the "
-        "surfaces and starts anew where one comes into view",
+        "running mean, at every pixel, of samples that few pixels, or all, get in a frame; it follows "
+        "the surfaces and starts anew where one comes into view",
         PassKind::Graphics);
-    d.view();
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
-    const auto position = [] {
-      return member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead);
-    };
-    const auto normal = [] {
-      return member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead);
-    };
     d.input("gbuffer", "gbuffer",
-            {position(), normal(), member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead)},
+            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
+             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
-    d.input("previous", "gbuffer", {position(), normal()}, "those of the frame before");
+    d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
+            "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff: none (pass "
+            "motion-vectors)");
     d.input(
         "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
         "rgb: of one pixel of a block; a: which, as pass near-field says it; a power of two times smaller "
-        "than `mean`");
+        "than `mean`. Or rgb of every pixel, a 1, as large as `mean`");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the frame before");
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
@@ -53,19 +50,24 @@ class TemporalAccumulation : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    kernel_ = ctx.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"});
+    const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
+    shift_ = int32_t(std::bit_width((pixels + texels - 1) / texels - 1));
+    kernel_ = ctx.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"},
+                             {{"BLOCKS", shift_ > 0 ? "1" : "0"}});
   }
   void record(RecordContext& ctx) override {
-    const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
-    ctx.use(kernel_)
-        .constant("weight", ctx.firstFrame() ? float(ctx.parameters().integer("first_samples")) : 1.0f)
-        .constant("frames", float(ctx.parameters().real("frames")))
-        .constant("leastCos", std::cos(float(ctx.parameters().real("normal_angle")) * 0.017453293f))
-        .constant("shift", int32_t(std::bit_width((pixels + texels - 1) / texels - 1)))
-        .drawFullscreen();
+    const Parameters& p = ctx.parameters();
+    Commands commands = ctx.use(kernel_);
+    commands.constant("weight", ctx.firstFrame() ? float(p.integer("first_samples")) : 1.0f)
+        .constant("frames", float(p.real("frames")));
+    if (shift_ > 0)
+      commands.constant("leastCos", std::cos(float(p.real("normal_angle")) * 0.017453293f))
+          .constant("shift", shift_);
+    commands.drawFullscreen();
   }
 
  private:
+  int32_t shift_ = 0;  // a texel of `samples` is 2^shift pixels wide
   Kernel kernel_;
 };
 

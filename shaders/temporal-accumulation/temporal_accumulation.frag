@@ -1,67 +1,40 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Running mean, at every pixel, of samples that few pixels get in a frame. A pixel takes over the mean of the frame before from
-// where its surface was then, if that was the same surface, and the sample of its block if that was taken on its surface.
+// Running mean, at every pixel, of samples that few pixels, or all, get in a frame. A pixel takes over the mean of the frame
+// before from where its surface was then, and its own sample, or that of its block if that was taken on its surface.
+// Defines: BLOCKS 0/1: a texel of `samples` stands for several pixels.
 //
-// Of the four texels around the place where it was one is taken at random, as probably as it is near: so that what moves by
-// parts of a pixel moves on average, at the price of one load. Images and not textures: those cost several times as much on a
-// CPU device.
-#include "common/scene.glsl"
-#include "common/random.glsl"
-
+// Images and not textures: those cost several times as much on a CPU device.
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, r32ui) uniform readonly uimage2D gbufferId;
-layout(set = 0, rgba32f) uniform readonly image2D previousPosition;
-layout(set = 0, rgba16f) uniform readonly image2D previousNormal;
+layout(set = 0, r32ui) uniform readonly uimage2D origin;
 layout(set = 0, rgba16f) uniform readonly image2D samples;
 layout(set = 0, rgba16f) uniform readonly image2D history;
 layout(location = 0) out vec4 mean;
 
 layout(push_constant) uniform Constants {
-  uint frameIndex;
   float weight;          // of a sample
   float frames;          // that the mean goes back
+#if BLOCKS
   float planeTolerance;  // in parts of the distance to the eye
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
+#endif
 };
 
-const uint kJitterStream = 0x74656d70u;
-const float kSamePlace = 1e-3;  // pixels: stands still
+const uint kNone = 0xffffffffu;
 
+// rgb: mean, a: frames in it, 0: none.
+vec4 fromHistory(ivec2 p) {
+  uint from = imageLoad(origin, p).r;
+  return from == kNone ? vec4(0.0) : imageLoad(history, ivec2(from & 0xffffu, from >> 16));
+}
+
+#if BLOCKS
 bool sameSurface(vec4 position, vec3 normal, vec4 other, vec3 otherNormal) {
   return other.w > 0.0 && abs(dot(other.xyz - position.xyz, normal)) <= planeTolerance * position.w &&
          dot(normal, otherNormal) >= leastCos;
-}
-
-// Where the surface was in the frame before; of one that deforms, where it is.
-vec3 positionBefore(vec3 position, uint id) {
-  uint object = id >> 16;
-  for (int turn_ = 0; turn_ < int(object != 0u); ++turn_)  // as a loop, for a CPU device walks through a branch that no lane takes
-    if (!objectDeforms(object)) position = previousObjectTransform(object) * vec4(toObject(object, position), 1.0);
-  return position;
-}
-
-// rgb: mean, a: frames in it, 0: none.
-vec4 fromHistory(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
-  vec4 before = vec4(positionBefore(position.xyz, imageLoad(gbufferId, p).r), position.w);
-  vec4 clip = view.previousWorldToClip * vec4(before.xyz, 1.0);
-  if (!(clip.w > 0.0)) return vec4(0.0);
-  vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
-  uint bits = randomStream(uint(p.x), frameIndex, kJitterStream, uint(p.y));
-  vec2 still = round(at), corner = floor(at);
-  at = mix(at, still, lessThan(abs(at - still), vec2(kSamePlace)));
-  ivec2 first = ivec2(floor(at + vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)))) - corner);
-  vec4 result = vec4(0.0);
-  bool found = false;
-  for (int i = 0; i < 4 && !found; ++i) {
-    ivec2 q = ivec2(corner) + (first ^ ivec2(i & 1, i >> 1)), inside = clamp(q, ivec2(0), size - 1);
-    found = q == inside && sameSurface(before, normal, imageLoad(previousPosition, inside), imageLoad(previousNormal, inside).xyz);
-    if (found) result = imageLoad(history, inside);
-  }
-  return result;
 }
 
 struct Sample {
@@ -119,7 +92,7 @@ void main() {
   vec4 position = imageLoad(gbufferPosition, p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   bool surface = position.w > 0.0;
-  vec4 old = surface ? fromHistory(p, position, normal, size) : vec4(0.0);
+  vec4 old = fromHistory(p);
   Sample s = sampleAt(p, position, normal, size);
   // Larger blocks change all at once: less each time.
   float most = frames * float(max(s.side >> shift, 1));
@@ -129,3 +102,11 @@ void main() {
   for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side);
   mean = surface ? result : vec4(0.0);
 }
+#else
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy);
+  vec4 old = fromHistory(p);
+  float count = min(old.a + weight, frames);
+  mean = vec4(mix(old.rgb, imageLoad(samples, p).rgb, min(weight / count, 1.0)), count);
+}
+#endif

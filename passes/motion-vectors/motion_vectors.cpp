@@ -1,0 +1,56 @@
+// Where what the eye sees was seen a frame ago, for everything that is kept from frame to frame.
+#include <cmath>
+
+#include "framework/graph/registry.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+class MotionVectors : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("motion-vectors",
+                      "for every pixel the pixel of the frame before that showed the same surface",
+                      PassKind::Graphics);
+    d.view();
+    const auto position = [] {
+      return member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead);
+    };
+    const auto normal = [] {
+      return member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead);
+    };
+    d.input("gbuffer", "gbuffer",
+            {position(), normal(), member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead)},
+            "surfaces seen by the eye");
+    d.input("previous", "gbuffer", {position(), normal()}, "those of the frame before");
+    d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
+             Usage::ColorAttachment,
+             "x | y << 16: one of the four pixels around where the surface was, at random, as probably as it "
+             "is near; 0xffffffff: none of them showed it");
+    d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
+                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that "
+                "belongs to its surface");
+    d.parameter("normal_angle", real(25, 1, 90, "degrees"),
+                "normals that differ by more belong to different surfaces");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    kernel_ = ctx.fullscreen("motion-vectors/motion_vectors.frag", {"origin"});
+  }
+  void record(RecordContext& ctx) override {
+    ctx.use(kernel_)
+        .constant("leastCos", std::cos(float(ctx.parameters().real("normal_angle")) * 0.017453293f))
+        .drawFullscreen();
+  }
+
+ private:
+  Kernel kernel_;
+};
+
+FOVEA_PASS(MotionVectors);
+
+}  // namespace
+}  // namespace fovea::passes

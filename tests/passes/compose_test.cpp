@@ -1,0 +1,49 @@
+// Irradiance to radiance, pixel by pixel.
+#include <gtest/gtest.h>
+
+#include "tests/passes/deferred_reference.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kWidth = 5, kHeight = 3;
+
+glm::vec3 albedoAt(int i) { return glm::vec3(i % 3, i % 4, i % 5) / 8.0f; }
+glm::vec3 irradianceAt(int i) { return i == 7 ? glm::vec3(60000) : glm::vec3(i, 2 * i, 0.5f * float(i)); }
+glm::vec3 directAt(int i) { return i == 7 ? glm::vec3(60000) : glm::vec3(3, float(i), 0); }
+
+std::vector<uint16_t> image(glm::vec3 (*value)(int)) {
+  std::vector<uint16_t> half;
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    for (int c = 0; c < 3; ++c) half.push_back(glm::packHalf1x16(value(i)[c]));
+    half.push_back(glm::packHalf1x16(1));
+  }
+  return half;
+}
+
+void compose(bool withDirect) {
+  PassTest test("compose");
+  test.viewSize(kWidth, kHeight);
+  const auto input = [&](const char* port, glm::vec3 (*value)(int)) {
+    test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(value));
+  };
+  input("gbuffer.albedo", albedoAt);
+  input("irradiance", irradianceAt);
+  if (withDirect) input("direct", directAt);
+  test.run();
+  const auto indirect = test.floats("indirect"), radiance = test.floats("radiance");
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    const glm::vec3 reflected = albedoAt(i) * irradianceAt(i);
+    const glm::vec3 all = glm::min(reflected + (withDirect ? directAt(i) : glm::vec3(0)), 65504.0f);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(indirect[size_t(4 * i + c)], reflected[c], 1e-3f * reflected[c]) << i;
+      EXPECT_NEAR(radiance[size_t(4 * i + c)], all[c], 1e-3f * all[c]) << i;
+    }
+  }
+}
+
+TEST(Compose, IrradianceTimesReflectance) { compose(false); }
+TEST(Compose, DirectLightAddedUpToWhatAHalfHolds) { compose(true); }
+
+}  // namespace
+}  // namespace fovea::test
