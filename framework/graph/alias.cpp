@@ -105,7 +105,7 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
   if (requests.empty()) return result;
   detail::Scratch scratch;
   detail::ScratchVector<Occupancy> heaps(scratch);
-  detail::ScratchVector<uint32_t> order(requests.size(), scratch);
+  const std::span<uint32_t> order = scratch.array<uint32_t>(requests.size());
   uint32_t levels = 0;
   for (uint32_t i = 0; i < requests.size(); ++i) {
     order[i] = i;

@@ -1,6 +1,7 @@
 #include "framework/graph/barriers.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "framework/graph/scratch.h"
@@ -62,8 +63,8 @@ class Planner {
     markLasting();
     const bool history =
         std::any_of(kept_.begin(), kept_.end(), [&](uint32_t r) { return graph_.resources[r].history; });
-    current_.assign(graph_.resources.size(), {});
-    if (history) previous_.assign(graph_.resources.size(), {});
+    current_ = scratch_.array<State>(graph_.resources.size());
+    if (history) previous_ = scratch_.array<State>(graph_.resources.size());
     // Copies that change places need two rounds until both carry the state of a whole frame.
     for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) settle();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
@@ -118,28 +119,28 @@ class Planner {
   uint32_t round_ = 0;  // frames followed so far
   detail::Scratch scratch_;
   detail::ScratchVector<Touch> touches_{scratch_};
-  detail::ScratchVector<uint32_t> touchFirst_{scratch_};  // per level
-  detail::ScratchVector<ReadGroup> groups_{scratch_};     // by slot
-  detail::ScratchVector<State> current_{scratch_}, previous_{scratch_};
-  detail::ScratchVector<SegmentRange> segmentsOf_{scratch_};  // per resource; none where nothing is shared
-  detail::ScratchVector<Segment> segments_{scratch_};
-  detail::ScratchVector<uint32_t> latest_{scratch_};  // per segment: who lies there at the end of a frame
-  detail::ScratchVector<uint32_t> kept_{scratch_};    // resources that are not transient
-  detail::ScratchVector<uint8_t> lasting_{scratch_};  // per resource
+  std::span<uint32_t> touchFirst_;  // per level
+  std::span<ReadGroup> groups_;     // by slot
+  std::span<State> current_, previous_;
+  std::span<SegmentRange> segmentsOf_;  // per resource; none where nothing is shared
+  std::span<Segment> segments_;
+  std::span<uint32_t> latest_;                      // per segment: who lies there at the end of a frame
+  detail::ScratchVector<uint32_t> kept_{scratch_};  // resources that are not transient
+  std::span<uint8_t> lasting_;                      // per resource
 };
 
 void Planner::collectTouches() {
-  groups_.assign(graph_.slots, {});
+  groups_ = scratch_.array<ReadGroup>(graph_.slots);
   struct Seen {
     uint32_t pass = kNone, touch = 0;
   };
-  detail::ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
+  const std::span<Seen> seen = scratch_.array<Seen>(graph_.resources.size() * 2);
   struct Known {
     uint32_t key = kNone;
     AccessScope scope;
   };
   Known knownScopes[2];  // the latest reader's and the latest writer's: most passes are alike
-  touchFirst_.assign(levels_ + 1, 0);
+  touchFirst_ = scratch_.array<uint32_t>(levels_ + 1);
   touches_.reserve(schedule_.order.size() * 2);
   uint32_t count = 0;  // of touches
   for (uint32_t l = 0; l < levels_; ++l) {
@@ -193,26 +194,26 @@ void Planner::makeSegments() {
     const uint32_t first = add(uint64_t(p.heap) << 56 | p.offset, next);
     next = add(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
   }
-  segmentsOf_.resize(graph_.resources.size());
+  segmentsOf_ = scratch_.array<SegmentRange>(graph_.resources.size());
   next = 0;
   for (const Placement& p : plan_.placements) {
     const uint32_t first = find(uint64_t(p.heap) << 56 | p.offset, next);
     next = find(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
     segmentsOf_[p.resource] = {first, next};
   }
-  segments_.resize(bounds.size());
+  segments_ = scratch_.array<Segment>(bounds.size());
 }
 
 // How a frame leaves a resource matters to the next one when its contents stay, or when it is the last to
 // lie in some piece of memory.
 void Planner::markLasting() {
-  lasting_.assign(graph_.resources.size(), 0);
+  lasting_ = scratch_.array<uint8_t>(graph_.resources.size());
   for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
     if (isTransient(graph_.resources[r])) continue;
     kept_.push_back(r);
     lasting_[r] = 1;
   }
-  latest_.assign(segments_.size(), kNone);
+  latest_ = scratch_.array(segments_.size(), kNone);
   for (const Placement& p : plan_.placements) {
     const auto [first, end] = segmentsOf_[p.resource];
     for (uint32_t s = first; s < end; ++s) {
@@ -277,7 +278,7 @@ template <bool record>
 BarrierBatch Planner::readOutputs() {
   BarrierBatch batch;
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-  detail::ScratchVector<uint8_t> done(graph_.resources.size(), 0, scratch_);
+  const std::span<uint8_t> done = scratch_.array<uint8_t>(graph_.resources.size());
   for (const BoundOutput& output : graph_.outputs) {
     if (std::exchange(done[output.resource], 1)) continue;
     Touch t{output.resource, 0, {}, true, false, false};

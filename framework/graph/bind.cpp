@@ -14,18 +14,22 @@
 namespace fovea::graph {
 
 BoundGraph bind(const Description& description, const Environment& environment, Diagnostics& diagnostics) {
-  return detail::Binder(description, environment, diagnostics).run();
+  BoundGraph graph;
+  detail::Binder(description, environment, diagnostics, graph).run();
+  return graph;
 }
 
 namespace detail {
 
-Binder::Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics)
+Binder::Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics,
+               BoundGraph& graph)
     : description_(description),
       environment_(environment),
       diagnostics_(diagnostics),
-      registry_(environment.registry ? *environment.registry : Registry::global()) {}
+      registry_(environment.registry ? *environment.registry : Registry::global()),
+      graph_(graph) {}
 
-BoundGraph Binder::run() {
+void Binder::run() {
   graph_.name = description_.name;
   graph_.description = description_.description;
   graph_.values = values_;
@@ -46,7 +50,6 @@ BoundGraph Binder::run() {
   diagnostics_.throwIfErrors();
   chooseLayouts();
   graph_.hash = hash();
-  return std::move(graph_);
 }
 
 void Binder::error(const Place& place, std::string path, std::string message, std::string remedy) {
@@ -74,10 +77,10 @@ void Binder::declare() {
   const size_t count = description_.passes.size();
   graph_.passes.reserve(count);
   values_->reserve(description_.parameters.size() + count);  // a guess: one left to its default each
-  firstPort_.resize(count + 1);
+  firstPort_ = scratch_.array<uint32_t>(count + 1);
   ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
-  passBySymbol_.assign(description_.symbols.size(), kNone);
-  ScratchVector<const PassDeclaration*> types(description_.symbols.size(), nullptr, scratch_);
+  passBySymbol_ = scratch_.array(description_.symbols.size(), kNone);
+  const auto types = scratch_.array<const PassDeclaration*>(description_.symbols.size());
   for (uint32_t p = 0; p < count; ++p) {
     const PassDescription& from = description_.passes[p];
     BoundPass& pass = graph_.passes.emplace_back(text(from.name));
@@ -191,7 +194,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   const ParameterDescription* given = description_.parameters.data() + from.firstParameter;
   const ParameterDescription* const end = given + from.parameterCount;
   for (const ParameterSpec& spec : specs) {  // mostly given in the order of the declaration
-    if (given != end && sameText(spec.name, text(given->name)))
+    if (given != end && sameText(spec.name, given->name))
       readParameter(spec, *given++, from, values_->emplace_back());
     else
       values_->push_back(spec.defaultValue);
@@ -202,7 +205,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
 // One that is given out of order, or unknown.
 void Binder::bindParameter(const std::vector<ParameterSpec>& specs, const ParameterDescription& given,
                            const PassDescription& from, std::vector<Value>::iterator values) {
-  const std::string_view name = text(given.name);
+  const std::string_view name = given.name;
   for (const ParameterSpec& spec : specs)
     if (spec.name == name) return readParameter(spec, given, from, values[&spec - specs.data()]);
   std::vector<std::string> names;
@@ -394,12 +397,12 @@ void Binder::bindOutputs() {
     for (uint32_t m = 0; m < port.value.count; ++m) {
       const uint32_t resource = port.value.first + m;
       BoundOutput output;
-      output.name = text(wire.target);
+      output.name = wire.target;
       if (bundle) output.name += "." + port.value.origin->members[m].name;
       output.resource = resource;
       output.version = versionSeen(port, resource);
       if (output.version != graph_.resources[resource].versions)
-        error(wire.place, json::joinPath("outputs", text(wire.target)),
+        error(wire.place, json::joinPath("outputs", wire.target),
               fmt::format("`{}` is updated in place later in the frame", wire.written),
               "wire the output to the last pass that updates it");
       graph_.resources[resource].output = true;

@@ -2,6 +2,7 @@
 // binding is a few walks over arrays; texts are only put together for a message.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,8 +46,10 @@ class [[gnu::visibility("hidden")]] Binder;
 
 class Binder {
  public:
-  Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics);
-  BoundGraph run();
+  // `graph`: an empty one, to be filled.
+  Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics,
+         BoundGraph& graph);
+  void run();
 
  private:
   // bind.cpp: passes, parameters, accesses, outputs
@@ -106,7 +109,7 @@ class Binder {
 
   // order.cpp: order, versions, hazards that no order can avoid
   void orderPasses();
-  void reportCycle(const ScratchVector<uint32_t>& waiting);
+  void reportCycle(std::span<const uint32_t> waiting);
   void makeVersions();
   void updateInPlace();
   void checkInPlace();
@@ -144,12 +147,12 @@ class Binder {
   const Environment& environment_;
   Diagnostics& diagnostics_;
   const Registry& registry_;
-  BoundGraph graph_;
+  BoundGraph& graph_;
   // Of all passes; whole before anyone reads it.
   std::shared_ptr<std::vector<Value>> values_ = std::make_shared<std::vector<Value>>();
   Scratch scratch_;
-  ScratchVector<uint32_t> passBySymbol_{scratch_};
-  ScratchVector<uint32_t> firstPort_{scratch_};  // per pass, and one past the last
+  std::span<uint32_t> passBySymbol_;
+  std::span<uint32_t> firstPort_;  // per pass, and one past the last
   ScratchVector<PortState> ports_{scratch_};
   ScratchVector<uint32_t> versions_{scratch_};
   ScratchVector<uint32_t> order_{scratch_};          // passes, producers first; incomplete after a cycle
@@ -158,8 +161,8 @@ class Binder {
   ScratchVector<uint32_t> resourcePass_{scratch_};   // producing pass, kNone for externals
   ScratchVector<const MemberSpec*> resourceSpec_{scratch_};  // as its producer declares it
   ScratchVector<uint32_t> chain_{scratch_};                  // followValue's
-  ScratchVector<uint8_t> sized_{scratch_};  // per pass: 0 not yet, 1 being done, 2 done, 3 failed
-  size_t resourceCount_ = 0;                // made by passes
+  std::span<uint8_t> sized_;  // per pass: 0 not yet, 1 being done, 2 done, 3 failed
+  size_t resourceCount_ = 0;  // made by passes
   bool inPlace_ = false, history_ = false;
   bool inOrder_ = true;  // all passes are declared after those that they wait for
 };

@@ -76,7 +76,7 @@ std::string Binder::describeWanted(const PortSpec& spec) const {
 
 std::string Binder::wirePath(const PortState& port) const {
   const WireDescription& wire = description_.wires[port.wire];
-  return passPath(port.pass, json::joinPath("inputs", text(wire.target)));
+  return passPath(port.pass, json::joinPath("inputs", wire.target));
 }
 
 // ---- From names to ports -----------------------------------------------------------------------------
@@ -92,7 +92,7 @@ void Binder::assignWires() {
     size_t guess = 0;
     for (uint32_t i = 0; i < from.inputCount; ++i) {
       const WireDescription& wire = description_.wires[from.firstInput + i];
-      const std::string_view name = text(wire.target);
+      const std::string_view name = wire.target;
       size_t k = 0;
       for (; k < count; ++k, ++guess) {
         if (guess >= count) guess = 0;
@@ -199,7 +199,7 @@ void Binder::reportNoOutput(PortState& port, const WireDescription& wire, uint32
 
 // Where a wire of a pass or of the graph's outputs is written.
 std::string Binder::connectedPath(const PortState& port, const WireDescription& wire) const {
-  return port.pass == kNone ? json::joinPath("outputs", text(wire.target)) : wirePath(port);
+  return port.pass == kNone ? json::joinPath("outputs", wire.target) : wirePath(port);
 }
 
 // ---- Values ------------------------------------------------------------------------------------------

@@ -66,24 +66,28 @@ void Expander::enterFile(const std::shared_ptr<const std::string>& file) {
 
 void Expander::expandRoot(const json::Value& document, const std::filesystem::path& file) {
   ++made_;
-  Scope& root = scopes_.emplace_back();
-  root.file = file;
+  Scope& root = scopes_.emplace_back(scratch_);
+  root.file = file.native();
   root.document = &document;
   readParameters(root, nullptr, {});
   readRootInputs(root);
   expandScope(root);
 }
 
+constexpr std::string_view kGraphKeys[] = {"$schema",    "extends", "description", "parameters",
+                                           "inputs",     "outputs", "passes"};
+
 void Expander::expandScope(Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, diagnostics_);
-  reader.text("$schema");
-  reader.find("extends");  // merged by now
-  std::string text = reader.text("description");
-  if (!scope.parent) description_.description = std::move(text);
-  reader.object("parameters");  // read by readParameters
-  reader.object("inputs");      // read by readRootInputs or readInputs
-  reader.object("outputs");     // read by wiring
-  if (const json::Value* passes = reader.object("passes")) {
+  const auto [schema, extends, description, parameters, inputs, outputs, passes] =
+      reader.findAll<kGraphKeys>();
+  reader.expectText("$schema", schema);
+  reader.expectText("description", description);
+  if (description && !scope.parent) description_.description = description->string;
+  reader.object("parameters", parameters);  // read by readParameters
+  reader.object("inputs", inputs);          // read by readRootInputs or readInputs
+  reader.object("outputs", outputs);        // read by wiring
+  if (reader.object("passes", passes)) {
     const size_t count = description_.passes.size() + passes->members.size();
     description_.passes.reserve(count);
     description_.parameters.reserve(2 * count);
@@ -97,6 +101,7 @@ void Expander::expandScope(Scope& scope) {
 
 void Expander::readParameters(Scope& scope, const json::Value* given, const Trail& givenPath) {
   if (const json::Value* own = scope.document->find("parameters"); own && own->isObject()) {
+    scope.parameters.reserve(own->members.size());
     for (const Member& member : own->members) {
       const Trail parent("parameters"), path(parent, member.key);
       Scope::Parameter parameter;
@@ -121,7 +126,7 @@ void Expander::readParameters(Scope& scope, const json::Value* given, const Trai
       Scope::Parameter* parameter = scope.findParameter(member.key);
       if (!parameter) {
         std::vector<std::string> names;
-        for (const Scope::Parameter& p : scope.parameters) names.push_back(p.name);
+        for (const Scope::Parameter& p : scope.parameters) names.emplace_back(p.name);
         error(member.keyWhere, path, fmt::format("the sub-graph has no parameter `{}`", member.key),
               nearestRemedy(member.key, names));
         continue;
@@ -233,7 +238,7 @@ void Expander::reportNoScalar(const json::Value& value, const Trail& path) {
 
 void Expander::reportNoParameter(const Scope& scope, const json::Value& value, const Trail& path) {
   std::vector<std::string> names;
-  for (const Scope::Parameter& p : scope.parameters) names.push_back("$" + p.name);
+  for (const Scope::Parameter& p : scope.parameters) names.push_back(fmt::format("${}", p.name));
   error(value.where, path, fmt::format("no graph parameter `{}`", value.string),
         nearestRemedy(value.string, names));
 }
@@ -307,7 +312,7 @@ void Expander::addPassInputs(Scope& scope, const Member& pass, const std::vector
   const Trail inputsPath(path, "inputs");
   for (const Member& input : inputs) {
     if (input.value.isString())
-      rawWires_.emplace_back(&scope, pass.key, intern(input.key), &input.value, place(input.keyWhere));
+      rawWires_.emplace_back(&scope, pass.key, keep(input.key), &input.value, place(input.keyWhere));
     else
       error(input.value.where, {inputsPath, input.key},
             fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));
@@ -324,7 +329,7 @@ void Expander::addPassParameters(Scope& scope, PassDescription& pass, const json
         description_.parameters.pop_back();
         continue;
       }
-      value.name = intern(param.key);
+      value.name = keep(param.key);
       value.keyPlace = place(param.keyWhere);
     }
   }
@@ -339,7 +344,7 @@ void Expander::overridePass(PassDescription& pass) {
     ParameterDescription as;
     as.type = Type::String;
     ParameterDescription value = overrideValue(as, *o.source);
-    value.name = intern(o.name);
+    value.name = keep(o.name);
     auto& all = description_.parameters;
     const auto at = std::find_if(all.begin() + pass.firstParameter, all.end(),
                                  [&](const ParameterDescription& p) { return p.name == value.name; });
@@ -360,7 +365,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
     return error(graph.where, json::joinPath(path, "graph"),
                  fmt::format("expected a file name, found {}", graph.describe()));
   const std::filesystem::path from =
-      graph.where.file ? std::filesystem::path(*graph.where.file) : parent.file;
+      graph.where.file ? *graph.where.file : parent.file;
   const std::filesystem::path file =
       findGraphFile(graph.string, from, options_.searchPaths).lexically_normal();
   if (file.empty())
@@ -369,7 +374,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
   if (containsItself(parent, file))
     return error(graph.where, json::joinPath(path, "graph"),
                  fmt::format("`{}` contains itself", graph.string));
-  json::Value parsed;
+  json::Value& parsed = documents_.emplace_back();
   try {
     parsed = json::parseFile(file);
   } catch (const Error& e) {
@@ -377,14 +382,13 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
     return;
   }
   ++made_;
-  Scope& scope = scopes_.emplace_back();
-  scope.file = file;
+  Scope& scope = scopes_.emplace_back(scratch_);
+  scope.file = file.native();
   scope.parent = &parent;
   scope.path = path;
   scope.prefix = parent.prefix + member.key + "/";
   scope.view = view ? readView(parent, *view, json::joinPath(path, "view")) : parent.view;
-  scope.parsed = std::move(parsed);
-  scope.document = &mergeExtends(scope.parsed, file, options_, diagnostics_, scope.merged);
+  scope.document = &mergeExtends(parsed, file, options_, diagnostics_, documents_.emplace_back());
   parent.instances.emplace(member.key, &scope);
   readParameters(scope, parameters, json::joinPath(path, "parameters"));
   readInputs(scope, inputs);
@@ -400,7 +404,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
 bool Expander::containsItself(const Scope& scope, const std::filesystem::path& file) {
   int depth = 0;
   for (const Scope* at = &scope; at; at = at->parent)
-    if (depth++ > kMaxInstanceDepth || at->file.lexically_normal() == file) return true;
+    if (depth++ > kMaxInstanceDepth || std::filesystem::path(at->file).lexically_normal() == file) return true;
   return false;
 }
 
@@ -408,7 +412,7 @@ void Expander::reportUnused() {
   for (const Scope& scope : scopes_) {
     for (const Scope::Parameter& p : scope.parameters) {
       if (!p.used)
-        diagnostics_.warning(description_.location(p.value.keyPlace), "parameters." + p.name,
+        diagnostics_.warning(description_.location(p.value.keyPlace), fmt::format("parameters.{}", p.name),
                              fmt::format("nothing uses the graph parameter `{}`", p.name));
     }
     for (const Scope::Input& input : scope.inputs)
@@ -421,8 +425,9 @@ void Expander::reportUnused() {
     std::vector<std::string> names, targets;
     for (const Scope& scope : scopes_)
       for (const Scope::Parameter& p : scope.parameters)
-        names.push_back(
-            scope.prefix.empty() ? p.name : scope.prefix.substr(0, scope.prefix.size() - 1) + "." + p.name);
+        names.push_back(scope.prefix.empty()
+                            ? std::string(p.name)
+                            : fmt::format("{}.{}", scope.prefix.substr(0, scope.prefix.size() - 1), p.name));
     for (const PassDescription& pass : description_.passes)
       targets.emplace_back(description_.symbols[pass.name]);
     const SourceLocation where{fmt::format("--set {}={}", o.source->name, o.source->value), 0, 0};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,7 +37,7 @@ class Trail {
 // One graph document in use: the whole graph, or a sub-graph under a prefix.
 struct Scope {
   struct Parameter {
-    std::string name;
+    std::string_view name;  // in its document
     ParameterDescription value;
     bool used = false;
   };
@@ -49,14 +50,15 @@ struct Scope {
     Place place;
   };
 
+  explicit Scope(Scratch& scratch) : parameters(scratch) {}
+
   std::string prefix;       // "" or "left/"
   std::string path;         // in the parent's document: "passes.left"
   Scope* parent = nullptr;  // nullptr for the whole graph
-  std::filesystem::path file;
+  std::string file;
   const json::Value* document = nullptr;
-  json::Value parsed, merged;  // a sub-graph's document is one of them
   Symbol view = kNone;
-  std::vector<Parameter> parameters;
+  ScratchVector<Parameter> parameters;
   std::vector<Input> inputs;
   std::map<std::string, Scope*, std::less<>> instances;
 
@@ -83,7 +85,7 @@ struct WireParts {
 struct RawWire {
   Scope* scope;
   std::string_view pass;  // as its document calls it
-  Symbol target;
+  std::string_view target;
   const json::Value* value;
   Place keyPlace;
 };
@@ -153,12 +155,14 @@ class Expander {
   void enterFile(const std::shared_ptr<const std::string>& file);
   static bool containsItself(const Scope& scope, const std::filesystem::path& file);
   Symbol intern(std::string_view text) { return description_.symbols.intern(text); }
+  std::string_view keep(std::string_view text) { return description_.symbols.keep(text); }
 
   Description& description_;
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
   Scratch scratch_;
-  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};  // they and their documents are pointed to
+  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};                  // they are pointed to,
+  std::list<json::Value, ScratchAllocator<json::Value>> documents_{scratch_};  // so are those of sub-graphs
   ScratchVector<RawWire> rawWires_{scratch_};
   ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
   std::vector<PendingOverride> overrides_;
@@ -167,8 +171,8 @@ class Expander {
   const std::string noFile_;                  // where latestFile_ points before any file is met
   const std::string* latestFile_ = &noFile_;  // of place(), and its index
   uint32_t latestIndex_ = kNone;
-  ScratchVector<uint8_t> isPass_{scratch_};  // by symbol
-  size_t made_ = 0;                          // passes and scopes
+  std::span<uint8_t> isPass_;  // by symbol
+  size_t made_ = 0;            // passes and scopes
   bool full_ = false;
 };
 

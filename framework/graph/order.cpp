@@ -16,14 +16,14 @@ void Binder::orderPasses() {
     order_.resize(count);
     return std::iota(order_.begin(), order_.end(), 0u);
   }
-  ScratchVector<uint32_t> first(count + 2, 0, scratch_), waits(count, 0, scratch_);
+  const auto first = scratch_.array<uint32_t>(count + 2), waits = scratch_.array<uint32_t>(count);
   for (const PortState& port : ports_) {
     if (port.source == kNone || port.previous) continue;
     ++first[ports_[port.source].pass + 2];
     ++waits[port.pass];
   }
   for (uint32_t p = 2; p < count + 2; ++p) first[p] += first[p - 1];
-  ScratchVector<uint32_t> readers(first[count + 1], scratch_);
+  const auto readers = scratch_.array<uint32_t>(first[count + 1]);
   for (const PortState& port : ports_)
     if (port.source != kNone && !port.previous) readers[first[ports_[port.source].pass + 1]++] = port.pass;
   order_.reserve(count);
@@ -36,7 +36,7 @@ void Binder::orderPasses() {
 }
 
 // Every pass that still waits has a producer that still waits: walking up must come round.
-void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
+void Binder::reportCycle(std::span<const uint32_t> waits) {
   std::vector<uint32_t> producer(graph_.passes.size(), kNone), wire(graph_.passes.size(), kNone);
   for (const PortState& port : ports_) {
     if (port.source == kNone || port.previous || waits[port.pass] == 0) continue;
@@ -61,7 +61,7 @@ void Binder::reportCycle(const ScratchVector<uint32_t>& waits) {
     std::string names;
     for (const uint32_t p : circle) names += graph_.passes[p].name + " <- ";
     const WireDescription& w = description_.wires[wire[circle[0]]];
-    error(w.place, passPath(circle[0], json::joinPath("inputs", text(w.target))),
+    error(w.place, passPath(circle[0], json::joinPath("inputs", w.target)),
           fmt::format("these passes wait for each other: {}{}", names, graph_.passes[circle[0]].name),
           "one of these wires must read last frame's value: append @previous");
   }
@@ -170,8 +170,8 @@ void Binder::chooseLayouts() {
     Usage usage = Usage::None;
     bool reads = false, writes = false;
   };
-  ScratchVector<VkImageLayout> readLayout(graph_.slots, VK_IMAGE_LAYOUT_UNDEFINED, scratch_);
-  ScratchVector<Seen> seen(graph_.resources.size() * 2, scratch_);
+  const auto readLayout = scratch_.array(graph_.slots, VK_IMAGE_LAYOUT_UNDEFINED);
+  const auto seen = scratch_.array<Seen>(graph_.resources.size() * 2);
   const auto isImage = [&](const Access& a) {
     return graph_.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
   };

@@ -87,18 +87,18 @@ struct Place {
 
 // "pass.port.member@previous", split. "inputs.x" of a sub-graph has been replaced by what the parent wired.
 struct WireDescription {
-  Symbol target = kNone;      // input port of the reading pass, or name of the graph's output
+  std::string_view target;    // input port of the reading pass, or name of the graph's output
+  std::string_view written;   // for messages; both are kept by Description::symbols
   Symbol pass = kNone;        // kNone with `external`
   Symbol port = kNone;        // kNone: the only output
   Symbol member = kNone;      // kNone: the whole port
   uint32_t external = kNone;  // index into Description::externals
   bool previous = false;
-  std::string_view written;  // for messages; kept by Description::symbols
   Place keyPlace, place;
 };
 
 struct ParameterDescription {
-  Symbol name = kNone;
+  std::string_view name;  // kept by Description::symbols
   json::Value::Type type = json::Value::Type::Null;
   bool fromCommandLine = false;  // String: still to be read as the parameter's own type
   int64_t integer = 0;           // Int, Bool

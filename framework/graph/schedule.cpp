@@ -1,6 +1,7 @@
 #include "framework/graph/schedule.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "framework/base/random.h"
@@ -30,7 +31,7 @@ class Scheduler {
 
  private:
   void findWriters() {
-    writers_.assign(graph_.slots, kNone);
+    writers_ = scratch_.array(graph_.slots, kNone);
     for (uint32_t p = 0; p < passCount_; ++p) {
       if (graph_.passes[p].declaration->sideEffects) need(p);
       for (const Access& a : graph_.passes[p].accesses) {
@@ -57,7 +58,7 @@ class Scheduler {
 
   void cull() {
     result_.resourceLive.assign(graph_.resources.size(), 0);
-    allWriters_.assign(graph_.resources.size(), 0);
+    allWriters_ = scratch_.array<uint8_t>(graph_.resources.size());
     for (const BoundOutput& output : graph_.outputs)
       need(writers_[graph_.resources[output.resource].firstSlot + output.version]);
     while (!work_.empty()) {
@@ -119,14 +120,14 @@ class Scheduler {
   }
 
   void makeEdges() {
-    edgeFirst_.assign(passCount_ + 2, 0);
-    waits_.assign(passCount_, 0);
+    edgeFirst_ = scratch_.array<uint32_t>(passCount_ + 2);
+    waits_ = scratch_.array<uint32_t>(passCount_);
     forEachEdge([&](uint32_t from, uint32_t to) {
       ++edgeFirst_[from + 2];
       ++waits_[to];
     });
     for (uint32_t p = 2; p < passCount_ + 2; ++p) edgeFirst_[p] += edgeFirst_[p - 1];
-    edges_.resize(edgeFirst_[passCount_ + 1]);
+    edges_ = scratch_.array<uint32_t>(edgeFirst_[passCount_ + 1]);
     forEachEdge([&](uint32_t from, uint32_t to) { edges_[edgeFirst_[from + 1]++] = to; });
   }
 
@@ -197,9 +198,10 @@ class Scheduler {
   const uint32_t passCount_;
   Schedule result_;
   detail::Scratch scratch_;
-  detail::ScratchVector<uint32_t> writers_{scratch_};  // by slot
-  detail::ScratchVector<uint32_t> work_{scratch_}, edgeFirst_{scratch_}, edges_{scratch_}, waits_{scratch_};
-  detail::ScratchVector<uint8_t> allWriters_{scratch_};
+  std::span<uint32_t> writers_;  // by slot
+  std::span<uint32_t> edgeFirst_, edges_, waits_;
+  std::span<uint8_t> allWriters_;
+  detail::ScratchVector<uint32_t> work_{scratch_};
   bool updates_ = false;  // some resource is written more than once, or over what the caller put there
 };
 

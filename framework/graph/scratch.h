@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <memory_resource>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace fovea::graph::detail {
@@ -25,6 +28,15 @@ class Scratch {
     std::byte* taken = next_;
     next_ += bytes;
     return taken;
+  }
+
+  // So many elements, alike. What grows is a ScratchVector.
+  template <class T>
+  std::span<T> array(size_t count, const T& value = T()) {
+    static_assert(alignof(T) <= kAlignment && std::is_trivially_destructible_v<T>);
+    T* const first = static_cast<T*>(take(count * sizeof(T)));
+    std::uninitialized_fill_n(first, count, value);
+    return {first, count};
   }
 
   static constexpr size_t kAlignment = 16;

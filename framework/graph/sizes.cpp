@@ -65,7 +65,7 @@ inline int64_t sizeAtOnce(const SizeExpr& size, VkExtent2D view) {
 }  // namespace
 
 void Binder::evaluateSizes() {
-  sized_.assign(graph_.passes.size(), 0);
+  sized_ = scratch_.array<uint8_t>(graph_.passes.size());
   for (const uint32_t p : order_) evaluatePass(p, 0);
   for (uint32_t p = 0; p < graph_.passes.size() && order_.size() < graph_.passes.size(); ++p)
     evaluatePass(p, 0);

@@ -33,13 +33,13 @@ Symbol findJoined(const SymbolTable& symbols, const std::string& prefix, std::st
 }  // namespace
 
 inline void Expander::describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire) {
-  wire.written = description_.symbols.keep(value.string);
+  wire.written = keep(value.string);
   wire.keyPlace = keyPlace;
   wire.place = place(value.where);
 }
 
 void Expander::resolveWires() {
-  isPass_.assign(description_.symbols.size(), 0);
+  isPass_ = scratch_.array<uint8_t>(description_.symbols.size());
   for (const PassDescription& pass : description_.passes) isPass_[pass.name] = 1;
   rawFirst_.push_back(static_cast<uint32_t>(rawWires_.size()));
   description_.wires.reserve(rawWires_.size());
@@ -51,7 +51,7 @@ void Expander::resolveWires() {
       const RawWire& raw = rawWires_[i];
       WireDescription& wire = description_.wires.emplace_back();
       const Trail passPath(passesPath, raw.pass), inputsPath(passPath, "inputs"),
-          path(inputsPath, description_.symbols[raw.target]);
+          path(inputsPath, raw.target);
       if (!resolveWire(*raw.scope, *raw.value, path, wire, 0)) {
         description_.wires.pop_back();
         continue;
@@ -82,7 +82,7 @@ void Expander::resolveOutputs() {
               wire.previous ? "drop `@previous`" : "wire it to a pass");
         continue;
       }
-      wire.target = intern(member.key);
+      wire.target = keep(member.key);
       describeWire(member.value, place(member.keyWhere), wire);
       description_.outputs.push_back(wire);
     }

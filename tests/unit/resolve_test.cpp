@@ -121,7 +121,7 @@ struct Loaded {
   std::string input(const std::string& pass, const std::string& port) const {
     for (const PassDescription& p : description.passes)
       for (uint32_t i = 0; text(p.name) == pass && i < p.inputCount; ++i)
-        if (text(description.wires[p.firstInput + i].target) == port)
+        if (description.wires[p.firstInput + i].target == port)
           return wire(description.wires[p.firstInput + i]);
     return "none";
   }
@@ -129,7 +129,7 @@ struct Loaded {
     for (const PassDescription& p : description.passes) {
       for (uint32_t i = 0; text(p.name) == pass && i < p.parameterCount; ++i) {
         const ParameterDescription& v = description.parameters[p.firstParameter + i];
-        if (text(v.name) != name) continue;
+        if (v.name != name) continue;
         if (v.type == json::Value::Type::String) return "\"" + text(v.text) + "\"";
         if (v.type == json::Value::Type::Real) return fmt::format("{}", v.real);
         if (v.type == json::Value::Type::Bool) return v.integer ? "true" : "false";
