@@ -46,8 +46,8 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void add(Diagnostic d) { list_.push_back(std::move(d)); }
-  void error(SourceLocation where, std::string path, std::string message, std::string remedy = {});
-  void warning(SourceLocation where, std::string path, std::string message, std::string remedy = {});
+  [[gnu::cold]] void error(SourceLocation where, std::string path, std::string message, std::string remedy = {});
+  [[gnu::cold]] void warning(SourceLocation where, std::string path, std::string message, std::string remedy = {});
   bool hasErrors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
   std::string format() const;  // one line each

@@ -142,7 +142,7 @@ class ObjectReader {
   void expectText(std::string_view key, const Value* value) {
     if (value && !value->isString()) textOf(key, *value, {});
   }
-  void reportMissing(std::string_view key);
+  [[gnu::cold]] void reportMissing(std::string_view key);
   [[gnu::always_inline]] bool has(std::string_view key) const { return value_.find(key) != nullptr; }
 
   double number(std::string_view key, double fallback, double min = -std::numeric_limits<double>::infinity(),
@@ -169,11 +169,11 @@ class ObjectReader {
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
-  void wrong(std::string_view key, const Value& value, const std::string& expected);
-  const Value* notObject(std::string_view key, const Value& value);
+  [[gnu::cold]] void wrong(std::string_view key, const Value& value, const std::string& expected);
+  [[gnu::cold]] const Value* notObject(std::string_view key, const Value& value);
   std::string textOf(std::string_view key, const Value& value, std::string fallback);
-  void reportKind();
-  void reportUnknown();
+  [[gnu::cold]] void reportKind();
+  [[gnu::cold]] void reportUnknown();
   const Value& value_;
   std::string path_;  // unless there is a key
   std::string_view parent_, key_;

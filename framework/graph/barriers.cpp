@@ -61,12 +61,10 @@ class Planner {
     collectTouches();
     makeSegments();
     markLasting();
-    const bool history =
-        std::any_of(kept_.begin(), kept_.end(), [&](uint32_t r) { return graph_.resources[r].history; });
     current_ = scratch_.array<State>(graph_.resources.size());
-    if (history) previous_ = scratch_.array<State>(graph_.resources.size());
+    if (history_) previous_ = scratch_.array<State>(graph_.resources.size());
     // Copies that change places need two rounds until both carry the state of a whole frame.
-    for (int warmUp = history ? 3 : 1; warmUp > 0; --warmUp) settle();
+    for (int warmUp = history_ ? 3 : 1; warmUp > 0; --warmUp) settle();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
     for (const uint32_t r : kept_) {
       plan_.startLayout[r][0] = current_[r].layout;
@@ -86,14 +84,11 @@ class Planner {
   void settle();
   void record();
   void endFrame();
-  template <bool record>
-  BarrierBatch readOutputs();
-  template <bool record>
-  void touch(const Touch& t, BarrierBatch& batch);
-  template <bool record>
-  void read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch& batch);
-  template <bool record>
-  void write(const Touch& t, State& state, BarrierBatch& batch);
+  // Without a batch they only follow states.
+  void readOutputs(BarrierBatch* batch);
+  void touch(const Touch& t, BarrierBatch* batch);
+  void read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch* batch);
+  void write(const Touch& t, State& state, BarrierBatch* batch);
   void occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFlags2& access) const;
   Segment leftBy(uint32_t resource) const;
   void leave(uint32_t resource, uint32_t level) {
@@ -127,6 +122,7 @@ class Planner {
   std::span<uint32_t> latest_;                      // per segment: who lies there at the end of a frame
   detail::ScratchVector<uint32_t> kept_{scratch_};  // resources that are not transient
   std::span<uint8_t> lasting_;                      // per resource
+  bool history_ = false;                            // some resource has two copies
 };
 
 void Planner::collectTouches() {
@@ -184,23 +180,28 @@ void Planner::makeSegments() {
     if (guess < bounds.size() && bounds[guess] == bound) return guess;
     return static_cast<uint32_t>(std::lower_bound(bounds.begin(), bounds.end(), bound) - bounds.begin());
   };
+  bool moved = false;  // some bound, by one in front of it
   const auto add = [&](uint64_t bound, uint32_t guess) {
     const uint32_t at = find(bound, guess);
-    if (at == bounds.size() || bounds[at] != bound) bounds.insert(bounds.begin() + at, bound);
+    if (at == bounds.size()) {
+      bounds.push_back(bound);
+    } else if (bounds[at] != bound) {
+      bounds.insert(bounds.begin() + at, bound);
+      moved = true;
+    }
     return at;
   };
-  uint32_t next = 0;
-  for (const Placement& p : plan_.placements) {
-    const uint32_t first = add(uint64_t(p.heap) << 56 | p.offset, next);
-    next = add(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
-  }
   segmentsOf_ = scratch_.array<SegmentRange>(graph_.resources.size());
-  next = 0;
-  for (const Placement& p : plan_.placements) {
-    const uint32_t first = find(uint64_t(p.heap) << 56 | p.offset, next);
-    next = find(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
-    segmentsOf_[p.resource] = {first, next};
-  }
+  const auto number = [&](const auto& numberOf) {
+    uint32_t next = 0;
+    for (const Placement& p : plan_.placements) {
+      const uint32_t first = numberOf(uint64_t(p.heap) << 56 | p.offset, next);
+      next = numberOf(uint64_t(p.heap) << 56 | (p.offset + p.bytes), first + 1);
+      segmentsOf_[p.resource] = {first, next};
+    }
+  };
+  number(add);
+  if (moved) number(find);
   segments_ = scratch_.array<Segment>(bounds.size());
 }
 
@@ -210,6 +211,7 @@ void Planner::markLasting() {
   lasting_ = scratch_.array<uint8_t>(graph_.resources.size());
   for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
     if (isTransient(graph_.resources[r])) continue;
+    history_ |= graph_.resources[r].history;
     kept_.push_back(r);
     lasting_[r] = 1;
   }
@@ -243,10 +245,9 @@ Segment Planner::leftBy(uint32_t resource) const {
 // its memory matters to barriers alone, so all may leave at the end.
 void Planner::settle() {
   ++round_;
-  BarrierBatch unrecorded;
   for (const Touch& t : touches_)
-    if (lasting_[t.resource]) touch<false>(t, unrecorded);
-  readOutputs<false>();
+    if (lasting_[t.resource]) touch(t, nullptr);
+  readOutputs(nullptr);
   for (uint32_t s = 0; s < segments_.size(); ++s)
     if (latest_[s] != kNone) segments_[s] = leftBy(latest_[s]);
   endFrame();
@@ -258,13 +259,13 @@ void Planner::record() {
   for (uint32_t l = 0; l < levels_; ++l) {
     Level& level = plan_.levels.emplace_back();
     level.before.images.reserve(touchFirst_[l + 1] - touchFirst_[l]);
-    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch<true>(touches_[i], level.before);
+    for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) touch(touches_[i], &level.before);
     for (uint32_t i = touchFirst_[l]; i < touchFirst_[l + 1]; ++i) leave(touches_[i].resource, l);
     const uint32_t first = schedule_.levelFirst[l], end = schedule_.levelFirst[l + 1];
     level.passes.reserve(end - first);
     for (uint32_t i = first; i < end; ++i) level.passes.push_back(schedule_.order[i]);
   }
-  plan_.end = readOutputs<true>();
+  readOutputs(&plan_.end);
   endFrame();
 }
 
@@ -274,9 +275,7 @@ void Planner::endFrame() {
     if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
 }
 
-template <bool record>
-BarrierBatch Planner::readOutputs() {
-  BarrierBatch batch;
+void Planner::readOutputs(BarrierBatch* batch) {
   const ReadGroup transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
   const std::span<uint8_t> done = scratch_.array<uint8_t>(graph_.resources.size());
   for (const BoundOutput& output : graph_.outputs) {
@@ -285,27 +284,24 @@ BarrierBatch Planner::readOutputs() {
     t.scope.layout = graph_.resources[output.resource].desc.kind == ResourceKind::Image
                          ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
                          : VK_IMAGE_LAYOUT_UNDEFINED;
-    read<record>(t, current_[output.resource], transfer, batch);
+    read(t, current_[output.resource], transfer, batch);
   }
-  return batch;
 }
 
-template <bool record>
-void Planner::touch(const Touch& t, BarrierBatch& batch) {
+void Planner::touch(const Touch& t, BarrierBatch* batch) {
   if (t.scope.stage == 0) return;  // only its size is used
   State& state = t.previous ? previous_[t.resource] : current_[t.resource];
-  if (t.writes) return write<record>(t, state, batch);
+  if (t.writes) return write(t, state, batch);
   ReadGroup& group = groups_[t.slot];
-  if (std::exchange(group.served, round_) != round_) read<record>(t, state, group, batch);
+  if (std::exchange(group.served, round_) != round_) read(t, state, group, batch);
 }
 
-template <bool record>
-void Planner::read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch& batch) {
+void Planner::read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch* batch) {
   const bool image = graph_.resources[t.resource].desc.kind == ResourceKind::Image;
   if (image && state.layout != t.scope.layout) {
-    if (record)
-      batch.images.emplace_back(t.resource, t.previous, state.writeStage | state.readStage, group.stage,
-                                state.writeAccess, group.access, state.layout, t.scope.layout);
+    if (batch)
+      batch->images.emplace_back(t.resource, t.previous, state.writeStage | state.readStage, group.stage,
+                                 state.writeAccess, group.access, state.layout, t.scope.layout);
     // The change of layout is itself a write, which only this barrier's second scope has waited for; who
     // comes later waits for that scope and for the write before it.
     state.writeStage |= group.stage;
@@ -315,8 +311,8 @@ void Planner::read(const Touch& t, State& state, const ReadGroup& group, Barrier
     state.layout = t.scope.layout;
   } else if (group.stage & ~state.seenStage || group.access & ~state.seenAccess) {
     // Readers of another group may have waited for the write; these have not.
-    if (record && state.writeStage)
-      global(batch, state.writeStage, state.writeAccess, group.stage, group.access);
+    if (batch && state.writeStage)
+      global(*batch, state.writeStage, state.writeAccess, group.stage, group.access);
     state.seenStage |= group.stage;
     state.seenAccess |= group.access;
   }
@@ -325,8 +321,7 @@ void Planner::read(const Touch& t, State& state, const ReadGroup& group, Barrier
   state.readStage |= group.stage;
 }
 
-template <bool record>
-void Planner::write(const Touch& t, State& state, BarrierBatch& batch) {
+void Planner::write(const Touch& t, State& state, BarrierBatch* batch) {
   const BoundResource& resource = graph_.resources[t.resource];
   const bool first = !t.reads && isTransient(resource);
   VkPipelineStageFlags2 source = 0;
@@ -345,11 +340,11 @@ void Planner::write(const Touch& t, State& state, BarrierBatch& batch) {
   const bool change = resource.desc.kind == ResourceKind::Image && state.layout != t.scope.layout;
   // An image's barrier speaks of that image only, so writes of other occupants of its memory need the global
   // one.
-  if (record && source && (!change || (first && sourceAccess)))
-    global(batch, source, sourceAccess, t.scope.stage, t.scope.access);
-  if (change && record)
-    batch.images.emplace_back(t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
-                              state.layout, t.scope.layout);
+  if (batch && source && (!change || (first && sourceAccess)))
+    global(*batch, source, sourceAccess, t.scope.stage, t.scope.access);
+  if (batch && change)
+    batch->images.emplace_back(t.resource, t.previous, source, t.scope.stage, sourceAccess, t.scope.access,
+                               state.layout, t.scope.layout);
   state.pendingStage = state.writeStage = t.scope.stage;
   state.pendingAccess = state.writeAccess = t.scope.access & kWrites;
   state.readStage = state.seenStage = 0;

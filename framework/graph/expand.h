@@ -146,7 +146,8 @@ class Expander {
   void resolveOutputs();
   void describeWire(const json::Value& value, const Place& keyPlace, WireDescription& wire);
 
-  void error(const json::Position& where, const Trail& path, std::string message, std::string remedy = {});
+  [[gnu::cold]] void error(const json::Position& where, const Trail& path, std::string message,
+                           std::string remedy = {});
   std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
   Place place(const json::Position& position) {
     if (position.file.get() != latestFile_) enterFile(position.file);

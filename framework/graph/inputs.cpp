@@ -13,9 +13,10 @@ namespace fovea::graph::detail {
 using json::Member;
 
 bool isName(std::string_view name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
+  bool good = !name.empty();
+  for (const char c : name)
+    good &= (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  return good;
 }
 
 int64_t Expander::readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback) {
