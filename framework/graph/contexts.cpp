@@ -74,6 +74,15 @@ static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
 }
 
 bool PrepareContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool PrepareContext::isRead(std::string_view path) const {
+  const BoundGraph& graph = *pass_.state->plan->graph;
+  const uint32_t index = pass_.access(path).resource;
+  if (graph.resources[index].output || graph.resources[index].history) return true;
+  return std::any_of(graph.passes.begin(), graph.passes.end(), [&](const BoundPass& pass) {
+    return &pass != pass_.bound && std::any_of(pass.accesses.begin(), pass.accesses.end(),
+                                               [&](const Access& a) { return a.resource == index && a.reads; });
+  });
+}
 VkExtent3D PrepareContext::extent(std::string_view port) const { return extentOf(pass_, port); }
 uint32_t PrepareContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
 uint64_t PrepareContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
@@ -88,8 +97,29 @@ const Parameters& RecordContext::parameters() const { return pass_.bound->parame
 const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
 bool RecordContext::has(std::string_view port) const { return portWired(pass_, port); }
 bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
-gpu::Image& RecordContext::image(std::string_view port) const { return pass_.state->image(pass_.access(port)); }
-gpu::Buffer& RecordContext::buffer(std::string_view port) const { return pass_.state->buffer(pass_.access(port)); }
+static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+
+static std::string passDoes(const PassInstance& pass, const std::string& act) {
+  return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
+}
+
+static void requireKind(const PassInstance& pass, const Access& access, std::string_view port, ResourceKind kind) {
+  if (pass.desc(access).kind == kind) return;
+  throw Error(ExitCode::Internal, passDoes(pass, "takes " + quoted(port) + " for ") +
+                                      (kind == ResourceKind::Image ? "an image, but it is a buffer"
+                                                                   : "a buffer, but it is an image"));
+}
+
+gpu::Image& RecordContext::image(std::string_view port) const {
+  const Access& access = pass_.access(port);
+  requireKind(pass_, access, port, ResourceKind::Image);
+  return pass_.state->image(access);
+}
+gpu::Buffer& RecordContext::buffer(std::string_view port) const {
+  const Access& access = pass_.access(port);
+  requireKind(pass_, access, port, ResourceKind::Buffer);
+  return pass_.state->buffer(access);
+}
 VkExtent3D RecordContext::extent(std::string_view port) const { return extentOf(pass_, port); }
 uint64_t RecordContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
 
@@ -140,30 +170,29 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   vkCmdEndRendering(cmd_);
 }
 
-static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
-
 // As errors start: `act` is what the pass does, "fills `sums`".
-static std::string passDoes(const PassInstance& pass, const std::string& act) {
-  return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
-}
-
-static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port,
-                            Usage usage, const std::string& act) {
+// `act` is what the message calls it: put together only for that.
+template <class Act>
+static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port, ResourceKind kind,
+                            Usage usage, const Act& act) {
+  requireKind(pass, access, port, kind);
   if (any(access.usage, usage)) return;
   const char* name = usage == Usage::TransferRead ? "TransferRead" : "TransferWrite";
   throw Error(ExitCode::Internal,
-              passDoes(pass, act) + " without declaring Usage::" + name + " on " + quoted(port));
+              passDoes(pass, act()) + " without declaring Usage::" + name + " on " + quoted(port));
 }
 
 void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
   const Access& access = pass_.access(bufferPort);
-  requireTransfer(pass_, access, bufferPort, Usage::TransferWrite, "fills " + quoted(bufferPort));
+  requireTransfer(pass_, access, bufferPort, ResourceKind::Buffer, Usage::TransferWrite,
+                  [&] { return "fills " + quoted(bufferPort); });
   vkCmdFillBuffer(cmd_, pass_.state->buffer(access).handle(), 0, VK_WHOLE_SIZE, word);
 }
 
 void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
   const Access& access = pass_.access(imagePort);
-  requireTransfer(pass_, access, imagePort, Usage::TransferWrite, "clears " + quoted(imagePort));
+  requireTransfer(pass_, access, imagePort, ResourceKind::Image, Usage::TransferWrite,
+                  [&] { return "clears " + quoted(imagePort); });
   gpu::Image& target = pass_.state->image(access);
   const VkImageSubresourceRange range = wholeImage(target);
   vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
@@ -179,15 +208,15 @@ static std::string sizeText(const ResourceDesc& d) {
 
 void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
   const Access &from = pass_.access(imageFrom), &to = pass_.access(imageTo);
-  const std::string act = "copies " + quoted(imageFrom) + " to " + quoted(imageTo);
-  requireTransfer(pass_, from, imageFrom, Usage::TransferRead, act);
-  requireTransfer(pass_, to, imageTo, Usage::TransferWrite, act);
+  const auto act = [&] { return "copies " + quoted(imageFrom) + " to " + quoted(imageTo); };
+  requireTransfer(pass_, from, imageFrom, ResourceKind::Image, Usage::TransferRead, act);
+  requireTransfer(pass_, to, imageTo, ResourceKind::Image, Usage::TransferWrite, act);
   const ResourceDesc &source = pass_.desc(from), &d = pass_.desc(to);
   if (std::tie(source.width, source.height, source.depth, source.layers, source.format) !=
           std::tie(d.width, d.height, d.depth, d.layers, d.format) ||
       source.mips > 1 || d.mips > 1)
     throw Error(ExitCode::BadInput,
-                passDoes(pass_, act) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
+                passDoes(pass_, act()) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
                     quoted(imageTo) + " is " + sizeText(d),
                 "wire images of one size and format, without mips");
   const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, d.layers};

@@ -63,6 +63,9 @@ class PrepareContext {
   gpu::Device& device() const;
   const Parameters& parameters() const;
   bool has(std::string_view port) const;  // an optional input is wired
+  // An output, or a member of one, is read by another pass, in this frame or the next, or is an output of the graph.
+  // Nothing need be written to one that is not.
+  bool isRead(std::string_view path) const;
   VkExtent3D extent(std::string_view port) const;
   uint32_t layers(std::string_view port) const;
   uint64_t count(std::string_view port) const;  // elements of a buffer

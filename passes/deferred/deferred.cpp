@@ -97,7 +97,8 @@ class Deferred : public Pass {
     if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
     filter["EDGES"] = "1";
     edges_ = ctx.compute("deferred/resolve.comp", filter);
-    compose_ = ctx.fullscreen("compose/compose.frag", {"indirect", "radiance"},
+    if (ctx.isRead("indirect") || ctx.isRead("radiance"))
+      compose_ = ctx.fullscreen("compose/compose.frag", {"indirect", "radiance"},
                               {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);
@@ -134,8 +135,10 @@ class Deferred : public Pass {
       ctx.barrier();
       ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
     }
-    ctx.barrier();
-    ctx.use(compose_).drawFullscreen();
+    if (compose_) {
+      ctx.barrier();
+      ctx.use(compose_).drawFullscreen();
+    }
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 

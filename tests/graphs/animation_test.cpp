@@ -28,11 +28,11 @@ struct Case {
   double median, most, jump;
 };
 const Case kCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
-                       {"cornellbox_moving", "foveal", 0.056, 0.27, 0.083},
-                       {"atrium", "foveal", 0.18, 0.9, 0.26},
-                       {"balcony", "foveal", 0.11, 0.29, 0.13},
-                       {"room", "foveal", 0.39, 1.9, 1.8},
-                       {"yard", "foveal", 0.092, 0.24, 0.17}};
+                       {"cornellbox_moving", "foveal", 0.02, 0.13, 0.075},
+                       {"atrium", "foveal", 0.07, 0.38, 0.15},
+                       {"balcony", "foveal", 0.055, 0.16, 0.08},
+                       {"room", "foveal", 0.28, 1.2, 0.55},
+                       {"yard", "foveal", 0.072, 0.24, 0.08}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
   return scene::makeFrame(s, geometry, {kSide, kSide}, kFirst + index, 1, kRate);

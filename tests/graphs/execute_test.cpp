@@ -128,6 +128,33 @@ class CountUp : public Pass {
 };
 FOVEA_PASS(CountUp);
 
+// Says which of its outputs anybody reads.
+class AskReaders : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("test-readers", "Fills two images, and says who is read.");
+    d.output("value", image(), Usage::StorageWrite, "the value");
+    d.output("pair", "pair", {member("one", image(), Usage::TransferWrite)}, "more");
+    d.counter("read", "1: value, 2: pair.one");
+    return d;
+  }
+  void prepare(PrepareContext& context) override {
+    addTestShaders(context);
+    kernel_ = context.compute("fill_image.comp");
+    read_ = int(context.isRead("value")) + 2 * int(context.isRead("pair.one"));
+  }
+  void record(RecordContext& context) override {
+    context.use(kernel_).constant("key", 1).dispatchOver("value");
+    context.clear("pair.one", {});
+    context.counter("read", read_);
+  }
+
+ private:
+  Kernel kernel_;
+  double read_ = 0;
+};
+FOVEA_PASS(AskReaders);
+
 // Copies with what it declares for that, which may be wrong.
 class CopyImage : public Pass {
  public:
@@ -175,6 +202,27 @@ class CopyUnlike : public Pass {
   void record(RecordContext& context) override { context.copy("from", context.parameters().text("into")); }
 };
 FOVEA_PASS(CopyUnlike);
+
+// Takes an image for a buffer, or a buffer for an image.
+class MistakeKinds : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("test-mistake-kinds", "Takes one kind of resource for the other.");
+    d.input("from", image2D(kFormat), Usage::TransferRead, "an image");
+    d.output("to", buffer("uint", 4, 16), Usage::TransferWrite, "a buffer");
+    d.parameter("as", choice("fill", {"fill", "clear", "copy", "image", "buffer"}), "what with");
+    return d;
+  }
+  void record(RecordContext& context) override {
+    const std::string& as = context.parameters().text("as");
+    if (as == "fill") context.fill("from", 0);
+    if (as == "clear") context.clear("to", {});
+    if (as == "copy") context.copy("from", "to");
+    if (as == "image") context.image("to");
+    if (as == "buffer") context.buffer("from");
+  }
+};
+FOVEA_PASS(MistakeKinds);
 
 // A graph ready to run over an empty scene.
 struct Runner {
@@ -247,6 +295,21 @@ TEST(Execute, HistoryStartsAtZeroAndIsResetByACameraCut) {
     const uint32_t expected = hashCombine(hashCombine(5, 7 + i), previous);
     expectAll(runner.frame(cut), "x", expected);
     previous = expected;
+  }
+}
+
+TEST(Execute, PassesKnowWhichOutputsAreRead) {
+  for (const auto& [rest, expected] : std::initializer_list<std::pair<const char*, double>>{
+           {R"(}, "outputs": {"x": "p.value"}})", 1},
+           {R"(}, "outputs": {"x": "p.pair.one"}})", 2},
+           {R"(, "m": {"type": "test-mix", "inputs": {"a": "p.value"}}}, "outputs": {"x": "m"}})", 1},
+           {R"(, "m": {"type": "test-mix", "inputs": {"a": "p.value", "b": "p.pair.one@previous"}}},
+               "outputs": {"x": "m"}})",
+            3}}) {
+    Runner runner(std::string(R"({"passes": {"p": {"type": "test-readers"})") + rest);
+    const FrameResult result = runner.frame();
+    ASSERT_EQ(result.counters.size(), 1u);
+    EXPECT_EQ(result.counters[0].second, expected) << rest;
   }
 }
 
@@ -388,8 +451,8 @@ TEST(Execute, CopiesWholeImages) {
   for (uint32_t i = 0; i < 3; ++i) expectAll(runner.frame(), "x", 7 + i);
 }
 
-// Each message names the pass, both ports, and what is wrong.
-TEST(Execute, WrongCopiesAreNamed) {
+// Each message names the pass, its ports, and what is wrong.
+TEST(Execute, WrongTransfersAreNamed) {
   constexpr ExitCode kPass = ExitCode::Internal, kGraph = ExitCode::BadInput;  // whose fault it is
   const struct {
     std::string graph;
@@ -407,6 +470,11 @@ TEST(Execute, WrongCopiesAreNamed) {
        kGraph,
        {"`from`", "r32ui", "`texels`", "rg32ui"}},
       {copyGraph("test-copy-unlike", R"("into": "mips")", "mips"), kGraph, {"`from`", "`mips`", "2 mips"}},
+      {copyGraph("test-mistake-kinds", R"("as": "fill")"), kPass, {"takes `from` for a buffer"}},
+      {copyGraph("test-mistake-kinds", R"("as": "clear")"), kPass, {"takes `to` for an image"}},
+      {copyGraph("test-mistake-kinds", R"("as": "copy")"), kPass, {"takes `to` for an image"}},
+      {copyGraph("test-mistake-kinds", R"("as": "image")"), kPass, {"takes `to` for an image"}},
+      {copyGraph("test-mistake-kinds", R"("as": "buffer")"), kPass, {"takes `from` for a buffer"}},
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.named.back());
