@@ -137,7 +137,8 @@ class Binder {
   std::string otherChoices(uint32_t p, const ResourceSpec& spec) const;
 
   std::string_view text(Symbol symbol) const { return description_.symbols[symbol]; }
-  [[gnu::cold]] void error(const Place& place, std::string path, std::string message, std::string remedy = {});
+  [[gnu::cold]] void error(const Place& place, std::string path, std::string message,
+                           std::string remedy = {});
   std::string passPath(uint32_t pass, std::string_view rest = {}) const;
   std::string wirePath(const PortState& port) const;
   PortState* portsOf(uint32_t pass) { return ports_.data() + firstPort_[pass]; }

@@ -74,8 +74,8 @@ void Expander::expandRoot(const json::Value& document, const std::filesystem::pa
   expandScope(root);
 }
 
-constexpr std::string_view kGraphKeys[] = {"$schema",    "extends", "description", "parameters",
-                                           "inputs",     "outputs", "passes"};
+constexpr std::string_view kGraphKeys[] = {"$schema", "extends", "description", "parameters",
+                                           "inputs",  "outputs", "passes"};
 
 void Expander::expandScope(Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, diagnostics_);
@@ -364,8 +364,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
   if (!graph.isString())
     return error(graph.where, json::joinPath(path, "graph"),
                  fmt::format("expected a file name, found {}", graph.describe()));
-  const std::filesystem::path from =
-      graph.where.file ? *graph.where.file : parent.file;
+  const std::filesystem::path from = graph.where.file ? *graph.where.file : parent.file;
   const std::filesystem::path file =
       findGraphFile(graph.string, from, options_.searchPaths).lexically_normal();
   if (file.empty())
@@ -404,7 +403,8 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
 bool Expander::containsItself(const Scope& scope, const std::filesystem::path& file) {
   int depth = 0;
   for (const Scope* at = &scope; at; at = at->parent)
-    if (depth++ > kMaxInstanceDepth || std::filesystem::path(at->file).lexically_normal() == file) return true;
+    if (depth++ > kMaxInstanceDepth || std::filesystem::path(at->file).lexically_normal() == file)
+      return true;
   return false;
 }
 

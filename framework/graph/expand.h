@@ -162,7 +162,7 @@ class Expander {
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
   Scratch scratch_;
-  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};                  // they are pointed to,
+  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};                 // they are pointed to,
   std::list<json::Value, ScratchAllocator<json::Value>> documents_{scratch_};  // so are those of sub-graphs
   ScratchVector<RawWire> rawWires_{scratch_};
   ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
