@@ -99,6 +99,7 @@ bool RecordContext::has(std::string_view port) const { return portWired(pass_, p
 bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
+// As errors start: `act` is what the pass does, "fills `sums`".
 static std::string passDoes(const PassInstance& pass, const std::string& act) {
   return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
 }
@@ -170,8 +171,7 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   vkCmdEndRendering(cmd_);
 }
 
-// As errors start: `act` is what the pass does, "fills `sums`".
-// `act` is what the message calls it: put together only for that.
+// `act()` is what the pass does, put together only for a message.
 template <class Act>
 static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port, ResourceKind kind,
                             Usage usage, const Act& act) {
