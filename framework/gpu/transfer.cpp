@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "framework/base/diagnostic.h"
+#include "framework/gpu/barrier.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
 #include "framework/gpu/packed_mips.h"
@@ -14,19 +15,6 @@ namespace {
 
 constexpr uint64_t kStagingBytes =
     32u << 20;  // buffers travel in pieces, so that staging does not double the memory
-
-void memoryBarrier(VkCommandBuffer cmd, VkPipelineStageFlags2 srcStage, VkAccessFlags2 srcAccess,
-                   VkPipelineStageFlags2 dstStage, VkAccessFlags2 dstAccess) {
-  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = srcStage;
-  barrier.srcAccessMask = srcAccess;
-  barrier.dstStageMask = dstStage;
-  barrier.dstAccessMask = dstAccess;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(cmd, &info);
-}
 
 // Whatever was submitted before is done and visible to copies; what copies did is visible to whatever comes,
 // the host included.

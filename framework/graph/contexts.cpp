@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "framework/base/diagnostic.h"
+#include "framework/gpu/barrier.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/execute_state.h"
 #include "framework/scene/frame.h"
@@ -226,14 +227,9 @@ void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
 }
 
 void RecordContext::barrier() {
-  VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &all;
-  vkCmdPipelineBarrier2(cmd_, &info);
+  constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  gpu::memoryBarrier(cmd_, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kAll,
+                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 static void setCounter(PassInstance& pass, std::string_view name, double value) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/base/diagnostic.h"
+#include "framework/gpu/barrier.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
@@ -73,17 +74,6 @@ struct Shapes {
 };
 
 constexpr const char* kRemedy = "let fewer vertices move, or drop morph targets";
-
-void barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkAccessFlags2 writes, VkPipelineStageFlags2 to,
-             VkAccessFlags2 accesses) {
-  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  memory.srcStageMask = from, memory.srcAccessMask = writes;
-  memory.dstStageMask = to, memory.dstAccessMask = accesses;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(cmd, &info);
-}
 
 void storeRows(glm::vec4* texels, const glm::mat4& m) {
   const glm::mat4 rows = glm::transpose(m);
@@ -249,9 +239,9 @@ void Animator::Impl::evaluate(VkCommandBuffer cmd, uint32_t slot, gpu::Buffer& p
   vkCmdDispatch(cmd, std::min(groups, kMostGroups), (groups + kMostGroups - 1) / kMostGroups, 1);
   if (!subdivider) return;
   constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
-          VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
-              VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+  gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
+                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+                         VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   subdivider->record(cmd, points, positions, attributes, before ? slots[slot].before : slots[slot].now);
 }
 
@@ -293,13 +283,13 @@ void Animator::record(VkCommandBuffer cmd, uint32_t slot, gpu::Buffer& positions
   constexpr auto kCopy = VK_PIPELINE_STAGE_2_COPY_BIT;
   if (!s.slots.at(slot).follows) {
     s.evaluate(cmd, slot, positions, attributes, true);
-    barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCopy | kCompute,
-            VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
-                VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCopy | kCompute,
+                       VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+                           VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   }
   const VkBufferCopy moving{s.firstVertex * sizeof(glm::vec4), 0, s.vertices * sizeof(glm::vec4)};
   vkCmdCopyBuffer(cmd, positions.handle(), previous.handle(), 1, &moving);
-  barrier(cmd, kCopy, 0, kCompute, 0);
+  gpu::memoryBarrier(cmd, kCopy, 0, kCompute, 0);
   s.evaluate(cmd, slot, positions, attributes, false);
 }
 
