@@ -2,6 +2,7 @@
 // 2).
 #include <algorithm>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <string>
 
 #include "framework/base/diagnostic.h"
@@ -125,7 +126,7 @@ class Deferred : public Pass {
                           side_ * side_);
     }
     ctx.barrier();
-    const float filterCos = std::cos(float(p.real("filter_angle")) * 0.017453293f);
+    const float filterCos = std::cos(glm::radians(float(p.real("filter_angle"))));
     if (masked_) {
       ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("shade.dispatch");
     } else {

@@ -1,5 +1,6 @@
 // Where what the eye sees was seen a frame ago, for everything that is kept from frame to frame.
 #include <cmath>
+#include <glm/trigonometric.hpp>
 
 #include "framework/graph/registry.h"
 
@@ -42,7 +43,7 @@ class MotionVectors : public Pass {
   }
   void record(RecordContext& ctx) override {
     ctx.use(kernel_)
-        .constant("leastCos", std::cos(float(ctx.parameters().real("normal_angle")) * 0.017453293f))
+        .constant("leastCos", std::cos(glm::radians(float(ctx.parameters().real("normal_angle")))))
         .drawFullscreen();
   }
 

@@ -91,7 +91,7 @@ class Reproject : public Pass {
     const auto tiles = uint32_t(ctx.count("tile_blocks"));
     const VkExtent3D size = ctx.extent("irradiance");
     const auto groups = [](uint32_t pixels, uint32_t each) { return (pixels + each - 1) / each; };
-    const float leastCos = std::cos(float(p.real("normal_angle")) * 0.017453293f);
+    const float leastCos = std::cos(glm::radians(float(p.real("normal_angle"))));
     ctx.clear("shade.mask", {});
     ctx.fill("tile_blocks", 0);
     ctx.fill("open_tiles", 1);

@@ -2,6 +2,7 @@
 // image with a sample for every pixel it is what changes from frame to frame that becomes less.
 #include <bit>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 
 #include "framework/graph/registry.h"
 
@@ -61,7 +62,7 @@ class TemporalAccumulation : public Pass {
     commands.constant("weight", ctx.firstFrame() ? float(p.integer("first_samples")) : 1.0f)
         .constant("frames", float(p.real("frames")));
     if (shift_ > 0)
-      commands.constant("leastCos", std::cos(float(p.real("normal_angle")) * 0.017453293f))
+      commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift_);
     commands.drawFullscreen();
   }

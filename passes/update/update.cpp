@@ -1,5 +1,6 @@
 // VPLs of the frame before, brought to this one (METHOD: manage, step 1).
 #include <cmath>
+#include <glm/trigonometric.hpp>
 
 #include "framework/graph/registry.h"
 #include "framework/scene/voxel_grid.h"
@@ -37,7 +38,7 @@ class Update : public Pass {
 
   void record(RecordContext& ctx) override {
     // A hair more than the angle, so that 0 keeps what has not turned.
-    const float turnCos = std::cos(float(ctx.parameters().real("max_turn")) * 0.017453293f) - 1e-5f;
+    const float turnCos = std::cos(glm::radians(float(ctx.parameters().real("max_turn")))) - 1e-5f;
     ctx.use(kernel_).constant("turnCos", turnCos).dispatchThreads(uint32_t(ctx.count("previous")));
   }
 

@@ -21,6 +21,7 @@
 // though: the base there. The pixels of the window inside are then represented by the mean over all subsets (those that the
 // window lacks from the pixel's block, the base for what is not there either), the ones outside by their base: towards its
 // rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
+#include "common/same_surface.glsl"
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
@@ -83,7 +84,7 @@ bool isShaded(ivec2 p) { return true; }
 #endif
 
 bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least) {
-  return position.w > 0.0 && abs(dot(position.xyz - c.position, c.normal)) <= plane && dot(normal, c.normal) >= least;
+  return sameSurface(c.position, c.normal, c.normal, position, normal, plane, least);
 }
 
 // Where a subset is in `missing`; numbered from the pixel.

@@ -4,8 +4,9 @@
 //
 // Of the four texels around the place where it was one is taken at random, as probably as it is near: so that what moves by
 // parts of a pixel moves on average, at the price of one load.
-#include "common/scene.glsl"
 #include "common/random.glsl"
+#include "common/same_surface.glsl"
+#include "common/scene.glsl"
 
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
@@ -44,9 +45,8 @@ uint originOf(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   float tolerance = planeTolerance * position.w;
   for (int i = 0; i < 4; ++i) {
     ivec2 q = ivec2(corner) + (first ^ ivec2(i & 1, i >> 1)), inside = clamp(q, ivec2(0), size - 1);
-    vec4 there = imageLoad(previousPosition, inside);
-    if (q == inside && there.w > 0.0 && abs(dot(there.xyz - before, normal)) <= tolerance &&
-        dot(normal, imageLoad(previousNormal, inside).xyz) >= leastCos)
+    if (q == inside && sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
+                                   imageLoad(previousNormal, inside).xyz, tolerance, leastCos))
       return uint(q.x) | uint(q.y) << 16;
   }
   return kNone;

@@ -5,6 +5,7 @@
 // pixels away, in its tile, that have one: nearer than the interleaved samples that shading would gather. Where there are
 // none it makes its whole block be shaded. One tile a work group.
 // Defines: INTERLEAVE, pixels a side of a block; FILL, 0: no such pixels.
+#include "common/same_surface.glsl"
 #include "common/scene.glsl"
 
 const int kTile = 16, kBlocksPerSide = kTile / INTERLEAVE;
@@ -51,8 +52,8 @@ vec4 fromNeighbours(ivec2 corner, ivec2 local) {
     if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, ivec2(kTile)))) continue;
     vec4 value = tile[q.y * kTile + q.x];
     if (value.a == 0.0) continue;
-    bool same = abs(dot(imageLoad(gbufferPosition, corner + q).xyz - position.xyz, face)) <= tolerance &&
-                dot(imageLoad(gbufferNormal, corner + q).xyz, normal) >= leastCos;
+    bool same = sameSurface(position.xyz, face, normal, imageLoad(gbufferPosition, corner + q),
+                            imageLoad(gbufferNormal, corner + q).xyz, tolerance, leastCos);
     if (!same) continue;
     if (sum.a == 0.0) origin = value.rgb;
     float w = 1.0 / float(d.x * d.x + d.y * d.y);

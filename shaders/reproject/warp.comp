@@ -5,6 +5,7 @@
 // the four texels around it those count that show the same surface: near the tangent plane of the pixel, normals alike.
 // Bilinear between them. A pixel with too little of them has no source; the tiles that hold such a pixel are listed for
 // fill.comp.
+#include "common/same_surface.glsl"
 #include "common/scene.glsl"
 
 const int kTile = 16;
@@ -53,9 +54,8 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
   bool found = false;
   for (int i = 0; i < texels; ++i) {
     ivec2 d = ivec2(i & 1, i >> 1), q = first + d, inside = clamp(q, ivec2(0), size - 1);
-    vec4 p = imageLoad(sourceGbufferPosition, inside);
-    bool same = q == inside && p.w > 0.0 && abs(dot(p.xyz - position.xyz, face)) <= tolerance &&
-                dot(imageLoad(sourceGbufferNormal, inside).xyz, normal) >= leastCos;
+    bool same = q == inside && sameSurface(position.xyz, face, normal, imageLoad(sourceGbufferPosition, inside),
+                                           imageLoad(sourceGbufferNormal, inside).xyz, tolerance, leastCos);
     if (!same) continue;
     vec3 value = imageLoad(sourceIrradiance, inside).rgb;
     if (!found) origin = value;

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Running mean, at every pixel, of samples that few pixels, or all, get in a frame. A pixel takes over the mean of the frame
 // before from where its surface was then, and its own sample, or that of its block if that was taken on its surface.
 // Defines: BLOCKS 0/1: a texel of `samples` stands for several pixels.
-//
+#include "common/same_surface.glsl"
+
 // Images and not textures: those cost several times as much on a CPU device.
 layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
 layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
@@ -32,11 +32,6 @@ vec4 fromHistory(ivec2 p) {
 }
 
 #if BLOCKS
-bool sameSurface(vec4 position, vec3 normal, vec4 other, vec3 otherNormal) {
-  return other.w > 0.0 && abs(dot(other.xyz - position.xyz, normal)) <= planeTolerance * position.w &&
-         dot(normal, otherNormal) >= leastCos;
-}
-
 struct Sample {
   vec3 value;
   int side;    // of the block it is for
@@ -51,7 +46,8 @@ Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   int code = int(value.a), side = max(code & 15, 1);
   bool found = p == inside && code >> 10 == 0;
   ivec2 from = min((inside & -side) + ivec2(code >> 4 & 7, code >> 7 & 7), size - 1);
-  bool own = found && sameSurface(position, normal, imageLoad(gbufferPosition, from), imageLoad(gbufferNormal, from).xyz);
+  bool own = found && sameSurface(position.xyz, normal, normal, imageLoad(gbufferPosition, from),
+                                  imageLoad(gbufferNormal, from).xyz, planeTolerance * position.w, leastCos);
   return Sample(value.rgb, side, found, own);
 }
 
