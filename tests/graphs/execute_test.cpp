@@ -6,49 +6,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <thread>
 
 #include "framework/base/diagnostic.h"
 #include "framework/base/random.h"
 #include "framework/gpu/device.h"
-#include "framework/graph/compile.h"
 #include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/gpu_scene.h"
-#include "places.h"
 #include "tests/support/device.h"
+#include "tests/support/graph_runner.h"
 
 namespace fovea::graph {
 namespace {
 
-constexpr uint32_t kSide = 24;
-constexpr VkFormat kFormat = VK_FORMAT_R32_UINT;
-
-ResourceSpec image() { return image2D(kFormat, kSide, kSide); }
-
-void addTestShaders(PrepareContext& context) {
-  context.device().shaders().addSearchPath(FOVEA_TEST_DATA "/shaders");
-}
-
-class FillImage : public Pass {
- public:
-  static PassDeclaration declaration() {
-    PassDeclaration d("test-fill", "Fills an image with key + frame number.");
-    d.output("value", image(), Usage::StorageWrite, "the value");
-    d.parameter("key", integer(1, 0, 1 << 30), "value of frame 0");
-    return d;
-  }
-  void prepare(PrepareContext& context) override {
-    addTestShaders(context);
-    kernel_ = context.compute("fill_image.comp");
-  }
-  void record(RecordContext& context) override { context.use(kernel_).dispatchOver("value"); }
-
- private:
-  Kernel kernel_;
-};
-FOVEA_PASS(FillImage);
+using namespace test;  // NOLINT: helpers
 
 class MixImage : public Pass {
  public:
@@ -154,122 +125,6 @@ class AskReaders : public Pass {
   double read_ = 0;
 };
 FOVEA_PASS(AskReaders);
-
-// Copies with what it declares for that, which may be wrong.
-class CopyImage : public Pass {
- public:
-  static PassDeclaration declare(const char* type, Usage from, Usage to) {
-    PassDeclaration d(type, "Copies an image.");
-    d.input("from", image2D(kFormat), from, "what to copy");
-    d.output("to", image2D(kFormat, parameter("width"), parameter("height")), to, "the copy");
-    d.parameter("width", integer(kSide, 1, 1 << 10), "of the copy");
-    d.parameter("height", integer(kSide, 1, 1 << 10), "of the copy");
-    return d;
-  }
-  static PassDeclaration declaration() {
-    return declare("test-copy", Usage::TransferRead, Usage::TransferWrite);
-  }
-  void record(RecordContext& context) override { context.copy("from", "to"); }
-};
-FOVEA_PASS(CopyImage);
-
-struct CopyUnread : CopyImage {
-  static PassDeclaration declaration() {
-    return declare("test-copy-unread", Usage::Sampled, Usage::TransferWrite);
-  }
-};
-FOVEA_PASS(CopyUnread);
-
-struct CopyUnwritten : CopyImage {
-  static PassDeclaration declaration() {
-    return declare("test-copy-unwritten", Usage::TransferRead, Usage::StorageWrite);
-  }
-};
-FOVEA_PASS(CopyUnwritten);
-
-// Copies the output of test-fill into an image that differs from it in something else than its width or height.
-class CopyUnlike : public Pass {
- public:
-  static PassDeclaration declaration() {
-    PassDeclaration d("test-copy-unlike", "Copies an image into another kind of image.");
-    d.input("from", image2D(kFormat), Usage::TransferRead, "what to copy");
-    d.output("layers", image2DArray(kFormat, kSide, kSide, 2), Usage::TransferWrite, "of more layers");
-    d.output("texels", image2D(VK_FORMAT_R32G32_UINT, kSide, kSide), Usage::TransferWrite, "of wider texels");
-    d.output("mips", image2D(kFormat, kSide, kSide, 2), Usage::TransferWrite, "of more mips");
-    d.parameter("into", choice("layers", {"layers", "texels", "mips"}), "where to");
-    return d;
-  }
-  void record(RecordContext& context) override { context.copy("from", context.parameters().text("into")); }
-};
-FOVEA_PASS(CopyUnlike);
-
-// Takes an image for a buffer, or a buffer for an image.
-class MistakeKinds : public Pass {
- public:
-  static PassDeclaration declaration() {
-    PassDeclaration d("test-mistake-kinds", "Takes one kind of resource for the other.");
-    d.input("from", image2D(kFormat), Usage::TransferRead, "an image");
-    d.output("to", buffer("uint", 4, 16), Usage::TransferWrite, "a buffer");
-    d.parameter("as", choice("fill", {"fill", "clear", "copy", "image", "buffer"}), "what with");
-    return d;
-  }
-  void record(RecordContext& context) override {
-    const std::string& as = context.parameters().text("as");
-    if (as == "fill") context.fill("from", 0);
-    if (as == "clear") context.clear("to", {});
-    if (as == "copy") context.copy("from", "to");
-    if (as == "image") context.image("to");
-    if (as == "buffer") context.buffer("from");
-  }
-};
-FOVEA_PASS(MistakeKinds);
-
-// A graph ready to run over an empty scene.
-struct Runner {
-  scene::Scene scene;
-  scene::Geometry geometry;
-  std::unique_ptr<scene::GpuScene> gpuScene;
-  std::unique_ptr<Executor> executor;
-  std::shared_ptr<const Plan> plan;
-  uint64_t next = 0;
-
-  explicit Runner(const std::string& text, const CompileOptions& extra = {}) {
-    scene.materials.emplace_back();
-    scene.cameras.emplace_back();
-    geometry = scene::flatten(scene);
-    gpuScene = std::make_unique<scene::GpuScene>(test::testDevice(), scene, geometry, 2);
-    Diagnostics messages;
-    const Description description = loadText(text, "test.json", {}, messages);
-    const Environment environment = sceneEnvironment(&test::testDevice(), scene, geometry, {{"main", {16, 16}}});
-    auto bound = std::make_shared<const BoundGraph>(bind(description, environment, messages));
-    CompileOptions options = deviceCompileOptions(test::testDevice(), bound);
-    options.alias = extra.alias;
-    options.randomOrder = extra.randomOrder;
-    plan = std::make_shared<const Plan>(compile(bound, options));
-    ExecutorOptions executorOptions;
-    for (const BoundOutput& output : bound->outputs) executorOptions.readback.push_back(output.name);
-    executor = std::make_unique<Executor>(test::testDevice(), plan, Registry::global(), *gpuScene, executorOptions);
-  }
-
-  FrameResult frame(bool cameraCut = false) {
-    scene::Frame f = scene::makeFrame(scene, geometry, {16, 16}, next++, 1);
-    f.gpu = gpuScene.get();
-    f.cameraCut = cameraCut;
-    executor->submit(f, true);
-    return *executor->next();
-  }
-};
-
-std::vector<uint32_t> words(const FrameResult& result, const std::string& output) {
-  const auto& raw = result.outputs.at(output).bytes;
-  std::vector<uint32_t> values(raw.size() / 4);
-  std::memcpy(values.data(), raw.data(), raw.size());
-  return values;
-}
-
-void expectAll(const FrameResult& result, const std::string& output, uint32_t expected) {
-  for (uint32_t v : words(result, output)) ASSERT_EQ(v, expected) << output << " in frame " << result.frame;
-}
 
 TEST(Execute, ChainOverSeveralFrames) {
   Runner runner(R"({"passes": {
@@ -435,60 +290,6 @@ TEST(Execute, RandomGraphsComputeTheirValues) {
     }
   }
   EXPECT_GT(saved, 0u) << "no graph shared memory: the test proves nothing about aliasing";
-}
-
-std::string copyGraph(const std::string& type, const std::string& params = "",
-                      const std::string& port = "to") {
-  return R"({"passes": {"fill": {"type": "test-fill", "params": {"key": 7}},
-    "copier": {"type": ")" +
-         type + R"(", "inputs": {"from": "fill"}, "params": {)" + params + R"(}}},
-    "outputs": {"x": "copier.)" +
-         port + R"("}})";
-}
-
-TEST(Execute, CopiesWholeImages) {
-  Runner runner(copyGraph("test-copy"));
-  for (uint32_t i = 0; i < 3; ++i) expectAll(runner.frame(), "x", 7 + i);
-}
-
-// Each message names the pass, its ports, and what is wrong.
-TEST(Execute, WrongTransfersAreNamed) {
-  constexpr ExitCode kPass = ExitCode::Internal, kGraph = ExitCode::BadInput;  // whose fault it is
-  const struct {
-    std::string graph;
-    ExitCode code;
-    std::vector<std::string> named;
-  } cases[] = {
-      {copyGraph("test-copy-unread"), kPass, {"`to`", "Usage::TransferRead on `from`"}},
-      {copyGraph("test-copy-unwritten"), kPass, {"`from`", "Usage::TransferWrite on `to`"}},
-      {copyGraph("test-copy", R"("width": 20)"), kGraph, {"`from`", "24x24", "`to`", "20x24"}},
-      {copyGraph("test-copy", R"("height": 30)"), kGraph, {"`from`", "24x24", "`to`", "24x30"}},
-      {copyGraph("test-copy-unlike", R"("into": "layers")", "layers"),
-       kGraph,
-       {"`from`", "`layers`", "2 layers"}},
-      {copyGraph("test-copy-unlike", R"("into": "texels")", "texels"),
-       kGraph,
-       {"`from`", "r32ui", "`texels`", "rg32ui"}},
-      {copyGraph("test-copy-unlike", R"("into": "mips")", "mips"), kGraph, {"`from`", "`mips`", "2 mips"}},
-      {copyGraph("test-mistake-kinds", R"("as": "fill")"), kPass, {"takes `from` for a buffer"}},
-      {copyGraph("test-mistake-kinds", R"("as": "clear")"), kPass, {"takes `to` for an image"}},
-      {copyGraph("test-mistake-kinds", R"("as": "copy")"), kPass, {"takes `to` for an image"}},
-      {copyGraph("test-mistake-kinds", R"("as": "image")"), kPass, {"takes `to` for an image"}},
-      {copyGraph("test-mistake-kinds", R"("as": "buffer")"), kPass, {"takes `from` for a buffer"}},
-  };
-  for (const auto& c : cases) {
-    SCOPED_TRACE(c.named.back());
-    Runner runner(c.graph);
-    try {
-      runner.frame();
-      ADD_FAILURE() << "no error";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), c.code);
-      const std::string message = e.what();
-      EXPECT_NE(message.find("pass `copier`"), std::string::npos) << message;
-      for (const std::string& name : c.named) EXPECT_NE(message.find(name), std::string::npos) << message;
-    }
-  }
 }
 
 TEST(Execute, UnknownOutputIsNamed) {

@@ -1,0 +1,39 @@
+// Graphs of test passes, run over an empty scene.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/graph/compile.h"
+#include "framework/graph/execute.h"
+#include "framework/graph/pass.h"
+#include "framework/scene/gpu_scene.h"
+
+namespace fovea::test {
+
+constexpr uint32_t kSide = 24;
+constexpr VkFormat kFormat = VK_FORMAT_R32_UINT;
+
+// What pass test-fill, which fills it with its `key` + the frame's number, writes as `value`.
+inline graph::ResourceSpec image() { return graph::image2D(kFormat, kSide, kSide); }
+
+void addTestShaders(graph::PrepareContext& context);
+
+struct Runner {
+  scene::Scene scene;
+  scene::Geometry geometry;
+  std::unique_ptr<scene::GpuScene> gpuScene;
+  std::unique_ptr<graph::Executor> executor;
+  std::shared_ptr<const graph::Plan> plan;
+  uint64_t next = 0;
+
+  explicit Runner(const std::string& text, const graph::CompileOptions& extra = {});
+  graph::FrameResult frame(bool cameraCut = false);
+};
+
+std::vector<uint32_t> words(const graph::FrameResult& result, const std::string& output);
+void expectAll(const graph::FrameResult& result, const std::string& output, uint32_t expected);
+
+}  // namespace fovea::test
