@@ -52,17 +52,19 @@ class Tracer {
  private:
   // Mean over the turns whose pixel shows a surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
+    const glm::uvec2 block = corner / side;
     glm::vec3 sum(0);
     uint32_t found = 0;
     for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn) {
-      const glm::uvec2 pixel = corner + samplePixel(turn, side);
+      const glm::uvec2 pixel = corner + samplePixel(turn, side, block);
       if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
       if (!v.there) continue;
       ++found;
-      sum += lightAt(v, corner / side, turn, statistics);
+      sum += lightAt(v, block, turn, statistics);
     }
-    return {sum / float(std::max(found, 1u)), float(sampleCode(side, samplePixel(settings_.turn, side), found > 0))};
+    return {sum / float(std::max(found, 1u)),
+            float(sampleCode(side, samplePixel(settings_.turn, side, block), found > 0))};
   }
 
   // Blocks next to each other, 4 x 4 of them, take turns in one sequence.
@@ -104,7 +106,8 @@ class Tracer {
 
 }  // namespace
 
-glm::uvec2 samplePixel(uint32_t turn, uint32_t side) {
+glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
+  turn += ((block.x & 1u) * 2u) ^ ((block.y & 1u) * 3u);
   glm::uvec2 p(0);
   for (uint32_t bit = side / 2; bit > 0; bit /= 2, turn /= 4) {
     p.x += (turn & 1u) * bit;

@@ -48,7 +48,8 @@ constexpr uint32_t sampleCode(uint32_t side, glm::uvec2 pixel, bool found) {
 }
 
 // Which pixel of a block of side x side pixels, a power of two, has its turn: neighbours come far from each
-// other.
-glm::uvec2 samplePixel(uint32_t turn, uint32_t side);
+// other. block: its column and row. In blocks below each other columns differ, in those beside each other
+// rows: so that blocks of 2 x 2 meet a strip one pixel wide in every frame.
+glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block);
 
 }  // namespace fovea::passes

@@ -134,8 +134,9 @@ TEST(NearField, SamplesWhereTheEyeLooks) {
         const glm::vec2 nearest = glm::clamp(fovea.centre, glm::vec2(tile), glm::vec2(tile + 8));
         const bool inside = glm::distance(nearest, fovea.centre) <= fovea.radius;
         const int side = inside ? 2 : 8;
-        const glm::uvec2 own = passes::samplePixel(settings.turn, uint32_t(side));
-        const glm::ivec2 p = glm::ivec2(2 * x, 2 * y) / side * side + glm::ivec2(own);
+        const glm::ivec2 block = glm::ivec2(2 * x, 2 * y) / side;
+        const glm::uvec2 own = passes::samplePixel(settings.turn, uint32_t(side), glm::uvec2(block));
+        const glm::ivec2 p = block * side + glm::ivec2(own);
         const bool there = p.x < 70 && p.y < 50 && look.room.pixels[size_t(p.y * 70 + p.x)].there;
         const glm::vec4 v = got[size_t(y * 35 + x)];
         ASSERT_EQ(glm::unpackHalf1x16(glm::packHalf1x16(v.a)), v.a);
@@ -156,16 +157,27 @@ TEST(NearField, SamplesWhereTheEyeLooks) {
 }
 
 TEST(NearField, EveryPixelOfABlockHasItsTurn) {
-  for (const uint32_t side : {2u, 4u, 8u}) {
-    std::set<uint32_t> seen;
-    for (uint32_t turn = 0; turn < side * side; ++turn) {
-      const glm::uvec2 p = passes::samplePixel(turn, side);
-      ASSERT_TRUE(p.x < side && p.y < side);
-      seen.insert(p.y * side + p.x);
-      EXPECT_EQ(passes::samplePixel(turn + side * side, side), p);
+  for (const uint32_t side : {2u, 4u, 8u})
+    for (const glm::uvec2 block : {glm::uvec2(0, 0), {5, 0}, {2, 3}, {1, 1}}) {
+      std::set<uint32_t> seen;
+      for (uint32_t turn = 0; turn < side * side; ++turn) {
+        const glm::uvec2 p = passes::samplePixel(turn, side, block);
+        ASSERT_TRUE(p.x < side && p.y < side);
+        seen.insert(p.y * side + p.x);
+        EXPECT_EQ(passes::samplePixel(turn + side * side, side, block), p);
+      }
+      EXPECT_EQ(seen.size(), side * side);
     }
-    EXPECT_EQ(seen.size(), side * side);
-  }
+}
+
+// Every column, and every row, of two blocks next to each other.
+TEST(NearField, NarrowStripsAreMetInEveryFrame) {
+  for (uint32_t turn = 0; turn < 4; ++turn)
+    for (uint32_t i = 0; i < 4; ++i) {
+      const glm::uvec2 block(i & 1, i >> 1), p = passes::samplePixel(turn, 2, block);
+      EXPECT_NE(p.x, passes::samplePixel(turn, 2, block + glm::uvec2(0, 1)).x);
+      EXPECT_NE(p.y, passes::samplePixel(turn, 2, block + glm::uvec2(1, 0)).y);
+    }
 }
 
 TEST(NearField, TheSameWhateverTheThreads) {
