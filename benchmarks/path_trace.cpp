@@ -11,11 +11,13 @@
 #include <thread>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/scene.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
 #include "passes/path-trace/path_integrator.h"
 #include "passes/path-trace/path_tracer.h"
 

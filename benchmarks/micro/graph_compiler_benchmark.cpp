@@ -8,10 +8,10 @@
 #include <string>
 
 #include "framework/base/memory.h"
-#include "framework/graph/alias.h"
-#include "framework/graph/barriers.h"
-#include "framework/graph/compile.h"
-#include "framework/graph/schedule.h"
+#include "framework/graph/compile/alias.h"
+#include "framework/graph/compile/barriers.h"
+#include "framework/graph/compile/compile.h"
+#include "framework/graph/compile/schedule.h"
 
 namespace fovea::graph {
 namespace {

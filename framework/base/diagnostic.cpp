@@ -1,4 +1,4 @@
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 #include <algorithm>
 #include <numeric>
@@ -8,9 +8,12 @@ namespace {
 
 const char* severityName(Severity s) {
   switch (s) {
-    case Severity::Note: return "note";
-    case Severity::Warning: return "warning";
-    case Severity::Error: return "error";
+    case Severity::Note:
+      return "note";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Error:
+      return "error";
   }
   return "error";
 }
@@ -58,15 +61,18 @@ std::string Diagnostic::format() const {
 }
 
 void Diagnostics::error(SourceLocation where, std::string path, std::string message, std::string remedy) {
-  list_.push_back({Severity::Error, std::move(where), std::move(path), std::move(message), std::move(remedy)});
+  list_.push_back(
+      {Severity::Error, std::move(where), std::move(path), std::move(message), std::move(remedy)});
 }
 
 void Diagnostics::warning(SourceLocation where, std::string path, std::string message, std::string remedy) {
-  list_.push_back({Severity::Warning, std::move(where), std::move(path), std::move(message), std::move(remedy)});
+  list_.push_back(
+      {Severity::Warning, std::move(where), std::move(path), std::move(message), std::move(remedy)});
 }
 
 bool Diagnostics::hasErrors() const {
-  return std::any_of(list_.begin(), list_.end(), [](const Diagnostic& d) { return d.severity == Severity::Error; });
+  return std::any_of(list_.begin(), list_.end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::Error; });
 }
 
 std::string Diagnostics::format() const { return formatAll(list_); }
@@ -76,7 +82,8 @@ void Diagnostics::throwIfErrors(ExitCode code) const {
 }
 
 Error::Error(ExitCode code, std::string message, std::string remedy)
-    : Error(code, std::vector<Diagnostic>{{Severity::Error, {}, {}, std::move(message), std::move(remedy)}}) {}
+    : Error(code, std::vector<Diagnostic>{{Severity::Error, {}, {}, std::move(message), std::move(remedy)}}) {
+}
 
 Error::Error(ExitCode code, std::vector<Diagnostic> diagnostics)
     : code_(code), diagnostics_(std::move(diagnostics)), text_(formatAll(diagnostics_)) {}

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/same_text.h"
 #include "framework/base/small_vector.h"
 
@@ -86,6 +86,8 @@ inline constexpr size_t kMaxBytes = size_t(64) << 20;  // of one file
 Value parse(std::string_view text, std::string_view file);
 // Throws Error(BadInput) also when the file cannot be read or is larger than kMaxBytes.
 Value parseFile(const std::filesystem::path& file);
+// The text of a value, indented by two spaces, with what fits into 110 characters on one line. Ends in a newline.
+std::string print(const Value& value);
 
 // Reads an object member by member. A value of a wrong type or out of range is reported and replaced by the
 // fallback (or nothing); finish() reports every member that nobody asked for, with the nearest name that

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea {
 
@@ -18,7 +18,8 @@ void addFolder(std::vector<fs::path>& list, const fs::path& folder) {
   std::error_code ignored;
   if (folder.empty() || !fs::is_directory(folder, ignored)) return;
   const fs::path canonical = fs::weakly_canonical(folder, ignored);
-  if (!canonical.empty() && std::find(list.begin(), list.end(), canonical) == list.end()) list.push_back(canonical);
+  if (!canonical.empty() && std::find(list.begin(), list.end(), canonical) == list.end())
+    list.push_back(canonical);
 }
 
 // A program's or library's own folder is a data folder only when it holds data: /usr/bin is none.
@@ -28,7 +29,8 @@ void addBeside(std::vector<fs::path>& list, const fs::path& folder) {
   addFolder(list, folder / "../../share/fovea");  // lib/<multiarch>/libfovea.so
   std::error_code ignored;
   for (const fs::path& own : {folder, folder / ".."})
-    if (fs::is_directory(own / "shaders", ignored) && fs::is_directory(own / "graphs", ignored)) addFolder(list, own);
+    if (fs::is_directory(own / "shaders", ignored) && fs::is_directory(own / "graphs", ignored))
+      addFolder(list, own);
 }
 
 fs::path libraryFolder() {

@@ -1,11 +1,10 @@
-# cmake --install: the library with its headers as the CMake package `fovea`, and the data files that graphs name.
+# cmake --install: the library with its public headers as the CMake package `fovea`, and the data files that graphs name.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS fovea_framework EXPORT fovea-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fovea
-  FILES_MATCHING PATTERN "*.h" PATTERN "cmake" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/include/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_SOURCE_DIR}/samples/scenes
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea PATTERN "builtin" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
 install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/report.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)

@@ -8,11 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/descriptor_pools.h"
-#include "framework/gpu/disk_cache.h"
 #include "framework/gpu/physical_device.h"
-#include "framework/gpu/shader.h"
+#include "framework/gpu/shader/disk_cache.h"
+#include "framework/gpu/shader/shader.h"
 
 namespace fovea::gpu {
 namespace {

@@ -5,7 +5,7 @@
 #include <glm/gtc/packing.hpp>
 #include <string>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea::gpu {
 namespace {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstring>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea::gpu {
 namespace {

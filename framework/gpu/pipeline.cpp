@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/device.h"
 
 namespace fovea::gpu {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/gpu/shader.h"
+#include "framework/gpu/shader/shader.h"
 
 namespace fovea::gpu {
 

@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/pipeline.h"
-#include "framework/gpu/spirv_bindings.h"
+#include "framework/gpu/shader/spirv_bindings.h"
 
 namespace fovea::gpu {
 namespace {

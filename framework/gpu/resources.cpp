@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
 

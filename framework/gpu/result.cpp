@@ -1,4 +1,4 @@
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/device.h"
 
 namespace fovea::gpu {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/device.h"
 
 namespace fovea::gpu {

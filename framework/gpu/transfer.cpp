@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/barrier.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"

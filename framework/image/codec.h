@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/image.h"
+#include "fovea/image.h"
 
 namespace fovea::image::codec {
 

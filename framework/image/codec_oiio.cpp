@@ -25,7 +25,8 @@ void checkSize(const OIIO::ImageSpec& spec) {
   if (spec.width < 1 || spec.height < 1 || spec.width > int(kMaxSide) || spec.height > int(kMaxSide))
     fail("its size " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
          " is not within 1x1 and 32768x32768");
-  if (spec.nchannels < 1 || spec.nchannels > 1024) fail("it has " + std::to_string(spec.nchannels) + " channels");
+  if (spec.nchannels < 1 || spec.nchannels > 1024)
+    fail("it has " + std::to_string(spec.nchannels) + " channels");
   if (spec.deep || spec.depth > 1) fail("deep and volume images are not supported");
 }
 
@@ -47,8 +48,8 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
     spec["compression"] = "zip";
   }
   for (const auto& [key, value] : pixels.metadata) spec.attribute(key, value);
-  const bool written = output->open(file.string(), spec) &&
-                       output->write_image(OIIO::TypeDesc::FLOAT, pixels.data.data());
+  const bool written =
+      output->open(file.string(), spec) && output->write_image(OIIO::TypeDesc::FLOAT, pixels.data.data());
   const bool closed = output->close();
   if (!written || !closed || output->has_error()) fail(output->geterror());
 }
@@ -64,7 +65,8 @@ Pixels read(const std::filesystem::path& file) {
   pixels.height = uint32_t(spec.height);
   pixels.channels = spec.channelnames;
   pixels.data.resize(size_t(spec.width) * spec.height * spec.nchannels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data.data())) fail(input->geterror());
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data.data()))
+    fail(input->geterror());
   for (const OIIO::ParamValue& value : spec.extra_attribs)
     if (value.type() == OIIO::TypeDesc::STRING) pixels.metadata[value.name().string()] = value.get_string();
   input->close();
@@ -84,7 +86,8 @@ Image8 decode8(const uint8_t* bytes, size_t size) {
   const size_t count = size_t(spec.width) * spec.height;
   const size_t channels = size_t(spec.nchannels);
   std::vector<uint8_t> stored(count * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data())) fail(input->geterror());
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data()))
+    fail(input->geterror());
   Image8 image{uint32_t(spec.width), uint32_t(spec.height), std::vector<uint8_t>(count * 4)};
   for (size_t i = 0; i < count; ++i) {
     const uint8_t* from = &stored[i * channels];

@@ -23,7 +23,8 @@ namespace {
 
 void checkSize(int64_t width, int64_t height) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-    fail("its size " + std::to_string(width) + "x" + std::to_string(height) + " is not within 1x1 and 32768x32768");
+    fail("its size " + std::to_string(width) + "x" + std::to_string(height) +
+         " is not within 1x1 and 32768x32768");
 }
 
 std::vector<uint8_t> readBytes(const std::filesystem::path& file) {
@@ -58,7 +59,8 @@ void writeExr(const std::filesystem::path& file, const Pixels& pixels) {
   const size_t channels = pixels.channels.size(), count = size_t(pixels.width) * pixels.height;
   std::vector<size_t> order(channels);  // EXR wants its channels sorted by name
   std::iota(order.begin(), order.end(), size_t(0));
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return pixels.channels[a] < pixels.channels[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return pixels.channels[a] < pixels.channels[b]; });
   std::vector<std::vector<float>> planes(channels, std::vector<float>(count));
   std::vector<EXRChannelInfo> infos(channels);
   std::vector<unsigned char*> pointers(channels);
@@ -100,12 +102,14 @@ void writeExr(const std::filesystem::path& file, const Pixels& pixels) {
 Pixels readExr(const std::filesystem::path& file) {
   const std::vector<uint8_t> bytes = readBytes(file);
   EXRVersion version;
-  if (ParseEXRVersionFromMemory(&version, bytes.data(), bytes.size()) != TINYEXR_SUCCESS) fail("it is no EXR file");
+  if (ParseEXRVersionFromMemory(&version, bytes.data(), bytes.size()) != TINYEXR_SUCCESS)
+    fail("it is no EXR file");
   if (version.multipart || version.non_image || version.tiled)
     fail("only EXR files with one part of scan lines are supported");
   Exr exr;
   const char* message = nullptr;
-  if (ParseEXRHeaderFromMemory(&exr.header, &version, bytes.data(), bytes.size(), &message) != TINYEXR_SUCCESS)
+  if (ParseEXRHeaderFromMemory(&exr.header, &version, bytes.data(), bytes.size(), &message) !=
+      TINYEXR_SUCCESS)
     fail(reasonOf(message));
   exr.owned = true;
   const EXRBox2i& window = exr.header.data_window;
@@ -114,10 +118,12 @@ Pixels readExr(const std::filesystem::path& file) {
     if (exr.header.pixel_types[c] == TINYEXR_PIXELTYPE_UINT) fail("its integer channels are not supported");
     exr.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
   }
-  if (LoadEXRImageFromMemory(&exr.image, &exr.header, bytes.data(), bytes.size(), &message) != TINYEXR_SUCCESS)
+  if (LoadEXRImageFromMemory(&exr.image, &exr.header, bytes.data(), bytes.size(), &message) !=
+      TINYEXR_SUCCESS)
     fail(reasonOf(message));
   const size_t channels = size_t(exr.image.num_channels), count = size_t(exr.image.width) * exr.image.height;
-  Pixels pixels{uint32_t(exr.image.width), uint32_t(exr.image.height), {}, std::vector<float>(count * channels), {}};
+  Pixels pixels{
+      uint32_t(exr.image.width), uint32_t(exr.image.height), {}, std::vector<float>(count * channels), {}};
   for (size_t c = 0; c < channels; ++c) {
     pixels.channels.push_back(exr.header.channels[c].name);
     const float* plane = reinterpret_cast<const float*>(exr.image.images[c]);
@@ -126,7 +132,8 @@ Pixels readExr(const std::filesystem::path& file) {
   for (int a = 0; a < exr.header.num_custom_attributes; ++a) {
     const EXRAttribute& attribute = exr.header.custom_attributes[a];
     if (std::strcmp(attribute.type, "string") == 0)
-      pixels.metadata[attribute.name] = {reinterpret_cast<const char*>(attribute.value), size_t(attribute.size)};
+      pixels.metadata[attribute.name] = {reinterpret_cast<const char*>(attribute.value),
+                                         size_t(attribute.size)};
   }
   return pixels;
 }
@@ -175,7 +182,8 @@ void writePng(const std::filesystem::path& file, const Pixels& pixels) {
   png_write_info(png.png, png.info);
   std::vector<uint8_t> row(pixels.width * channels);
   for (size_t y = 0; y < pixels.height; ++y) {
-    for (size_t i = 0; i < row.size(); ++i) row[i] = uint8_t(std::lround(pixels.data[y * row.size() + i] * 255));
+    for (size_t i = 0; i < row.size(); ++i)
+      row[i] = uint8_t(std::lround(pixels.data[y * row.size() + i] * 255));
     png_write_row(png.png, row.data());
   }
   png_write_end(png.png, png.info);
@@ -190,7 +198,8 @@ Pixels readPng(const std::filesystem::path& file) {
   png_set_scale_16(png.png);
   png_set_interlace_handling(png.png);
   png_read_update_info(png.png, png.info);
-  const uint32_t width = png_get_image_width(png.png, png.info), height = png_get_image_height(png.png, png.info);
+  const uint32_t width = png_get_image_width(png.png, png.info),
+                 height = png_get_image_height(png.png, png.info);
   checkSize(width, height);
   const size_t rowBytes = png_get_rowbytes(png.png, png.info);
   std::vector<uint8_t> bytes(rowBytes * height);
@@ -226,7 +235,8 @@ Pixels read(const std::filesystem::path& file) {
   const std::vector<uint8_t> bytes = readBytes(file);
   const Image8 image = decode8(bytes.data(), bytes.size());
   Pixels pixels{image.width, image.height, {"R", "G", "B", "A"}, std::vector<float>(image.rgba.size()), {}};
-  std::transform(image.rgba.begin(), image.rgba.end(), pixels.data.begin(), [](uint8_t v) { return float(v) / 255; });
+  std::transform(image.rgba.begin(), image.rgba.end(), pixels.data.begin(),
+                 [](uint8_t v) { return float(v) / 255; });
   return pixels;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/image/image.h"
+#include "fovea/image.h"
 
 namespace fovea::image {
 namespace {

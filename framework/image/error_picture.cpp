@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/image/overlay.h"
 
 namespace fovea::image {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/image/color.h"
 #include "framework/image/metrics.h"
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "framework/image/image.h"
+#include "fovea/image.h"
 
 namespace fovea::image {
 

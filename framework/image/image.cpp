@@ -1,4 +1,4 @@
-#include "framework/image/image.h"
+#include "fovea/image.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/image/codec.h"
 #include "framework/image/pfm.h"
 
@@ -43,7 +43,8 @@ std::string checkExtension(const fs::path& file) {
   for (const std::string& k : known) list += (list.empty() ? "." : ", .") + k;
   throw Error(ExitCode::BadInput,
               "`" + file.string() + "`: " +
-                  (extension.empty() ? "the name has no extension" : "the image format `." + extension + "` is not known"),
+                  (extension.empty() ? "the name has no extension"
+                                     : "the image format `." + extension + "` is not known"),
               "name the file with one of " + list);
 }
 
@@ -53,11 +54,14 @@ std::string checkExtension(const fs::path& file) {
               "choose a folder that exists, is writable and has room");
 }
 
-fs::path folderOf(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+fs::path folderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
 
 // In the same folder, so that the final rename is atomic; the same extension, since libraries go by it.
 fs::path temporaryName(const fs::path& file, const std::string& extension) {
-  return folderOf(file) / ("." + file.stem().string() + ".tmp" + std::to_string(::getpid()) + "." + extension);
+  return folderOf(file) /
+         ("." + file.stem().string() + ".tmp" + std::to_string(::getpid()) + "." + extension);
 }
 
 struct RemoveOnExit {
@@ -83,7 +87,8 @@ void checkLayers(const fs::path& file, const std::vector<Layer>& layers, bool ma
   };
   if (layers.empty()) bad("there is nothing to write", "give at least one layer");
   if (!many && layers.size() > 1)
-    bad("this format holds one layer, not " + std::to_string(layers.size()), "write an .exr, or one file a layer");
+    bad("this format holds one layer, not " + std::to_string(layers.size()),
+        "write an .exr, or one file a layer");
   for (const Layer& layer : layers) {
     const Image& image = layer.image;
     const std::string name = "layer `" + layer.name + "` ";
@@ -112,7 +117,8 @@ Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
                          &layer.image, c});
   // A single layer stays in its own order, which one-layer formats rely on.
   if (layers.size() > 1)
-    std::sort(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.name < b.name; });
+    std::sort(sources.begin(), sources.end(),
+              [](const Source& a, const Source& b) { return a.name < b.name; });
   Pixels pixels{layers[0].image.width, layers[0].image.height, {}, {}, {}};
   for (const Source& s : sources) pixels.channels.push_back(s.name);
   const size_t count = size_t(pixels.width) * pixels.height;
@@ -120,7 +126,8 @@ Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
   pixels.data.resize(count * stride);
   for (size_t c = 0; c < stride; ++c)
     for (size_t i = 0; i < count; ++i)
-      pixels.data[i * stride + c] = sources[c].image->data[i * sources[c].image->channels + sources[c].channel];
+      pixels.data[i * stride + c] =
+          sources[c].image->data[i * sources[c].image->channels + sources[c].channel];
   for (const auto& [key, value] : metadata)
     if (!value.empty()) pixels.metadata[std::string(kPrefix) + key] = value;
   return pixels;
@@ -149,8 +156,9 @@ File toFile(const Pixels& pixels) {
   }
   const size_t count = size_t(pixels.width) * pixels.height;
   for (size_t g = 0; g < groups.size(); ++g) {
-    std::stable_sort(groups[g].begin(), groups[g].end(),
-                     [](const auto& a, const auto& b) { return channelRank(a.first) < channelRank(b.first); });
+    std::stable_sort(groups[g].begin(), groups[g].end(), [](const auto& a, const auto& b) {
+      return channelRank(a.first) < channelRank(b.first);
+    });
     const size_t channels = groups[g].size();
     Image image{pixels.width, pixels.height, uint32_t(channels), std::vector<float>(count * channels)};
     for (size_t c = 0; c < channels; ++c)
@@ -189,7 +197,8 @@ std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit,
     for (size_t i = 0; i < wanted.data.size(); i += channels) {
       const float a = wanted.data[i + c], b = found.data[i + d];
       const bool equal = eightBit ? std::abs(a - b) < 1e-4f
-                                  : std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) || (std::isnan(a) && std::isnan(b));
+                                  : std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) ||
+                                        (std::isnan(a) && std::isnan(b));
       if (!equal) return "pixel " + std::to_string(i / channels) + " of channel " + wanted.channels[c];
     }
   }
@@ -262,9 +271,10 @@ void write(const fs::path& file, const std::vector<Layer>& layers, const Metadat
   if (extension != "exr") {
     const size_t channels = pixels.channels.size();
     if (extension == "png" ? channels > 4 : channels != 1 && channels != 3)
-      throw Error(ExitCode::BadInput,
-                  "`" + file.string() + "`: ." + extension + " cannot hold " + std::to_string(channels) + " channels",
-                  "write an .exr");
+      throw Error(
+          ExitCode::BadInput,
+          "`" + file.string() + "`: ." + extension + " cannot hold " + std::to_string(channels) + " channels",
+          "write an .exr");
     for (size_t c = 0; c < channels; ++c) pixels.channels[c] = channelName(uint32_t(c), uint32_t(channels));
     if (channels == 2) pixels.channels = {"Y", "A"};
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/image/color.h"
 #include "framework/image/flip.h"
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "framework/image/image.h"
+#include "fovea/image.h"
 
 namespace fovea::image {
 

@@ -37,7 +37,8 @@ codec::Pixels readPfm(const std::filesystem::path& file) {
   const size_t row = width * pixels.channels.size();
   const auto begin = stream.tellg();
   stream.seekg(0, std::ios::end);
-  if (size_t(stream.tellg() - begin) < row * height * sizeof(float)) throw std::runtime_error("it ends too early");
+  if (size_t(stream.tellg() - begin) < row * height * sizeof(float))
+    throw std::runtime_error("it ends too early");
   stream.seekg(begin);
   pixels.data.resize(row * height);
   for (size_t y = height; y-- > 0;)

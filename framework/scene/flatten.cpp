@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "framework/base/diagnostic.h"
-#include "framework/scene/deform.h"
-#include "framework/scene/motion.h"
+#include "fovea/error.h"
+#include "framework/scene/motion/deform.h"
+#include "framework/scene/motion/motion.h"
 #include "framework/scene/scene.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/subdivision/subdivision.h"
 
 namespace fovea::scene {
 namespace {

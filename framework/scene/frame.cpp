@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "framework/scene/motion.h"
+#include "framework/scene/motion/motion.h"
 
 namespace fovea::scene {
 namespace {
@@ -73,6 +73,12 @@ const View* Frame::findView(std::string_view name) const {
   for (const View& v : views)
     if (v.name == name) return &v;
   return nullptr;
+}
+
+std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
+  std::vector<std::pair<std::string, VkExtent2D>> views;
+  for (const char* name : kViewNames) views.emplace_back(name, size);
+  return views;
 }
 
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,

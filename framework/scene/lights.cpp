@@ -20,7 +20,8 @@ LightSample sampleLight(const Light& light, glm::vec3 position) {
   float falloff = 1.0f / d2;
   if (light.type == LightType::Spot) {
     const SpotCone cone = spotCone(light);
-    const float s = std::clamp((glm::dot(-direction, light.direction) - cone.cosOuter) * cone.scale(), 0.0f, 1.0f);
+    const float s =
+        std::clamp((glm::dot(-direction, light.direction) - cone.cosOuter) * cone.scale(), 0.0f, 1.0f);
     falloff *= s * s;
   }
   if (light.range > 0) {

@@ -7,8 +7,7 @@
 #include <sstream>
 
 #include "framework/base/paths.h"
-#include "framework/scene/builtin/builtin.h"
-#include "framework/scene/scene_file.h"
+#include "framework/scene/file/scene_file.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -121,38 +120,6 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
     for (const fs::path& folder : isModelFile(file) ? modelSearchPath() : sceneSearchPath())
       if (fs::is_regular_file(folder / file, ec)) return loadFile(folder / file, warnings);
   throw Error(ExitCode::BadInput, nameOrFile + ": there is no such scene or model file");
-}
-
-namespace {
-
-struct Generator {
-  const char* name;
-  Scene (*make)();
-};
-constexpr Generator kGenerators[] = {{"cornellbox", cornellBox},
-                                     {"cornellbox_moving", cornellBoxMoving},
-                                     {"atrium", atriumScene},
-                                     {"balcony", balconyScene},
-                                     {"room", roomScene},
-                                     {"yard", yardScene}};
-
-}  // namespace
-
-std::vector<std::string> builtinNames() {
-  std::vector<std::string> names;
-  for (const Generator& g : kGenerators) names.push_back(g.name);
-  return names;
-}
-
-Scene builtin(const std::string& name) {
-  std::string list;
-  for (const Generator& g : kGenerators) {
-    if (name == g.name) return g.make();
-    list += (list.empty() ? "" : ", ") + std::string(g.name);
-  }
-  const std::string nearest = nearestName(name, builtinNames());
-  throw Error(ExitCode::BadInput, "there is no built-in scene `" + name + "`",
-              nearest.empty() ? "the built-in scenes are: " + list : "did you mean `" + nearest + "`?");
 }
 
 glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {

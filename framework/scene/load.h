@@ -1,12 +1,9 @@
-// Loading: glTF models, scene files (JSON) and built-in scenes, all to scene::Scene.
+// Where scenes are looked for, and loading a model alone.
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
 #include "framework/scene/scene.h"
 
 namespace fovea::scene {
@@ -16,16 +13,8 @@ namespace fovea::scene {
 std::vector<std::filesystem::path> modelSearchPath();
 std::vector<std::filesystem::path> sceneSearchPath();
 
-// nameOrFile: a built-in scene's or scene file's bare name ("cornellbox", "sponza"), or a .json, .gltf or .glb file. A bare
-// model without light or camera gets a default view and a sun, with a warning.
-// Throws Error(BadInput) with file, place and remedy; for a missing model also where to get it.
-Scene load(const std::string& nameOrFile, Diagnostics& warnings);
-
-// Only the model. Guards against everything a hostile file can do (see PLATFORM facts in gltf.cpp).
+// The model alone, without a default view or light. Guards against everything that a hostile file can do; gltf/check.h
+// says what that is.
 Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings);
-
-// Built-in generators by name, e.g. "cornellbox"; deterministic.
-std::vector<std::string> builtinNames();
-Scene builtin(const std::string& name);
 
 }  // namespace fovea::scene

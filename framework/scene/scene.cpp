@@ -2,9 +2,11 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <memory>
 
-#include "framework/scene/subdivision.h"
+#include "framework/scene/lights.h"
+#include "framework/scene/subdivision/subdivision.h"
 
 namespace fovea::scene {
 namespace {
@@ -235,6 +237,15 @@ uint64_t contentHash(const Scene& scene) {
   hashMotion(h, scene);
   hashAnimation(h, scene);
   return h.digest();
+}
+
+std::vector<std::pair<std::string, int64_t>> quantities(const Scene& scene, const Geometry& geometry) {
+  const auto atLeastOne = [](size_t value) { return std::max<int64_t>(1, static_cast<int64_t>(value)); };
+  return {{"scene.triangles", atLeastOne(geometry.triangles.size())},
+          {"scene.static_triangles", atLeastOne(geometry.staticTriangles)},
+          {"scene.vertices", atLeastOne(geometry.positions.size())},
+          {"scene.lights", atLeastOne(scene.lights.size())},
+          {"scene.shadow_layers", atLeastOne(shadowLayers(scene.lights))}};
 }
 
 }  // namespace fovea::scene

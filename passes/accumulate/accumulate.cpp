@@ -1,5 +1,5 @@
 // Running mean over frames: many frames of N virtual lights stand for one of many more.
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

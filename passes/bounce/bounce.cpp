@@ -1,5 +1,5 @@
 // Another bounce of light from voxel to voxel: light-inject -> mipmap -> bounce -> mipmap -> ...
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

@@ -1,9 +1,9 @@
 // Where VPLs could be: one diffuse bounce from what is looked at (METHOD: candidates).
-#include "framework/graph/registry.h"
-#include "framework/scene/fovea.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/voxel_grid.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/fovea.h"
+#include "framework/shader_twins/voxel_grid.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {

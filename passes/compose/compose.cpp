@@ -1,5 +1,5 @@
 // From irradiance to what the eye sees.
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

@@ -5,10 +5,10 @@
 #include <glm/trigonometric.hpp>
 #include <string>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -51,7 +51,7 @@ class Deferred : public Pass {
     d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: radiance to add the indirect light to")
         .makeOptional();
-    d.input("near", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+    d.input("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi of each pixel by what is near (pass near-field), to be filtered with that "
             "of the VPLs")
         .makeOptional();
@@ -91,16 +91,16 @@ class Deferred : public Pass {
     side_ = subsetsPerSide(interleave, count_);
     masked_ = ctx.has("shade");
     if (masked_) checkMask(ctx, uint32_t(interleave));
-    gpu::Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
+    Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
     if (masked_) defines["BLOCK"] = std::to_string(interleave);
-    gpu::Defines filter = defines;
+    Defines filter = defines;
     filter["EDGES"] = "0";
     if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
     filter["EDGES"] = "1";
     edges_ = ctx.compute("deferred/resolve.comp", filter);
     if (ctx.isRead("indirect") || ctx.isRead("radiance"))
-      compose_ = ctx.fullscreen("compose/compose.frag", {"indirect", "radiance"},
-                              {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
+      compose_ = ctx.fullscreen("deferred/compose.frag", {"indirect", "radiance"},
+                                {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
     defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
     preparePages(ctx, defines);
   }
@@ -199,8 +199,8 @@ class Deferred : public Pass {
                   "give both passes the same `interleave`");
   }
 
-  void preparePages(PrepareContext& ctx, gpu::Defines defines) {
-    defines["NEAR"] = ctx.has("near") ? "1" : "0";
+  void preparePages(PrepareContext& ctx, Defines defines) {
+    defines["NEAR_FIELD"] = ctx.has("near_field") ? "1" : "0";
     defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
     defines["TILED"] = "0";
     if (ctx.has("atlas")) {

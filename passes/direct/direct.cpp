@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 

@@ -23,7 +23,8 @@ constexpr uint64_t kPathsPerVpl = 256;
 
 class PathTracer {
  public:
-  PathTracer(const Frame& frame, const RayScene& rays, const LightSampler& lights, const EmitSettings& settings)
+  PathTracer(const Frame& frame, const RayScene& rays, const LightSampler& lights,
+             const EmitSettings& settings)
       : frame_(frame), rays_(rays), lights_(lights), settings_(settings) {}
 
   // The VPLs of path `index`, intensities not yet divided by the number of paths.
@@ -76,8 +77,8 @@ class PathTracer {
     flux /= survival;
     ray = {};
     ray.origin = s.position + normal * rays_.epsilon();
-    ray.direction =
-        cosineDirection(normal, sobol(index, dimension, settings_.seed), sobol(index, dimension + 1, settings_.seed));
+    ray.direction = cosineDirection(normal, sobol(index, dimension, settings_.seed),
+                                    sobol(index, dimension + 1, settings_.seed));
     return true;
   }
 
@@ -141,11 +142,13 @@ void estimateAreas(std::vector<Vpl>& vpls, uint32_t k, float limit) {
     for (const Vpl& w : vpls) {
       const glm::vec3 d = w.position - v.position;
       const float d2 = glm::dot(d, d);
-      if (&w == &v || (nearest.size() == k && d2 >= nearest.back()) || glm::dot(v.normal, w.normal) < 0.5f) continue;
+      if (&w == &v || (nearest.size() == k && d2 >= nearest.back()) || glm::dot(v.normal, w.normal) < 0.5f)
+        continue;
       if (nearest.size() == k) nearest.pop_back();
       nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), d2), d2);
     }
-    v.area = nearest.empty() ? limit : std::min(glm::pi<float>() * nearest.back() / float(nearest.size()), limit);
+    v.area =
+        nearest.empty() ? limit : std::min(glm::pi<float>() * nearest.back() / float(nearest.size()), limit);
   }
 }
 

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 
 struct EmitSettings {
-  uint32_t count = 1000;         // VPLs to store
-  uint32_t bounces = 2;          // VPLs along one path, without the one on an emissive triangle
-  uint32_t seed = 0;             // of the quasi-random numbers: another seed, other paths
-  uint32_t neighbours = 8;       // for the area of a VPL
+  uint32_t count = 1000;    // VPLs to store
+  uint32_t bounces = 2;     // VPLs along one path, without the one on an emissive triangle
+  uint32_t seed = 0;        // of the quasi-random numbers: another seed, other paths
+  uint32_t neighbours = 8;  // for the area of a VPL
   bool emissiveTriangles = true;
 };
 
@@ -33,7 +33,8 @@ struct EmitResult {
 // in them), so the mean of any path quantity over them has the expectation of a single path: the argument of inverse
 // binomial sampling, (r - 1) / (n - 1). Paths that escape count. The slots still free at the end (fewer than the VPLs of
 // one path) are filled by splitting the brightest VPLs in two, which changes no sum.
-EmitResult traceLightPaths(const scene::Frame& frame, const scene::RayScene& rays, const EmitSettings& settings);
+EmitResult traceLightPaths(const scene::Frame& frame, const scene::RayScene& rays,
+                           const EmitSettings& settings);
 
 // Fills Vpl::area: pi r_k^2 / k with the distance r_k to the k-th nearest VPL whose normal is within 60 degrees, which is
 // unbiased for the inverse of the density of a Poisson process; at most `limit`.

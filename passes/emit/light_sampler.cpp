@@ -6,7 +6,7 @@
 
 #include "framework/base/low_discrepancy.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/paraboloid.h"
+#include "framework/shader_twins/paraboloid.h"
 
 namespace fovea::passes {
 namespace {
@@ -16,7 +16,8 @@ using namespace scene;
 double meanChannel(glm::dvec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
 glm::vec3 sphereDirection(float u, float v) {
-  const float z = 1.0f - 2.0f * u, r = std::sqrt(std::max(0.0f, 1.0f - z * z)), phi = glm::two_pi<float>() * v;
+  const float z = 1.0f - 2.0f * u, r = std::sqrt(std::max(0.0f, 1.0f - z * z)),
+              phi = glm::two_pi<float>() * v;
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
@@ -34,9 +35,12 @@ float spotCosine(float cosInner, float cosOuter, float u) {
 glm::dvec3 lightPower(const Light& light, double beamArea) {
   const glm::dvec3 intensity = glm::dvec3(light.color) * double(light.intensity);
   switch (light.type) {
-    case LightType::Directional: return intensity * beamArea;
-    case LightType::Point: return intensity * 4.0 * glm::pi<double>();
-    case LightType::Spot: break;
+    case LightType::Directional:
+      return intensity * beamArea;
+    case LightType::Point:
+      return intensity * 4.0 * glm::pi<double>();
+    case LightType::Spot:
+      break;
   }
   const SpotCone cone = spotCone(light);
   const double ci = cone.cosInner, co = cone.cosOuter;
@@ -138,14 +142,16 @@ void LightSampler::sampleTriangle(const Source& source, double probability, cons
   const double sides = m.doubleSided ? 2.0 : 1.0;
   e.surface = true;
   e.normal = m.doubleSided && u[3] < 0.5f ? -s.geometricNormal : s.geometricNormal;
-  e.flux = glm::vec3(glm::dvec3(emission(*frame_.scene, m, s.uv)) * (area * glm::pi<double>() * sides / probability));
+  e.flux = glm::vec3(glm::dvec3(emission(*frame_.scene, m, s.uv)) *
+                     (area * glm::pi<double>() * sides / probability));
   e.ray.origin = s.position + e.normal * epsilon_;
   e.ray.direction = cosineDirection(e.normal, sobol(index, 4, seed), sobol(index, 5, seed));
 }
 
 Emission LightSampler::sample(uint32_t index, uint32_t seed) const {
   Emission e;
-  const float u[4] = {sobol(index, 0, seed), sobol(index, 1, seed), sobol(index, 2, seed), sobol(index, 3, seed)};
+  const float u[4] = {sobol(index, 0, seed), sobol(index, 1, seed), sobol(index, 2, seed),
+                      sobol(index, 3, seed)};
   const double total = sources_.back().cumulative;
   const auto found = std::upper_bound(sources_.begin(), sources_.end(), double(u[0]) * total,
                                       [](double x, const Source& s) { return x < s.cumulative; });

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::passes {
 
@@ -39,8 +39,8 @@ class LightSampler {
   void add(Source source);
   void addEmissiveTriangles();
   void sampleLight(const scene::Light& light, const float u[4], Emission& e) const;
-  void sampleTriangle(const Source& source, double probability, const float u[4], uint32_t index, uint32_t seed,
-                      Emission& e) const;
+  void sampleTriangle(const Source& source, double probability, const float u[4], uint32_t index,
+                      uint32_t seed, Emission& e) const;
   glm::vec3 boxSilhouette(glm::vec3 direction) const;  // area of each pair of faces times |cosine|, m^2
 
   const scene::Frame& frame_;

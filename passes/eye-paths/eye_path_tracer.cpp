@@ -6,9 +6,9 @@
 
 #include "framework/base/random.h"
 #include "framework/base/threads.h"
-#include "framework/scene/fovea.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/surface_tracer.h"
+#include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/fovea.h"
 
 namespace fovea::passes {
 namespace {

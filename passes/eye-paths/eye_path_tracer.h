@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/shader_twins/fovea.h"
 
 namespace fovea::passes {
 
@@ -27,7 +27,7 @@ struct EyePathSettings {
   uint32_t threads = 0;      // 0: one a core; the result does not depend on it
 };
 
-// What a screen point shows; as the screen points of shaders/weights/points.comp. All zeros: the background.
+// What a screen point shows; as the screen points of shaders/vpl-intensity/points.comp. All zeros: the background.
 struct EyePathStart {
   glm::vec3 position{0};  // world space, m
   float there = 0;        // 1: a surface
@@ -38,7 +38,7 @@ struct EyePathStart {
 };
 static_assert(sizeof(EyePathStart) == 48);
 
-// The same layout as in shaders/weights/weights.glsl. All zeros: the path ends nowhere.
+// The same layout as in shaders/vpl-intensity/vpl_intensity.glsl. All zeros: the path ends nowhere.
 struct EyePathEnd {
   glm::vec3 position{0};  // world space, m
   float kind = 0;         // 1: no direct light there, 2: some

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "framework/graph/registry.h"
-#include "framework/scene/fovea.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
+#include "framework/shader_twins/fovea.h"
 
 namespace fovea::passes {
 namespace {
@@ -32,7 +32,7 @@ class EyePaths : public Pass {
                 "where the eye paths start: as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: starts from the whole image, in 64ths");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("points", integer(1024, 1, 65536), "screen points: where pass weights has as many");
+    d.parameter("points", integer(1024, 1, 65536), "screen points: where pass vpl-intensity has as many");
     d.parameter("paths", integer(8192, 64, 65536), "eye paths");
     d.parameter("bounces", integer(2, 1, 64),
                 "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "

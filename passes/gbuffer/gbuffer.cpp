@@ -1,11 +1,11 @@
 // What the eye sees: the nearest surface through the centre of every pixel.
 #include <algorithm>
 
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/draw_clusters.h"
+#include "framework/scene/device/draw_clusters.h"
+#include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/gpu_scene.h"
 
 namespace fovea::passes {
 namespace {

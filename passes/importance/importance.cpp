@@ -1,12 +1,12 @@
 // How much of what the eye cares about a VPL can light (METHOD importance, step 2).
 #include <string>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/hemisphere_rays.h"
-#include "framework/scene/voxel_grid.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/hemisphere_rays.h"
+#include "framework/shader_twins/voxel_grid.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -75,7 +75,7 @@ void Importance::prepare(PrepareContext& ctx) {
   if (cones && !ctx.has("mips"))
     throw Error(ExitCode::BadInput, "pass `importance`: method `cones` needs the input `mips`",
                 "wire `mips` to mipmap, or set method to `rays`");
-  gpu::Defines defines{{"CONES", cones ? "1" : "0"}, {"LUMINANCE", luminance ? "1" : "0"}};
+  Defines defines{{"CONES", cones ? "1" : "0"}, {"LUMINANCE", luminance ? "1" : "0"}};
   defines["CANDIDATES"] = "1";
   if (p.flag("rate_candidates")) candidates_ = ctx.compute("importance/estimate.comp", defines);
   defines["CANDIDATES"] = "0";

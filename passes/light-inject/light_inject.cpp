@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/movers.h"
+#include "framework/scene/motion/movers.h"
 
 namespace fovea::passes {
 namespace {
@@ -72,14 +72,14 @@ class LightInject : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    gpu::Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"},
-                         {"MOVER_BOXES", std::to_string(scene::MoverBoxes::kCount)}};
+    Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"},
+                    {"MOVER_BOXES", std::to_string(scene::MoverBoxes::kCount)}};
     covered_ = ctx.compute("light-inject/covered.comp", defines);
     const std::string& filter = ctx.parameters().text("filter");
     for (size_t i = 0; i < select_.size(); ++i) {
       defines["ONE_LIGHT"] = std::to_string(i);
       select_[i] = ctx.compute("light-inject/select.comp", defines);
-      gpu::Defines filtered = defines;
+      Defines filtered = defines;
       filtered["SHADOW_FILTER"] = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
       kernel_[i] = ctx.compute("light-inject/light_inject.comp", filtered);
     }

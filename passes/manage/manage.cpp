@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/gpu/device.h"
-#include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {

@@ -2,10 +2,10 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/movers.h"
+#include "framework/scene/motion/movers.h"
 
 namespace fovea::passes {
 namespace {
@@ -58,10 +58,10 @@ class Mipmap : public Pass {
     directional_ = ctx.parameters().flag("directional");
     weighted_ = ctx.has("weights") && ctx.parameters().text("importance") == "cones";
     keeps_ = ctx.has("changed") && !weighted_;  // weights are others in every frame
-    const gpu::Defines defines{{"DIRECTIONAL", directional_ ? "1" : "0"},
-                               {"WEIGHTED", weighted_ ? "1" : "0"},
-                               {"KEEPS", keeps_ ? "1" : "0"}};
-    gpu::Defines base = defines;
+    const Defines defines{{"DIRECTIONAL", directional_ ? "1" : "0"},
+                          {"WEIGHTED", weighted_ ? "1" : "0"},
+                          {"KEEPS", keeps_ ? "1" : "0"}};
+    Defines base = defines;
     base["ODD"] = std::to_string(ctx.extent("voxels.index").width % 2);
     base["MOVER_BOXES"] = std::to_string(scene::MoverBoxes::kCount);
     base_ = ctx.compute("mipmap/base.comp", base);

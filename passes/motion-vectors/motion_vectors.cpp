@@ -2,7 +2,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

@@ -4,8 +4,8 @@
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/near-field/near_field_tracer.h"
 
@@ -31,7 +31,7 @@ class NearField : public Pass {
              "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2, or of each `spacing` x `spacing` "
              "outside the fovea; a: which, and whether it shows a surface, for pass temporal-accumulation");
     d.output("spread", buffer("VplSpread", 16, 1), Usage::HostWrite,
-             "x: area of the discs, m^2, which none may be smaller than: for pass weights");
+             "x: area of the discs, m^2, which none may be smaller than: for pass vpl-intensity");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("spacing", integer(4, 2, 8), "pixels between rays outside the fovea: 2, 4 or 8");
     d.parameter("vpls", integer(1000, 1, 1 << 20), "how many there are");

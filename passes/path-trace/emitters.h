@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::passes {
 

@@ -8,7 +8,7 @@
 #include "framework/base/low_discrepancy.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/paraboloid.h"
+#include "framework/shader_twins/paraboloid.h"
 
 namespace fovea::passes {
 namespace {

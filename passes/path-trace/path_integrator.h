@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
 #include "passes/path-trace/emitters.h"
 #include "passes/path-trace/surface_table.h"
 

@@ -1,6 +1,6 @@
 // Ground truth: what all other methods approximate.
+#include "fovea/pass.h"
 #include "framework/base/random.h"
-#include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
 #include "passes/path-trace/path_tracer.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/texture_taps.h"
 #include "passes/path-trace/huge_pages.h"
 

@@ -1,6 +1,6 @@
 // Radiosity of the VPLs: direct light plus one bounce gathered with cones (METHOD 2, radiance, Eq. 3).
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
 namespace fovea::passes {
@@ -77,8 +77,8 @@ class Reproject : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
                   "use 1, 2, 4 or 8, the same as for the shading");
-    const gpu::Defines defines{{"INTERLEAVE", std::to_string(n)}};
-    gpu::Defines filling = defines;
+    const Defines defines{{"INTERLEAVE", std::to_string(n)}};
+    Defines filling = defines;
     filling["FILL"] = std::to_string(ctx.parameters().integer("fill"));
     warp_ = ctx.compute("reproject/warp.comp");
     fill_ = ctx.compute("reproject/fill.comp", filling);

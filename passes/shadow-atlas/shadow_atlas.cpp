@@ -16,15 +16,15 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/pass.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
+#include "framework/scene/device/simplify.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/motion.h"
-#include "framework/scene/movers.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/simplify.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/motion/motion.h"
+#include "framework/scene/motion/movers.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -170,7 +170,7 @@ PassDeclaration ShadowAtlas::declaration() {
 }
 
 ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps) {
-  gpu::Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
+  Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
   if (simplified) defines["SIMPLIFIED"] = "1";
   if (toStaticMaps) defines["STATIC_MAPS"] = "1";
   if (!simplified && !toStaticMaps && ctx.parameters().real("mover_slack") > 0) defines["MOVER_SLACK"] = "1";
@@ -192,8 +192,8 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   // The maps are as small as can be where nothing moves.
   const VkExtent3D still = ctx.extent("static_maps"), all = ctx.extent("atlas");
   staticMaps_ = hasState_ && still.width == all.width && still.height == all.height;
-  const gpu::Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
-  gpu::Defines defines = batch;
+  const Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
+  Defines defines = batch;
   defines["MOVERS"] = std::to_string(kMovers);
   if (hasState_) changed_ = ctx.compute("shadow-atlas/changed.comp", defines);
   defines["HAS_STATE"] = hasState_ ? "1" : "0";

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
+#include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/gpu_scene.h"
 #include "framework/scene/lights.h"
 
 namespace fovea::passes {

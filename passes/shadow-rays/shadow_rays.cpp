@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
 #include "framework/base/threads.h"
-#include "framework/graph/registry.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/surface_tracer.h"
+#include "framework/scene/rays/surface_tracer.h"
 
 namespace fovea::passes {
 namespace {

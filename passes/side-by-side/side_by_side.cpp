@@ -1,5 +1,5 @@
 // Both eyes in one picture, the left one on the left, for viewers and for looking at (parallel view).
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 
 namespace fovea::passes {
 namespace {

@@ -1,5 +1,5 @@
 // The display transform of METHOD section 4: T(x) = sRGB(clamp01(exposure * x)).
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
 namespace fovea::passes {

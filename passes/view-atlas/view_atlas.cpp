@@ -1,7 +1,7 @@
 // Debug view: all maps of the shadow atlas in one picture.
 #include <algorithm>
 
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
 namespace fovea::passes {

@@ -1,7 +1,7 @@
 // Debug view: the voxels as the eye sees them.
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/voxel_grid.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
+#include "framework/shader_twins/voxel_grid.h"
 
 namespace fovea::passes {
 namespace {
@@ -37,10 +37,10 @@ class ViewVoxels : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
                   std::string("wire `") + wanted + "` or show something else");
-    const gpu::Defines defines = show == "radiance" ? gpu::Defines{{"RADIANCE", "1"}}
-                                 : show == "weight" ? gpu::Defines{{"WEIGHT", "1"}}
-                                 : show == "normal" ? gpu::Defines{{"NORMAL", "1"}}
-                                                    : gpu::Defines{};
+    const Defines defines = show == "radiance" ? Defines{{"RADIANCE", "1"}}
+                            : show == "weight" ? Defines{{"WEIGHT", "1"}}
+                            : show == "normal" ? Defines{{"NORMAL", "1"}}
+                                               : Defines{};
     kernel_ = ctx.compute("view-voxels/view_voxels.comp", defines);
   }
   void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("image"); }

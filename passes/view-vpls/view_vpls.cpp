@@ -1,9 +1,9 @@
 // Debug view: where the VPLs are, and what is known of them.
 #include <algorithm>
 
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/vpl.h"
+#include "fovea/error.h"
+#include "fovea/pass.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -52,7 +52,7 @@ class ViewVpls : public Pass {
           ExitCode::BadInput,
           "pass `view-vpls`: " + std::to_string(ctx.count("state")) + " VPLs; at most 65536 can be drawn",
           "use fewer");
-    gpu::Defines depth, defines;
+    Defines depth, defines;
     if (ctx.has("gbuffer")) depth["DEPTH_TEST"] = "1";
     if (ctx.has("picture")) defines["PICTURE"] = "1";
     if (show == "age") defines["AGE"] = "1";

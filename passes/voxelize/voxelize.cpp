@@ -5,9 +5,9 @@
 // the static voxel of their cell (METHOD: overlaid, not averaged).
 #include <algorithm>
 
-#include "framework/graph/registry.h"
+#include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/voxel_grid.h"
+#include "framework/shader_twins/voxel_grid.h"
 
 namespace fovea::passes {
 namespace {
@@ -60,8 +60,7 @@ PassDeclaration Voxelize::declaration() {
   d.output("voxels", "voxels",
            {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
                    "0 empty, else 1 + number of the cell's voxel"),
-            member("occupied",
-                   image3D(VK_FORMAT_R32_UINT, ceilDiv(r, 4), ceilDiv(r, 4), ceilDiv(r, 2)),
+            member("occupied", image3D(VK_FORMAT_R32_UINT, ceilDiv(r, 4), ceilDiv(r, 4), ceilDiv(r, 2)),
                    Usage::StorageRead | Usage::StorageWrite,
                    "a bit for each cell of a brick of 4 x 4 x 2: it holds a voxel"),
             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
@@ -99,7 +98,7 @@ PassDeclaration Voxelize::declaration() {
 }
 
 void Voxelize::prepare(PrepareContext& ctx) {
-  const gpu::Defines accumulate{{"ACCUMULATE", "1"}}, marks{{"MARKS", "1"}};
+  const Defines accumulate{{"ACCUMULATE", "1"}}, marks{{"MARKS", "1"}};
   mark_ = {ctx.compute("voxelize/small.comp"), ctx.compute("voxelize/large.comp")};
   accumulate_ = {ctx.compute("voxelize/small.comp", accumulate),
                  ctx.compute("voxelize/large.comp", accumulate)};

@@ -1,7 +1,7 @@
 // How much the eye cares about each voxel side it sees (METHOD importance, step 1).
+#include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/graph/registry.h"
-#include "framework/scene/voxel_grid.h"
+#include "framework/shader_twins/voxel_grid.h"
 
 namespace fovea::passes {
 namespace {

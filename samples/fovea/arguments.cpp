@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <optional>
-#include <set>
-
-#include "framework/base/paths.h"
-#include "framework/graph/registry.h"
 
 namespace fovea::cli {
+
 namespace {
 
 template <class T>
@@ -44,33 +40,6 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
   addPluginOption(command, options.plugins);
 }
 
-glm::uvec2 parseSize(std::string_view text) {
-  const size_t x = text.find('x');
-  const auto width = parseNumber<uint64_t>(text.substr(0, x));
-  const auto height = x == text.npos ? std::nullopt : parseNumber<uint64_t>(text.substr(x + 1));
-  if (!width || !height)
-    throw Error(ExitCode::Usage, fmt::format("--size `{}` is not WIDTHxHEIGHT", text),
-                "e.g. --size 1024x768");
-  if (*width < 1 || *height < 1 || *width > kMaxSize || *height > kMaxSize)
-    throw Error(
-        ExitCode::Usage,
-        fmt::format("--size {} is out of range: width and height go from 1 to {} pixels", text, kMaxSize),
-        "the default is 1024x1024");
-  return {uint32_t(*width), uint32_t(*height)};
-}
-
-glm::vec2 parseGaze(std::string_view text) {
-  const size_t comma = text.find(',');
-  const auto x = parseNumber<float>(text.substr(0, comma));
-  const auto y = comma == text.npos ? std::nullopt : parseNumber<float>(text.substr(comma + 1));
-  // Written so that NaN fails too.
-  const auto inside = [](std::optional<float> v) { return v && *v >= 0 && *v <= 1; };
-  if (!inside(x) || !inside(y))
-    throw Error(ExitCode::Usage, fmt::format("--gaze `{}` is not X,Y with both from 0 to 1", text),
-                "0,0 is the top left corner of the image and 0.5,0.5 its middle");
-  return {*x, *y};
-}
-
 scene::Lens parseLens(std::string_view text) {
   std::vector<float> angles;
   for (size_t from = 0; from <= text.size();) {
@@ -90,33 +59,37 @@ scene::Lens parseLens(std::string_view text) {
   return {angles[0], angles[1], angles[2], angles[3]};
 }
 
-void loadPlugins(const std::vector<std::string>& plugins) {
-  for (const std::string& plugin : plugins) graph::Registry::global().loadPlugin(plugin);
+CLI::Validator numberBetween(double low, double high) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return good ? std::string() : fmt::format("`{}` is not a number from {:g} to {:g}", text, low, high);
+      },
+      "");
 }
 
-graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages) {
-  loadPlugins(options.plugins);
-  graph::LoadOptions load;
-  for (const std::string& text : options.set) load.overrides.push_back(graph::parseOverride(text));
-  load.searchPaths = dataFolders("graphs");
-  return graph::load(options.graph, load, messages);
-}
-
-void printWarnings(const Diagnostics& messages) {
-  static std::set<std::string> printed;
-  for (const Diagnostic& d : messages.list()) {
-    const std::string text = d.format();
-    if (d.severity != Severity::Error && printed.insert(text).second)
-      std::fprintf(stderr, "fovea: %s\n", text.c_str());
-  }
-}
-
-std::string formatHash(uint64_t hash) { return fmt::format("{:016x}", hash); }
-
-std::string quoteList(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "`" : ", `") + name + "`";
-  return text.empty() ? "none" : text;
+void addCompareOptions(CLI::App& command, CompareOptions& options) {
+  command
+      .add_option(
+          "--gaze", options.gaze,
+          "Centre of the fovea, 0,0 (top left) to 1,1; default: as in the files' metadata,\nelse the middle")
+      ->type_name("X,Y");
+  command
+      .add_option("--radius", options.radius,
+                  "Radius of the fovea in image widths, up to 4; default: as in the metadata,\nelse 0.25")
+      ->type_name("R")
+      ->check(numberBetween(0, kMaxRadius));
+  command
+      .add_option("--layer", options.layer,
+                  "Layer of both files to compare; default: radiance, or the only one")
+      ->type_name("L");
+  command
+      .add_option("--exposure", options.exposure,
+                  "Radiance is shown as sRGB(clamp(E x radiance)); default: as in the metadata, else 1")
+      ->type_name("E")
+      ->check(numberBetween(1e-9, 1e9));
+  command.add_flag("--json", options.json, "Print JSON, null where a number is not known");
 }
 
 }  // namespace fovea::cli

@@ -1,342 +1,17 @@
-// fovea bench: a suite of measurements, job after job, to results, tables and a report.
-#include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
+// fovea bench: the options of a suite of measurements, and of the passes of one graph.
+#include "benchmarks/runner/bench.h"
 
-#include <chrono>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
-#include <set>
 
-#include "framework/base/paths.h"
+#include "benchmarks/runner/passes.h"
 #include "samples/fovea/arguments.h"
-#include "samples/fovea/bench_folder.h"
-#include "samples/fovea/bench_job.h"
-#include "samples/fovea/bench_passes.h"
-#include "samples/fovea/bench_suite.h"
-#include "samples/fovea/bench_tables.h"
 #include "samples/fovea/commands.h"
-#include "samples/fovea/interrupt.h"
-#include "samples/fovea/progress.h"
 
 namespace fovea::cli {
+
 namespace {
 
-namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-struct Options {
-  std::string suite, folder, cache, only, shard, size, device;
-  std::optional<uint32_t> seeds;
-  std::vector<std::string> plugins;
-  bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
-  PassBenchOptions passes;
-};
-
-struct Shard {
-  uint32_t index = 0, count = 1;
-};
-
-Shard parseShard(const std::string& text) {
-  Shard shard;
-  if (text.empty()) return shard;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%u/%u%n", &shard.index, &shard.count, &used) != 2 ||
-      size_t(used) != text.size() || shard.count < 1 || shard.count > 100'000 || shard.index < 1 ||
-      shard.index > shard.count)
-    throw Error(ExitCode::Usage, "--shard `" + text + "` is not I/N with I from 1 to N", "e.g. --shard 2/8");
-  --shard.index;
-  return shard;
-}
-
-// Room that the suite's files take at most.
-struct Room {
-  uint64_t results = 0, references = 0;
-};
-
-Room roomFor(const std::vector<const Job*>& jobs) {
-  Room room;
-  std::set<std::string> references;
-  for (const Job* each : jobs) {
-    const Job& job = *each;
-    const uint64_t pixels = uint64_t(job.size.x) * job.size.y;
-    room.results += 32 << 10;
-    if (job.pictures) room.results += 4 * 3 * pixels;
-    if (!job.needsReference()) continue;
-    for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
-      if (references
-              .insert(fmt::format("{} {} {} {} {} {}", job.scene, job.first + f, job.size.x, job.size.y,
-                                  job.frameRate, job.spp))
-              .second)
-        room.references += 5 * 3 * sizeof(float) * pixels;
-  }
-  return room;
-}
-
-// Where references are kept when --cache does not say.
-std::string cacheOf(const Options& options) {
-  const char* environment = std::getenv("FOVEA_BENCH_CACHE");
-  return options.cache.empty() && environment ? environment : options.cache;
-}
-
-class Bench {
- public:
-  explicit Bench(const Options& options)
-      : options_(options),
-        shard_(parseShard(options.shard)),
-        folder_(options.folder, cacheOf(options)),
-        progress_(options.quiet) {}
-  ExitCode run();
-
- private:
-  void chooseJobs();
-  void identify();
-  void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
-  void measure();
-  void makeReferences();
-  void finish();
-  std::string command() const;
-  std::map<std::string, std::string> missingScenes(const std::vector<StoredResult>& results) const;
-  void makePage() const;
-  template <class... Args>
-  void say(fmt::format_string<Args...> format, Args&&... args) const {
-    if (options_.quiet) return;
-    fmt::print(format, std::forward<Args>(args)...);
-    std::fflush(stdout);
-  }
-
-  const Options& options_;
-  Shard shard_;
-  BenchFolder folder_;
-  Progress progress_;
-  Suite suite_;
-  std::vector<bool> chosen_;        // of its jobs: those that --only names, or all
-  std::vector<const Job*> wanted_;  // the same
-  std::unique_ptr<BenchRunner> runner_;
-  struct Task {
-    const Job* job = nullptr;
-    Fingerprint fingerprint;
-  };
-  std::vector<Task> tasks_;                     // of this shard, not done yet
-  std::map<std::string, std::string> missing_;  // scene -> why
-  size_t done_ = 0;
-};
-
-void Bench::chooseJobs() {
-  SuiteOverrides overrides;
-  if (!options_.size.empty()) overrides.size = parseSize(options_.size);
-  overrides.seeds = options_.seeds;
-  suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
-  for (const Job& job : suite_.jobs) {
-    chosen_.push_back(options_.only.empty() || matchesGlob(options_.only, job.name()));
-    if (chosen_.back()) wanted_.push_back(&job);
-  }
-  if (wanted_.empty())
-    throw Error(ExitCode::Usage,
-                fmt::format("no job of suite `{}` is named like --only `{}`", suite_.name, options_.only),
-                "see its jobs with --list");
-}
-
-// A result that was measured with something else must not stand in a table beside today's.
-void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const {
-  for (const StoredResult& old : folder_.results(job)) {
-    if (old.json["key"] == key) continue;
-    if (options_.replace) {
-      std::error_code ignored;
-      fs::remove(old.file, ignored);
-      continue;
-    }
-    std::string difference = firstDifference(old.json["job"], job.json());
-    if (difference.empty()) difference = firstDifference(old.json["made_with"], now.parts);
-    throw Error(ExitCode::BadInput,
-                fmt::format("`{}` cannot be compared with what would be measured now: {}", old.file.string(),
-                            difference),
-                "choose another folder with -o, or measure it anew with --replace");
-  }
-}
-
-// Finds what is wrong with any job, and what is done already, before anything is rendered.
-void Bench::identify() {
-  for (size_t i = 0; i < wanted_.size(); ++i) {
-    const Job& job = *wanted_[i];
-    std::string why;
-    const auto fingerprint = runner_->fingerprint(job, why);
-    if (!fingerprint) {
-      if (missing_.try_emplace(job.scene, why).second)
-        std::fprintf(stderr, "fovea: warning: the scene `%s` is left out: %s\n", job.scene.c_str(),
-                     why.c_str());
-      continue;
-    }
-    const std::string key = fingerprint->key(job);
-    refuseOrRemove(job, key, *fingerprint);
-    if (!folder_.results(job).empty()) {
-      ++done_;
-    } else if (i % shard_.count == shard_.index) {
-      tasks_.push_back({&job, *fingerprint});
-    }
-    if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted before the first job");
-  }
-}
-
-void Bench::measure() {
-  const Clock::time_point start = Clock::now();
-  const auto since = [](Clock::time_point t) {
-    return std::chrono::duration<double>(Clock::now() - t).count();
-  };
-  for (size_t i = 0; i < tasks_.size(); ++i) {
-    const Task& task = tasks_[i];
-    const std::string left =
-        i == 0 ? "" : ", " + formatDuration(since(start) / double(i) * double(tasks_.size() - i)) + " left";
-    progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left));
-    const Clock::time_point jobStart = Clock::now();
-    try {
-      nlohmann::ordered_json result = runner_->measure(*task.job, task.fingerprint);
-      result["seconds"] = since(jobStart);
-      folder_.write(*task.job, task.fingerprint.key(*task.job), result);
-    } catch (const Error& e) {
-      if (e.code() != ExitCode::Interrupted) throw;
-      throw Error(ExitCode::Interrupted, fmt::format("interrupted; {} of {} jobs are done", i, tasks_.size()),
-                  "the same command goes on from there");
-    }
-    progress_.clear();
-    const double remaining = since(start) / double(i + 1) * double(tasks_.size() - i - 1);
-    say("[{}/{}] {}: {}{}\n", i + 1, tasks_.size(), task.job->name(), formatDuration(since(jobStart)),
-        i + 1 < tasks_.size() ? ", " + formatDuration(remaining) + " left" : "");
-  }
-  progress_.setPrefix("");
-}
-
-// The references of the chosen jobs and nothing else; a shard makes every N-th of them.
-void Bench::makeReferences() {
-  struct Entry {
-    const Job* job;
-    BenchRunner::Reference reference;
-  };
-  std::vector<Entry> list;
-  std::set<std::string> known;
-  for (const Job* job : wanted_)
-    for (const BenchRunner::Reference& r : runner_->references(*job))
-      if (known.insert(r.name).second) list.push_back({job, r});
-  if (list.empty())
-    throw Error(ExitCode::Usage, fmt::format("no job of suite `{}` needs a reference", suite_.name),
-                "leave out --references-only");
-  size_t made = 0, there = 0;
-  for (size_t i = shard_.index; i < list.size(); i += shard_.count) {
-    const Clock::time_point start = Clock::now();
-    progress_.setPrefix(fmt::format("{}/{}: ", i + 1, list.size()));
-    const bool isNew = runner_->makeReference(*list[i].job, list[i].reference);
-    progress_.clear();
-    ++(isNew ? made : there);
-    if (isNew)
-      say("[{}/{}] {}: {}\n", i + 1, list.size(), list[i].reference.name,
-          formatDuration(std::chrono::duration<double>(Clock::now() - start).count()));
-    if (interrupted())
-      throw Error(ExitCode::Interrupted, "interrupted", "the same command goes on from there");
-  }
-  progress_.setPrefix("");
-  say("{} references: {} made, {} were there\n", made + there, made, there);
-}
-
-// The page needs Python and matplotlib; without them there are the tables.
-void Bench::makePage() const {
-  fs::path script;
-  for (const fs::path& folder : dataFolders("benchmarks"))
-    if (script.empty() && fs::exists(folder / "report.py")) script = folder / "report.py";
-  if (script.empty()) {
-    std::fprintf(
-        stderr,
-        "fovea: warning: benchmarks/report.py is not installed: there are tables, but no report.html\n");
-    return;
-  }
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    execlp("python3", "python3", script.c_str(), folder_.path().c_str(), static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    std::fprintf(stderr,
-                 "fovea: warning: no report.html: it needs python3 with matplotlib (apt-get install "
-                 "python3-matplotlib); the tables are there\n");
-}
-
-// Also those that a process before this one looked for, and this one did not.
-std::map<std::string, std::string> Bench::missingScenes(const std::vector<StoredResult>& results) const {
-  std::map<std::string, std::string> missing = missing_;
-  std::ifstream in(folder_.path() / "report.json", std::ios::binary);
-  const auto before = nlohmann::json::parse(in, nullptr, false);
-  if (!before.is_object() || before.value("suite", std::string()) != suite_.name) return missing;
-  for (const auto& [scene, why] : before.value("missing_scenes", nlohmann::json::object()).items())
-    if (why.is_string()) missing.try_emplace(scene, why.get<std::string>());
-  for (const StoredResult& result : results) missing.erase(result.json["job"].value("scene", std::string()));
-  return missing;
-}
-
-// What a reader types to get all of the tables.
-std::string Bench::command() const {
-  std::string text = "fovea bench " + options_.suite + " -o DIR";
-  if (!options_.size.empty()) text += " --size " + options_.size;
-  if (options_.seeds) text += fmt::format(" --seeds {}", *options_.seeds);
-  return text;
-}
-
-// Tables and page hold all that the folder holds and can be compared, not only what --only names.
-void Bench::finish() {
-  const std::vector<StoredResult> results =
-      mergedResults(folder_, suite_.jobs, chosen_, [](const std::string& why) {
-        std::fprintf(stderr, "fovea: warning: left out of the tables: %s\n", why.c_str());
-      });
-  if (results.empty())
-    throw Error(ExitCode::BadInput,
-                fmt::format("`{}` has no results of suite `{}`", folder_.path().string(), suite_.name),
-                "run it without --report");
-  say("{}", writeTables(folder_, suite_, results, missingScenes(results), command()));
-  say("{} of {} jobs have results\nwrote {}/tables\n", results.size(), suite_.jobs.size(),
-      folder_.path().string());
-  makePage();
-  std::error_code ignored;
-  if (fs::exists(folder_.path() / "report.html", ignored))
-    say("wrote {}/report.html\n", folder_.path().string());
-}
-
-ExitCode Bench::run() {
-  chooseJobs();
-  if (options_.list) {
-    for (const Job* job : wanted_) fmt::print("{}\n", job->name());
-    return ExitCode::Ok;
-  }
-  if (options_.folder.empty()) throw Error(ExitCode::Usage, "where to? -o is missing", "e.g. -o results");
-  std::error_code ignored;
-  if (options_.report) {
-    if (!fs::is_directory(folder_.path() / "results", ignored))
-      throw Error(ExitCode::BadInput, "`" + options_.folder + "` has no results",
-                  "run the suite without --report first");
-    folder_.prepare(0, 0);
-    finish();
-    return ExitCode::Ok;
-  }
-  if (options_.resume && !fs::is_directory(folder_.path() / "results", ignored))
-    throw Error(ExitCode::BadInput, "there is nothing to resume in `" + options_.folder + "`",
-                "leave out --resume");
-  const Room room = roomFor(wanted_);
-  folder_.prepare(options_.referencesOnly ? 0 : room.results, room.references);
-  catchInterrupts();
-  loadPlugins(options_.plugins);
-  runner_ = std::make_unique<BenchRunner>(folder_, openDevice(options_.device), progress_);
-  if (options_.referencesOnly) {
-    makeReferences();
-    return ExitCode::Ok;
-  }
-  identify();
-  if (done_ > 0) say("{} of {} jobs are done already\n", done_, wanted_.size());
-  measure();
-  finish();
-  return ExitCode::Ok;
-}
-
-void addSuiteOptions(CLI::App& command, Options& options) {
+void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
   command
       .add_option("SUITE", options.suite,
                   "Suite: a .json file, or a bare name (quick, table1, table2, ..); or `passes` with --graph")
@@ -379,24 +54,60 @@ void addSuiteOptions(CLI::App& command, Options& options) {
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
 
+void addPassBenchOptions(CLI::App& command, PassBenchOptions& options) {
+  const std::string group = "Passes of one graph (fovea bench passes --graph ..; -o then names a .json file)";
+  command.add_option("--graph", options.graph, "Graph: a file or a bare name")
+      ->type_name("GRAPH")
+      ->group(group);
+  command.add_option("--scene", options.scene, "Scene: a file or a bare name")
+      ->type_name("SCENE")
+      ->group(group);
+  addList(command, "--set", options.set, "Override a parameter, as in `fovea render`")
+      ->type_name("NAME=VALUE")
+      ->group(group);
+  const auto count = [&](const char* name, uint32_t& value, uint32_t min, const char* doc) {
+    command.add_option(name, value, doc)
+        ->type_name("N")
+        ->check(CLI::Range(min, 1'000'000u).description(""))
+        ->group(group);
+  };
+  count("--frames", options.frames, 1, "Frames measured in each repeat; default 5");
+  count("--warmup", options.warmup, 0, "Frames before them; default 3");
+  count("--first", options.first, 0, "Number of the first frame, warm-up included; default 0");
+  count("--repeats", options.repeats, 1, "Times that all is set up and measured anew; default 5");
+  command
+      .add_option("--baseline", options.baseline,
+                  "Compare with a file that -o wrote, or with another build of this program, whose\nrepeats "
+                  "alternate with ours; exit code 8 when a pass became slower beyond the noise")
+      ->type_name("FILE")
+      ->group(group);
+  command
+      .add_option("--threshold", options.threshold,
+                  "Changes up to so many percent are not worth a word; default 2")
+      ->type_name("P")
+      ->check(CLI::Range(0.0, 1000.0).description(""))
+      ->group(group);
+  command.add_flag("--json", options.json, "Print every frame's times as JSON")->group(group);
+}
+
 }  // namespace
 
 void addBench(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "bench", "Run a suite of measurements to tables and a report, or measure the passes of a graph");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SuiteOptions>();
+  auto passes = std::make_shared<PassBenchOptions>();
   addSuiteOptions(*command, *options);
-  addPassBenchOptions(*command, options->passes);
-  command->callback([options, &action] {
-    action = [options] {
-      if (options->passes.graph.empty()) return Bench(*options).run();
+  addPassBenchOptions(*command, *passes);
+  command->callback([options, passes, &action] {
+    action = [options, passes] {
+      if (passes->graph.empty()) return runSuite(*options);
       if (options->suite != "passes")
         throw Error(ExitCode::Usage,
                     "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
-      PassBenchOptions& passes = options->passes;
-      passes.output = options->folder, passes.size = options->size, passes.device = options->device;
-      passes.plugins = options->plugins, passes.quiet = options->quiet;
-      return benchPasses(passes);
+      passes->output = options->folder, passes->size = options->size, passes->device = options->device;
+      passes->plugins = options->plugins, passes->quiet = options->quiet;
+      return benchPasses(*passes);
     };
   });
 }

@@ -1,12 +1,14 @@
-// fovea check: is a graph right, and what plan comes out of it. Needs no device and no scene.
+// fovea check: whether a graph is valid, and what plan comes out of it. It needs no device and no scene.
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "framework/graph/compile.h"
-#include "framework/graph/execute.h"
-#include "framework/graph/report.h"
+#include "framework/base/json.h"
+#include "framework/base/paths.h"
+#include "framework/graph/compile/compile.h"
+#include "framework/graph/report/report.h"
 #include "framework/scene/scene.h"
+#include "framework/session/graph_run.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 
@@ -16,18 +18,24 @@ namespace {
 struct CheckOptions {
   GraphOptions graph;
   std::string plan, size = "1024x1024";
+  bool merged = false;
 };
 
 ExitCode check(const CheckOptions& options) {
+  if (options.merged && !options.graph.set.empty())
+    throw Error(ExitCode::Usage, "--merged prints the files' own values and takes no --set",
+                "leave out one of them; a graph file of one's own may hold the values in its `parameters`");
   const glm::uvec2 size = parseSize(options.size);
   Diagnostics messages;
   const graph::Description description = loadGraph(options.graph, messages);
-  auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
-      description, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size.x, size.y})), messages));
+  auto bound = std::make_shared<const graph::BoundGraph>(
+      graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, size), messages));
   const graph::Plan plan = graph::compile(bound);
   graph::warnAboutPlan(plan, messages);
   printWarnings(messages);
-  if (options.plan == "text") {
+  if (options.merged) {
+    fmt::print("{}", json::print(graph::loadMerged(options.graph.graph, {{}, dataFolders("graphs")})));
+  } else if (options.plan == "text") {
     fmt::print("{}", graph::planText(plan));
   } else if (options.plan == "dot") {
     fmt::print("{}", graph::planDot(plan));
@@ -38,7 +46,7 @@ ExitCode check(const CheckOptions& options) {
     for (const uint8_t l : plan.passLive) live += l;
     std::vector<std::string> outputs;
     for (const graph::BoundOutput& output : bound->outputs) outputs.push_back(output.name);
-    fmt::print("graph `{}` is right: {} passes ({} run), outputs {}\n", bound->name, bound->passes.size(),
+    fmt::print("graph `{}` is valid: {} passes ({} run), outputs {}\n", bound->name, bound->passes.size(),
                live, quoteList(outputs));
   }
   return ExitCode::Ok;
@@ -50,9 +58,13 @@ void addCheck(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("check", "Check a graph and show its plan; needs no device");
   auto options = std::make_shared<CheckOptions>();
   addGraphOptions(*command, options->graph);
-  command->add_option("--plan", options->plan, "Print order, barriers and memory as text, dot or json")
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"text", "dot", "json"}));
+  CLI::Option* plan =
+      command->add_option("--plan", options->plan, "Print order, barriers and memory as text, dot or json")
+          ->type_name("FORMAT")
+          ->check(CLI::IsMember({"text", "dot", "json"}));
+  command
+      ->add_flag("--merged", options->merged, "Print the graph with all that it extends merged in, as JSON")
+      ->excludes(plan);
   command->add_option("--size", options->size, "Picture size the plan is for; default 1024x1024")
       ->type_name("WxH");
   command->callback([options, &action] { action = [options] { return check(*options); }; });

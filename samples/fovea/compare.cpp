@@ -3,11 +3,11 @@
 
 #include <memory>
 
+#include "benchmarks/runner/compared.h"
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
-#include "samples/fovea/compared.h"
 
 namespace fovea::cli {
 namespace {

@@ -6,10 +6,10 @@
 #include <map>
 #include <memory>
 
+#include "benchmarks/runner/compared.h"
+#include "benchmarks/runner/progress.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
-#include "samples/fovea/compared.h"
-#include "samples/fovea/progress.h"
 
 namespace fovea::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "framework/gpu/device.h"
-#include "framework/graph/report.h"
+#include "framework/graph/report/report.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/memory.h"
-#include "framework/graph/registry.h"
+#include "framework/graph/pass/registry.h"
 #include "samples/fovea/commands.h"
 
 namespace fovea::cli {

@@ -1,12 +1,13 @@
 #include "samples/fovea/outputs.h"
+#include "framework/session/graph_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/format.h"
-#include "framework/graph/plan.h"
+#include "framework/graph/compile/plan.h"
 #include "samples/fovea/arguments.h"
 
 namespace fovea::cli {
@@ -57,11 +58,6 @@ image::Image withoutAlpha(const image::Image& image) {
 }
 
 }  // namespace
-
-image::Image toImage(const graph::OutputData& output) {
-  return {output.desc.width, output.desc.height, gpu::formatInfo(output.desc.format).channels,
-          gpu::texelsToFloats(output.desc.format, output.bytes)};
-}
 
 std::string OutputFiles::File::extension() const {
   std::string text = std::filesystem::path(name).extension().string();
@@ -163,9 +159,9 @@ void OutputFiles::write(File& file, const graph::FrameResult& frame, image::Meta
   for (const auto& [name, output] : frame.outputs) {
     if (allLayers) {
       if (std::find(layers_.begin(), layers_.end(), name) != layers_.end())
-        layers.push_back({name, withoutAlpha(toImage(output))});
+        layers.push_back({name, withoutAlpha(session::toImage(output))});
     } else if (name == file.shown()) {
-      layers.push_back({content == Content::AllFloat ? name : "", withoutAlpha(toImage(output))});
+      layers.push_back({content == Content::AllFloat ? name : "", withoutAlpha(session::toImage(output))});
     }
   }
   if (overlay_ && content == Content::Display && file.output.empty())

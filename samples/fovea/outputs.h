@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/graph/execute.h"
-#include "framework/image/image.h"
+#include "fovea/image.h"
+#include "framework/graph/run/execute.h"
 
 namespace fovea::cli {
 
@@ -59,8 +59,5 @@ class OutputFiles {
   std::vector<std::string> layers_;  // of an EXR that shows everything
   Overlay overlay_;
 };
-
-// Texels of a colour or depth format as floats, one channel each. Throws Error(Internal) for integer formats.
-image::Image toImage(const graph::OutputData& output);
 
 }  // namespace fovea::cli

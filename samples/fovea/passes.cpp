@@ -6,9 +6,9 @@
 #include <cmath>
 #include <memory>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/format.h"
-#include "framework/graph/registry.h"
+#include "framework/graph/pass/registry.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

@@ -5,19 +5,22 @@
 #include <memory>
 #include <optional>
 
-#include "framework/graph/report.h"
+#include "benchmarks/runner/interrupt.h"
+#include "benchmarks/runner/progress.h"
+#include "benchmarks/runner/timings.h"
+#include "fovea/scene.h"
+#include "framework/base/text_file.h"
+#include "framework/graph/report/report.h"
 #include "framework/image/overlay.h"
-#include "framework/scene/fovea.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "framework/scene/motion.h"
+#include "framework/scene/motion/motion.h"
+#include "framework/scene/scene.h"
+#include "framework/session/graph_run.h"
+#include "framework/shader_twins/fovea.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
-#include "samples/fovea/files.h"
-#include "samples/fovea/graph_run.h"
-#include "samples/fovea/interrupt.h"
 #include "samples/fovea/outputs.h"
-#include "samples/fovea/progress.h"
-#include "samples/fovea/timings.h"
 #include "samples/fovea/trace.h"
 
 namespace fovea::cli {
@@ -82,7 +85,7 @@ class Render {
   scene::Scene scene_;
   scene::Geometry geometry_;
   std::unique_ptr<gpu::Device> device_;
-  std::unique_ptr<GraphRun> run_;
+  std::unique_ptr<session::GraphRun> run_;
   std::unique_ptr<Timings> timings_;
   RunInfo info_;
   uint64_t finished_ = 0;
@@ -123,8 +126,8 @@ void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
   // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
-  const graph::BoundGraph bound = graph::bind(
-      description_, graph::sceneEnvironment(nullptr, {}, {}, graph::frameViews({size_.x, size_.y})), early);
+  const graph::BoundGraph bound =
+      graph::bind(description_, session::sceneEnvironment(nullptr, {}, {}, size_), early);
   std::vector<scene::GazeSample> trace;
   if (!options_.gazeTrace.empty()) trace = scene::readGazeCsv(options_.gazeTrace);
   progress_.stage("loading scene " + options_.scene);
@@ -162,8 +165,8 @@ void Render::useFoveaAngle(const graph::BoundGraph& bound) {
 }
 
 void Render::buildPlan() {
-  device_ = openDevice(options_.device, options_.validation);
-  GraphRun::Options run;
+  device_ = session::openDevice(options_.device, options_.validation);
+  session::GraphRun::Options run;
   run.size = size_;
   run.seed = options_.seed;
   run.readback = [this](const graph::BoundGraph& graph) { return outputs_->outputsOf(graph, size_); };
@@ -171,7 +174,8 @@ void Render::buildPlan() {
     progress_.pass(pass, share);
     return !interrupted();
   };
-  run_ = std::make_unique<GraphRun>(*device_, description_, scene_, geometry_, std::move(run), messages_);
+  run_ = std::make_unique<session::GraphRun>(*device_, description_, scene_, geometry_, std::move(run),
+                                             messages_);
   progress_.clear();
   printWarnings(messages_);
 }
@@ -221,7 +225,7 @@ void Render::showFovea() {
     const scene::Frame shown = frame(index);
     const scene::Fovea fovea =
         scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
-                         float(parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
+                         float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
     image::drawFovea(picture, {fovea.centre.x, fovea.centre.y, fovea.radius});
   });
 }
@@ -241,8 +245,10 @@ image::Metadata Render::metadata(uint64_t index) const {
                           {"seed", std::to_string(info_.seed)},
                           {"size", fmt::format("{}x{}", size_.x, size_.y)}};
   data["gaze"] = fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y);
-  data["fovea_radius"] = fmt::format("{}", float(parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
-  const float exposure = float(parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0: the scene's
+  data["fovea_radius"] =
+      fmt::format("{}", float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
+  const float exposure =
+      float(session::parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0: the scene's
   data["exposure"] = fmt::format("{}", exposure > 0 ? exposure : shown.exposure);
   if (!set.empty()) data["set"] = set;
   return data;

@@ -3,9 +3,11 @@
 
 #include <memory>
 
-#include "framework/graph/report.h"
-#include "framework/scene/animation.h"
+#include "fovea/scene.h"
+#include "framework/graph/report/report.h"
 #include "framework/scene/load.h"
+#include "framework/scene/motion/animation.h"
+#include "framework/scene/scene.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

@@ -3,8 +3,9 @@
 
 #include <memory>
 
-#include "framework/scene/export_gltf.h"
-#include "framework/scene/export_mitsuba.h"
+#include "fovea/scene.h"
+#include "framework/scene/export/gltf.h"
+#include "framework/scene/export/mitsuba.h"
 #include "framework/scene/load.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"

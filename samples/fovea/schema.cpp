@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "framework/graph/registry.h"
-#include "framework/graph/schema.h"
+#include "framework/graph/pass/registry.h"
+#include "framework/graph/report/schema.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

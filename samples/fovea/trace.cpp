@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "framework/graph/plan.h"
+#include "framework/graph/compile/plan.h"
 
 namespace fovea::cli {
 namespace {

@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "samples/fovea/timings.h"
+#include "benchmarks/runner/timings.h"
+#include "samples/fovea/arguments.h"
 
 namespace fovea::cli {
 

@@ -1,13 +1,11 @@
-#version 460
-#extension GL_EXT_samplerless_texture_functions : require
 // mean_n = mean_(n-1) + (x_n - mean_(n-1)) / n. The count lives in alpha, which the graph zeroes on a reset together with
 // the mean, so that neither can outlive the other.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D value;
-layout(set = 0, binding = 1, rgba32f) uniform image2D mean;
-layout(set = 0, binding = 2, std430) buffer Counters { uint value[]; } counters;
+uniform texture2D value;
+layout(rgba32f) uniform image2D mean;
+layout(std430) buffer Counters { uint value[]; } counters;
 
 layout(push_constant) uniform Constants { float alpha; };
 

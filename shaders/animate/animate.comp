@@ -1,28 +1,25 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Vertices of what moves, one an invocation: morph targets, then joints or the object's transform; the same sums in the
-// same order as scene::placeVertices (framework/scene/deform.h). Points of cages go to a buffer of their own, from which
+// same order as scene::placeVertices (framework/scene/motion/deform.h). Points of cages go to a buffer of their own, from which
 // the stencils make vertices.
 #include "common/octahedral.glsl"
 
 layout(local_size_x = 64) in;
 
 // Two texels a vertex: xyz at rest, w: shape; xyz normal.
-layout(set = 0) uniform textureBuffer rest;
+uniform textureBuffer rest;
 // Two texels a shape (a primitive of an object, or its cage): first joint, first weight, morph targets, object; first
 // entry in the skin + 1 (0: no joints), first texel of the targets, first vertex, number of vertices (0: stencils make
 // them).
-layout(set = 0) uniform utextureBuffer shapes;
-layout(set = 0) uniform utextureBuffer skinJoints;   // four joints a vertex
-layout(set = 0) uniform textureBuffer skinWeights;
-layout(set = 0) uniform textureBuffer targets;       // two texels a vertex and target: displacements of position, normal
+uniform utextureBuffer shapes;
+uniform utextureBuffer skinJoints;   // four joints a vertex
+uniform textureBuffer skinWeights;
+uniform textureBuffer targets;       // two texels a vertex and target: displacements of position, normal
 // From `firstPose`: objects (three rows to the world, then x: visible), from `firstJoint`: joints (three rows), from
 // `firstWeight`: weights, four a texel.
-layout(set = 0) uniform textureBuffer poses;
-layout(set = 0, std430) writeonly buffer Positions { vec4 positions[]; };
-layout(set = 0, std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
-layout(set = 0, std430) writeonly buffer Points { vec4 points[]; };
+uniform textureBuffer poses;
+layout(std430) writeonly buffer Positions { vec4 positions[]; };
+layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
+layout(std430) writeonly buffer Points { vec4 points[]; };
 
 layout(push_constant) uniform Constants {
   uint count;        // invocations: vertices, then points

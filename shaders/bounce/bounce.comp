@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // One more bounce on every voxel side: L' = L_direct + rho E_cones / pi.
 #include "common/scene.glsl"
 #include "common/random.glsl"
@@ -9,13 +6,13 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform usamplerBuffer voxelsInfo;
+uniform usamplerBuffer voxelsInfo;
 #if HAS_DIRECT
-layout(set = 0) uniform samplerBuffer direct;
+uniform samplerBuffer direct;
 #else
 #define direct radiance
 #endif
-layout(set = 0, std430) writeonly buffer Bounced { vec4 bounced[]; };
+layout(std430) writeonly buffer Bounced { vec4 bounced[]; };
 
 const uint kBounce = 0xb0u;  // of the random numbers
 

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // One attempt an invocation: a pixel of the region, the surface it shows, one diffuse bounce from there; the side of a
 // voxel that the bounce meets becomes a candidate. It need not be visible to the eye.
 #include "common/scene.glsl"
@@ -12,19 +9,19 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform texture2D gbufferPosition;
-layout(set = 0) uniform texture2D gbufferNormal;
-layout(set = 0) uniform texture2D gbufferFace;
+uniform texture2D gbufferPosition;
+uniform texture2D gbufferNormal;
+uniform texture2D gbufferFace;
 #if TWO_EYES
-layout(set = 0) uniform texture2D gbuffer2Position;
-layout(set = 0) uniform texture2D gbuffer2Normal;
-layout(set = 0) uniform texture2D gbuffer2Face;
+uniform texture2D gbuffer2Position;
+uniform texture2D gbuffer2Normal;
+uniform texture2D gbuffer2Face;
 #endif
 #if HAS_RADIANCE
-layout(set = 0) uniform samplerBuffer radiance;
+uniform samplerBuffer radiance;
 #endif
-layout(set = 0, std430) writeonly buffer Candidates { Candidate candidates[]; };
-layout(set = 0, std430) buffer Counters { uint counters[]; };  // in the order below
+layout(std430) writeonly buffer Candidates { Candidate candidates[]; };
+layout(std430) buffer Counters { uint counters[]; };  // in the order below
 
 const uint kRays = 0u, kCandidates = 1u, kEscaped = 2u, kBackground = 3u;
 const uint kCandidateStream = 0x63616e64u;  // keeps the random numbers of this pass apart from others

@@ -7,11 +7,11 @@
 
 #include "common/voxel.glsl"
 
-layout(set = 0) uniform texture3D mipsColor;
+uniform texture3D mipsColor;
 #ifdef CONE_WEIGHT
-layout(set = 0) uniform texture3D mipsWeight;
+uniform texture3D mipsWeight;
 #endif
-layout(set = 0) uniform sampler linearClamp;
+uniform sampler linearClamp;
 
 // Level l holds `size` / 2^l cells a side; positions count in cells of level 0, which are two voxels wide.
 struct MipGrid {
@@ -107,7 +107,7 @@ const float kHeightPerCell = 3.0;
 #include "common/paraboloid.glsl"
 #include "common/voxel_trace.glsl"
 
-layout(set = 0) uniform samplerBuffer radiance;
+uniform samplerBuffer radiance;
 
 // Irradiance on a surface from all that surrounds it (METHOD 2, radiance): six cones over the hemisphere,
 //   E = pi sum(L_i c_i) / sum(c_i),   c_i: cosine of the cone's axis.

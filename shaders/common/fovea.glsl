@@ -1,5 +1,5 @@
 // The fovea on the image plane: its disc, the weight of a pixel, and pixels at random from it. The same formulas as
-// framework/scene/fovea.h.
+// framework/shader_twins/fovea.h.
 //
 // Image positions are in pixels from the top left corner; the centre of pixel (x, y) is at (x + 0.5, y + 0.5).
 #ifndef FOVEA_FOVEA_GLSL

@@ -1,4 +1,4 @@
-// Six fixed directions over a hemisphere. The same as framework/scene/hemisphere_rays.h.
+// Six fixed directions over a hemisphere. The same as framework/shader_twins/hemisphere_rays.h.
 #ifndef FOVEA_HEMISPHERE_RAYS_GLSL
 #define FOVEA_HEMISPHERE_RAYS_GLSL
 

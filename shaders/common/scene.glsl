@@ -1,5 +1,5 @@
 // Descriptor set 1: frame, view, lights and the scene's world-space triangles. The same for every pass of a frame.
-// Kept in step with framework/scene/gpu_scene.cpp, which static_asserts the block sizes.
+// Kept in step with framework/scene/device/gpu_scene.cpp, which static_asserts the block sizes.
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 

@@ -30,9 +30,9 @@ uint shadowFace(vec3 fromLight) {
 #define SHADOW_FILTER 1
 #endif
 
-layout(set = 0, binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
-layout(set = 0, binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
-layout(set = 0, binding = SHADOW_BINDING + 2) uniform sampler nearestClamp;
+layout(binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
+layout(binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+layout(binding = SHADOW_BINDING + 2) uniform sampler nearestClamp;
 
 const float kSteepest = 32.0;  // slope against the map up to which planes are followed: 88 degrees
 

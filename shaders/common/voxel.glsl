@@ -1,4 +1,4 @@
-// The voxel grid that VPLs are found in. The same formulas as framework/scene/voxel_grid.h. Needs common/scene.glsl.
+// The voxel grid that VPLs are found in. The same formulas as framework/shader_twins/voxel_grid.h. Needs common/scene.glsl.
 #ifndef FOVEA_VOXEL_GLSL
 #define FOVEA_VOXEL_GLSL
 

@@ -1,4 +1,4 @@
-// Rays through the voxels: the first surface that one meets. The same formulas as framework/scene/voxel_trace.h.
+// Rays through the voxels: the first surface that one meets. The same formulas as framework/shader_twins/voxel_trace.h.
 // Needs common/scene.glsl and an input port `voxels` (index and, for traceVoxels, occupied as Usage::StorageRead, surface as
 // Usage::TexelRead); its bindings number themselves.
 #ifndef FOVEA_VOXEL_TRACE_GLSL
@@ -8,9 +8,9 @@
 #include "common/vpl.glsl"
 
 // An image and not a texture: on lavapipe a load from a texture costs several times as much.
-layout(set = 0, r32ui) uniform readonly uimage3D voxelsIndex;
-layout(set = 0, r32ui) uniform readonly uimage3D voxelsOccupied;
-layout(set = 0) uniform samplerBuffer voxelsSurface;
+layout(r32ui) uniform readonly uimage3D voxelsIndex;
+layout(r32ui) uniform readonly uimage3D voxelsOccupied;
+uniform samplerBuffer voxelsSurface;
 
 // The grid of the bundle that is wired.
 VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }

@@ -1,4 +1,4 @@
-// Virtual point lights as the shading passes read them. The same layout as framework/scene/vpl.h.
+// Virtual point lights as the shading passes read them. The same layout as framework/shader_twins/vpl.h.
 #ifndef FOVEA_VPL_GLSL
 #define FOVEA_VPL_GLSL
 

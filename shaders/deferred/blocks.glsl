@@ -4,8 +4,8 @@
 #ifndef FOVEA_DEFERRED_BLOCKS_GLSL
 #define FOVEA_DEFERRED_BLOCKS_GLSL
 
-layout(set = 0, binding = 8) uniform usamplerBuffer shadeBlocks;
-layout(set = 0, binding = 9) uniform usamplerBuffer shadeDispatch;
+uniform usamplerBuffer shadeBlocks;
+uniform usamplerBuffer shadeDispatch;
 
 const uint kListedPixels = 4u;  // of an invocation; work groups have 64
 

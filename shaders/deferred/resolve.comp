@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
@@ -43,23 +40,23 @@ layout(local_size_x = 16, local_size_y = 4) in;
 #endif
 
 // Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
-layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, binding = 3, rgba16f) uniform readonly image2D partial;
-layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D irradiance;
-layout(set = 0, binding = 7, std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rgba16f) uniform readonly image2D partial;
+layout(rgba16f) uniform writeonly image2D irradiance;
+layout(std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
 #if MASKED
 #elif EDGES
-layout(set = 0, binding = 13) uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
-layout(set = 0, binding = 14) uniform usamplerBuffer edgePixels;  // x | y << 16
+uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
+uniform usamplerBuffer edgePixels;  // x | y << 16
 #else
-layout(set = 0, binding = 13, std430) buffer Edges { uint x, y, z, end; } edges;
-layout(set = 0, binding = 14, std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
+layout(std430) buffer Edges { uint x, y, z, end; } edges;
+layout(std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
 #endif
 
 #if MASKED
-layout(set = 0, binding = 10, rgba16f) uniform readonly image2D base;
-layout(set = 0, binding = 11, r8) uniform readonly image2D shadeMask;
+layout(rgba16f) uniform readonly image2D base;
+layout(r8) uniform readonly image2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {

@@ -1,13 +1,10 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (METHOD Eq. 2 without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page;
-// NEAR 0/1: with the light of pass near-field; MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
+// NEAR_FIELD 0/1: with the light of pass near-field; MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
@@ -24,17 +21,17 @@ const int kPixels = 8;
 layout(local_size_x = 16, local_size_y = 2) in;
 #endif
 
-layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, binding = 2, std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
-layout(set = 0, binding = 3, rgba16f) uniform image2D partial;
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
+layout(rgba16f) uniform image2D partial;
 #if SHADOWED
-layout(set = 0, binding = 4, rg16_snorm) uniform readonly image2D gbufferFace;
-layout(set = 0, binding = 5, r32ui) uniform readonly uimage2DArray atlas;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(r32ui) uniform readonly uimage2DArray atlas;
 #endif
 
-#if NEAR
-layout(set = 0, binding = 6, rgba16f) uniform readonly image2D near;
+#if NEAR_FIELD
+layout(rgba16f) uniform readonly image2D nearField;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -217,8 +214,8 @@ void main() {
     if (any(greaterThanEqual(p, size))) continue;
     // Units of `irradiance`: E / pi; a subset stands for all of them.
     vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
-#if NEAR && !ACCUMULATE
-    sum += imageLoad(near, p).rgb;
+#if NEAR_FIELD && !ACCUMULATE
+    sum += imageLoad(nearField, p).rgb;
 #endif
 #if ACCUMULATE
     sum += imageLoad(partial, p).rgb;

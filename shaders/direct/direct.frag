@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // L = emission + rho / pi * sum over the lights of E_l * visibility_l.
 // Defines: SHADOW_FILTER; ONE_LIGHT, there is one light, 2: with one map; 0: any number. What is known of a single light is found
 // at a constant place: a CPU device loads what is found by an index lane by lane.
@@ -12,11 +9,11 @@
 #include "common/shadow.glsl"
 
 // Images and not textures: on lavapipe a load from a texture costs several times as much.
-layout(set = 0, binding = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, binding = 1, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, binding = 2, rg16_snorm) uniform readonly image2D gbufferFace;
-layout(set = 0, binding = 3, rgba16f) uniform readonly image2D gbufferAlbedo;
-layout(set = 0, binding = 4, rgba16f) uniform readonly image2D gbufferEmission;
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(rgba16f) uniform readonly image2D gbufferAlbedo;
+layout(rgba16f) uniform readonly image2D gbufferEmission;
 layout(location = 0) out vec4 direct;
 
 // doubt: set where the map's texels disagree.

@@ -1,11 +1,8 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // The surface of each pixel from the triangle it shows: the ray through the pixel's centre meets the triangle's plane, so
 // that positions carry none of the rasteriser's snapping and interpolation (visibility buffer, Burns and Hunt, JCGT 2013).
 #include "common/scene.glsl"
 
-layout(set = 0, binding = 0) uniform utexture2D seen;
+uniform utexture2D seen;
 layout(location = 0) out vec4 gbufferPosition;
 layout(location = 1) out vec4 gbufferNormal;
 layout(location = 2) out vec2 gbufferFace;

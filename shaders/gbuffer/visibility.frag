@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Which triangle is seen; everything else about it is worked out once a pixel in resolve.frag.
 #include "common/scene.glsl"
 

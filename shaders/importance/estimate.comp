@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Importance of VPLs (METHOD importance step 2): with w_i the foveated weight of the first voxel side in direction i,
 //   I = sum(w_i cos_i) / sum(cos_i),
 // or (CONES) the mean weight in a cone around it, from the mips.
@@ -21,17 +18,17 @@ const int kVpls = 16;
 layout(local_size_x = kHemisphereRays, local_size_y = kVpls) in;
 
 #if CANDIDATES
-layout(set = 0) uniform usamplerBuffer candidates;
-layout(set = 0, std430) writeonly buffer CandidateImportance { float importance[]; };
+uniform usamplerBuffer candidates;
+layout(std430) writeonly buffer CandidateImportance { float importance[]; };
 #else
-layout(set = 0) uniform usamplerBuffer vpls;
-layout(set = 0, std430) writeonly buffer VplImportance { float importance[]; };
+uniform usamplerBuffer vpls;
+layout(std430) writeonly buffer VplImportance { float importance[]; };
 #endif
-layout(set = 0) uniform samplerBuffer weights;
+uniform samplerBuffer weights;
 #if LUMINANCE
-layout(set = 0) uniform samplerBuffer radiance;
+uniform samplerBuffer radiance;
 #endif
-layout(set = 0, std430) buffer Counters { uint counters[]; };  // rays
+layout(std430) buffer Counters { uint counters[]; };  // rays
 
 layout(push_constant) uniform Constants { uint count; };
 

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Which parts of each shadow map may be covered by what moves, one for each box around some of it: xy: least, zw: largest
 // position in [-1, 1]; and an empty list.
 // Defines: SHADOWED 0/1; MOVER_BOXES.
@@ -11,11 +9,11 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
-layout(set = 0, std430) writeonly buffer Work { uint x, y, z, count; uint selectX, selectY, selectZ, unused; } work;
+layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) writeonly buffer Work { uint x, y, z, count; uint selectX, selectY, selectZ, unused; } work;
 #if SHADOWED
-layout(set = 0, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
-layout(set = 0, std430) writeonly buffer Covered { vec4 parts[]; } covered;
+layout(std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+layout(std430) writeonly buffer Covered { vec4 parts[]; } covered;
 
 layout(push_constant) uniform Constants {
   vec4 movers[2u * kMoverBoxes];

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Direct light on the voxels: L = rho E / pi + emission for every listed side, E averaged over several points of its surface.
 // Defines: SHADOWED 0/1; SHADOW_FILTER; ONE_LIGHT 0/1/2 as in direct.frag.
 #include "common/scene.glsl"
@@ -17,11 +14,11 @@
 
 layout(local_size_x = 64) in;  // kSidesPerGroup
 
-layout(set = 0, std430) buffer Radiance { vec4 sides[]; } radiance;
-layout(set = 0, std430) writeonly buffer Changed { uint sides[]; } changed;
-layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
-layout(set = 0) uniform usamplerBuffer work;    // see select.comp
-layout(set = 0) uniform usamplerBuffer listed;
+layout(std430) buffer Radiance { vec4 sides[]; } radiance;
+layout(std430) writeonly buffer Changed { uint sides[]; } changed;
+layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+uniform usamplerBuffer work;    // see select.comp
+uniform usamplerBuffer listed;
 
 layout(push_constant) uniform Constants {
   int taps;

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // Lists the sides whose radiance may be another one than in the last frame. Their order in the list does not matter: each
 // side's radiance is its own. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag; MOVER_BOXES.
@@ -15,10 +12,10 @@
 
 layout(local_size_x = 64) in;  // kSidesPerGroup
 
-layout(set = 0, std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
-layout(set = 0, std430) writeonly buffer Changed { uint sides[]; } changed;
-layout(set = 0, std430) buffer Work { uint x, y, z, count; } work;  // groups of light_inject.comp; length of the list
-layout(set = 0, std430) writeonly buffer Listed { uint sides[]; } listed;
+layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) writeonly buffer Changed { uint sides[]; } changed;
+layout(std430) buffer Work { uint x, y, z, count; } work;  // groups of light_inject.comp; length of the list
+layout(std430) writeonly buffer Listed { uint sides[]; } listed;
 
 layout(push_constant) uniform Constants {
   float offset;     // cells
@@ -27,7 +24,7 @@ layout(push_constant) uniform Constants {
 };
 
 #if SHADOWED
-layout(set = 0) uniform samplerBuffer covered;  // kMoverBoxes a layer, see covered.comp
+uniform samplerBuffer covered;  // kMoverBoxes a layer, see covered.comp
 
 const float kMarginTexels = 4.0;  // the reach of the widest filter, and what a rasteriser may round
 

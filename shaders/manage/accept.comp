@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One slot and one candidate an invocation: importance in fixed point, Eq. 1, cells of the density grid.
 #include "common/scene.glsl"
 #include "common/random.glsl"
@@ -9,10 +7,10 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform usamplerBuffer candidates;
-layout(set = 0) uniform samplerBuffer candidateImportance;
-layout(set = 0) uniform samplerBuffer vplImportance;
-layout(set = 0) uniform samplerBuffer vpls;  // VplState: five texels a slot
+uniform usamplerBuffer candidates;
+uniform samplerBuffer candidateImportance;
+uniform samplerBuffer vplImportance;
+uniform samplerBuffer vpls;  // VplState: five texels a slot
 
 const uint kManageStream = 0x6d616e61u;  // keeps the random numbers of this pass apart from others
 

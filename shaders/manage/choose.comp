@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One work group: Algorithm 2, and a slot for each VPL it adds.
 //
 // The serial loop adds attempt a when its cell holds fewer than D_MAX and the list fewer than N_MAX. Until the list is full

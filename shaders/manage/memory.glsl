@@ -25,7 +25,7 @@ const uint kReuseLinear = 0u, kReuseCosine = 1u, kReuseRandom = 2u;  // as the c
 const uint kOrderFixed = 1u;
 const uint kPlacementLight = 1u;
 
-layout(set = 0, std430) buffer StateBlock {
+layout(std430) buffer StateBlock {
   uint occupied;        // cells that hold a VPL or a candidate
   uint alive;           // VPLs at the start
   uint accepted;        // of them: by Eq. 1
@@ -41,35 +41,35 @@ struct SlotRecord {
   uint key;         // 24 bits: the order in which VPLs are reused, least first
 };
 const uint kAlive = 1u, kAccepted = 2u;
-layout(set = 0, std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
+layout(std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
 
 // x: importance, 24 bits, or direct light (placement `light`); kNoCandidate: an attempt that hit nothing; y: cell of the density grid.
 const uint kNoCandidate = 0xffffffffu;
-layout(set = 0, std430) buffer CandidateRecordsBlock { uvec2 list[]; } candidateRecords;
+layout(std430) buffer CandidateRecordsBlock { uvec2 list[]; } candidateRecords;
 
 // What a slot gets: nothing, the VPL it has, or candidate `source - kFirstCandidate`.
 const uint kEmpty = 0u, kKept = 1u, kFirstCandidate = 2u;
-layout(set = 0, std430) coherent buffer SourcesBlock { uint list[]; } sources;
+layout(std430) coherent buffer SourcesBlock { uint list[]; } sources;
 
 // Lists of (key, index), each with as much room again behind it to sort into.
-layout(set = 0, std430) coherent buffer ListsBlock { uvec2 entries[]; } lists;
+layout(std430) coherent buffer ListsBlock { uvec2 entries[]; } lists;
 uint candidateList() { return 0u; }                             // Lc: index of a candidate
 uint oldList() { return 2u * candidateCount; }                  // L': slot
 uint attemptList() { return 2u * (candidateCount + slots); }    // cell, number of the attempt
 
 // Attempts to add, in order: slot, or candidate | kFresh; | kRefused: its cell is full.
 const uint kFresh = 0x80000000u, kRefused = 0x40000000u;
-layout(set = 0, std430) coherent buffer AttemptsBlock { uint list[]; } attempts;
-layout(set = 0, std430) coherent buffer AddedBlock { uint list[]; } added;  // candidates, in the order of adding
+layout(std430) coherent buffer AttemptsBlock { uint list[]; } attempts;
+layout(std430) coherent buffer AddedBlock { uint list[]; } added;  // candidates, in the order of adding
 
 // Density grid, 64^3 cells that repeat in space: a hash without collisions inside the scene, whose longest edge is at most
 // as long as 64 cells, and a place for VPLs outside.
 const uint kCellBits = 18u;
 const uint kOccupied = 0x80000000u;  // a VPL or a candidate is there; the bits below count the VPLs that are reused
-layout(set = 0, std430) buffer DensityBlock { uint cells[]; } density;
-layout(set = 0, std430) coherent buffer SegmentsBlock { uint first[]; } segments;  // per cell, in the sorted attempts
+layout(std430) buffer DensityBlock { uint cells[]; } density;
+layout(std430) coherent buffer SegmentsBlock { uint first[]; } segments;  // per cell, in the sorted attempts
 
-layout(set = 0, std430) buffer CountersBlock { uint kept, deleted, added, candidates, rejected, alive, dense; } counters;
+layout(std430) buffer CountersBlock { uint kept, deleted, added, candidates, rejected, alive, dense; } counters;
 
 uint axisCell(float x) { return x > -1e6 && x < 1e6 ? uint(int(floor(x))) & 63u : 0u; }
 uint cellOf(vec3 position) {

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Two work groups: Lc descending and L' ascending by W = I + 1 / (density + CONST), the density being that of the VPLs
 // which are reused.
 #include "common/vpl.glsl"

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One work group, reuse `none`: all old VPLs go, the first candidates fill the slots.
 #include "common/vpl.glsl"
 #define GROUP 64

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One work group: which VPLs are reused, and L', those that are not. Eq. 1 has decided, unless the list got shorter: then
 // the most important stay; and `random` takes any of the living.
 #include "common/vpl.glsl"

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 // One work group: the candidates Lc, thinned by the inverse transform of the CDF of importance. K samples at equal distances
 // from a random start on [0, K sum I) meet a candidate with probability min(1, K I / sum I); one that several meet is taken

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One slot an invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
@@ -7,11 +5,11 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform usamplerBuffer candidates;
-layout(set = 0) uniform usamplerBuffer candidateImportance;  // bits of floats, so that they pass unchanged
-layout(set = 0) uniform usamplerBuffer vplImportance;
-layout(set = 0) uniform usamplerBuffer vpls;
-layout(set = 0, std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  // VplState: five a slot
+uniform usamplerBuffer candidates;
+uniform usamplerBuffer candidateImportance;  // bits of floats, so that they pass unchanged
+uniform usamplerBuffer vplImportance;
+uniform usamplerBuffer vpls;
+layout(std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  // VplState: five a slot
 
 const uint kOne = 0x3f800000u;  // bits of 1.0
 

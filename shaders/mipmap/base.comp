@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Level 0 of the mips: the 2x2x2 voxels of each cell, seen from six sides or from all at once.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
@@ -8,14 +5,14 @@
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
-layout(set = 0, rgba16f) uniform image3D mipsColor;
-layout(set = 0) uniform samplerBuffer radiance;
+layout(rgba16f) uniform image3D mipsColor;
+uniform samplerBuffer radiance;
 #if WEIGHTED
-layout(set = 0, r16f) uniform writeonly image3D mipsWeight;
-layout(set = 0) uniform samplerBuffer weights;
+layout(r16f) uniform writeonly image3D mipsWeight;
+uniform samplerBuffer weights;
 #endif
 #if KEEPS
-layout(set = 0) uniform usamplerBuffer changed;
+uniform usamplerBuffer changed;
 #include "common/movers.glsl"
 #include "mipmap/dirty.glsl"
 

@@ -2,7 +2,7 @@
 #ifndef FOVEA_MIPMAP_DIRTY_GLSL
 #define FOVEA_MIPMAP_DIRTY_GLSL
 
-layout(set = 0, std430) buffer Dirty { uint bits[]; } dirty;
+layout(std430) buffer Dirty { uint bits[]; } dirty;
 
 uint dirtyBit(uint first, int size, ivec3 cell) { return first + uint(cell.x + size * (cell.y + size * cell.z)); }
 bool isDirty(uint first, int size, ivec3 cell) {

@@ -1,15 +1,13 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One level of the mips from the level below.
 #include "mipmap/combine.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
-layout(set = 0, rgba16f) uniform readonly image3D sourceColor;
-layout(set = 0, rgba16f) uniform image3D targetColor;
+layout(rgba16f) uniform readonly image3D sourceColor;
+layout(rgba16f) uniform image3D targetColor;
 #if WEIGHTED
-layout(set = 0, r16f) uniform readonly image3D sourceWeight;
-layout(set = 0, r16f) uniform writeonly image3D targetWeight;
+layout(r16f) uniform readonly image3D sourceWeight;
+layout(r16f) uniform writeonly image3D targetWeight;
 #endif
 
 #if KEEPS

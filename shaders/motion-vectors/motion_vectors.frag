@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // For every pixel the pixel of the frame before in which its surface was seen, if that was the same surface.
 //
 // Of the four texels around the place where it was one is taken at random, as probably as it is near: so that what moves by
@@ -8,11 +6,11 @@
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
 
-layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, r32ui) uniform readonly uimage2D gbufferId;
-layout(set = 0, rgba32f) uniform readonly image2D previousPosition;
-layout(set = 0, rgba16f) uniform readonly image2D previousNormal;
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(r32ui) uniform readonly uimage2D gbufferId;
+layout(rgba32f) uniform readonly image2D previousPosition;
+layout(rgba16f) uniform readonly image2D previousNormal;
 layout(location = 0) out uint origin;
 
 layout(push_constant) uniform Constants {

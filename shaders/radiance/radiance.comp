@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones). Define: CONES, 0: only the direct term.
 #include "common/scene.glsl"
 #if CONES
@@ -8,13 +5,13 @@
 #define CONE_GATHER
 #include "common/cone.glsl"
 #else
-layout(set = 0) uniform samplerBuffer radiance;
+uniform samplerBuffer radiance;
 #endif
 
 layout(local_size_x = 8) in;
 
-layout(set = 0) uniform samplerBuffer vpls;
-layout(set = 0, std430) writeonly buffer Radiosity { vec4 radiosity[]; };
+uniform samplerBuffer vpls;
+layout(std430) writeonly buffer Radiosity { vec4 radiosity[]; };
 
 layout(push_constant) uniform Constants {
   uint count;

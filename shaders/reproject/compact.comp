@@ -1,13 +1,12 @@
-#version 460
 // The list of blocks to shade: tile after tile, in each tile row after row. One tile an invocation. Defines: INTERLEAVE.
 
 const uint kTile = 16u;
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, r8) uniform readonly image2D shadeMask;
-layout(set = 0, std430) readonly buffer TileBlocks { uint count[]; } tileBlocks;
-layout(set = 0, std430) writeonly buffer ShadeBlocks { uint list[]; } shadeBlocks;
+layout(r8) uniform readonly image2D shadeMask;
+layout(std430) readonly buffer TileBlocks { uint count[]; } tileBlocks;
+layout(std430) writeonly buffer ShadeBlocks { uint list[]; } shadeBlocks;
 
 layout(push_constant) uniform Constants {
   uint tiles;

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 // The listed tiles, those with pixels without a source. Such a pixel takes the light of pixels of its surface at most FILL
 // pixels away, in its tile, that have one: nearer than the interleaved samples that shading would gather. Where there are
@@ -13,14 +11,14 @@ const uint kThreads = 16u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocks
 
 layout(local_size_x = 16) in;  // few: on a CPU device each subgroup of a group with barriers costs
 
-layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, rg16_snorm) uniform readonly image2D gbufferFace;
-layout(set = 0, rgba16f) uniform image2D irradiance;
-layout(set = 0, r8) uniform writeonly image2D shadeMask;
-layout(set = 0, std430) writeonly buffer TileBlocks { uint count[]; } tileBlocks;
-layout(set = 0, std430) readonly buffer OpenList { uint list[]; } openList;
-layout(set = 0, std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(rgba16f) uniform image2D irradiance;
+layout(r8) uniform writeonly image2D shadeMask;
+layout(std430) writeonly buffer TileBlocks { uint count[]; } tileBlocks;
+layout(std430) readonly buffer OpenList { uint list[]; } openList;
+layout(std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
 
 layout(push_constant) uniform Constants {
   float planeTolerance;  // in parts of the distance to the eye

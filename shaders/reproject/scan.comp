@@ -1,4 +1,3 @@
-#version 460
 // The number of blocks to shade before each tile, and the indirect dispatch over all. One work group: tiles are few.
 // Defines: INTERLEAVE.
 
@@ -7,8 +6,8 @@ const uint kBlocksPerGroup = 256u;  // of the shading: deferred/shade.comp
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) buffer TileBlocks { uint count[]; } tileBlocks;
-layout(set = 0, std430) writeonly buffer ShadeDispatch { uvec4 groups; } shadeDispatch;
+layout(std430) buffer TileBlocks { uint count[]; } tileBlocks;
+layout(std430) writeonly buffer ShadeDispatch { uvec4 groups; } shadeDispatch;
 
 layout(push_constant) uniform Constants {
   uint tiles;

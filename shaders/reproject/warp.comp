@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
 // The irradiance of the first eye on what the second eye sees. The point of a pixel is projected into the source image; of
 // the four texels around it those count that show the same surface: near the tangent plane of the pixel, normals alike.
@@ -15,17 +13,17 @@ const int kRows = 4;  // pixels of an invocation, below each other; all in one t
 layout(local_size_x = 64) in;
 
 // Images and not textures: on a CPU device a load from a texture costs several times as much.
-layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, rg16_snorm) uniform readonly image2D gbufferFace;
-layout(set = 0, rgba32f) uniform readonly image2D sourceGbufferPosition;
-layout(set = 0, rgba16f) uniform readonly image2D sourceGbufferNormal;
-layout(set = 0, rgba16f) uniform readonly image2D sourceIrradiance;
-layout(set = 0, rgba16f) uniform writeonly image2D irradiance;
-layout(set = 0, std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 when it is listed
-layout(set = 0, std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups for fill.comp; x: 1 + tiles listed
-layout(set = 0, std430) writeonly buffer OpenList { uint list[]; } openList;
-layout(set = 0, std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(rgba32f) uniform readonly image2D sourceGbufferPosition;
+layout(rgba16f) uniform readonly image2D sourceGbufferNormal;
+layout(rgba16f) uniform readonly image2D sourceIrradiance;
+layout(rgba16f) uniform writeonly image2D irradiance;
+layout(std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 when it is listed
+layout(std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups for fill.comp; x: 1 + tiles listed
+layout(std430) writeonly buffer OpenList { uint list[]; } openList;
+layout(std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
 
 layout(push_constant) uniform Constants {
   mat4 sourceWorldToClip;

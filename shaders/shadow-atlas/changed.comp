@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_vote : require
 // One work group a slot: would its map come out with other bits if it were drawn again? Not while the VPL stays where it
 // is, and each mover either keeps its pose or lies, then as now, behind what the map holds. Define: MOVERS.
@@ -11,11 +9,11 @@
 const int kRow = 8;
 layout(local_size_x = kRow) in;
 
-layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(set = 0, std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0: there is no map
-layout(set = 0, std430) readonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
-layout(set = 0, std430) writeonly buffer ChangesBlock { uint list[]; } changes;
-layout(set = 0, r32ui) uniform readonly uimage2DArray atlas;
+layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0: there is no map
+layout(std430) readonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
+layout(std430) writeonly buffer ChangesBlock { uint list[]; } changes;
+layout(r32ui) uniform readonly uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
   vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects; below 0: unused

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One work group: which slots get a new map this frame. New VPLs always do; of those kept from the frame before a budget
 // (METHOD section 2, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the VPLs every lit slot is drawn;
 // REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1.
@@ -8,15 +6,15 @@
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(set = 0, std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0: no map
-layout(set = 0, std430) buffer ChosenBlock { uint list[]; } chosen;
-layout(set = 0, std430) buffer CountersBlock {
+layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0: no map
+layout(std430) buffer ChosenBlock { uint list[]; } chosen;
+layout(std430) buffer CountersBlock {
   uint maps, small, large, masked, fresh, refreshes, texels, unchanged, overlaid;
 } counters;
 #if HAS_STATE
-layout(set = 0, std430) readonly buffer ChangesBlock { uint list[]; } changes;
-layout(set = 0, std430) readonly buffer StateBlock { VplState list[]; } state;
+layout(std430) readonly buffer ChangesBlock { uint list[]; } changes;
+layout(std430) readonly buffer StateBlock { VplState list[]; } state;
 #endif
 
 layout(push_constant) uniform Constants {

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Empties the maps that are about to be drawn or whose VPL has gone, and notes what they are drawn with: one work group a
 // slot. Defines: STATIC_MAPS 0/1: what never moves is drawn to a map of its own (compose.comp); HAS_STATE 0/1; MOVERS.
 #include "common/paraboloid.glsl"
@@ -8,14 +6,14 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
-layout(set = 0, r32ui) uniform writeonly uimage2DArray atlas;
+layout(std430) readonly buffer ChosenBlock { uint list[]; } chosen;
+layout(r32ui) uniform writeonly uimage2DArray atlas;
 #if STATIC_MAPS
-layout(set = 0, r32ui) uniform writeonly uimage2DArray staticMaps;
+layout(r32ui) uniform writeonly uimage2DArray staticMaps;
 #endif
 #if HAS_STATE
-layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(set = 0, std430) writeonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
+layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(std430) writeonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
 #endif
 
 layout(push_constant) uniform Constants {

@@ -1,14 +1,12 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // The maps that are drawn in this frame start as what is seen of all that never moves: one work group a slot.
 #include "common/paraboloid.glsl"
 #include "shadow-atlas/step.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
-layout(set = 0, r32ui) uniform writeonly uimage2DArray atlas;
-layout(set = 0, r32ui) uniform readonly uimage2DArray staticMaps;
+layout(std430) readonly buffer ChosenBlock { uint list[]; } chosen;
+layout(r32ui) uniform writeonly uimage2DArray atlas;
+layout(r32ui) uniform readonly uimage2DArray staticMaps;
 
 layout(push_constant) uniform Constants { uint slots; };
 

@@ -1,7 +1,4 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_samplerless_texture_functions : require
 // First of two: finds the texels each triangle may cover in the maps of a batch of VPLs and lists the pairs
 // worth rasterising. One triangle an invocation, read once for the whole batch.
 #include "common/paraboloid.glsl"
@@ -11,9 +8,9 @@
 
 layout(local_size_x = 128) in;
 
-layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
-layout(set = 0, std430) buffer StepsBlock { uint words[]; } steps;  // Step
-layout(set = 0, std430) writeonly buffer PairsBlock { uint list[]; } pairs;
+layout(std140) uniform BatchBlock { VplView views[BATCH]; } batch;
+layout(std430) buffer StepsBlock { uint words[]; } steps;  // Step
+layout(std430) writeonly buffer PairsBlock { uint list[]; } pairs;
 
 layout(push_constant) uniform Constants {
   uint step_;

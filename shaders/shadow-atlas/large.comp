@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Second of two: pairs of a VPL and a triangle that covers many texels, or is cut by the horizon. Eight
 // invocations a pair go through its box in blocks of 8x8 texels, a row at a time.
 #include "shadow-atlas/pair.glsl"

@@ -13,15 +13,15 @@ const bool kMasked = true;
 const bool kMasked = false;
 #endif
 
-layout(set = 0, std140) uniform BatchBlock { VplView views[BATCH]; } batch;
-layout(set = 0, std430) readonly buffer StepsBlock { Step list[]; } steps;
-layout(set = 0, std430) readonly buffer PairsBlock { uint list[]; } pairs;
-layout(set = 0, std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
+layout(std140) uniform BatchBlock { VplView views[BATCH]; } batch;
+layout(std430) readonly buffer StepsBlock { Step list[]; } steps;
+layout(std430) readonly buffer PairsBlock { uint list[]; } pairs;
+layout(std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
 #ifdef STATIC_MAPS
-layout(set = 0, r32ui) uniform uimage2DArray staticMaps;
+layout(r32ui) uniform uimage2DArray staticMaps;
 #define atlas staticMaps
 #else
-layout(set = 0, r32ui) uniform uimage2DArray atlas;
+layout(r32ui) uniform uimage2DArray atlas;
 #endif
 
 struct Pair {

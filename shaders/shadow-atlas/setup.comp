@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and prepares the
 // steps' indirect dispatches. Those that need the moving triangles only follow in batches of their own.
 #include "common/paraboloid.glsl"
@@ -8,10 +6,10 @@
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(set = 0, std430) writeonly buffer BatchBlock { VplView views[]; } batch;
-layout(set = 0, std430) writeonly buffer StepsBlock { Step list[]; } steps;
-layout(set = 0, std430) readonly buffer ChosenBlock { uint list[]; } chosen;
+layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
+layout(std430) writeonly buffer BatchBlock { VplView views[]; } batch;
+layout(std430) writeonly buffer StepsBlock { Step list[]; } steps;
+layout(std430) readonly buffer ChosenBlock { uint list[]; } chosen;
 
 layout(push_constant) uniform Constants {
   uint slots;

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation.
 #include "shadow-atlas/pair.glsl"
 

@@ -5,7 +5,7 @@
 #include "common/scene.glsl"
 
 #ifdef SIMPLIFIED
-layout(set = 0) uniform samplerBuffer simplified;  // SimplifiedMesh::corners of framework/scene/simplify.h
+uniform samplerBuffer simplified;  // SimplifiedMesh::corners of framework/scene/device/simplify.h
 #endif
 
 struct Triangle {

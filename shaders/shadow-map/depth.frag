@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Holes of alpha-masked materials let light through. Both sides of all others stop it, as they do in every renderer here.
 #include "common/scene.glsl"
 

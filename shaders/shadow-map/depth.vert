@@ -1,11 +1,9 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
 // One instance a layer.
 #include "common/scene.glsl"
 #include "common/shadow.glsl"
 
-layout(set = 0, binding = 0, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+layout(std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
 
 #if TESTED
 layout(location = 0) out vec2 uv;

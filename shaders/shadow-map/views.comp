@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // How each light sees the scene: one invocation a light.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
@@ -7,7 +5,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
+layout(std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
 
 layout(push_constant) uniform Constants { int size; };
 

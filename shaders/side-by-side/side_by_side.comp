@@ -1,11 +1,8 @@
-#version 460
-#extension GL_EXT_samplerless_texture_functions : require
-
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0) uniform texture2D left;
-layout(set = 0) uniform texture2D right;
-layout(set = 0, rgba8) uniform writeonly image2D image;
+uniform texture2D left;
+uniform texture2D right;
+layout(rgba8) uniform writeonly image2D image;
 
 vec4 texelOf(texture2D picture, ivec2 p) {
   return p.y < textureSize(picture, 0).y ? texelFetch(picture, p, 0) : vec4(0.0, 0.0, 0.0, 1.0);

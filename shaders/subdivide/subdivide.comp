@@ -1,17 +1,14 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Vertices of a subdivision surface from this frame's points of its cage: limit position and normal by stencils
-// (framework/scene/subdivision.h), the same sums in the same order as scene::Stencils::evaluate.
+// (framework/scene/subdivision/subdivision.h), the same sums in the same order as scene::Stencils::evaluate.
 #include "common/octahedral.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform utextureBuffer ranges;   // of each vertex: first entry, count
-layout(set = 0) uniform utextureBuffer entries;  // bits of the weights: position, tangent a, tangent b; point
-layout(set = 0) uniform textureBuffer points;    // xyz
-layout(set = 0, std430) writeonly buffer Positions { vec4 positions[]; };
-layout(set = 0, std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
+uniform utextureBuffer ranges;   // of each vertex: first entry, count
+uniform utextureBuffer entries;  // bits of the weights: position, tangent a, tangent b; point
+uniform textureBuffer points;    // xyz
+layout(std430) writeonly buffer Positions { vec4 positions[]; };
+layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
 
 layout(push_constant) uniform Constants {
   uint firstRange;

@@ -1,16 +1,14 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Running mean, at every pixel, of samples that few pixels, or all, get in a frame. A pixel takes over the mean of the frame
 // before from where its surface was then, and its own sample, or that of its block if that was taken on its surface.
 // Defines: BLOCKS 0/1: a texel of `samples` stands for several pixels.
 #include "common/same_surface.glsl"
 
 // Images and not textures: those cost several times as much on a CPU device.
-layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, rgba16f) uniform readonly image2D gbufferNormal;
-layout(set = 0, r32ui) uniform readonly uimage2D origin;
-layout(set = 0, rgba16f) uniform readonly image2D samples;
-layout(set = 0, rgba16f) uniform readonly image2D history;
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(r32ui) uniform readonly uimage2D origin;
+layout(rgba16f) uniform readonly image2D samples;
+layout(rgba16f) uniform readonly image2D history;
 layout(location = 0) out vec4 mean;
 
 layout(push_constant) uniform Constants {

@@ -1,10 +1,8 @@
-#version 460
-#extension GL_EXT_samplerless_texture_functions : require
 // T(x) = sRGB(clamp01(exposure * x)), METHOD section 4; the transfer function of IEC 61966-2-1.
 
-layout(set = 0, binding = 0) uniform texture2D radiance;
+uniform texture2D radiance;
 layout(location = 0) out vec4 image;
-layout(set = 0, binding = 1, std430) buffer Counters { uint value[]; } counters;
+layout(std430) buffer Counters { uint value[]; } counters;
 
 layout(push_constant) uniform Constants { float exposure; };
 

@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // The maps of the shadow atlas side by side, in the order of their slots.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
@@ -8,8 +5,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, r32ui) uniform readonly uimage2DArray atlas;
-layout(set = 0, rgba16f) uniform writeonly image2D image;
+layout(r32ui) uniform readonly uimage2DArray atlas;
+layout(rgba16f) uniform writeonly image2D image;
 
 layout(push_constant) uniform Constants {
   int columns;

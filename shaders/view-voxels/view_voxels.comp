@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // The first voxel side along each of the eye's rays.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
@@ -8,12 +5,12 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, rgba16f) uniform writeonly image2D image;
+layout(rgba16f) uniform writeonly image2D image;
 #ifdef RADIANCE
-layout(set = 0) uniform samplerBuffer radiance;
+uniform samplerBuffer radiance;
 #endif
 #ifdef WEIGHT
-layout(set = 0) uniform samplerBuffer weights;
+uniform samplerBuffer weights;
 #endif
 
 vec3 colourOf(uint side) {

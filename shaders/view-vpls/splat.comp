@@ -1,16 +1,13 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // A work group a slot: the disc of its VPL into the pixels' keys, where the nearest one stays.
 #include "common/scene.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0) uniform samplerBuffer state;  // VplState
+uniform samplerBuffer state;  // VplState
 #ifdef DEPTH_TEST
-layout(set = 0) uniform texture2D gbufferPosition;
+uniform texture2D gbufferPosition;
 #endif
-layout(set = 0, std430) buffer KeysBlock { uint pixel[]; } keys;
+layout(std430) buffer KeysBlock { uint pixel[]; } keys;
 
 layout(push_constant) uniform Constants {
   ivec2 size;

@@ -1,21 +1,18 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Keys of pixels to colours, over the picture.
 #include "common/scene.glsl"
 #include "common/colour_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0) uniform samplerBuffer state;  // VplState
+uniform samplerBuffer state;  // VplState
 #ifdef LUMINANCE
-layout(set = 0) uniform samplerBuffer vpls;  // Vpl
+uniform samplerBuffer vpls;  // Vpl
 #endif
 #ifdef PICTURE
-layout(set = 0) uniform texture2D picture;
+uniform texture2D picture;
 #endif
-layout(set = 0, std430) readonly buffer KeysBlock { uint pixel[]; } keys;
-layout(set = 0, rgba16f) uniform writeonly image2D image;
+layout(std430) readonly buffer KeysBlock { uint pixel[]; } keys;
+layout(rgba16f) uniform writeonly image2D image;
 
 layout(push_constant) uniform Constants { float scale; };  // 1 / what is shown as the last colour
 

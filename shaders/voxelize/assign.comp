@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Third of the prefix sum over marked cells: gives each its voxel, in linear order. A voxel of a dynamic object remembers
 // what it hides.
 #include "common/scene.glsl"
@@ -8,12 +6,12 @@
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) readonly buffer MarksBlock { uint words[]; } marks;
-layout(set = 0, std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
-layout(set = 0, std430) writeonly buffer CellsBlock { uvec2 list[]; } cells;
-layout(set = 0, r32ui) uniform uimage3D voxelsIndex;
-layout(set = 0, r32ui) uniform uimage3D voxelsOccupied;
+layout(std430) readonly buffer MarksBlock { uint words[]; } marks;
+layout(std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
+layout(std430) readonly buffer StateBlock { State value; } state;
+layout(std430) writeonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(r32ui) uniform uimage3D voxelsIndex;
+layout(r32ui) uniform uimage3D voxelsOccupied;
 
 layout(push_constant) uniform Constants {
   uint count;  // words

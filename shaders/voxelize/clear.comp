@@ -1,12 +1,10 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Zero sums for a batch of voxels; an invocation a side.
 #include "voxelize/state.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
-layout(set = 0, std430) writeonly buffer SumsBlock { uint words[]; } sums;
+layout(std430) readonly buffer StateBlock { State value; } state;
+layout(std430) writeonly buffer SumsBlock { uint words[]; } sums;
 
 layout(push_constant) uniform Constants {
   uint phase;

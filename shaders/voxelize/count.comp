@@ -1,13 +1,11 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // The numbers of the list, as counters: also in frames that voxelise nothing.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 
 layout(local_size_x = 1) in;
 
-layout(set = 0, std430) readonly buffer VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
-layout(set = 0, std430) writeonly buffer CountersBlock { uint voxels, staticVoxels, overflow; } counters;
+layout(std430) readonly buffer VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) writeonly buffer CountersBlock { uint voxels, staticVoxels, overflow; } counters;
 
 void main() {
   counters.voxels = voxelsInfo.value.voxels;

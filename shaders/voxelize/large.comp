@@ -1,15 +1,12 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Triangles of many columns, a work group a chunk of them: load is balanced, and no invocation loops for long.
 #include "voxelize/visit.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer ChunksBlock { uint list[]; } chunks;  // exclusive prefix sums
+layout(std430) readonly buffer ChunksBlock { uint list[]; } chunks;  // exclusive prefix sums
 #ifndef ACCUMULATE
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
+layout(std430) readonly buffer StateBlock { State value; } state;
 #endif
 
 shared uint owner;

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Sums to averages; an invocation a side.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
@@ -7,10 +5,10 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
-layout(set = 0, std430) readonly buffer SumsBlock { uint words[]; } sums;
-layout(set = 0, std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
-layout(set = 0, std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+layout(std430) readonly buffer StateBlock { State value; } state;
+layout(std430) readonly buffer SumsBlock { uint words[]; } sums;
+layout(std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
 
 layout(push_constant) uniform Constants {
   uint resolution;

@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Takes last frame's voxels of dynamic objects back: what they hid shows again, and their cells lose their marks.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
@@ -7,12 +5,12 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
-layout(set = 0, std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
-layout(set = 0, std430) writeonly buffer MarksBlock { uint words[]; } marks;
-layout(set = 0, std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
-layout(set = 0, r32ui) uniform writeonly uimage3D voxelsIndex;
-layout(set = 0, r32ui) uniform uimage3D voxelsOccupied;
+layout(std430) readonly buffer StateBlock { State value; } state;
+layout(std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
+layout(std430) writeonly buffer MarksBlock { uint words[]; } marks;
+layout(std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+layout(r32ui) uniform writeonly uimage3D voxelsIndex;
+layout(r32ui) uniform uimage3D voxelsOccupied;
 
 layout(push_constant) uniform Constants { uint resolution; };
 

@@ -1,16 +1,14 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // First of a prefix sum: the sum of each block of 256 values.
 #include "voxelize/state.glsl"
 
 layout(local_size_x = 256) in;
 
 #ifdef MARKS
-layout(set = 0, std430) readonly buffer MarksBlock { uint words[]; } marks;
+layout(std430) readonly buffer MarksBlock { uint words[]; } marks;
 #else
-layout(set = 0, std430) readonly buffer ChunksBlock { uint list[]; } chunks;
+layout(std430) readonly buffer ChunksBlock { uint list[]; } chunks;
 #endif
-layout(set = 0, std430) writeonly buffer BlocksBlock { uint sums[]; } blocks;
+layout(std430) writeonly buffer BlocksBlock { uint sums[]; } blocks;
 
 layout(push_constant) uniform Constants { uint count; };
 

@@ -1,12 +1,10 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Third of the prefix sum over chunks: in place of each triangle's number of chunks, that of all triangles before it.
 #include "voxelize/scan.glsl"
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) buffer ChunksBlock { uint list[]; } chunks;
-layout(set = 0, std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
+layout(std430) buffer ChunksBlock { uint list[]; } chunks;
+layout(std430) readonly buffer BlocksBlock { uint sums[]; } blocks;
 
 layout(push_constant) uniform Constants { uint count; };
 

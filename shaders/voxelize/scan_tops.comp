@@ -1,5 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 // Second of a prefix sum, one work group: the sums before each block. The total sizes the dispatches that follow.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
@@ -7,10 +5,10 @@
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, std430) buffer BlocksBlock { uint sums[]; } blocks;
-layout(set = 0, std430) buffer StateBlock { State value; } state;
+layout(std430) buffer BlocksBlock { uint sums[]; } blocks;
+layout(std430) buffer StateBlock { State value; } state;
 #ifdef MARKS
-layout(set = 0, std430) buffer VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) buffer VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 #endif
 
 layout(push_constant) uniform Constants {

@@ -1,14 +1,11 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_samplerless_texture_functions : require
 // Triangles of few columns, one an invocation. Counts the chunks of the others.
 #include "voxelize/visit.glsl"
 
 layout(local_size_x = 64) in;
 
 #ifndef ACCUMULATE
-layout(set = 0, std430) writeonly buffer ChunksBlock { uint list[]; } chunks;
+layout(std430) writeonly buffer ChunksBlock { uint list[]; } chunks;
 #endif
 
 void main() {

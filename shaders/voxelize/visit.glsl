@@ -6,11 +6,11 @@
 #include "voxelize/triangle.glsl"
 
 #ifdef ACCUMULATE
-layout(set = 0, std430) readonly buffer StateBlock { State value; } state;
-layout(set = 0, r32ui) uniform readonly uimage3D voxelsIndex;
-layout(set = 0, std430) buffer SumsBlock { uint words[]; } sums;
+layout(std430) readonly buffer StateBlock { State value; } state;
+layout(r32ui) uniform readonly uimage3D voxelsIndex;
+layout(std430) buffer SumsBlock { uint words[]; } sums;
 #else
-layout(set = 0, std430) buffer MarksBlock { uint words[]; } marks;
+layout(std430) buffer MarksBlock { uint words[]; } marks;
 #endif
 
 layout(push_constant) uniform Constants {

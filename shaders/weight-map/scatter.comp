@@ -1,6 +1,3 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 // Every pixel gives its foveated weight to the voxel side that its surface point lies in; a side keeps the largest
 // (METHOD importance step 1). The largest does not depend on the order. Define: WHOLE_IMAGE 0/1.
@@ -15,10 +12,10 @@ const int kBlock = 4;
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, rgba32f) uniform readonly image2D gbufferPosition;
-layout(set = 0, rg16_snorm) uniform readonly image2D gbufferFace;
-layout(set = 0, std430) buffer Weights { uint weights[]; };    // bits of floats, none negative: they order alike
-layout(set = 0, std430) buffer Counters { uint counters[]; };  // visible, unassigned
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(std430) buffer Weights { uint weights[]; };    // bits of floats, none negative: they order alike
+layout(std430) buffer Counters { uint counters[]; };  // visible, unassigned
 
 #if !WHOLE_IMAGE
 layout(push_constant) uniform Constants {

@@ -10,7 +10,7 @@ import sys
 import time
 import unittest
 
-from cli_test import BAD_INPUT, CANNOT_WRITE, INTERRUPTED, PROGRAM, SOURCE, USAGE, CliTest
+from program import BAD_INPUT, CANNOT_WRITE, INTERRUPTED, PROGRAM, SOURCE, USAGE, CliTest
 
 SLOWER = 8
 SUITE = {

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import unittest
 
-from cli_test import BAD_INPUT, CANNOT_WRITE, USAGE, CliTest
+from program import BAD_INPUT, CANNOT_WRITE, USAGE, CliTest
 
 SIZE = (16, 8)
 

@@ -6,7 +6,7 @@ import sys
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from cli_test import BAD_INPUT, CANNOT_WRITE, SMALL, USAGE, CliTest
+from program import BAD_INPUT, CANNOT_WRITE, SMALL, USAGE, CliTest
 
 
 class SceneExport(CliTest):

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 
 namespace {
 

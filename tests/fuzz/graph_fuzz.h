@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "framework/graph/checker.h"
-#include "framework/graph/null_device.h"
-#include "framework/graph/report.h"
+#include "framework/graph/report/report.h"
+#include "framework/graph/verify/checker.h"
+#include "framework/graph/verify/null_device.h"
 #include "tests/unit/random_graph.h"
 
 namespace fovea::graph::test {

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <span>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/resources.h"
-#include "framework/scene/gpu_scene.h"
+#include "framework/scene/device/gpu_scene.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/scene.h"
+#include "framework/scene/subdivision/subdivision.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/device.h"
 #include "tests/support/octahedral.h"
 #include "tests/support/shapes.h"
 

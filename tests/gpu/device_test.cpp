@@ -8,12 +8,12 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/physical_device.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/device.h"
 
 namespace fovea {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
-#include "framework/gpu/shader.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/device.h"
 
 namespace fovea {
 namespace {

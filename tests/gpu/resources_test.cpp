@@ -6,10 +6,10 @@
 
 #include <numeric>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/format.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/device.h"
 
 namespace fovea {
 namespace {

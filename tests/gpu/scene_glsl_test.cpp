@@ -4,14 +4,16 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
-#include "framework/gpu/shader.h"
-#include "framework/scene/gpu_scene.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/gpu_scene.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
-#include "tests/support/device.h"
+#include "framework/scene/scene.h"
+#include "framework/session/test_device.h"
 
 namespace fovea::scene {
 namespace {

@@ -4,12 +4,12 @@
 #include <cstring>
 #include <numeric>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/resources.h"
-#include "framework/scene/subdivider.h"
+#include "framework/scene/device/subdivider.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/cages.h"
-#include "tests/support/device.h"
 #include "tests/support/octahedral.h"
 
 namespace fovea::scene {

@@ -1,10 +1,10 @@
 // Timestamps arrive frames later, with two frames in flight.
 #include <gtest/gtest.h>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/timestamps.h"
+#include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/device.h"
 
 namespace fovea {
 namespace {

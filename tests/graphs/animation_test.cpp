@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/scene.h"
 #include "framework/image/metrics.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "tests/support/pass_test.h"
+#include "framework/scene/scene.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {
@@ -27,12 +30,10 @@ struct Case {
   const char* graph;
   double median, most, jump;
 };
-const Case kCases[] = {{"cornellbox_moving", "ours", 0.13, 2.7, 6},
-                       {"cornellbox_moving", "foveal", 0.02, 0.13, 0.075},
-                       {"atrium", "foveal", 0.07, 0.38, 0.15},
-                       {"balcony", "foveal", 0.055, 0.2, 0.08},
-                       {"room", "foveal", 0.28, 1.2, 0.55},
-                       {"yard", "foveal", 0.072, 0.24, 0.08}};
+const Case kCases[] = {
+    {"cornellbox_moving", "ours", 0.13, 2.7, 6}, {"cornellbox_moving", "foveal", 0.02, 0.13, 0.075},
+    {"atrium", "foveal", 0.07, 0.38, 0.15},      {"balcony", "foveal", 0.055, 0.2, 0.08},
+    {"room", "foveal", 0.28, 1.2, 0.55},         {"yard", "foveal", 0.072, 0.24, 0.08}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
   return scene::makeFrame(s, geometry, {kSide, kSide}, kFirst + index, 1, kRate);

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "fovea/scene.h"
 #include "framework/scene/load.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {

@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/scene.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/load.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
 #include "tests/support/failure_pictures.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {

@@ -1,6 +1,6 @@
 // The executor on a real device, through passes made for these tests: what the plan promises must come out as
 // values.
-#include "framework/graph/execute.h"
+#include "framework/graph/run/execute.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <chrono>
 #include <thread>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "framework/gpu/device.h"
-#include "framework/graph/registry.h"
+#include "framework/graph/pass/registry.h"
 #include "framework/scene/frame.h"
-#include "tests/support/device.h"
+#include "framework/session/test_device.h"
 #include "tests/support/graph_runner.h"
 
 namespace fovea::graph {
@@ -27,13 +27,13 @@ class MixImage : public Pass {
     PassDeclaration d("test-mix", "Hashes its inputs together.");
     d.input("a", image2D(kFormat), Usage::Sampled, "first");
     d.input("b", image2D(kFormat), Usage::Sampled, "second").makeOptional();
-    d.output("value", image(), Usage::StorageWrite, "hash of key, a and b");
+    d.output("value", test::image(), Usage::StorageWrite, "hash of key, a and b");
     d.parameter("key", integer(1, 0, 1 << 30), "mixed in");
     return d;
   }
   void prepare(PrepareContext& context) override {
     addTestShaders(context);
-    gpu::Defines defines;
+    Defines defines;
     if (context.has("b")) defines["HAS_B"] = "1";
     kernel_ = context.compute("mix_image.comp", defines);
   }
@@ -49,7 +49,7 @@ class MixOnHost : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("test-mix-host", "The same as test-mix, on the CPU.", PassKind::Host);
     d.input("a", image2D(kFormat), Usage::HostRead, "first");
-    d.output("value", image(), Usage::HostWrite, "hash of key and a");
+    d.output("value", test::image(), Usage::HostWrite, "hash of key and a");
     d.parameter("key", integer(1, 0, 1 << 30), "mixed in");
     return d;
   }
@@ -67,7 +67,7 @@ class SlowOnHost : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("test-slow-host", "Copies, and takes 40 ms for it.", PassKind::Host);
     d.input("a", image2D(kFormat), Usage::HostRead, "what to copy");
-    d.output("value", image(), Usage::HostWrite, "the copy");
+    d.output("value", test::image(), Usage::HostWrite, "the copy");
     return d;
   }
   void execute(HostContext& context) override {
@@ -81,7 +81,8 @@ class CountUp : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("test-count", "Adds its key to a buffer it keeps.");
-    d.output("total", buffer("Word", 4, 100), Usage::StorageRead | Usage::StorageWrite, "sums").keep(Lifetime::View);
+    d.output("total", buffer("Word", 4, 100), Usage::StorageRead | Usage::StorageWrite, "sums")
+        .keep(Lifetime::View);
     d.parameter("key", integer(1, 0, 1 << 30), "added every frame");
     d.counter("touched", "elements touched this frame");
     return d;
@@ -104,8 +105,8 @@ class AskReaders : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("test-readers", "Fills two images, and says who is read.");
-    d.output("value", image(), Usage::StorageWrite, "the value");
-    d.output("pair", "pair", {member("one", image(), Usage::TransferWrite)}, "more");
+    d.output("value", test::image(), Usage::StorageWrite, "the value");
+    d.output("pair", "pair", {member("one", test::image(), Usage::TransferWrite)}, "more");
     d.counter("read", "1: value, 2: pair.one");
     return d;
   }
@@ -169,7 +170,8 @@ TEST(Execute, PassesKnowWhichOutputsAreRead) {
 }
 
 TEST(Execute, KeptBufferAndCounters) {
-  Runner runner(R"({"passes": {"count": {"type": "test-count", "params": {"key": 4}}}, "outputs": {"x": "count"}})");
+  Runner runner(
+      R"({"passes": {"count": {"type": "test-count", "params": {"key": 4}}}, "outputs": {"x": "count"}})");
   for (uint32_t i = 0; i < 5; ++i) {
     const FrameResult result = runner.frame(i == 3);
     expectAll(result, "x", 4 * (i < 3 ? i + 1 : i - 2));
@@ -230,7 +232,7 @@ TEST(Execute, HostPassesCountTheirOwnTimeOnce) {
 // the heap or a wrong order shows as a wrong number. Aliasing must really happen for this to mean anything.
 struct RandomGraph {
   std::string text;
-  std::vector<uint32_t> values;    // per pass, updated per frame
+  std::vector<uint32_t> values;  // per pass, updated per frame
   struct Node {
     uint32_t key, a, b;
     bool fill, history, host;
@@ -256,7 +258,8 @@ struct RandomGraph {
                   (n.history ? name(i) + "@previous" : name(n.b)) + "\"}, " + params;
     }
     for (uint32_t i = count - 2; i < count; ++i)
-      outputs += (outputs.empty() ? "\"o" : ", \"o") + std::to_string(i) + "\": \"p" + std::to_string(i) + "\"";
+      outputs +=
+          (outputs.empty() ? "\"o" : ", \"o") + std::to_string(i) + "\": \"p" + std::to_string(i) + "\"";
     text = "{\"passes\": {" + passes + "}, \"outputs\": {" + outputs + "}}";
     values.assign(count, 0);
   }
@@ -265,9 +268,12 @@ struct RandomGraph {
     for (size_t i = 0; i < nodes.size(); ++i) {
       const Node& n = nodes[i];
       const uint32_t previous = values[i];
-      if (n.fill) values[i] = n.key + frame;
-      else if (n.host) values[i] = hashCombine(n.key, values[n.a]);
-      else values[i] = hashCombine(hashCombine(n.key, values[n.a]), n.history ? previous : values[n.b]);
+      if (n.fill)
+        values[i] = n.key + frame;
+      else if (n.host)
+        values[i] = hashCombine(n.key, values[n.a]);
+      else
+        values[i] = hashCombine(hashCombine(n.key, values[n.a]), n.history ? previous : values[n.b]);
     }
   }
 };

@@ -7,9 +7,11 @@
 #include <filesystem>
 
 #include "framework/base/paths.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/passes/ray_reference.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/graph_support.h"
 
@@ -102,8 +104,8 @@ std::string graphWithState() {
     std::error_code ec;
     if (!std::filesystem::exists(graphs / "ours.json", ec)) continue;
     return folder
-        .write("ours_state.json", R"({"extends": ")" + (graphs / "ours.json").string() +
-                                      R"(", "outputs": {"state": "manage"}})")
+        .write("ours_state.json",
+               R"({"extends": ")" + (graphs / "ours.json").string() + R"(", "outputs": {"state": "manage"}})")
         .string();
   }
   return {};

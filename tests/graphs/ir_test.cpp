@@ -4,10 +4,12 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "fovea/scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 #include "tests/support/failure_pictures.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 #include "tests/support/path_reference.h"
 #include "tests/support/shapes.h"
 

@@ -5,12 +5,14 @@
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 
+#include "fovea/test.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/movers.h"
-#include "framework/scene/voxel_grid.h"
+#include "framework/scene/motion/movers.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/voxel_grid.h"
 #include "places.h"
 #include "tests/passes/ray_reference.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {

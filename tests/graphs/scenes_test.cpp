@@ -9,11 +9,14 @@
 #include <fstream>
 #include <map>
 
+#include "fovea/scene.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/vpl.h"
 #include "places.h"
 #include "tests/passes/ray_reference.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {

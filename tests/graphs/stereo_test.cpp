@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fovea/scene.h"
 #include "framework/scene/load.h"
 #include "places.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {
@@ -123,7 +124,7 @@ TEST(Stereo, RepeatsBitForBit) {
 TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/stereo.json",
-    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "weights.emitters", "atlas": "shadow-atlas"},
+    "passes": {"whole": {"type": "deferred", "inputs": {"gbuffer": "right.gbuffer", "vpls": "vpl-intensity.emitters", "atlas": "shadow-atlas"},
                          "params": {"kernel": "$kernel", "clamp_distance": "$clamp_distance", "interleave": "$interleave"}}},
     "outputs": {"whole": "whole.indirect"}})";
   GraphRunOptions options;

@@ -2,8 +2,8 @@
 // them.
 #include <gtest/gtest.h>
 
-#include "framework/base/diagnostic.h"
-#include "framework/graph/registry.h"
+#include "fovea/error.h"
+#include "framework/graph/pass/registry.h"
 #include "tests/support/graph_runner.h"
 
 namespace fovea::graph {

@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/base/random.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/scene/fovea.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/voxel_trace.h"
-#include "tests/support/pass_test.h"
+#include "framework/shader_twins/fovea.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/voxel_trace.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

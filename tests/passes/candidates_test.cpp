@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
 #include "tests/passes/candidates_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/shapes.h"

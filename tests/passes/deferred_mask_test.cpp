@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "tests/passes/deferred_reference.h"
 

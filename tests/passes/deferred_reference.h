@@ -9,9 +9,9 @@
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/vpl.h"
-#include "tests/support/pass_test.h"
+#include "fovea/test.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::test {
 

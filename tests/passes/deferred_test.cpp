@@ -6,7 +6,7 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "tests/passes/deferred_reference.h"
 
@@ -31,7 +31,8 @@ Vpl makeVpl(glm::vec3 position, glm::vec3 normal, glm::vec3 intensity, float are
 GBuffer makeFloor(int width, int height, float step, float eyeDistance = 5) {
   return GBuffer(width, height, [&](int x, int y) {
     SurfacePixel p;
-    p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0, (float(y) - 0.5f * float(height - 1)) * step};
+    p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
+                  (float(y) - 0.5f * float(height - 1)) * step};
     p.distance = eyeDistance;
     p.albedo = {0.25f, 0.5f, 0.75f};
     return p;
@@ -44,7 +45,8 @@ std::vector<Vpl> randomVpls(uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 position(4 * random(0, i) - 2, 1 + 2 * random(1, i), 4 * random(2, i) - 2);
     const glm::vec3 normal(random(3, i) - 0.5f, -1, random(4, i) - 0.5f);
-    list.push_back(makeVpl(position, normal, glm::vec3(random(5, i), random(6, i), random(7, i)) * 100.0f / float(count),
+    list.push_back(makeVpl(position, normal,
+                           glm::vec3(random(5, i), random(6, i), random(7, i)) * 100.0f / float(count),
                            0.02f + random(8, i)));
   }
   return list;
@@ -66,8 +68,8 @@ void expectImage(const std::vector<float>& image, const GBuffer& g, const std::v
       const double want = expected[i][int(c)], got = image[4 * i + c];
       if (std::abs(got - want) <= relative * std::abs(want) + 1e-5) continue;
       if (++wrong > allowed && wrong < allowed + 5)
-        ADD_FAILURE() << "pixel " << i % size_t(g.width) << "," << i / size_t(g.width) << " channel " << c << ": " << got
-                      << ", expected " << want;
+        ADD_FAILURE() << "pixel " << i % size_t(g.width) << "," << i / size_t(g.width) << " channel " << c
+                      << ": " << got << ", expected " << want;
     }
   EXPECT_LE(wrong, allowed);
 }
@@ -84,7 +86,8 @@ TEST_P(OneVpl, EqualsTheClosedForm) {
   PassTest test("deferred");
   test.param("kernel", GetParam() == Case::Disc ? "disc" : "clamp");
   if (GetParam() == Case::Unclamped) test.param("clamp_distance", 0.0);
-  const auto image = run(test, g, {makeVpl({0.3f, float(height), -0.1f}, {0, -1, 0}, {10, 20, 30}, float(area))}, 4);
+  const auto image =
+      run(test, g, {makeVpl({0.3f, float(height), -0.1f}, {0, -1, 0}, {10, 20, 30}, float(area))}, 4);
   const auto indirect = test.floats("indirect");
   for (size_t i = 0; i < g.pixels.size(); ++i) {
     const glm::dvec3 p(g.pixels[i].position);
@@ -106,7 +109,8 @@ INSTANTIATE_TEST_SUITE_P(Kernels, OneVpl, testing::Values(Case::Clamped, Case::U
 // The surface behind the VPL, and the one that faces away, get nothing.
 TEST(Deferred, VplsShineToTheirSideOnly) {
   const GBuffer g = makeFloor(8, 8, 0.1f);
-  for (const Vpl& v : {makeVpl({0, 1, 0}, {0, 1, 0}, glm::vec3(1)), makeVpl({0, -1, 0}, {0, 1, 0}, glm::vec3(1))}) {
+  for (const Vpl& v :
+       {makeVpl({0, 1, 0}, {0, 1, 0}, glm::vec3(1)), makeVpl({0, -1, 0}, {0, 1, 0}, glm::vec3(1))}) {
     PassTest test("deferred");
     for (float x : run(test, g, {v}, 1)) EXPECT_TRUE(x == 0 || x == 1);  // alpha is 1
   }
@@ -162,10 +166,12 @@ TEST(Deferred, OccludersThrowShadows) {
   const GBuffer g = makeFloor(48, 48, 0.1f);
   const std::vector<Vpl> vpls = {makeVpl({0, 2, 0}, {0, -1, 0}, glm::vec3(100))};
   PassTest lid("deferred");
-  const auto dark = runShadowed(lid, g, vpls, makeMap(vpls[0], [&](glm::vec3 d) { return planeDistance(vpls[0], 0.3f, d); }));
+  const auto dark = runShadowed(
+      lid, g, vpls, makeMap(vpls[0], [&](glm::vec3 d) { return planeDistance(vpls[0], 0.3f, d); }));
   for (size_t i = 0; i < dark.size(); i += 4) ASSERT_EQ(dark[i], 0);
   PassTest half("deferred"), open("deferred");
-  const auto map = makeMap(vpls[0], [&](glm::vec3 d) { return planeDistance(vpls[0], d.x < 0 ? 0.3f : 0.0f, d); });
+  const auto map =
+      makeMap(vpls[0], [&](glm::vec3 d) { return planeDistance(vpls[0], d.x < 0 ? 0.3f : 0.0f, d); });
   const auto shadowed = runShadowed(half, g, vpls, map), lit = run(open, g, vpls, 1);
   for (size_t i = 0; i < g.pixels.size(); ++i) {
     const float x = g.pixels[i].position.x;
@@ -184,7 +190,8 @@ TEST(Deferred, TiledAtlasEqualsLayers) {
   const auto vpls = randomVpls(40);
   std::vector<uint32_t> layers, tiled(3 * 16 * kMap * kMap, scene::kParaboloidEmpty);
   for (uint32_t s = 0; s < 40; ++s) {
-    const auto map = makeMap(vpls[s], [&](glm::vec3 d) { return random(20, s * 16 + uint32_t(8 + 8 * d.x)) * 4; });
+    const auto map =
+        makeMap(vpls[s], [&](glm::vec3 d) { return random(20, s * 16 + uint32_t(8 + 8 * d.x)) * 4; });
     layers.insert(layers.end(), map.begin(), map.end());
     for (int y = 0; y < kMap; ++y)
       std::copy_n(map.begin() + y * kMap, kMap,
@@ -210,7 +217,8 @@ TEST(Deferred, FilterOnAFlatWallIsExact) {
   for (const int n : {1, 2, 4, 8}) {
     PassTest test("deferred");
     const auto image = run(test, g, vpls, n);
-    for (size_t i = 0; i < g.pixels.size(); ++i) ASSERT_NEAR(image[4 * i], expected, 1e-3 * expected) << "interleave " << n;
+    for (size_t i = 0; i < g.pixels.size(); ++i)
+      ASSERT_NEAR(image[4 * i], expected, 1e-3 * expected) << "interleave " << n;
     EXPECT_EQ(test.counter("shaded_pixels"), double(g.pixels.size()));
     EXPECT_EQ(test.counter("incomplete"), 0);
     EXPECT_NEAR(test.counter("vpls_per_pixel"), 1000.0 / (n * n), 1e-6);
@@ -226,7 +234,8 @@ TEST(Deferred, FilterOnAFlatWallIsNearTheSumOfAllVpls) {
   for (const int n : {2, 4, 8}) {
     PassTest test("deferred");
     const auto image = run(test, g, vpls, n);
-    for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(image[i], expected[i], 0.02 * expected[i]) << "interleave " << n;
+    for (size_t i = 0; i < image.size(); ++i)
+      ASSERT_NEAR(image[i], expected[i], 0.02 * expected[i]) << "interleave " << n;
   }
 }
 
@@ -250,7 +259,8 @@ TEST(Deferred, EdgesKeepTheirOwnLight) {
   });
   std::vector<Vpl> vpls;  // far away: even light on each surface, different on each
   for (uint32_t i = 0; i < 256; ++i)
-    vpls.push_back(makeVpl({-40 - 20 * random(1, i), 10 * random(2, i), 20 + 80 * random(3, i)}, {1, 0, -1}, glm::vec3(50)));
+    vpls.push_back(makeVpl({-40 - 20 * random(1, i), 10 * random(2, i), 20 + 80 * random(3, i)}, {1, 0, -1},
+                           glm::vec3(50)));
   PassTest all("deferred");
   const auto expected = run(all, g, vpls, 1);
   PassTest test("deferred");
@@ -307,7 +317,8 @@ TEST(Deferred, BackgroundShowsTheDirectImageOnly) {
   PassTest test("deferred");
   test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 33, 17, 1, half);
   const auto vpls = randomVpls(200);
-  const auto image = run(test, g, vpls, 4), indirect = test.floats("indirect"), radiance = test.floats("radiance");
+  const auto image = run(test, g, vpls, 4), indirect = test.floats("indirect"),
+             radiance = test.floats("radiance");
   size_t surfaces = 0;
   for (size_t i = 0; i < g.pixels.size(); ++i)
     for (size_t c = 0; c < 3; ++c) {
@@ -332,8 +343,11 @@ TEST(Deferred, RandomGBuffersEqualTheReference) {
     const uint32_t patch = uint32_t(x / 9 + 8 * (y / 7)), pixel = uint32_t(x + 64 * y);
     SurfacePixel p;
     p.distance = random(30, patch) < 0.15f ? 0.0f : 3 + random(31, patch);
-    p.position = {0.02f * float(x) - 0.5f, random(32, patch) + 0.004f * random(33, pixel), 0.02f * float(y) - 0.4f};
-    const auto tilt = [&](uint32_t k) { return random(34 + k, patch) - 0.5f + 0.3f * (random(36 + k, pixel) - 0.5f); };
+    p.position = {0.02f * float(x) - 0.5f, random(32, patch) + 0.004f * random(33, pixel),
+                  0.02f * float(y) - 0.4f};
+    const auto tilt = [&](uint32_t k) {
+      return random(34 + k, patch) - 0.5f + 0.3f * (random(36 + k, pixel) - 0.5f);
+    };
     p.normal = glm::normalize(glm::vec3(tilt(0), 1, tilt(1)));
     p.albedo = {random(38, pixel), random(39, pixel), random(40, pixel)};
     return p;
@@ -389,7 +403,7 @@ TEST(Deferred, NearLightJoinsThatOfTheVpls) {
   std::vector<uint16_t> near;
   for (int i = 0; i < 32 * 32; ++i)  // another share for each pixel of a block, 1 on average
     for (const float x : {float(i % 4) / 1.5f, 1.0f, 0.0f, 0.0f}) near.push_back(glm::packHalf1x16(x));
-  with.image("near", VK_FORMAT_R16G16B16A16_SFLOAT, 32, 32, 1, near);
+  with.image("near_field", VK_FORMAT_R16G16B16A16_SFLOAT, 32, 32, 1, near);
   const std::vector<float> both = run(with, g, vpls, 4);
   for (int y = 4; y < 28; ++y)
     for (int x = 4; x < 28; ++x) {

@@ -6,8 +6,8 @@
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
+#include "fovea/test.h"
 #include "tests/passes/shadow_view.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

@@ -5,11 +5,12 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/vpl.h"
 #include "passes/emit/light_paths.h"
-#include "tests/support/pass_test.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -202,7 +203,8 @@ TEST(Emit, EmissiveTrianglesAreVplsAndSendOutPaths) {
     const double sides = doubleSided ? 2 : 1;
     // The back of the lamp may catch light again (it reflects nothing): only downward light is all reflected.
     glm::dvec3 onLamp(0), onWalls(0);
-    for (const Vpl& v : vpls) (std::abs(v.position.y - 1.9f) < 1e-3f ? onLamp : onWalls) += kPi * glm::dvec3(v.intensity);
+    for (const Vpl& v : vpls)
+      (std::abs(v.position.y - 1.9f) < 1e-3f ? onLamp : onWalls) += kPi * glm::dvec3(v.intensity);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(onLamp[c], sides * power[c], 1e-3 * power[c]);
       EXPECT_NEAR(onWalls[c], sides * 0.5 * power[c], 0.02 * power[c]);
@@ -215,7 +217,8 @@ TEST(Emit, EmissiveTrianglesAreVplsAndSendOutPaths) {
 
 TEST(Emit, LightsAreChosenByPower) {
   scene::Scene s = room(glm::vec3(0.5f));
-  s.lights = {pointLight({1, 0, 0}, {9, 0, 0}), pointLight({-1, 0, 0}, {0, 3, 0}), pointLight({0, 1, 0}, glm::vec3(0))};
+  s.lights = {pointLight({1, 0, 0}, {9, 0, 0}), pointLight({-1, 0, 0}, {0, 3, 0}),
+              pointLight({0, 1, 0}, glm::vec3(0))};
   PassTest test("emit");
   test.param("count", 1000).param("bounces", 1);
   const auto vpls = emitted(test, s);
@@ -283,7 +286,8 @@ TEST(Emit, EverySubsetSamplesTheWholeScene) {
   for (uint32_t subset = 0; subset < 16; ++subset) {
     glm::dvec3 centre(0);
     for (uint32_t i = subset; i < 1024; i += 16) centre += glm::dvec3(vpls[i].position) / 64.0;
-    EXPECT_LT(glm::length(centre - mean), 0.2) << "subset " << subset;  // random subsets: 0.25 each axis, one sigma 0.24
+    EXPECT_LT(glm::length(centre - mean), 0.2)
+        << "subset " << subset;  // random subsets: 0.25 each axis, one sigma 0.24
   }
 }
 

@@ -3,8 +3,10 @@
 
 #include <cstring>
 
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
 #include "passes/eye-paths/eye_path_tracer.h"
-#include "tests/passes/weights_reference.h"
+#include "tests/passes/vpl_intensity_reference.h"
 #include "tests/support/path_reference.h"
 
 namespace fovea::test {

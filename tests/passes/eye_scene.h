@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/shapes.h"

@@ -4,10 +4,13 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
+#include "fovea/scene.h"
+#include "fovea/test.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/octahedral.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

@@ -6,14 +6,16 @@
 #include <numeric>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/scene.h"
+#include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/scene/hemisphere_rays.h"
 #include "framework/scene/load.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/voxel_trace.h"
-#include "framework/scene/vpl.h"
-#include "tests/support/pass_test.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/hemisphere_rays.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/voxel_trace.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

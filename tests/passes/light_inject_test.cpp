@@ -4,10 +4,11 @@
 #include <map>
 #include <vector>
 
+#include "fovea/scene.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/load.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
 

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "fovea/test.h"
 #include "tests/passes/manage_reference.h"
-#include "tests/support/pass_test.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
@@ -175,7 +175,7 @@ class Manager {
   std::unique_ptr<PassTest> test_;
 };
 
-// What pass update does to a list whose objects rest, and importances that waver.
+// What pass vpl-motion does to a list whose objects rest, and importances that waver.
 inline void nextFrame(ManageInput& in, const std::vector<VplState>& vpls, Dice& dice) {
   in.vpls = vpls;
   for (size_t i = 0; i < vpls.size(); ++i) {

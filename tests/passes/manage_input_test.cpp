@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "tests/passes/manage_cases.h"
 
 namespace fovea::test {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::test {
 

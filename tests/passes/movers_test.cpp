@@ -4,13 +4,13 @@
 #include <cmath>
 #include <set>
 
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/ray_scene.h"
-#include "framework/scene/voxel_grid.h"
-#include "framework/scene/vpl.h"
+#include "fovea/test.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/voxel_grid.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

@@ -5,10 +5,11 @@
 #include <glm/gtc/packing.hpp>
 #include <set>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
+#include "framework/scene/frame.h"
 #include "passes/near-field/near_field_tracer.h"
-#include "tests/passes/weights_reference.h"
+#include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
 namespace {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <functional>
 
+#include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
+#include "framework/scene/scene.h"
 #include "tests/passes/path_trace_run.h"
 
 namespace fovea::test {

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 
-#include "framework/base/diagnostic.h"
-#include "framework/image/image.h"
+#include "fovea/error.h"
+#include "fovea/image.h"
+#include "fovea/scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 #include "passes/path-trace/path_tracer.h"
 #include "places.h"
 

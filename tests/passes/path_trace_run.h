@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
 #include "passes/path-trace/path_tracer.h"
 #include "tests/support/shapes.h"
 

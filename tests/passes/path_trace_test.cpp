@@ -5,9 +5,11 @@
 #include <cmath>
 #include <vector>
 
+#include "fovea/scene.h"
+#include "fovea/test.h"
 #include "framework/scene/load.h"
 #include "tests/passes/path_trace_run.h"
-#include "tests/support/pass_test.h"
+#include "tests/support/graph_run.h"
 
 namespace fovea::test {
 namespace {

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <vector>
 
+#include "fovea/scene.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/load.h"
-#include "framework/scene/ray_scene.h"
-#include "framework/scene/vpl.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <functional>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/ray_reference.h"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "fovea/test.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {
@@ -298,12 +298,16 @@ TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
 TEST(ShadowAtlasRefresh, MoversAreDrawnFartherByTheirWay) {
   const float way = 6 / 0.2f / 42;  // m a frame
   MoverBehindWall world(60), away(60);
-  for (scene::MotionKey& key : away.scene.movers[0].keys) key.translation += glm::vec3(100);  // behind the walls
+  for (scene::MotionKey& key : away.scene.movers[0].keys)
+    key.translation += glm::vec3(100);  // behind the walls
   int moved = 0, cut = 0;
   for (const float slack : {0.05f, 3.0f}) {
-    PassTest whole("shadow-atlas"), still("shadow-atlas"), slackened("shadow-atlas"), overlaid("shadow-atlas");
+    PassTest whole("shadow-atlas"), still("shadow-atlas"), slackened("shadow-atlas"),
+        overlaid("shadow-atlas");
     for (PassTest* test : {&whole, &still, &slackened, &overlaid})
-      test->scene(test == &still ? away.scene : world.scene).param("size", 32).buffer("vpls", world.vpls, "Vpl");
+      test->scene(test == &still ? away.scene : world.scene)
+          .param("size", 32)
+          .buffer("vpls", world.vpls, "Vpl");
     slackened.param("refresh", "all").param("mover_slack", slack);
     overlaid.param("refresh", "stale").param("refresh_share", 1.0).param("static_maps", true);
     overlaid.param("mover_slack", slack).buffer("state", world.state, "VplState");

@@ -9,16 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/scene.h"
+#include "fovea/test.h"
 #include "framework/gpu/device.h"
 #include "framework/scene/load.h"
-#include "framework/scene/paraboloid.h"
 #include "framework/scene/scene.h"
-#include "framework/scene/vpl.h"
+#include "framework/session/test_device.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"
-#include "tests/support/device.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

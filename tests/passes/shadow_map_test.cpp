@@ -5,10 +5,10 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/base/random.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
-#include "tests/support/pass_test.h"
 
 namespace fovea::test {
 namespace {

@@ -5,11 +5,11 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
+#include "fovea/test.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
-#include "tests/passes/weights_reference.h"
-#include "tests/support/pass_test.h"
+#include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/support/pass_test.h"
+#include "fovea/test.h"
 
 namespace fovea::test {
 namespace {

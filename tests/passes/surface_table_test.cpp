@@ -1,5 +1,6 @@
 // The table of surfaces of the path tracer against the look-ups it was made from.
 #include "passes/path-trace/surface_table.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 

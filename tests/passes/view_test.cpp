@@ -5,14 +5,13 @@
 #include <cstring>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
-#include "framework/scene/builtin/builtin.h"
+#include "fovea/error.h"
+#include "fovea/test.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/paraboloid.h"
 #include "framework/scene/scene.h"
-#include "framework/scene/voxel_trace.h"
-#include "framework/scene/vpl.h"
-#include "tests/support/pass_test.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/voxel_trace.h"
+#include "framework/shader_twins/vpl.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {
@@ -32,7 +31,7 @@ vec3 pixel(const PassTest& test, uint32_t x, uint32_t y, uint32_t width = kSize)
 // ---------------------------------------------------------------------------------------------------
 
 struct VoxelView {
-  scene::Scene scene = scene::cornellBox();
+  scene::Scene scene = scene::builtin("cornellbox");
   VoxelArrays voxels = voxelizeReference(scene, scene::flatten(scene), 32);
 };
 

@@ -9,11 +9,12 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
-#include "framework/scene/hemisphere_rays.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/voxel_trace.h"
+#include "fovea/test.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/hemisphere_rays.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "framework/shader_twins/voxel_trace.h"
 #include "tests/passes/shadow_view.h"
-#include "tests/support/pass_test.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/gpu/resources.h"
-#include "framework/scene/builtin/builtin.h"
-#include "framework/scene/gpu_scene.h"
+#include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/scene.h"
-#include "framework/scene/voxel_grid.h"
-#include "tests/support/device.h"
-#include "tests/support/pass_test.h"
+#include "framework/session/test_device.h"
+#include "framework/shader_twins/voxel_grid.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 
@@ -140,7 +139,7 @@ TEST(Voxelize, EqualsTheReferenceOnRandomTriangles) {
 }
 
 TEST(Voxelize, EqualsTheReferenceInTheCornellBox) {
-  const Scene s = scene::cornellBox();
+  const Scene s = scene::builtin("cornellbox");
   const VoxelArrays v = expectAsReference(s, 64);
   const scene::Geometry g = scene::flatten(s);
   EXPECT_NEAR(voxelArea(v) / meshArea(g), 1, 1e-3);

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "framework/scene/scene.h"
-#include "framework/scene/vpl.h"
+#include "framework/shader_twins/vpl.h"
 
 namespace fovea::test {
 

@@ -6,9 +6,10 @@
 #include <map>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/scene/fovea.h"
-#include "tests/support/pass_test.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/fovea.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/subdivision/subdivision.h"
 
 namespace fovea::scene::test {
 

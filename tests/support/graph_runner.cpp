@@ -1,15 +1,17 @@
 #include "tests/support/graph_runner.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/device.h"
-#include "framework/graph/registry.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/graph/pass/registry.h"
 #include "framework/scene/frame.h"
+#include "framework/session/test_device.h"
 #include "places.h"
-#include "tests/support/device.h"
 
 namespace fovea::test {
 
@@ -49,8 +51,8 @@ Runner::Runner(const std::string& text, const CompileOptions& extra) {
   gpuScene = std::make_unique<scene::GpuScene>(test::testDevice(), scene, geometry, 2);
   Diagnostics messages;
   const Description description = loadText(text, "test.json", {}, messages);
-  const Environment environment =
-      sceneEnvironment(&test::testDevice(), scene, geometry, {{"main", {16, 16}}});
+  Environment environment = deviceEnvironment(&test::testDevice());
+  environment.views = {{"main", {16, 16}}};
   auto bound = std::make_shared<const BoundGraph>(bind(description, environment, messages));
   CompileOptions options = deviceCompileOptions(test::testDevice(), bound);
   options.alias = extra.alias;

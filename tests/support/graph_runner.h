@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/graph/compile.h"
-#include "framework/graph/execute.h"
-#include "framework/graph/pass.h"
-#include "framework/scene/gpu_scene.h"
+#include "fovea/pass.h"
+#include "framework/graph/compile/compile.h"
+#include "framework/graph/run/execute.h"
+#include "framework/scene/device/gpu_scene.h"
 
 namespace fovea::test {
 

@@ -10,8 +10,9 @@
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
-#include "framework/scene/paraboloid.h"
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
+#include "framework/shader_twins/paraboloid.h"
 
 namespace fovea::test {
 

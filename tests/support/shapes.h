@@ -49,8 +49,8 @@ inline void addRoom(scene::Scene& s, const uint32_t materials[6], float h) {
 }
 
 // A sphere seen from inside: smooth normals that point to its centre.
-inline void addHollowSphere(scene::Scene& s, uint32_t material, glm::vec3 centre, float radius, uint32_t segments,
-                            uint32_t rings) {
+inline void addHollowSphere(scene::Scene& s, uint32_t material, glm::vec3 centre, float radius,
+                            uint32_t segments, uint32_t rings) {
   scene::Primitive p;
   p.material = material;
   for (uint32_t r = 0; r <= rings; ++r) {
@@ -90,7 +90,8 @@ inline scene::Light sun(glm::vec3 direction, glm::vec3 lux) {
   return l;
 }
 
-inline scene::Light spotLight(glm::vec3 position, glm::vec3 direction, float inner, float outer, glm::vec3 candela) {
+inline scene::Light spotLight(glm::vec3 position, glm::vec3 direction, float inner, float outer,
+                              glm::vec3 candela) {
   scene::Light l;
   l.type = scene::LightType::Spot;
   l.position = position;

@@ -1,10 +1,11 @@
 #include "tests/support/voxels.h"
+#include "framework/scene/scene.h"
 
 #include <array>
 #include <cmath>
 #include <map>
 
-#include "framework/graph/declaration.h"
+#include "fovea/pass.h"
 
 namespace fovea::test {
 namespace {
@@ -259,7 +260,8 @@ std::vector<uint32_t> occupiedBricks(const VoxelArrays& voxels) {
     for (int y = 0; y < r; ++y)
       for (int x = 0; x < r; ++x)
         if (voxels.voxelAt({x, y, z}) != 0)
-          bricks[size_t(x / 4 + wide * (y / 4 + wide * (z / 2)))] |= 1u << (x % 4 + 4 * (y % 4) + 16 * (z % 2));
+          bricks[size_t(x / 4 + wide * (y / 4 + wide * (z / 2)))] |= 1u
+                                                                     << (x % 4 + 4 * (y % 4) + 16 * (z % 2));
   return bricks;
 }
 

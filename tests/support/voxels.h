@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "fovea/test.h"
 #include "framework/scene/scene.h"
-#include "framework/scene/voxel_grid.h"
-#include "tests/support/pass_test.h"
+#include "framework/shader_twins/voxel_grid.h"
 
 namespace fovea::test {
 

@@ -1,5 +1,5 @@
 // Alias: exact places on small examples, and the rules about who may share.
-#include "framework/graph/alias.h"
+#include "framework/graph/compile/alias.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,16 @@
 // Animations: channels against closed forms; skins and morph targets against a plain reference.
-#include "framework/scene/animation.h"
+#include "framework/scene/motion/animation.h"
+#include "framework/scene/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "framework/scene/deform.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/motion.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/motion/deform.h"
+#include "framework/scene/motion/motion.h"
+#include "framework/scene/subdivision/subdivision.h"
 #include "scene_support.h"
 #include "tests/support/deform_reference.h"
 #include "tests/support/shapes.h"

@@ -1,10 +1,10 @@
 // Barriers: exact ones on small graphs, in the words of graph_support.h.
-#include "framework/graph/barriers.h"
+#include "framework/graph/compile/barriers.h"
 
 #include <gtest/gtest.h>
 
-#include "framework/graph/checker.h"
-#include "framework/graph/validate.h"
+#include "framework/graph/pass/validate.h"
+#include "framework/graph/verify/checker.h"
 #include "tests/unit/graph_support.h"
 
 namespace fovea::graph::test {

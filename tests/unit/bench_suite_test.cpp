@@ -1,30 +1,29 @@
 // Suites of benchmarks: what they are written out into, and that every mistake
 // is found with its place.
-#include "samples/fovea/bench_suite.h"
+#include "benchmarks/runner/suite.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "places.h"
 
-namespace fovea::cli {
+namespace fovea::bench {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::vector<std::string> namesOf(const Suite &suite) {
+std::vector<std::string> namesOf(const Suite& suite) {
   std::vector<std::string> names;
-  for (const Job &job : suite.jobs)
-    names.push_back(job.name());
+  for (const Job& job : suite.jobs) names.push_back(job.name());
   return names;
 }
 
-std::string errorOf(const std::string &text) {
+std::string errorOf(const std::string& text) {
   try {
     parseSuite(text, "s.json");
     return "";
-  } catch (const Error &e) {
+  } catch (const Error& e) {
     EXPECT_EQ(e.code(), ExitCode::BadInput);
     return e.what();
   }
@@ -36,15 +35,12 @@ TEST(BenchSuite, JobsAreAllCombinationsOneSceneAfterTheOtherSeedBySeed) {
     "sweeps": [{"name": "n", "set": {"vpl_count": [1, 2]}, "seeds": 2}, {"name": "m", "graphs": [{"graph": "x/ir.json"}]}]
   })",
                                  "s.json");
-  EXPECT_THAT(namesOf(suite),
-              ElementsAre("n-a-ours-vpl_count=1-s1", "n-a-ours-vpl_count=2-s1",
-                          "n-a-ours-vpl_count=1-s2", "n-a-ours-vpl_count=2-s2",
-                          "m-a-ir-s1", "n-b-ours-vpl_count=1-s1",
-                          "n-b-ours-vpl_count=2-s1", "n-b-ours-vpl_count=1-s2",
-                          "n-b-ours-vpl_count=2-s2", "m-b-ir-s1"));
+  EXPECT_THAT(namesOf(suite), ElementsAre("n-a-ours-vpl_count=1-s1", "n-a-ours-vpl_count=2-s1",
+                                          "n-a-ours-vpl_count=1-s2", "n-a-ours-vpl_count=2-s2", "m-a-ir-s1",
+                                          "n-b-ours-vpl_count=1-s1", "n-b-ours-vpl_count=2-s1",
+                                          "n-b-ours-vpl_count=1-s2", "n-b-ours-vpl_count=2-s2", "m-b-ir-s1"));
   using Pair = std::pair<std::string, std::string>;
-  EXPECT_THAT(suite.jobs[1].set,
-              ElementsAre(Pair("kernel", "disc"), Pair("vpl_count", "2")));
+  EXPECT_THAT(suite.jobs[1].set, ElementsAre(Pair("kernel", "disc"), Pair("vpl_count", "2")));
   EXPECT_THAT(suite.jobs[1].varied, ElementsAre(Pair("vpl_count", "2")));
   EXPECT_EQ(suite.jobs[4].graph, "x/ir.json");
 }
@@ -68,14 +64,13 @@ TEST(BenchSuite, ASweepsWordReplacesTheHeads) {
 }
 
 TEST(BenchSuite, SizeAndSeedsOfTheCommandLine) {
-  const char *text =
+  const char* text =
       R"({"scenes": ["a"], "graphs": ["g"], "sweeps": [{"name": "n"}, {"name": "m", "size": ["8x8", "9x9"]}]})";
   const Suite suite = parseSuite(text, "s.json", {glm::uvec2(5, 6), 2});
   ASSERT_EQ(suite.jobs.size(), 6u);
   EXPECT_EQ(suite.jobs[1].size, glm::uvec2(5, 6));
   EXPECT_EQ(suite.jobs[1].seed, 2u);
-  EXPECT_EQ(suite.jobs[2].size,
-            glm::uvec2(8, 8)); // sizes that the sweep varies stay
+  EXPECT_EQ(suite.jobs[2].size, glm::uvec2(8, 8));  // sizes that the sweep varies stay
 }
 
 TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
@@ -89,8 +84,7 @@ TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
   EXPECT_EQ(suite.jobs[3].match->likeGraph, "ours.json");
   using Pair = std::pair<std::string, std::string>;
   EXPECT_THAT(suite.jobs[3].match->likeSet,
-              ElementsAre(Pair("kernel", "disc"), Pair("map_size", "32"),
-                          Pair("voxels", "64")));
+              ElementsAre(Pair("kernel", "disc"), Pair("map_size", "32"), Pair("voxels", "64")));
   EXPECT_EQ(suite.jobs[3].match->to, 9u);
   EXPECT_EQ(suite.jobs[3].match->likeWarmup, 7u);
   EXPECT_EQ(suite.jobs[3].warmup, 0u);
@@ -111,8 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, BenchSuiteMistakes,
     testing::Values(
         Mistake{"NotJson", "{", "s.json:1:2: error: not valid JSON"},
-        Mistake{"NoSweeps", "{\n \"scenes\": []}",
-                "s.json:1:1: error: a suite needs `sweeps` (at sweeps)"},
+        Mistake{"NoSweeps", "{\n \"scenes\": []}", "s.json:1:1: error: a suite needs `sweeps` (at sweeps)"},
         Mistake{"UnknownKey", "{\"sweeps\": [],\n  \"scene\": [\"a\"]}",
                 "s.json:2:3: error: unknown key `scene` (at scene)\n  -> did "
                 "you mean `scenes`?"},
@@ -129,25 +122,20 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"BadSize", "{\"size\": \"0x4\", \"sweeps\": []}",
                 "s.json:1:10: error: expected a size like \"256x256\", 1 to "
                 "16384 pixels a side, found the text \"0x4\" (at size)"},
-        Mistake{"FramesOutOfRange", "{\"frames\": 0, \"sweeps\": []}",
-                "s.json:1:12: error: "},
-        Mistake{"SetOfObjects",
-                "{\"set\": {\"vpl_count\": {}}, \"sweeps\": []}",
+        Mistake{"FramesOutOfRange", "{\"frames\": 0, \"sweeps\": []}", "s.json:1:12: error: "},
+        Mistake{"SetOfObjects", "{\"set\": {\"vpl_count\": {}}, \"sweeps\": []}",
                 "s.json:1:23: error: expected a value, or a list of values to "
                 "go through, found an object (at set.vpl_count)"},
-        Mistake{"NoScenes",
-                "{\"graphs\": [\"g\"], \"sweeps\": [{\"name\": \"n\"}]}",
+        Mistake{"NoScenes", "{\"graphs\": [\"g\"], \"sweeps\": [{\"name\": \"n\"}]}",
                 "s.json:1:30: error: no `scenes`, neither here nor in the "
                 "suite's head (at sweeps[0])"},
-        Mistake{"NoName",
-                "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": [{}]}",
+        Mistake{"NoName", "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": [{}]}",
                 "a sweep needs a `name`"},
         Mistake{"NameTwice",
                 "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": "
                 "[{\"name\": \"n\"}, {\"name\": \"n\"}]}",
                 "s.json:1:62: error: the sweep `n` occurs twice"},
-        Mistake{"LabelTwice",
-                "{\"graphs\": [\"g\", \"x/g.json\"], \"sweeps\": []}",
+        Mistake{"LabelTwice", "{\"graphs\": [\"g\", \"x/g.json\"], \"sweeps\": []}",
                 "s.json:1:18: error: the label `g` occurs twice in this list "
                 "(at graphs[1])"},
         Mistake{"OneFrameHasNoChange",
@@ -162,37 +150,30 @@ INSTANTIATE_TEST_SUITE_P(
                 "{\"scenes\": [\"a\"], \"graphs\": [{\"graph\": \"g\", \"warmup\": 4}], \"sweeps\": "
                 "[{\"name\": \"n\", \"first\": 3}]}",
                 "`warmup` frames come before frame `first`"},
-        Mistake{
-            "MatchWithoutLike",
-            "{\"graphs\": [{\"graph\": \"g\", \"match\": {}}], \"sweeps\": []}",
-            "match needs `like`"},
-        Mistake{
-            "MatchUnknown",
-            "{\"scenes\": [\"a\"], \"sweeps\": [{\"name\": \"n\", \"graphs\": "
-            "[{\"graph\": \"g\", \"match\": {\"like\": \"h\"}}]}]}",
-            "`like` names `h`, which is not another graph of this sweep"},
+        Mistake{"MatchWithoutLike", "{\"graphs\": [{\"graph\": \"g\", \"match\": {}}], \"sweeps\": []}",
+                "match needs `like`"},
+        Mistake{"MatchUnknown",
+                "{\"scenes\": [\"a\"], \"sweeps\": [{\"name\": \"n\", \"graphs\": "
+                "[{\"graph\": \"g\", \"match\": {\"like\": \"h\"}}]}]}",
+                "`like` names `h`, which is not another graph of this sweep"},
         Mistake{"SpeedUpUnknown",
                 "{\"scenes\": [\"a\"], \"graphs\": [\"g\"], \"sweeps\": "
                 "[{\"name\": \"n\", \"speed_up\": {\"of\": \"g\", \"over\": "
                 "[\"h\"]}}]}",
                 "`speed_up` names the graph `h`"}),
-    [](const auto &info) { return info.param.name; });
+    [](const auto& info) { return info.param.name; });
 
 TEST(BenchSuite, AllMistakesAtOnce) {
-  const std::string all =
-      errorOf("{\"size\": 3, \"frames\": -1, \"measure\": [], \"sweeps\": 1}");
-  for (const char *part :
-       {"s.json:1:10", "s.json:1:23", "unknown key `measure`", "`sweeps`"})
+  const std::string all = errorOf("{\"size\": 3, \"frames\": -1, \"measure\": [], \"sweeps\": 1}");
+  for (const char* part : {"s.json:1:10", "s.json:1:23", "unknown key `measure`", "`sweeps`"})
     EXPECT_THAT(all, HasSubstr(part));
 }
 
 TEST(BenchSuite, TheStockSuitesAreGood) {
-  const std::filesystem::path folder =
-      std::filesystem::path(FOVEA_SOURCE_DIR) / "benchmarks/suites";
+  const std::filesystem::path folder = std::filesystem::path(FOVEA_SOURCE_DIR) / "benchmarks/suites";
   size_t suites = 0;
-  for (const auto &entry : std::filesystem::directory_iterator(folder)) {
-    EXPECT_GT(loadSuite(entry.path().stem().string(), {folder}).jobs.size(), 0u)
-        << entry.path();
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    EXPECT_GT(loadSuite(entry.path().stem().string(), {folder}).jobs.size(), 0u) << entry.path();
     ++suites;
   }
   EXPECT_GE(suites, 12u);
@@ -207,5 +188,5 @@ TEST(BenchSuite, Globs) {
   EXPECT_TRUE(matchesGlob("*", ""));
 }
 
-} // namespace
-}  // namespace fovea::cli
+}  // namespace
+}  // namespace fovea::bench

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "framework/graph/checker.h"
+#include "framework/graph/verify/checker.h"
 #include "tests/unit/graph_support.h"
 
 namespace fovea::graph::test {

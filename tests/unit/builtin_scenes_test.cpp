@@ -6,9 +6,11 @@
 #include <ctime>
 #include <map>
 
+#include "fovea/scene.h"
 #include "framework/scene/load.h"
-#include "framework/scene/ray_scene.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
+#include "framework/scene/subdivision/subdivision.h"
 
 namespace fovea::scene {
 namespace {

@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "framework/scene/cage_builder.h"
+#include "framework/scene/scene.h"
+#include "framework/scene/subdivision/cage_builder.h"
 #include "tests/support/cages.h"
 #include "tests/unit/scene_support.h"
 

@@ -1,5 +1,5 @@
 // The checker must find what is wrong: sound plans are broken on purpose, one way at a time.
-#include "framework/graph/checker.h"
+#include "framework/graph/verify/checker.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

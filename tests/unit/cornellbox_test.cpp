@@ -6,7 +6,9 @@
 #include <array>
 #include <map>
 
+#include "fovea/scene.h"
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 
 namespace fovea::scene {
 namespace {

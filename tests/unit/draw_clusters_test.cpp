@@ -1,5 +1,5 @@
 // Which triangles of random soups are drawn, against points of them that lie in the view.
-#include "framework/scene/draw_clusters.h"
+#include "framework/scene/device/draw_clusters.h"
 
 #include <gtest/gtest.h>
 

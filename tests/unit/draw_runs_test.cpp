@@ -1,4 +1,4 @@
-#include "framework/scene/draw_runs.h"
+#include "framework/scene/device/draw_runs.h"
 
 #include <gtest/gtest.h>
 

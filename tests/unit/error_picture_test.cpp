@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea::image {
 namespace {

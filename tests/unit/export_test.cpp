@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/image/image.h"
-#include "framework/scene/export_gltf.h"
-#include "framework/scene/export_mitsuba.h"
+#include "fovea/image.h"
+#include "framework/scene/export/gltf.h"
+#include "framework/scene/export/mitsuba.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/subdivision.h"
+#include "framework/scene/scene.h"
+#include "framework/scene/subdivision/subdivision.h"
 #include "scene_support.h"
 
 namespace fovea::test {

@@ -3,6 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "framework/scene/scene.h"
 #include "scene_support.h"
 
 namespace fovea::scene {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea::image {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea::gpu {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/scene/fovea.h"
+#include "framework/shader_twins/fovea.h"
 
 #include <gtest/gtest.h>
 

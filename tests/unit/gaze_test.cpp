@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "framework/scene/fovea.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/motion.h"
+#include "framework/scene/motion/motion.h"
+#include "framework/shader_twins/fovea.h"
 #include "scene_support.h"
 
 namespace fovea::scene {

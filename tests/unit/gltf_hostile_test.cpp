@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "framework/scene/scene.h"
 #include "scene_support.h"
 
 namespace fovea::scene {

@@ -1,6 +1,7 @@
 // The glTF loader on models written here: what it reads.
 #include <gmock/gmock.h>
 
+#include "framework/scene/scene.h"
 #include "scene_support.h"
 
 namespace fovea::scene {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "framework/graph/compile.h"
+#include "framework/graph/compile/compile.h"
 
 namespace fovea::graph::test {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "framework/scene/hemisphere_rays.h"
-#include "framework/scene/paraboloid.h"
+#include "framework/shader_twins/hemisphere_rays.h"
+#include "framework/shader_twins/paraboloid.h"
 
 namespace fovea::scene {
 namespace {

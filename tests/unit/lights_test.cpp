@@ -58,8 +58,9 @@ TEST(Lights, FluxOfPointAndSpotMatchesTheClosedForm) {
       }
       flux *= 4 * glm::pi<double>() * radius * radius / kRings;
       const double ci = std::cos(0.2), co = std::cos(0.6);
-      const double expected = type == LightType::Point ? 8 * 4 * glm::pi<double>()
-                                                       : 8 * 2 * glm::pi<double>() * ((1 - ci) + (ci - co) / 3);
+      const double expected = type == LightType::Point
+                                  ? 8 * 4 * glm::pi<double>()
+                                  : 8 * 2 * glm::pi<double>() * ((1 - ci) + (ci - co) / 3);
       EXPECT_NEAR(flux / expected, 1, 2e-3) << "radius " << radius;
     }
   }

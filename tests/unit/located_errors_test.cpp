@@ -49,7 +49,8 @@ const Mistake kMistakes[] = {
   "output": {"o": "a"}, "outputs": {"o": "a"}})",
      "g.json:2:3: error: unknown key `output` (at output)\n  -> did you mean `outputs`?"},
     {"UnknownKeyFarFromAny", R"({"passes": {"a": {"type": "source"}}, "x": 1, "outputs": {"o": "a"}})",
-     "g.json:1:39: error: unknown key `x` (at x)\n  -> known here: $schema, extends, description, parameters, "
+     "g.json:1:39: error: unknown key `x` (at x)\n  -> known here: $schema, extends, description, "
+     "parameters, "
      "inputs, outputs, passes"},
     {"UnknownKeyOfAPass", R"({"passes": {"a": {"type": "source", "parms": {}}}, "outputs": {"o": "a"}})",
      "g.json:1:37: error: unknown key `parms` (at passes.a.parms)\n  -> did you mean `params`?"},

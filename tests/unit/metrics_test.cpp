@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "framework/image/flip.h"
 

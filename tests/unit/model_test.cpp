@@ -1,5 +1,5 @@
 // The modelling toolkit: closed solids of the right volume, orientation, texture scale, cages.
-#include "framework/scene/builtin/model.h"
+#include "samples/scenes/builtin/modelling/model.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <glm/gtc/constants.hpp>
 #include <map>
 
-#include "framework/scene/builtin/plants.h"
-#include "framework/scene/builtin/textures.h"
+#include "samples/scenes/builtin/modelling/plants.h"
+#include "samples/scenes/builtin/modelling/textures.h"
 
 namespace fovea::scene::model {
 namespace {

@@ -1,5 +1,7 @@
 // What moves: paths, objects, lights, and the geometry of a frame.
-#include "framework/scene/motion.h"
+#include "framework/scene/motion/motion.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/scene/paraboloid.h"
+#include "framework/shader_twins/paraboloid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Random graphs, random orders, random memory: every plan must pass the independent checker.
 #include <gtest/gtest.h>
 
-#include "framework/graph/checker.h"
+#include "framework/graph/verify/checker.h"
 #include "tests/unit/random_graph.h"
 
 namespace fovea::graph::test {

@@ -14,7 +14,8 @@ TEST(Random, UniformFloatStaysBelowOne) {
 TEST(Random, ConsecutiveIndicesAreUniform) {
   constexpr int kBins = 64, kDraws = 1 << 16;
   int count[kBins] = {};
-  for (uint32_t i = 0; i < kDraws; ++i) ++count[static_cast<int>(uniformFloat(randomStream(1, 2, 3, i)) * kBins)];
+  for (uint32_t i = 0; i < kDraws; ++i)
+    ++count[static_cast<int>(uniformFloat(randomStream(1, 2, 3, i)) * kBins)];
   double chi2 = 0;
   const double expected = double(kDraws) / kBins;
   for (int c : count) chi2 += (c - expected) * (c - expected) / expected;

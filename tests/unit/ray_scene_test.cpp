@@ -1,4 +1,5 @@
-#include "framework/scene/ray_scene.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,12 @@
 // The tracer of portable builds against Embree.
-#include "framework/scene/ray_tracer.h"
+#include "framework/scene/rays/ray_tracer.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "fovea/scene.h"
 #include "framework/base/random.h"
 #include "framework/scene/load.h"
 
@@ -59,7 +61,8 @@ void compare(const Geometry& g, const RayTracer::Accepts& accepts, uint32_t rays
     }
     if (a && a.triangle == b.triangle) {
       const Triangle& t = g.triangles[a.triangle];
-      const glm::vec3 e = g.positions[t.v[1]] - g.positions[t.v[0]], f = g.positions[t.v[2]] - g.positions[t.v[0]];
+      const glm::vec3 e = g.positions[t.v[1]] - g.positions[t.v[0]],
+                      f = g.positions[t.v[2]] - g.positions[t.v[0]];
       EXPECT_LT(glm::length((a.u - b.u) * e + (a.v - b.v) * f), 1e-3f) << "ray " << i;
     }
   }
@@ -74,8 +77,9 @@ TEST(RayTracer, OwnTracerAgreesWithEmbree) {
 }
 
 TEST(RayTracer, OwnTracerAsksTheMaskLikeEmbree) {
-  compare(soup(3000), [](uint32_t t, float u, float v) { return t % 2 == 0 && u < 0.5f && v > 0.1f; },
-          30000, 8000);
+  compare(
+      soup(3000), [](uint32_t t, float u, float v) { return t % 2 == 0 && u < 0.5f && v > 0.1f; }, 30000,
+      8000);
 }
 
 TEST(RayTracer, ClosedBoxLetsNothingOut) {
@@ -84,7 +88,8 @@ TEST(RayTracer, ClosedBoxLetsNothingOut) {
   const glm::vec3 middle = 0.5f * (g.boundsMin + g.boundsMax);
   Geometry box;  // around the scene: twelve triangles that share edges and corners
   for (int i = 0; i < 8; ++i) box.positions.push_back({i & 1 ? 3 : -3, i & 2 ? 3 : -3, i & 4 ? 3 : -3});
-  const uint32_t quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+  const uint32_t quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
   for (const auto& q : quads) {
     box.triangles.push_back({{q[0], q[1], q[2]}, 0});
     box.triangles.push_back({{q[0], q[2], q[3]}, 0});

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/gpu/pipeline.h"
-#include "framework/gpu/shader.h"
-#include "framework/gpu/spirv_bindings.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/gpu/shader/spirv_bindings.h"
 
 namespace fovea::gpu {
 namespace {

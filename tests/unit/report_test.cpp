@@ -1,11 +1,11 @@
 // What a plan looks like to people, programs and the null device.
-#include "framework/graph/report.h"
+#include "framework/graph/report/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "framework/base/json.h"
-#include "framework/graph/null_device.h"
+#include "framework/graph/verify/null_device.h"
 #include "tests/unit/graph_support.h"
 
 namespace fovea::graph::test {

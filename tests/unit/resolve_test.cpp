@@ -1,5 +1,5 @@
 // Resolve: extends, parameters, overrides, sub-graphs.
-#include "framework/graph/resolve.h"
+#include "framework/graph/compile/resolve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 // A value as compact JSON, to compare merges with what RFC 7396 says.
-std::string print(const json::Value& v) {
+std::string compact(const json::Value& v) {
   switch (v.type) {
     case json::Value::Type::Null:
       return "null";
@@ -26,7 +26,7 @@ std::string print(const json::Value& v) {
       return "\"" + v.string + "\"";
     case json::Value::Type::Array: {
       std::string text;
-      for (const json::Value& item : v.items) text += (text.empty() ? "" : ",") + print(item);
+      for (const json::Value& item : v.items) text += (text.empty() ? "" : ",") + compact(item);
       return "[" + text + "]";
     }
     case json::Value::Type::Object:
@@ -34,7 +34,7 @@ std::string print(const json::Value& v) {
   }
   std::string text;
   for (const json::Member& m : v.members)
-    text += (text.empty() ? "" : ",") + ("\"" + m.key + "\":" + print(m.value));
+    text += (text.empty() ? "" : ",") + ("\"" + m.key + "\":" + compact(m.value));
   return "{" + text + "}";
 }
 
@@ -45,7 +45,7 @@ std::string merged(const std::string& base, const std::string& patch, Diagnostic
   if (!diagnostics) {
     EXPECT_FALSE(own.hasErrors()) << own.format();
   }
-  return print(result);
+  return compact(result);
 }
 
 TEST(Merge, ExamplesOfRfc7396) {

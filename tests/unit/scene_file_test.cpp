@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "framework/scene/scene.h"
 #include "scene_support.h"
 
 namespace fovea::scene {
@@ -349,8 +350,8 @@ TEST(Load, NamesAndFiles) {
 
 TEST(Load, MovingScenesKeepTheBoundsOfTheirStillOnes) {
   const bool sponza = !test::sharedScenes().empty();
-  for (const auto& [name, still] : {std::pair("cornellbox_moving", "cornellbox"),
-                                    {"sponza_plane", "sponza"}}) {
+  for (const auto& [name, still] :
+       {std::pair("cornellbox_moving", "cornellbox"), {"sponza_plane", "sponza"}}) {
     if (std::string(still) == "sponza" && !sponza) continue;
     Diagnostics warnings;
     const Scene s = load(name, warnings);

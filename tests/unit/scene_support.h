@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/scene/load.h"
+#include "framework/scene/scene.h"
 #include "places.h"
 
 namespace fovea::test {

@@ -1,5 +1,5 @@
 // Schedule: levels, culling, versions, lifetimes.
-#include "framework/graph/schedule.h"
+#include "framework/graph/compile/schedule.h"
 
 #include <gtest/gtest.h>
 

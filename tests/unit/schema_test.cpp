@@ -1,6 +1,6 @@
 // The generated JSON schema: structure here, and real validation with python3 jsonschema where it is
 // installed.
-#include "framework/graph/schema.h"
+#include "framework/graph/report/schema.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

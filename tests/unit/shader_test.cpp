@@ -1,5 +1,5 @@
 // The shader compiler without a device: located errors, includes, the cache.
-#include "framework/gpu/shader.h"
+#include "framework/gpu/shader/shader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 
 namespace fovea {
 namespace {

@@ -1,4 +1,5 @@
-#include "framework/scene/simplify.h"
+#include "framework/scene/device/simplify.h"
+#include "framework/scene/scene.h"
 
 #include <gtest/gtest.h>
 

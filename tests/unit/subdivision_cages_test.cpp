@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "framework/base/diagnostic.h"
-#include "framework/scene/subdivision.h"
+#include "fovea/error.h"
+#include "framework/scene/subdivision/subdivision.h"
 #include "tests/support/cages.h"
 
 namespace fovea::scene {

@@ -1,5 +1,5 @@
 // Limit points and normals against closed forms, topology, seams, stencils.
-#include "framework/scene/subdivision.h"
+#include "framework/scene/subdivision/subdivision.h"
 
 #include <gtest/gtest.h>
 

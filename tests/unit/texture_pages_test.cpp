@@ -1,10 +1,10 @@
-#include "framework/scene/texture_pages.h"
+#include "framework/scene/device/texture_pages.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 
-#include "framework/base/diagnostic.h"
+#include "fovea/error.h"
 #include "framework/base/random.h"
 
 namespace fovea::scene {

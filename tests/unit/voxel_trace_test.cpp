@@ -1,4 +1,4 @@
-#include "framework/scene/voxel_trace.h"
+#include "framework/shader_twins/voxel_trace.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#version 460
 layout(local_size_x = 64) in;
 layout(std430) buffer Total { uint total[]; };
 layout(std430) buffer Counters { uint touched; } counters;

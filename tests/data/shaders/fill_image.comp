@@ -1,4 +1,3 @@
-#version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32ui) uniform writeonly uimage2D value;
 layout(push_constant) uniform Constants { uint key; uint frameIndex; } constants;

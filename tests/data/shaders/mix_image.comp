@@ -1,4 +1,3 @@
-#version 460
 #extension GL_GOOGLE_include_directive : enable
 #include "common/random.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

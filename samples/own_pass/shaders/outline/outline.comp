@@ -1,10 +1,8 @@
-#version 460
-#extension GL_EXT_samplerless_texture_functions : require
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform texture2D picture;
-layout(binding = 1) uniform texture2D gbufferPosition;  // w: distance to the eye, m
-layout(binding = 2) uniform texture2D gbufferNormal;
-layout(binding = 3, rgba8) uniform writeonly image2D image;
+uniform texture2D picture;
+uniform texture2D gbufferPosition;  // w: distance to the eye, m
+uniform texture2D gbufferNormal;
+layout(rgba8) uniform writeonly image2D image;
 layout(push_constant) uniform Constants { float strength; };
 
 void main() {

@@ -1,0 +1,24 @@
+// A suite of measurements, job after job, to results, tables and a report.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/error.h"
+
+namespace fovea::bench {
+
+struct SuiteOptions {
+  std::string suite, folder, cache, only, shard, size, device;
+  std::optional<uint32_t> seeds;
+  std::vector<std::string> plugins;
+  bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
+};
+
+// Says what it does on the terminal. Throws Error(Usage) on options that contradict each other, Error(BadInput) on a
+// suite, graph or scene that cannot be used, and Error(Interrupted) after Ctrl-C.
+ExitCode runSuite(const SuiteOptions& options);
+
+}  // namespace fovea::bench

@@ -1,0 +1,39 @@
+// What users name on a command line or in a suite, and what it means.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/error.h"
+#include "framework/graph/compile/compile.h"
+
+namespace fovea::bench {
+
+inline constexpr uint32_t kMaxSize = 16384;   // pixels a side: what Vulkan devices promise at most
+inline constexpr double kFoveaRadius = 0.25;  // image widths, where nothing says otherwise
+
+struct GraphOptions {
+  std::string graph;
+  std::vector<std::string> set, plugins;
+};
+
+// "1024x768". Throws Error(Usage) naming the limits.
+glm::uvec2 parseSize(std::string_view text);
+// "0.5,0.4" in normalised image coordinates with the origin at the top left. Throws Error(Usage).
+glm::vec2 parseGaze(std::string_view text);
+
+void loadPlugins(const std::vector<std::string>& plugins);
+// Loads the plug-ins, then the graph with its overrides. Mistakes inside the file go to `messages`, and bind() throws
+// them.
+graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages);
+
+// Writes warnings and notes to stderr, each text once in the life of the process.
+void printWarnings(const Diagnostics& messages);
+
+std::string formatHash(uint64_t hash);  // 16 hexadecimal digits
+// Names as a list for messages: "`a`, `b`".
+std::string quoteList(const std::vector<std::string>& names);
+
+}  // namespace fovea::bench

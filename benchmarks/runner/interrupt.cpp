@@ -1,0 +1,34 @@
+#include "benchmarks/runner/interrupt.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+
+namespace fovea::bench {
+namespace {
+
+std::atomic<bool> asked = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+// Said at once rather than when the frame is done, which may be seconds away.
+extern "C" void onInterrupt(int) {
+  asked = true;
+  static constexpr char kText[] = "\nfovea: interrupted: finishing the frame (Ctrl-C again: stop at once)\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
+}
+
+}  // namespace
+
+void catchInterrupts() {
+  struct sigaction action {};
+  action.sa_handler = onInterrupt;
+  action.sa_flags = SA_RESTART | SA_RESETHAND;  // the second signal finds the default action
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return asked; }
+
+}  // namespace fovea::bench

@@ -1,0 +1,473 @@
+#include "benchmarks/runner/job.h"
+#include "framework/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "benchmarks/runner/compared.h"
+#include "benchmarks/runner/inputs.h"
+#include "benchmarks/runner/interrupt.h"
+#include "benchmarks/runner/pass_code.h"
+#include "fovea/scene.h"
+#include "framework/base/paths.h"
+#include "framework/gpu/format.h"
+#include "framework/graph/compile/hash.h"
+#include "framework/graph/report/report.h"
+#include "framework/image/error_picture.h"
+#include "framework/image/flip.h"
+#include "framework/scene/load.h"
+
+namespace fovea::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr uint32_t kReferenceSeed = 4711;  // none that a method is run with
+constexpr const char* kLayers[] = {"radiance", "direct", "indirect", "half_a", "half_b"};
+
+bool isLayer(const std::string& output) {
+  return std::find(std::begin(kLayers), std::end(kLayers), output) != std::end(kLayers);
+}
+constexpr double kErrorScale = 0.1, kTemporalScale = 0.02;  // of error pictures: the lightest colour
+constexpr int kMaxSearchSteps = 12;
+constexpr double kSearchTolerance = 0.04;  // of the number searched for
+
+void throwIfInterrupted() {
+  if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted");
+}
+
+graph::Description describe(const std::string& graph,
+                            const std::vector<std::pair<std::string, std::string>>& set,
+                            Diagnostics& messages) {
+  GraphOptions options;
+  options.graph = graph;
+  for (const auto& [name, value] : set) options.set.push_back(name + "=" + value);
+  return loadGraph(options, messages);
+}
+
+// The mistake, after the place in the suite that leads to it.
+[[noreturn]] void rethrowAt(const Error& error, const SourceLocation& where, const std::string& message) {
+  std::vector<Diagnostic> all = {{Severity::Error, where, "", message, ""}};
+  all.insert(all.end(), error.diagnostics().begin(), error.diagnostics().end());
+  throw Error(error.code(), std::move(all));
+}
+
+Json codesOf(const graph::BoundGraph& graph) {
+  std::set<std::string> types;
+  for (const graph::BoundPass& pass : graph.passes) types.insert(pass.declaration->type);
+  Json codes = Json::object();
+  for (const std::string& type : types) codes[type] = passCode(type);
+  return codes;
+}
+
+std::string hashOf(std::string_view text) {
+  graph::detail::Hasher hash;
+  hash.add(text);
+  return formatHash(hash.value());
+}
+
+// null for what is not known.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+std::vector<float> changeErrors(const image::Picture& now, const image::Picture& before,
+                                const image::Picture& wanted, const image::Picture& wantedBefore) {
+  std::vector<float> errors(size_t(now.display.width) * now.display.height);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    double sum = 0;
+    for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
+      const double d = double(now.display.data[c]) - before.display.data[c] -
+                       (double(wanted.display.data[c]) - wantedBefore.display.data[c]);
+      sum += d * d;
+    }
+    errors[i] = float(std::sqrt(sum / 3));
+  }
+  return errors;
+}
+
+// Milliseconds of the second eye of stereo graphs, those as a share of the first eye's whole frame, and its
+// share of new pixels.
+void addSecondEye(Json& time) {
+  double first = 0, second = 0, pixels = 0, fresh = 0;
+  for (const Json& pass : time["passes"])
+    (pass["name"].get<std::string>().starts_with("right/") ? second : first) +=
+        std::max(pass["gpu_ms"]["median"].get<double>(), pass["cpu_ms"]["median"].get<double>());
+  if (second <= 0) return;
+  pixels = time["counters"].value("right/reproject.pixels", 0.0);
+  fresh = time["counters"].value("right/reproject.new_pixels", 0.0);
+  time["second_eye"] = {{"ms", second},
+                        {"of_first", number(second / first)},
+                        {"new_pixels", pixels > 0 ? Json(fresh / pixels) : Json()}};
+}
+
+// The random numbers of all frames are the same: what noise remains stands still as far as the picture does,
+// so that less of it is in the changes between frames.
+std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& job) {
+  return {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}, {"per_frame", "false"}};
+}
+
+}  // namespace
+
+BenchRunner::BenchRunner(const BenchFolder& folder, std::unique_ptr<gpu::Device> device, Progress& progress)
+    : folder_(folder), device_(std::move(device)), progress_(progress) {}
+
+bool BenchRunner::useScene(const Job& job, std::string& why) {
+  if (sceneName_ == job.scene) return true;
+  if (const auto known = missing_.find(job.scene); known != missing_.end()) {
+    why = known->second;
+    return false;
+  }
+  progress_.stage("loading scene " + job.scene);
+  Diagnostics messages;
+  try {
+    sceneName_.clear();
+    scene_ = scene::load(job.scene, messages);
+    geometry_ = scene::flatten(scene_);
+  } catch (const Error& e) {
+    if (e.code() != ExitCode::BadInput) throw;
+    if (!job.sceneOptional) rethrowAt(e, job.sceneWhere, "the scene `" + job.scene + "` cannot be used");
+    missing_[job.scene] = why = e.diagnostics().empty() ? e.what() : e.diagnostics().front().message;
+    return false;
+  }
+  progress_.clear();
+  printWarnings(messages);
+  sceneName_ = job.scene;
+  return true;
+}
+
+std::unique_ptr<session::GraphRun> BenchRunner::makeRun(const Job& job, bool pictures) {
+  Diagnostics messages;
+  try {
+    const graph::Description description = describe(job.graph, job.set, messages);
+    session::GraphRun::Options options;
+    options.size = job.size, options.seed = job.seed, options.frameRate = job.frameRate;
+    options.readback = [&](const graph::BoundGraph& graph) {
+      std::vector<std::string> names;
+      for (const graph::BoundOutput& output : graph.outputs)
+        if (pictures && isLayer(output.name)) names.push_back(output.name);
+      return names;
+    };
+    options.hostProgress = [this](const std::string& pass, double share) {
+      progress_.pass(pass, share);
+      return !interrupted();
+    };
+    auto run = std::make_unique<session::GraphRun>(*device_, description, scene_, geometry_,
+                                                   std::move(options), messages);
+    progress_.clear();
+    printWarnings(messages);
+    return run;
+  } catch (const Error& e) {
+    rethrowAt(e, job.graphWhere,
+              fmt::format("the graph `{}` cannot be used in sweep `{}`", job.graph, job.sweep));
+  }
+}
+
+std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string& why) {
+  if (!useScene(job, why)) return std::nullopt;
+  Job probe = job;
+  if (job.match) probe.set.emplace_back(job.match->parameter, std::to_string(job.match->to));
+  const auto run = makeRun(probe, true);
+  if (job.needsReference()) {
+    const auto& outputs = run->graph().outputs;
+    if (std::none_of(outputs.begin(), outputs.end(),
+                     [](const graph::BoundOutput& o) { return o.name == "radiance"; }))
+      rethrowAt(Error(ExitCode::BadInput, "its outputs lack `radiance`",
+                      "add it, or leave out the measures of errors"),
+                job.graphWhere, "the errors of graph `" + job.graph + "` cannot be measured");
+  }
+  Fingerprint made;
+  made.parts = {{"format", kBenchFormat},
+                {"device", device_->name()},
+                {"scene", formatHash(scene_.hash)},
+                {"graph", formatHash(run->graph().hash)},
+                {"plan", hashOf(graph::planJson(*run->plan()))},
+                {"passes", codesOf(run->graph())},
+                {"framework", frameworkCode()},
+                {"measures", std::string(kMeasureSources)}};
+  if (job.needsReference()) made.parts["reference"] = referenceParts(job);
+  return made;
+}
+
+// What is stored is what the path tracer, which works on the CPU, hands over: passes after it do not count.
+Json BenchRunner::referenceParts(const Job& job) {
+  Diagnostics messages;
+  const auto description = describe("reference", referenceParameters(job), messages);
+  const auto bound =
+      graph::bind(description, session::sceneEnvironment(nullptr, scene_, geometry_, job.size), messages);
+  Json parts = Json::object();
+  for (const graph::BoundPass& pass : bound.passes) {
+    if (pass.declaration->kind != graph::PassKind::Host) continue;
+    graph::detail::Hasher parameters;
+    for (const graph::Value& value : pass.parameters.values()) parameters.addValue(value);
+    parts[pass.declaration->type] = passCode(pass.declaration->type);
+    parts["parameters of " + pass.name] = formatHash(parameters.value());
+  }
+  return parts;
+}
+
+image::File BenchRunner::toFile(const session::GraphRun& run, graph::FrameResult& result) const {
+  image::File file;
+  for (auto& [name, output] : result.outputs) {
+    if (!isLayer(name)) continue;
+    file.layers.push_back({name, image::toRgb(session::toImage(output))});
+    output.bytes = {};
+  }
+  const scene::Frame shown = run.frame(result.frame);
+  const double exposure = session::parameterOr(run.graph(), "exposure", 0);  // of tonemap; 0: the scene's
+  file.metadata = {
+      {"gaze", fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y)},
+      {"fovea_radius",
+       fmt::format("{}", float(session::parameterOr(run.graph(), "fovea_radius", kFoveaRadius)))},
+      {"exposure", fmt::format("{}", float(exposure > 0 ? exposure : shown.exposure))},
+      {"scene", sceneName_},
+      {"scene_hash", formatHash(scene_.hash)}};
+  return file;
+}
+
+BenchRunner::Sequence BenchRunner::render(const Job& job) {
+  const bool pictures = job.needsReference() || job.pictures;
+  progress_.stage("preparing " + job.graph);
+  const auto run = makeRun(job, pictures);
+  run->prepare();
+  Timings timings(run->plan());
+  Sequence sequence;
+  std::vector<graph::FrameResult> kept;  // converted afterwards: a frame's wall time is to be its own
+  uint64_t finished = 0;
+  const uint64_t total = uint64_t(job.warmup) + job.frames;
+  const auto take = [&](graph::FrameResult result) {
+    progress_.frames(++finished, total);
+    if (finished <= job.warmup) return;
+    timings.add(result);
+    if (!result.outputs.empty()) kept.push_back(std::move(result));
+  };
+  progress_.frames(0, total);
+  for (uint64_t i = 0; i < total; ++i) {
+    throwIfInterrupted();
+    const bool wanted = i >= job.warmup && (job.temporal || i + 1 == total);
+    run->submit(run->frame(job.first - job.warmup + i), pictures && wanted);
+    if (run->inFlight() == 1) {
+      while (auto result = run->executor().next()) take(std::move(*result));
+    } else {
+      while (auto result = run->executor().poll()) take(std::move(*result));
+    }
+  }
+  while (auto result = run->executor().next()) take(std::move(*result));
+  throwIfInterrupted();
+  for (graph::FrameResult& result : kept) {
+    sequence.frames.push_back(toFile(*run, result));
+    if (&result != &kept.back())  // only the last one's layers are looked at one by one
+      std::erase_if(sequence.frames.back().layers,
+                    [](const image::Layer& l) { return l.name != "radiance"; });
+  }
+  RunInfo info;
+  info.device = device_->name();
+  const Json all = Json::parse(timings.json(info));
+  sequence.time = {{"frame", all["frame"]}, {"passes", all["passes"]}, {"counters", all["counters"]}};
+  addSecondEye(sequence.time);
+  progress_.clear();
+  return sequence;
+}
+
+BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame) {
+  graph::detail::Hasher hash;
+  for (const uint64_t n : {scene_.hash, frame, uint64_t(job.size.x), uint64_t(job.size.y),
+                           std::bit_cast<uint64_t>(job.frameRate), uint64_t(kReferenceSeed)})
+    hash.add(n);
+  hash.add(std::string_view(referenceParts(job).dump()));
+  return {fmt::format("{}-{}x{}-f{}-{}", std::filesystem::path(job.scene).stem().string(), job.size.x,
+                      job.size.y, frame, formatHash(hash.value())),
+          frame};
+}
+
+std::vector<BenchRunner::Reference> BenchRunner::references(const Job& job) {
+  std::vector<Reference> list;
+  std::string why;
+  if (!job.needsReference() || !useScene(job, why)) return list;
+  for (uint32_t f = job.temporal ? 0 : job.frames - 1; f < job.frames; ++f)
+    list.push_back(referenceOf(job, uint64_t(job.first) + f));
+  return list;
+}
+
+bool BenchRunner::makeReference(const Job& job, const Reference& wanted) {
+  std::error_code ignored;
+  if (std::filesystem::exists(folder_.reference(wanted.name), ignored)) return false;
+  std::string why;
+  if (!useScene(job, why)) throw Error(ExitCode::BadInput, why);
+  reference(job, wanted.frame);
+  return true;
+}
+
+image::File BenchRunner::reference(const Job& job, uint64_t frame) {
+  Job own = job;
+  own.graph = "reference", own.match.reset();
+  own.set = referenceParameters(job);
+  own.seed = kReferenceSeed, own.first = uint32_t(frame), own.frames = 1, own.warmup = 0;
+  own.temporal = own.error = false, own.pictures = true;
+  return folder_.findOrMakeReference(
+      referenceOf(job, frame).name,
+      [&](const std::function<void()>& alive) {
+        progress_.stage(fmt::format("reference of frame {}", frame));
+        const auto run = makeRun(own, true);
+        run->prepare();
+        alive();
+        run->submit(run->frame(frame), true);
+        throwIfInterrupted();
+        auto result = run->executor().next();
+        throwIfInterrupted();
+        progress_.clear();
+        return toFile(*run, *result);
+      },
+      [&] {
+        progress_.stage(
+            fmt::format("waiting for the reference of frame {}, which another process makes", frame));
+        return !interrupted();
+      });
+}
+
+void BenchRunner::writePicture(const std::string& name, const image::Image& picture) const {
+  image::write(folder_.picture(name), {{"", picture}});
+}
+
+Json BenchRunner::errors(const Job& job, const image::File& last) {
+  const uint64_t frame = uint64_t(job.first) + job.frames - 1;
+  const image::File truth = reference(job, frame);
+  progress_.stage("measuring");
+  CompareOptions options;
+  const Compared c = compareRadiance("picture", last, "reference", truth, options);
+  const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
+  std::optional<image::PerRegion<image::Measures>> indirect;
+  if (last.find("indirect")) {
+    options.layer = "indirect";
+    const Compared i = compareRadiance("picture", last, "reference", truth, options);
+    indirect = image::compare(i.image, i.reference, i.halves, i.fovea, image::kDefaultPixelsPerDegree);
+  }
+  image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
+  if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);
+  const auto region = [&](const image::Measures& m, const image::Measures* i, double directFloor) {
+    return Json{{"mse", number(m.mse)},
+                {"psnr", number(m.psnr)},
+                {"flip", number(m.flip)},
+                {"relmse", i ? number(i->relMse) : Json()},
+                {"noise_floor", number(m.noiseFloor)},
+                {"direct_floor", number(directFloor)}};
+  };
+  if (job.pictures) {
+    const uint32_t width = c.image.display.width;
+    writePicture(job.name(), c.image.display);
+    writePicture(job.name() + "-reference", c.reference.display);
+    writePicture(job.name() + "-error",
+                 image::errorPicture(image::pixelErrors(c.image, c.reference), width, kErrorScale, &c.fovea));
+  }
+  Json json = {
+      {"fovea", region(whole.fovea, indirect ? &indirect->fovea : nullptr, floor.fovea)},
+      {"periphery", region(whole.periphery, indirect ? &indirect->periphery : nullptr, floor.periphery)},
+      {"whole", region(whole.whole, indirect ? &indirect->whole : nullptr, floor.whole)}};
+  json["disc"] = {c.fovea.x, c.fovea.y, c.fovea.radius};
+  return json;
+}
+
+Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
+  image::SequenceComparison comparison;
+  Compared previous;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    Compared c =
+        compareRadiance("picture", sequence.frames[i], "reference", reference(job, job.first + i), {});
+    if (job.pictures && i > 0 && i + 1 == sequence.frames.size())
+      writePicture(job.name() + "-temporal",
+                   image::errorPicture(changeErrors(c.image, previous.image, c.reference, previous.reference),
+                                       c.image.display.width, kTemporalScale, &c.fovea));
+    if (i + 2 == sequence.frames.size()) previous = c;
+    comparison.add(std::move(c.image), std::move(c.reference), std::move(c.halves), c.fovea);
+  }
+  const auto region = [](const image::SequenceMeasures& m) {
+    return Json{{"mse", number(m.mse)},
+                {"mse_prime", number(m.change)},
+                {"excess", number(m.excess)},
+                {"reference_mse_prime", number(m.referenceChange)},
+                {"noise_floor", number(m.noiseFloor)},
+                {"excess_noise_floor", number(m.excessNoiseFloor)}};
+  };
+  const auto result = comparison.result();
+  return {{"fovea", region(result.fovea)},
+          {"periphery", region(result.periphery)},
+          {"whole", region(result.whole)}};
+}
+
+// ---- The number of a parameter that reaches another graph's error
+
+double BenchRunner::errorWith(const Job& job, uint32_t count) {
+  Job one = job;
+  one.match.reset();
+  one.temporal = one.pictures = false;
+  if (count > 0) one.set.emplace_back(job.match->parameter, std::to_string(count));
+  const Sequence sequence = render(one);
+  const Json found = errors(one, sequence.frames.back());
+  const Json& value = found.at(Json::json_pointer("/" + [&] {
+    std::string path = job.match->measure.substr(job.match->measure.find('.') + 1);
+    std::replace(path.begin(), path.end(), '.', '/');
+    return path;
+  }()));
+  return value.is_number() ? value.get<double>() : image::kUnknown;
+}
+
+// Leaves the number found among the parameters of `job`.
+Json BenchRunner::search(Job& job) {
+  const Match match = *job.match;
+  Job like = job;
+  like.graph = match.likeGraph, like.set = match.likeSet, like.warmup = match.likeWarmup;
+  std::erase_if(job.set, [&](const auto& entry) { return entry.first == match.parameter; });
+  const double target = errorWith(like, 0);
+  Json steps = Json::array();
+  Job last = job;  // whose error counts
+  last.first += job.frames - 1, last.frames = 1;
+  const auto reaches = [&](uint32_t count) {
+    const double error = errorWith(last, count);
+    steps.push_back({{"value", count}, {"error", number(error)}});
+    return error <= target;
+  };
+  uint32_t low = match.from, high = match.to;  // low does not reach it, high does
+  bool reached = true;
+  if (reaches(low)) {
+    high = low;
+  } else if (!reaches(high)) {
+    reached = false;
+  } else {
+    for (int step = 0; step < kMaxSearchSteps && high > low + 1 && high > (1 + kSearchTolerance) * low;
+         ++step) {
+      const auto middle = uint32_t(std::lround(std::sqrt(double(low) * high)));
+      const uint32_t next = std::clamp(middle, low + 1, high - 1);
+      (reaches(next) ? high : low) = next;
+    }
+  }
+  job.set.emplace_back(match.parameter, std::to_string(high));
+  return {{"parameter", match.parameter}, {"value", high}, {"reached", reached}, {"like", match.like},
+          {"target", number(target)},     {"steps", steps}};
+}
+
+Json BenchRunner::measure(const Job& wanted, const Fingerprint& fingerprint) {
+  std::string why;
+  if (!useScene(wanted, why)) throw Error(ExitCode::BadInput, why);
+  Job job = wanted;
+  Json result = {{"format", kBenchFormat},   {"key", fingerprint.key(wanted)},
+                 {"job", wanted.json()},     {"made_with", fingerprint.parts},
+                 {"version", FOVEA_VERSION}, {"commit", kBuildCommit}};
+  if (job.match) result["match"] = search(job);
+  const Sequence sequence = render(job);
+  result["time"] = sequence.time;
+  if (job.error) result["error"] = errors(job, sequence.frames.back());
+  if (job.temporal) result["temporal"] = temporal(job, sequence);
+  if (job.pictures && !job.error && !sequence.frames.empty()) {
+    const image::File& last = sequence.frames.back();
+    if (const image::Image* radiance = last.find("radiance"))
+      writePicture(job.name(), image::displayed(*radiance, std::stof(last.metadata.at("exposure"))));
+  }
+  const std::vector<std::string> validation = device_->validationMessages();
+  if (!validation.empty())
+    throw Error(ExitCode::Internal, fmt::format("the validation layers object {} times, first: {}",
+                                                validation.size(), validation.front()));
+  return result;
+}
+
+}  // namespace fovea::bench

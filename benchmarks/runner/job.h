@@ -1,0 +1,65 @@
+// One job of a benchmark suite, from its graph to its result.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "benchmarks/runner/folder.h"
+#include "benchmarks/runner/progress.h"
+#include "benchmarks/runner/suite.h"
+#include "benchmarks/runner/timings.h"
+#include "framework/gpu/device.h"
+#include "framework/scene/scene.h"
+#include "framework/session/graph_run.h"
+
+namespace fovea::bench {
+
+class BenchRunner {
+ public:
+  BenchRunner(const BenchFolder& folder, std::unique_ptr<gpu::Device> device, Progress& progress);
+
+  // What the result depends on; finds every mistake in the job's scene, graph and parameters. Throws
+  // Error(BadInput) with the place in the suite. nullopt: an optional scene that is not there; `why` says so.
+  std::optional<Fingerprint> fingerprint(const Job& job, std::string& why);
+  // Throws Error(Interrupted) when Ctrl-C was pressed.
+  nlohmann::ordered_json measure(const Job& job, const Fingerprint& fingerprint);
+
+  struct Reference {
+    std::string name;  // of its file, without .exr: scene, size, frame and a hash of all that it depends on
+    uint64_t frame = 0;
+  };
+  // Those that the job is compared with: of every frame, or of the last one.
+  std::vector<Reference> references(const Job& job);
+  // Makes it unless it is there; false: it was. Throws as measure() does.
+  bool makeReference(const Job& job, const Reference& wanted);
+
+ private:
+  struct Sequence {                   // frames of one run
+    std::vector<image::File> frames;  // `frames` of the job when all were asked for, else the last
+    nlohmann::ordered_json time;
+  };
+  bool useScene(const Job& job, std::string& why);
+  std::unique_ptr<session::GraphRun> makeRun(const Job& job, bool pictures);
+  Sequence render(const Job& job);
+  image::File toFile(const session::GraphRun& run, graph::FrameResult& result) const;
+  Reference referenceOf(const Job& job, uint64_t frame);
+  image::File reference(const Job& job, uint64_t frame);
+  nlohmann::ordered_json referenceParts(const Job& job);
+  nlohmann::ordered_json errors(const Job& job, const image::File& last);
+  nlohmann::ordered_json temporal(const Job& job, const Sequence& sequence);
+  nlohmann::ordered_json search(Job& job);
+  double errorWith(const Job& job, uint32_t count);
+  void writePicture(const std::string& name, const image::Image& picture) const;
+
+  const BenchFolder& folder_;
+  std::unique_ptr<gpu::Device> device_;
+  Progress& progress_;
+  std::string sceneName_;
+  scene::Scene scene_;
+  scene::Geometry geometry_;
+  std::map<std::string, std::string> missing_;  // optional scenes that are not there, and why
+};
+
+}  // namespace fovea::bench

@@ -1,0 +1,27 @@
+// fovea bench passes: what the passes of one graph cost, and whether that changed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/error.h"
+
+namespace fovea::bench {
+
+// Some pass, or the frame, became slower than the baseline beyond the noise.
+inline constexpr ExitCode kSlower{8};
+
+struct PassBenchOptions {
+  std::string graph, scene, baseline;
+  std::vector<std::string> set;
+  uint32_t frames = 5, warmup = 3, first = 0, repeats = 5;
+  double threshold = 2;  // percent
+  bool json = false;
+  std::string output, size, device;  // the suite's options of the same names
+  std::vector<std::string> plugins;
+  bool quiet = false;
+};
+
+ExitCode benchPasses(const PassBenchOptions& options);
+
+}  // namespace fovea::bench

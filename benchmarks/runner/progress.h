@@ -1,0 +1,38 @@
+// What the user waits for, on one line of the terminal.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace fovea::bench {
+
+// Writes to stderr, and only when that is a terminal. The line is wiped when the object goes, so that errors
+// and results stand alone.
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  ~Progress() { clear(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void stage(const std::string& what);  // "loading sponza"
+  // Stands before everything that follows: "job 3/40 (12 min left), ".
+  void setPrefix(const std::string& prefix) { prefix_ = prefix; }
+  // Frames done so far; the remaining time follows from those done.
+  void frames(uint64_t done, uint64_t total);
+  // Share of its work that a pass of the frame under way has done.
+  void pass(const std::string& name, double share);
+  void clear();
+
+ private:
+  bool enabled_ = false, shown_ = false;
+  std::chrono::steady_clock::time_point start_, passStart_;
+  std::string prefix_, framesLine_, pass_;  // what frames() said last; the pass that was heard last
+  double passShare_ = 0;
+  void show(const std::string& line);
+};
+
+std::string formatDuration(double seconds);  // "0.8 s", "12 s", "3 min 20 s"
+
+}  // namespace fovea::bench

@@ -1,0 +1,500 @@
+#include "benchmarks/runner/suite.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "framework/base/json.h"
+
+namespace fovea::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using json::ObjectReader;
+using json::Value;
+
+constexpr int64_t kMaxSide = 16384, kMaxFrames = 1'000'000;
+constexpr size_t kMaxJobs = 100'000;
+
+template <class T>
+struct Placed {
+  T value;
+  SourceLocation where;
+};
+using Texts = std::vector<Placed<std::string>>;
+
+struct GraphEntry {
+  std::string graph, label;
+  std::vector<std::pair<std::string, std::vector<std::string>>> set;
+  std::optional<Match> match;
+  std::optional<uint32_t> warmup;  // in place of the sweep's
+  SourceLocation where;
+};
+
+// What the suite's head and each of its sweeps may say; a sweep's word replaces the head's.
+struct Settings {
+  Texts scenes;
+  std::vector<GraphEntry> graphs;
+  std::vector<std::pair<std::string, std::vector<std::string>>> set;
+  std::vector<std::string> sizes = {"256x256"};
+  std::vector<double> frameRates = {42};
+  uint32_t first = 40, frames = 1, warmup = 0, seeds = 1, spp = 512, depth = 4;
+  std::vector<std::string> measures = {"error"};
+  std::vector<SpeedUp> speedUps;
+};
+
+std::string textOf(const Value& value) {
+  if (value.isString()) return value.string;
+  if (value.isBool()) return value.boolean ? "true" : "false";
+  if (value.isInt()) return std::to_string(value.integer);
+  std::ostringstream text;
+  text << value.real;
+  return text.str();
+}
+
+bool isPlain(const Value& value) { return value.isString() || value.isBool() || value.isNumber(); }
+
+void expected(Diagnostics& messages, const Value& value, const std::string& path, const std::string& what) {
+  messages.error(value.where.location(), path, "expected " + what + ", found " + value.describe());
+}
+
+// "1024x768"
+std::optional<glm::uvec2> sizeOf(const std::string& text) {
+  const size_t x = text.find('x');
+  if (x == text.npos) return std::nullopt;
+  const auto side = [](std::string_view digits) -> std::optional<uint32_t> {
+    uint32_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || value < 1 || value > kMaxSide)
+      return std::nullopt;
+    return value;
+  };
+  const auto width = side(std::string_view(text).substr(0, x)),
+             height = side(std::string_view(text).substr(x + 1));
+  if (!width || !height) return std::nullopt;
+  return glm::uvec2(*width, *height);
+}
+
+class SuiteReader {
+ public:
+  SuiteReader(Diagnostics& messages, const SuiteOverrides& overrides)
+      : messages_(messages), overrides_(overrides) {}
+
+  void read(const Value& root, Suite& suite) {
+    ObjectReader r(root, "", messages_);
+    suite.description = r.text("description");
+    suite.paper = r.text("paper");
+    for (const auto& name : texts(r, "optional_scenes")) optional_.insert(name.value);
+    Settings head;
+    readSettings(r, head);
+    const Value* sweeps = r.array("sweeps");
+    if (!sweeps)
+      messages_.error(root.where.location(), "sweeps", "a suite needs `sweeps`", "a list of what to measure");
+    std::set<std::string> names;
+    for (size_t i = 0; sweeps && i < sweeps->items.size(); ++i)
+      readSweep(sweeps->items[i], "sweeps[" + std::to_string(i) + "]", head, names, suite);
+    r.finish();
+  }
+
+ private:
+  Texts texts(ObjectReader& r, const char* key) {
+    Texts list;
+    const Value* array = r.array(key);
+    for (size_t i = 0; array && i < array->items.size(); ++i) {
+      const Value& item = array->items[i];
+      if (item.isString() && !item.string.empty()) {
+        list.push_back({item.string, item.where.location()});
+      } else {
+        expected(messages_, item, r.pathOf(key) + "[" + std::to_string(i) + "]", "a name");
+      }
+    }
+    return list;
+  }
+
+  // "vpl_count": 500, or a list of values to go through.
+  void readSet(ObjectReader& r, std::vector<std::pair<std::string, std::vector<std::string>>>& set) {
+    const Value* object = r.object("set");
+    if (!object) return;
+    for (const json::Member& member : object->members) {
+      const std::string path = r.pathOf("set") + "." + member.key;
+      std::vector<std::string> values;
+      if (isPlain(member.value)) {
+        values.push_back(textOf(member.value));
+      } else if (member.value.isArray() && !member.value.items.empty()) {
+        for (const Value& item : member.value.items) {
+          if (isPlain(item)) {
+            values.push_back(textOf(item));
+          } else {
+            expected(messages_, item, path, "a number, text, true or false");
+          }
+        }
+      } else {
+        expected(messages_, member.value, path, "a value, or a list of values to go through");
+      }
+      std::erase_if(set, [&](const auto& old) { return old.first == member.key; });
+      set.emplace_back(member.key, std::move(values));
+    }
+  }
+
+  void readGraph(const Value& value, const std::string& path, std::vector<GraphEntry>& graphs) {
+    GraphEntry entry;
+    entry.where = value.where.location();
+    if (value.isString() && !value.string.empty()) {
+      entry.graph = entry.label = value.string;
+    } else if (value.isObject()) {
+      ObjectReader r(value, path, messages_);
+      entry.graph = r.text("graph");
+      if (entry.graph.empty()) messages_.error(entry.where, path, "which graph?", "add \"graph\": \"ours\"");
+      entry.label = r.text("label", fs::path(entry.graph).stem().string());
+      readSet(r, entry.set);
+      if (r.has("warmup")) entry.warmup = uint32_t(r.integer("warmup", 0, 0, kMaxFrames));
+      if (const Value* match = r.object("match")) entry.match = readMatch(*match, r.pathOf("match"));
+      r.finish();
+    } else {
+      return expected(messages_, value, path, "a graph's name, or an object with \"graph\"");
+    }
+    entry.label = fs::path(entry.label).stem().string();
+    for (const GraphEntry& other : graphs)
+      if (other.label == entry.label)
+        messages_.error(entry.where, path, "the label `" + entry.label + "` occurs twice in this list",
+                        "give one of them another \"label\"");
+    graphs.push_back(std::move(entry));
+  }
+
+  Match readMatch(const Value& value, const std::string& path) {
+    ObjectReader r(value, path, messages_);
+    Match match;
+    match.parameter = r.text("parameter", match.parameter);
+    match.like = r.text("like");
+    if (match.like.empty())
+      messages_.error(value.where.location(), path,
+                      "match needs `like`: the graph whose error is to be reached");
+    match.measure =
+        r.choice("measure", match.measure,
+                 {"error.fovea.mse", "error.periphery.mse", "error.whole.mse", "error.fovea.relmse"});
+    match.from = uint32_t(r.integer("from", match.from, 1, 1'000'000));
+    match.to = uint32_t(r.integer("to", match.to, match.from, 1'000'000));
+    r.finish();
+    return match;
+  }
+
+  void readSizes(ObjectReader& r, Settings& s) {
+    const Value* value = r.find("size");
+    if (!value) return;
+    s.sizes.clear();
+    const std::vector<Value> one = {*value};
+    for (const Value& item : value->isArray() ? value->items : one) {
+      if (item.isString() && sizeOf(item.string)) {
+        s.sizes.push_back(item.string);
+      } else {
+        expected(messages_, item, r.pathOf("size"), "a size like \"256x256\", 1 to 16384 pixels a side");
+      }
+    }
+  }
+
+  void readFrameRates(ObjectReader& r, Settings& s) {
+    const Value* value = r.find("frame_rate");
+    if (!value) return;
+    s.frameRates.clear();
+    const std::vector<Value> one = {*value};
+    for (const Value& item : value->isArray() ? value->items : one) {
+      if (item.isNumber() && item.real >= 0.1 && item.real <= 1e5) {
+        s.frameRates.push_back(item.real);
+      } else {
+        expected(messages_, item, r.pathOf("frame_rate"), "frames a second from 0.1 to 100000");
+      }
+    }
+  }
+
+  void readSettings(ObjectReader& r, Settings& s) {
+    Texts scenes = texts(r, "scenes");
+    if (r.has("scenes")) s.scenes = std::move(scenes);
+    if (const Value* graphs = r.array("graphs")) {
+      s.graphs.clear();
+      for (size_t i = 0; i < graphs->items.size(); ++i)
+        readGraph(graphs->items[i], r.pathOf("graphs") + "[" + std::to_string(i) + "]", s.graphs);
+    }
+    readSet(r, s.set);
+    readSizes(r, s);
+    readFrameRates(r, s);
+    const auto count = [&](const char* key, uint32_t& value, int64_t min, int64_t max) {
+      value = uint32_t(r.integer(key, value, min, max));
+    };
+    count("first", s.first, 0, 10'000'000);
+    count("frames", s.frames, 1, kMaxFrames);
+    count("warmup", s.warmup, 0, kMaxFrames);
+    count("seeds", s.seeds, 1, 1000);
+    if (const Value* reference = r.object("reference")) {
+      ObjectReader rr(*reference, r.pathOf("reference"), messages_);
+      s.spp = uint32_t(rr.integer("spp", s.spp, 2, 1'000'000));
+      s.depth = uint32_t(rr.integer("depth", s.depth, 1, 64));
+      rr.finish();
+    }
+    readMeasures(r, s);
+    if (const Value* speed = r.object("speed_up")) {
+      ObjectReader rr(*speed, r.pathOf("speed_up"), messages_);
+      SpeedUp wanted;
+      wanted.of = rr.text("of");
+      for (const auto& name : texts(rr, "over")) wanted.over.push_back(name.value);
+      rr.finish();
+      s.speedUps = {wanted};
+    }
+  }
+
+  void readMeasures(ObjectReader& r, Settings& s) {
+    static const std::vector<std::string> kKnown = {"error", "temporal", "pictures", "time"};
+    const Texts names = texts(r, "measures");
+    if (r.has("measures")) s.measures.clear();
+    for (const auto& name : names) {
+      if (std::find(kKnown.begin(), kKnown.end(), name.value) == kKnown.end()) {
+        const std::string nearest = nearestName(name.value, kKnown);
+        messages_.error(
+            name.where, r.pathOf("measures"), "there is no measure `" + name.value + "`",
+            nearest.empty() ? "known: error, temporal, pictures, time" : "did you mean `" + nearest + "`?");
+      }
+      s.measures.push_back(name.value);
+    }
+  }
+
+  void readSweep(const Value& value, const std::string& path, const Settings& head,
+                 std::set<std::string>& names, Suite& suite) {
+    ObjectReader r(value, path, messages_);
+    Settings s = head;
+    const std::string name = r.text("name");
+    const auto bad = [](unsigned char c) { return !std::isalnum(c) && c != '_'; };
+    if (name.empty() || std::any_of(name.begin(), name.end(), bad))
+      messages_.error(value.where.location(), path, "a sweep needs a `name` of letters, digits and _");
+    if (!names.insert(name).second)
+      messages_.error(value.where.location(), path, "the sweep `" + name + "` occurs twice");
+    readSettings(r, s);
+    r.finish();
+    const auto complain = [&](const std::string& message) {
+      messages_.error(value.where.location(), path, message);
+    };
+    if (s.scenes.empty()) complain("no `scenes`, neither here nor in the suite's head");
+    if (s.graphs.empty()) complain("no `graphs`, neither here nor in the suite's head");
+    const auto has = [&](const char* m) { return std::count(s.measures.begin(), s.measures.end(), m) > 0; };
+    if (has("temporal") && s.frames < 2)
+      complain("`temporal` compares consecutive frames: `frames` must be at least 2");
+    const auto warmsTooLong = [&](const GraphEntry& g) { return g.warmup.value_or(s.warmup) > s.first; };
+    if (std::any_of(s.graphs.begin(), s.graphs.end(), warmsTooLong))
+      complain("`warmup` frames come before frame `first`, which has not as many before it");
+    for (const GraphEntry& graph : s.graphs)
+      if (graph.match) checkMatch(graph, s, has("error"));
+    for (SpeedUp& wanted : s.speedUps) {
+      wanted.sweep = name;
+      std::vector<std::string> labels = wanted.over;
+      labels.push_back(wanted.of);
+      for (const std::string& label : labels)
+        if (!hasLabel(s, label))
+          complain("`speed_up` names the graph `" + label + "`, which this sweep does not have");
+      suite.speedUps.push_back(wanted);
+    }
+    if (!messages_.hasErrors()) expand(name, s, suite);
+    if (suite.jobs.size() > kMaxJobs) complain("a suite has at most 100000 jobs");
+  }
+
+  static bool hasLabel(const Settings& s, const std::string& label) {
+    return std::any_of(s.graphs.begin(), s.graphs.end(),
+                       [&](const GraphEntry& g) { return g.label == label && !g.graph.empty(); });
+  }
+
+  void checkMatch(const GraphEntry& graph, const Settings& s, bool error) {
+    const auto like = std::find_if(s.graphs.begin(), s.graphs.end(),
+                                   [&](const GraphEntry& g) { return g.label == graph.match->like; });
+    if (like == s.graphs.end() || like->match)
+      messages_.error(
+          graph.where, graph.label,
+          "match: `like` names `" + graph.match->like + "`, which is not another graph of this sweep");
+    if (!error) messages_.error(graph.where, graph.label, "match needs the measure `error`");
+  }
+
+  // All combinations, the first parameter slowest; but those of a scene seed by seed, so that what is
+  // compared is measured in turns, on a machine that is now faster and now slower.
+  void expand(const std::string& sweep, const Settings& s, Suite& suite) {
+    for (const auto& scene : s.scenes) {
+      const auto first = std::ptrdiff_t(suite.jobs.size());
+      for (const GraphEntry& graph : s.graphs) {
+        auto axes = s.set;
+        for (const auto& own : graph.set) {
+          std::erase_if(axes, [&](const auto& old) { return old.first == own.first; });
+          axes.push_back(own);
+        }
+        std::vector<std::string> sizes = s.sizes;
+        if (overrides_.size && sizes.size() == 1)
+          sizes = {std::to_string(overrides_.size->x) + "x" + std::to_string(overrides_.size->y)};
+        axes.emplace_back("size", sizes);
+        axes.emplace_back("frame_rate", std::vector<std::string>());
+        for (double rate : s.frameRates)
+          axes.back().second.push_back(textOf(Value{.type = Value::Type::Real, .real = rate}));
+        std::vector<Job> jobs = {jobOf(sweep, s, scene, graph)};
+        for (const auto& [key, values] : axes) jobs = multiplied(jobs, key, values);
+        if (graph.match)
+          for (Job& job : jobs) completeMatch(s, graph, job);
+        const uint32_t seeds = overrides_.seeds.value_or(s.seeds);
+        for (const Job& job : jobs)
+          for (uint32_t seed = 1; seed <= seeds; ++seed) {
+            suite.jobs.push_back(job);
+            suite.jobs.back().seed = seed;
+          }
+        if (suite.jobs.size() > kMaxJobs) return;
+      }
+      std::stable_sort(suite.jobs.begin() + first, suite.jobs.end(),
+                       [](const Job& a, const Job& b) { return a.seed < b.seed; });
+    }
+  }
+
+  // What the other graph is run with: the sweep's parameters as in this job, and its own.
+  static void completeMatch(const Settings& s, const GraphEntry& graph, Job& job) {
+    for (const GraphEntry& like : s.graphs) {
+      if (like.label != job.match->like) continue;
+      job.match->likeGraph = like.graph;
+      job.match->likeWarmup = like.warmup.value_or(s.warmup);
+      const auto own = [](const GraphEntry& g, const std::string& key) {
+        return std::any_of(g.set.begin(), g.set.end(), [&](const auto& e) { return e.first == key; });
+      };
+      for (const auto& [key, value] : job.set)
+        if (!own(graph, key) && !own(like, key)) job.match->likeSet.emplace_back(key, value);
+      for (const auto& [key, values] : like.set) job.match->likeSet.emplace_back(key, values.front());
+    }
+  }
+
+  Job jobOf(const std::string& sweep, const Settings& s, const Placed<std::string>& scene,
+            const GraphEntry& graph) const {
+    const auto has = [&](const char* m) { return std::count(s.measures.begin(), s.measures.end(), m) > 0; };
+    Job job;
+    job.sweep = sweep, job.scene = scene.value, job.graph = graph.graph, job.label = graph.label;
+    job.first = s.first, job.frames = s.frames, job.warmup = graph.warmup.value_or(s.warmup);
+    job.spp = s.spp, job.depth = s.depth;
+    job.error = has("error"), job.temporal = has("temporal"), job.pictures = has("pictures");
+    job.match = graph.match;
+    job.sceneWhere = scene.where, job.graphWhere = graph.where;
+    job.sceneOptional = optional_.count(scene.value) > 0;
+    return job;
+  }
+
+  static std::vector<Job> multiplied(const std::vector<Job>& jobs, const std::string& key,
+                                     const std::vector<std::string>& values) {
+    std::vector<Job> result;
+    for (const Job& job : jobs)
+      for (const std::string& value : values) {
+        Job& made = result.emplace_back(job);
+        if (key == "size") {
+          made.size = *sizeOf(value);
+        } else if (key == "frame_rate") {
+          made.frameRate = std::stod(value);
+        } else {
+          made.set.emplace_back(key, value);
+        }
+        if (values.size() > 1) made.varied.emplace_back(key, value);
+      }
+    return result;
+  }
+
+  Diagnostics& messages_;
+  const SuiteOverrides& overrides_;
+  std::set<std::string> optional_;
+};
+
+}  // namespace
+
+std::string Job::name() const {
+  std::string text = sweep + "-" + fs::path(scene).stem().string() + "-" + label;
+  for (const auto& [key, value] : varied) text += "-" + key + "=" + value;
+  for (char& c : text)
+    if (c == '/' || c == ' ' || c == '*' || c == '?') c = '_';
+  return text + "-s" + std::to_string(seed);
+}
+
+nlohmann::ordered_json Job::json() const {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::object(), axes = parameters;
+  for (const auto& [key, value] : set) parameters[key] = value;
+  for (const auto& [key, value] : varied) axes[key] = value;
+  nlohmann::ordered_json measures = nlohmann::ordered_json::array({"time"});
+  if (error) measures.push_back("error");
+  if (temporal) measures.push_back("temporal");
+  if (pictures) measures.push_back("pictures");
+  nlohmann::ordered_json all = {{"sweep", sweep},           {"scene", scene},    {"graph", graph},
+                                {"label", label},           {"set", parameters}, {"varied", axes},
+                                {"size", {size.x, size.y}}, {"first", first},    {"frames", frames},
+                                {"warmup", warmup},         {"seed", seed},      {"frame_rate", frameRate},
+                                {"measures", measures}};
+  if (needsReference()) all["reference"] = {{"spp", spp}, {"depth", depth}};
+  if (match)
+    all["match"] = {{"parameter", match->parameter}, {"like", match->like}, {"like_set", match->likeSet},
+                    {"measure", match->measure},     {"from", match->from}, {"to", match->to}};
+  return all;
+}
+
+Suite parseSuite(std::string_view text, const fs::path& file, const SuiteOverrides& overrides) {
+  Diagnostics messages;
+  Suite suite;
+  suite.name = file.stem().string();
+  suite.file = file;
+  const Value root = json::parse(text, file.string());
+  SuiteReader(messages, overrides).read(root, suite);
+  messages.throwIfErrors();
+  std::vector<std::string> scenes;  // in order of first appearance
+  for (const Job& job : suite.jobs)
+    if (std::find(scenes.begin(), scenes.end(), job.scene) == scenes.end()) scenes.push_back(job.scene);
+  std::stable_sort(suite.jobs.begin(), suite.jobs.end(), [&](const Job& a, const Job& b) {
+    return std::find(scenes.begin(), scenes.end(), a.scene) <
+           std::find(scenes.begin(), scenes.end(), b.scene);
+  });
+  return suite;
+}
+
+Suite loadSuite(const std::string& nameOrFile, const std::vector<fs::path>& folders,
+                const SuiteOverrides& overrides) {
+  std::error_code ignored;
+  fs::path found;
+  std::vector<std::string> known;
+  if (nameOrFile.ends_with(".json")) {
+    found = nameOrFile;
+  } else {
+    for (const fs::path& folder : folders) {
+      if (found.empty() && fs::is_regular_file(folder / (nameOrFile + ".json"), ignored))
+        found = folder / (nameOrFile + ".json");
+      for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored))
+        if (entry->path().extension() == ".json") known.push_back(entry->path().stem().string());
+    }
+  }
+  if (found.empty()) {
+    std::sort(known.begin(), known.end());
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    const std::string nearest = nearestName(nameOrFile, known);
+    throw Error(
+        ExitCode::BadInput, "there is no suite `" + nameOrFile + "`",
+        nearest.empty() ? "name a .json file, or one of: " + list : "did you mean `" + nearest + "`?");
+  }
+  std::ifstream in(found, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  if (!in)
+    throw Error(ExitCode::BadInput, "cannot read the suite `" + found.string() + "`",
+                "check its name and permissions");
+  return parseSuite(text.str(), found, overrides);
+}
+
+bool matchesGlob(std::string_view pattern, std::string_view name) {
+  if (pattern.find_first_of("*?") == pattern.npos) return name.find(pattern) != name.npos;
+  size_t p = 0, n = 0, star = pattern.npos, mark = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p, ++n;
+    } else if (p < pattern.size() && pattern[p] == '*') {
+      star = p++, mark = n;
+    } else if (star != pattern.npos) {
+      p = star + 1, n = ++mark;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+}  // namespace fovea::bench

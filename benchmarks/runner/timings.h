@@ -1,0 +1,70 @@
+// Times and counters of a run: collected frame by frame, then printed as a table or written as JSON or CSV.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "framework/graph/run/execute.h"
+
+namespace fovea::bench {
+
+// What a run was made with; goes into every file that the run writes.
+struct RunInfo {
+  std::string device, graph, graphHash, scene;
+  uint32_t width = 0, height = 0;
+  uint32_t warmup = 0, seed = 0;
+  uint64_t peakDeviceBytes = 0, peakHostBytes = 0;
+};
+
+// Milliseconds. p95: nearest rank, the smallest value that at least 95% of the frames do not exceed.
+struct Spread {
+  double median = 0, min = 0, p95 = 0;
+};
+Spread spreadOf(std::vector<double> values);
+
+class Timings {
+ public:
+  explicit Timings(std::shared_ptr<const graph::Plan> plan) : plan_(std::move(plan)) {}
+
+  void add(const graph::FrameResult& result);  // outputs are not kept
+  const std::vector<graph::FrameResult>& frames() const { return frames_; }
+  // Of a PassTiming's pass. Before the passes of a scene that moves comes `animate`: its vertices.
+  std::string name(uint32_t pass) const;
+  std::string type(uint32_t pass) const;
+
+  std::string table() const;  // for people
+  std::string json(const RunInfo& run) const;
+  std::string csv() const;  // a row per frame and pass
+  // By extension, .json or .csv. Throws Error(CannotWrite).
+  void write(const std::filesystem::path& file, const RunInfo& run) const;
+
+ private:
+  static constexpr uint32_t kAnimate = ~0u;
+  struct Row {  // one pass over all frames
+    uint32_t pass = 0;
+    bool host = false;
+    Spread gpu, cpu;
+    double time() const { return host ? cpu.median : gpu.median; }  // where the pass does its work
+  };
+  struct ViewTotal {   // of all passes of one view, ms a frame
+    std::string view;  // "none": of the passes that are given none, the first eye's shading among them
+    uint32_t passes = 0;
+    Spread time;
+  };
+  std::string viewTable() const;
+  std::string counterTable() const;
+  std::vector<Row> rows() const;                                 // in order of execution
+  std::vector<ViewTotal> viewTotals() const;                     // none of graphs with a single view
+  std::vector<std::pair<std::string, double>> counters() const;  // medians, in order of first appearance
+  template <class Get>
+  Spread frameSpread(Get get) const;
+
+  std::shared_ptr<const graph::Plan> plan_;
+  std::vector<graph::FrameResult> frames_;
+};
+
+}  // namespace fovea::bench

@@ -1,0 +1,14 @@
+// Text files that are never left half-written.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace fovea {
+
+// Written under a temporary name, checked, renamed. Throws Error(CannotWrite) naming the file and the reason.
+void writeText(const std::filesystem::path& file, const std::string& text);
+// Throws Error(CannotWrite) when `file` cannot be created there; leaves nothing behind.
+void checkTextWritable(const std::filesystem::path& file);
+
+}  // namespace fovea

@@ -1,0 +1,315 @@
+#include "fovea/pass.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "fovea/error.h"
+
+namespace fovea::graph {
+
+// ---- Parameters --------------------------------------------------------------------------------------
+
+ParameterSpec integer(int64_t defaultValue, int64_t min, int64_t max) {
+  ParameterSpec spec;
+  spec.type = ParameterSpec::Type::Int;
+  spec.defaultValue = defaultValue;
+  spec.min = static_cast<double>(min);
+  spec.max = static_cast<double>(max);
+  return spec;
+}
+
+ParameterSpec real(double defaultValue, double min, double max, std::string unit) {
+  ParameterSpec spec;
+  spec.type = ParameterSpec::Type::Real;
+  spec.defaultValue = defaultValue;
+  spec.min = min;
+  spec.max = max;
+  spec.unit = std::move(unit);
+  return spec;
+}
+
+ParameterSpec flag(bool defaultValue) {
+  ParameterSpec spec;
+  spec.type = ParameterSpec::Type::Bool;
+  spec.defaultValue = defaultValue;
+  return spec;
+}
+
+ParameterSpec choice(std::string defaultValue, std::vector<std::string> choices) {
+  ParameterSpec spec;
+  spec.type = ParameterSpec::Type::Choice;
+  spec.defaultValue = std::move(defaultValue);
+  spec.choices = std::move(choices);
+  return spec;
+}
+
+ParameterSpec text(std::string defaultValue) {
+  ParameterSpec spec;
+  spec.type = ParameterSpec::Type::Text;
+  spec.defaultValue = std::move(defaultValue);
+  return spec;
+}
+
+namespace {
+
+[[noreturn]] void wrongParameter(std::string_view name, std::string_view wanted, bool known) {
+  throw Error(ExitCode::Internal, known ? fmt::format("parameter `{}` is not declared as {}", name, wanted)
+                                        : fmt::format("parameter `{}` is not declared", name));
+}
+
+}  // namespace
+
+const Value* Parameters::find(std::string_view name) const {
+  const std::span<const Value> all = values();
+  for (size_t i = 0; i < all.size(); ++i)
+    if ((*specs_)[i].name == name) return &all[i];
+  return nullptr;
+}
+
+int64_t Parameters::integer(std::string_view name) const {
+  const Value* value = find(name);
+  if (!value || !std::holds_alternative<int64_t>(*value)) wrongParameter(name, "a whole number", value);
+  return std::get<int64_t>(*value);
+}
+
+double Parameters::real(std::string_view name) const {
+  const Value* value = find(name);
+  if (value && std::holds_alternative<int64_t>(*value)) return static_cast<double>(std::get<int64_t>(*value));
+  if (!value || !std::holds_alternative<double>(*value)) wrongParameter(name, "a number", value);
+  return std::get<double>(*value);
+}
+
+bool Parameters::flag(std::string_view name) const {
+  const Value* value = find(name);
+  if (!value || !std::holds_alternative<bool>(*value)) wrongParameter(name, "a flag", value);
+  return std::get<bool>(*value);
+}
+
+const std::string& Parameters::text(std::string_view name) const {
+  const Value* value = find(name);
+  if (!value || !std::holds_alternative<std::string>(*value)) wrongParameter(name, "a text", value);
+  return std::get<std::string>(*value);
+}
+
+// ---- Sizes -------------------------------------------------------------------------------------------
+
+SizeExpr::SizeExpr(const SizeExpr& a, const SizeExpr& b, Op op) : terms_(a.terms_) {
+  terms_.insert(terms_.end(), b.terms_.begin(), b.terms_.end());
+  terms_.push_back({op, 0, {}});
+}
+
+namespace {
+
+struct Printed {
+  std::string text;
+  int strength;  // 3 leaf or call, 2 product, 1 sum
+};
+
+Printed printLeaf(const SizeExpr::Term& term) {
+  using Op = SizeExpr::Op;
+  switch (term.op) {
+    case Op::Constant:
+      return {std::to_string(term.constant), 3};
+    case Op::ViewWidth:
+      return {"view.width", 3};
+    case Op::ViewHeight:
+      return {"view.height", 3};
+    case Op::PortWidth:
+      return {term.name + ".width", 3};
+    case Op::PortHeight:
+      return {term.name + ".height", 3};
+    case Op::PortLayers:
+      return {term.name + ".layers", 3};
+    case Op::PortCount:
+      return {term.name + ".count", 3};
+    default:
+      return {term.name, 3};
+  }
+}
+
+Printed printOperator(SizeExpr::Op op, const Printed& a, const Printed& b) {
+  using Op = SizeExpr::Op;
+  auto wrap = [](const Printed& p, int needed) { return p.strength < needed ? "(" + p.text + ")" : p.text; };
+  switch (op) {
+    case Op::Add:
+      return {a.text + " + " + b.text, 1};
+    case Op::Sub:
+      return {a.text + " - " + wrap(b, 2), 1};
+    case Op::Mul:
+      return {wrap(a, 2) + " * " + wrap(b, 2), 2};
+    case Op::Div:
+      return {wrap(a, 2) + " / " + wrap(b, 3), 2};
+    case Op::Min:
+      return {"min(" + a.text + ", " + b.text + ")", 3};
+    default:
+      return {"max(" + a.text + ", " + b.text + ")", 3};
+  }
+}
+
+}  // namespace
+
+std::string SizeExpr::print() const {
+  std::vector<Printed> stack;
+  for (const Term& term : terms_) {
+    if (term.op < Op::Add) {
+      stack.push_back(printLeaf(term));
+      continue;
+    }
+    const Printed b = std::move(stack.back());
+    stack.pop_back();
+    stack.back() = printOperator(term.op, stack.back(), b);
+  }
+  return stack.empty() ? std::string("1") : stack.back().text;
+}
+
+SizeExpr operator+(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Add}; }
+SizeExpr operator-(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Sub}; }
+SizeExpr operator*(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Mul}; }
+SizeExpr ceilDiv(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Div}; }
+SizeExpr min(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Min}; }
+SizeExpr max(const SizeExpr& a, const SizeExpr& b) { return {a, b, SizeExpr::Op::Max}; }
+SizeExpr viewWidth() { return {SizeExpr::Op::ViewWidth, std::string()}; }
+SizeExpr viewHeight() { return {SizeExpr::Op::ViewHeight, std::string()}; }
+SizeExpr parameter(std::string name) { return {SizeExpr::Op::Parameter, std::move(name)}; }
+SizeExpr widthOf(std::string port) { return {SizeExpr::Op::PortWidth, std::move(port)}; }
+SizeExpr heightOf(std::string port) { return {SizeExpr::Op::PortHeight, std::move(port)}; }
+SizeExpr layersOf(std::string port) { return {SizeExpr::Op::PortLayers, std::move(port)}; }
+SizeExpr countOf(std::string port) { return {SizeExpr::Op::PortCount, std::move(port)}; }
+SizeExpr environment(std::string name) { return {SizeExpr::Op::Environment, std::move(name)}; }
+
+// ---- Resources ---------------------------------------------------------------------------------------
+
+ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr mips) {
+  ResourceSpec spec;
+  spec.format = format;
+  spec.width = std::move(width);
+  spec.height = std::move(height);
+  spec.mips = std::move(mips);
+  return spec;
+}
+
+ResourceSpec image2D(VkFormat format) { return image2D(format, viewWidth(), viewHeight()); }
+
+ResourceSpec image2DArray(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr layers) {
+  ResourceSpec spec = image2D(format, std::move(width), std::move(height));
+  spec.array = true;
+  spec.layers = std::move(layers);
+  return spec;
+}
+
+ResourceSpec image3D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr depth, SizeExpr mips) {
+  ResourceSpec spec = image2D(format, std::move(width), std::move(height), std::move(mips));
+  spec.volume = true;
+  spec.depth = std::move(depth);
+  return spec;
+}
+
+ResourceSpec buffer(std::string element, uint32_t stride, SizeExpr count) {
+  ResourceSpec spec;
+  spec.kind = ResourceKind::Buffer;
+  spec.element = std::move(element);
+  spec.stride = stride;
+  spec.count = std::move(count);
+  return spec;
+}
+
+// ---- Passes ------------------------------------------------------------------------------------------
+
+namespace {
+
+PortSpec& addPort(PassDeclaration& d, Direction direction, std::string name, std::string bundle,
+                  std::vector<MemberSpec> members, std::string doc) {
+  PortSpec port;
+  port.name = std::move(name);
+  port.doc = std::move(doc);
+  port.direction = direction;
+  port.bundle = std::move(bundle);
+  port.members = std::move(members);
+  return d.ports.emplace_back(std::move(port));
+}
+
+std::vector<MemberSpec> plain(ResourceSpec resource, Usage usage) {
+  std::vector<MemberSpec> members(1);
+  members[0].resource = std::move(resource);
+  members[0].usage = usage;
+  return members;
+}
+
+}  // namespace
+
+PortSpec& PassDeclaration::input(std::string name, ResourceSpec resource, Usage usage, std::string doc) {
+  return addPort(*this, Direction::Input, std::move(name), {}, plain(std::move(resource), usage),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::output(std::string name, ResourceSpec resource, Usage usage, std::string doc) {
+  return addPort(*this, Direction::Output, std::move(name), {}, plain(std::move(resource), usage),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::inout(std::string name, ResourceSpec resource, Usage usage, std::string doc) {
+  return addPort(*this, Direction::InOut, std::move(name), {}, plain(std::move(resource), usage),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::scratch(std::string name, ResourceSpec resource, Usage usage, std::string doc) {
+  return addPort(*this, Direction::Scratch, std::move(name), {}, plain(std::move(resource), usage),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::input(std::string name, std::string bundle, std::vector<MemberSpec> members,
+                                 std::string doc) {
+  return addPort(*this, Direction::Input, std::move(name), std::move(bundle), std::move(members),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::output(std::string name, std::string bundle, std::vector<MemberSpec> members,
+                                  std::string doc) {
+  return addPort(*this, Direction::Output, std::move(name), std::move(bundle), std::move(members),
+                 std::move(doc));
+}
+
+PortSpec& PassDeclaration::inout(std::string name, std::string bundle, std::vector<MemberSpec> members,
+                                 std::string doc) {
+  return addPort(*this, Direction::InOut, std::move(name), std::move(bundle), std::move(members),
+                 std::move(doc));
+}
+
+PassDeclaration& PassDeclaration::parameter(std::string name, ParameterSpec spec, std::string doc) {
+  spec.name = std::move(name);
+  spec.doc = std::move(doc);
+  parameters.push_back(std::move(spec));
+  return *this;
+}
+
+PassDeclaration& PassDeclaration::counter(std::string name, std::string doc) {
+  counters.push_back({std::move(name), std::move(doc)});
+  return *this;
+}
+
+const PortSpec* PassDeclaration::findPort(std::string_view name) const {
+  for (const PortSpec& port : ports)
+    if (port.name == name) return &port;
+  return nullptr;
+}
+
+MemberSpec member(std::string name, ResourceSpec resource, Usage usage, std::string doc) {
+  return {std::move(name), std::move(doc), std::move(resource), usage};
+}
+
+std::string shaderName(std::string_view path) {
+  std::string name;
+  bool upper = false;
+  for (const char c : path) {
+    if (c == '_' || c == '.' || c == '-' || c == '/') {
+      upper = !name.empty();
+      continue;
+    }
+    name += upper && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    upper = false;
+  }
+  return name;
+}
+
+}  // namespace fovea::graph

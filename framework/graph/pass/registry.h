@@ -1,0 +1,46 @@
+// All pass types known to the process: linked in, or loaded from plug-ins.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/pass.h"
+
+namespace fovea::graph {
+
+class Registry {
+ public:
+  using Factory = std::unique_ptr<Pass> (*)();
+  static Registry& global();
+
+  // Throws Error(Internal) on a second registration of a type or on a declaration that contradicts itself
+  // (duplicate names, a default out of range, a size over an unknown parameter or port, ...).
+  void add(PassDeclaration declaration, Factory factory);
+  const PassDeclaration* find(std::string_view type) const;
+  std::unique_ptr<Pass> create(std::string_view type) const;
+  std::vector<std::string> types() const;  // sorted
+
+  // Loads a shared library whose static FOVEA_PASS registrations join this registry. Its shaders are looked up in a
+  // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+  void loadPlugin(const std::filesystem::path& file);
+  const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
+
+  // FOVEA_PASS registrations run where nobody can catch; what went wrong in them is thrown here, as Error(Internal).
+  // Call it once at the start of a program.
+  static void throwIfRegistrationsFailed();
+
+ private:
+  bool loaded(const std::filesystem::path& plugin) const;
+  struct Entry {
+    std::unique_ptr<PassDeclaration> declaration;  // stable address
+    Factory factory;
+  };
+  std::vector<Entry> entries_;  // sorted by type
+  std::vector<std::filesystem::path> pluginShaderPaths_;
+  std::vector<std::filesystem::path> plugins_;
+};
+
+}  // namespace fovea::graph

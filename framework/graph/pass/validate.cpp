@@ -1,0 +1,209 @@
+#include "framework/graph/pass/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "fovea/error.h"
+
+namespace fovea::graph {
+
+bool isDepthFormat(VkFormat format) {
+  return format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT &&
+         format != VK_FORMAT_S8_UINT;
+}
+
+bool isIntegerFormat(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UINT:
+    case VK_FORMAT_R8_SINT:
+    case VK_FORMAT_R8G8_UINT:
+    case VK_FORMAT_R8G8_SINT:
+    case VK_FORMAT_R8G8B8A8_UINT:
+    case VK_FORMAT_R8G8B8A8_SINT:
+    case VK_FORMAT_R16_UINT:
+    case VK_FORMAT_R16_SINT:
+    case VK_FORMAT_R16G16_UINT:
+    case VK_FORMAT_R16G16_SINT:
+    case VK_FORMAT_R16G16B16A16_UINT:
+    case VK_FORMAT_R16G16B16A16_SINT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R32_SINT:
+    case VK_FORMAT_R32G32_UINT:
+    case VK_FORMAT_R32G32_SINT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+    case VK_FORMAT_R32G32B32A32_SINT:
+    case VK_FORMAT_R64_UINT:
+    case VK_FORMAT_R64_SINT:
+      return true;
+    default:
+      return false;
+  }
+}
+
+namespace {
+
+class Validator {
+ public:
+  explicit Validator(const PassDeclaration& d) : d_(d) {}
+
+  void run() {
+    checkName(d_.type, "type", false);
+    if (d_.doc.empty()) wrong("has no doc");
+    std::set<std::string> names;
+    for (const ParameterSpec& p : d_.parameters) {
+      if (!names.insert(p.name).second) wrong(fmt::format("parameter `{}` is declared twice", p.name));
+      checkParameter(p);
+    }
+    names.clear();
+    for (const PortSpec& port : d_.ports) {
+      if (!names.insert(port.name).second) wrong(fmt::format("port `{}` is declared twice", port.name));
+      checkPort(port);
+    }
+    names.clear();
+    for (const CounterSpec& c : d_.counters)
+      if (!names.insert(c.name).second) wrong(fmt::format("counter `{}` is declared twice", c.name));
+    finish();
+  }
+
+ private:
+  void wrong(const std::string& what) {
+    found_.error({}, {}, fmt::format("pass type `{}`: {}", d_.type, what));
+  }
+  void finish() { found_.throwIfErrors(ExitCode::Internal); }
+
+  void checkName(const std::string& name, const char* what, bool snake) {
+    const bool good =
+        !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
+        std::all_of(name.begin(), name.end(), [&](char c) {
+          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || (!snake && c == '-');
+        });
+    if (!good)
+      wrong(fmt::format("{} name `{}` is not in lower case{}", what, name, snake ? " snake_case" : ""));
+  }
+
+  void checkParameter(const ParameterSpec& p) {
+    using Type = ParameterSpec::Type;
+    checkName(p.name, "parameter", true);
+    if (p.doc.empty()) wrong(fmt::format("parameter `{}` has no doc", p.name));
+    if (p.min > p.max) wrong(fmt::format("parameter `{}`: empty range {} to {}", p.name, p.min, p.max));
+    const bool typed = (p.type == Type::Bool && std::holds_alternative<bool>(p.defaultValue)) ||
+                       (p.type == Type::Int && std::holds_alternative<int64_t>(p.defaultValue)) ||
+                       (p.type == Type::Real && std::holds_alternative<double>(p.defaultValue)) ||
+                       ((p.type == Type::Choice || p.type == Type::Text) &&
+                        std::holds_alternative<std::string>(p.defaultValue));
+    if (!typed) return wrong(fmt::format("parameter `{}`: the default is of another type", p.name));
+    if (p.type == Type::Int || p.type == Type::Real) {
+      const double v = p.type == Type::Int ? static_cast<double>(std::get<int64_t>(p.defaultValue))
+                                           : std::get<double>(p.defaultValue);
+      if (!std::isfinite(v) || v < p.min || v > p.max)
+        wrong(fmt::format("parameter `{}`: the default {} is outside {} to {}", p.name, v, p.min, p.max));
+    }
+    if (p.type == Type::Choice && std::find(p.choices.begin(), p.choices.end(),
+                                            std::get<std::string>(p.defaultValue)) == p.choices.end())
+      wrong(fmt::format("parameter `{}`: the default `{}` is none of its choices", p.name,
+                        std::get<std::string>(p.defaultValue)));
+  }
+
+  void checkPort(const PortSpec& port) {
+    checkName(port.name, "port", true);
+    if (port.members.empty()) wrong(fmt::format("port `{}` has no members", port.name));
+    if (port.bundle.empty() && (port.members.size() != 1 || !port.members[0].name.empty()))
+      wrong(fmt::format("port `{}` is no bundle but has named members", port.name));
+    const bool wired = port.direction == Direction::Input || port.direction == Direction::InOut;
+    if (port.optional && port.direction != Direction::Input && port.direction != Direction::InOut)
+      wrong(fmt::format("port `{}`: only inputs can be optional", port.name));
+    if (wired && port.lifetime != Lifetime::Transient)
+      wrong(fmt::format("port `{}`: an input lives as long as its producer says", port.name));
+    std::set<std::string> names;
+    for (const MemberSpec& m : port.members) {
+      if (!port.bundle.empty()) checkName(m.name, "member", true);
+      if (!names.insert(m.name).second) wrong(fmt::format("port `{}`: member `{}` twice", port.name, m.name));
+      const std::string path = m.name.empty() ? port.name : port.name + "." + m.name;
+      if (!shaderNames_.insert(shaderName(path)).second)
+        wrong(fmt::format("port `{}` has the same name in shaders as another", path));
+      checkMember(port, m, path);
+    }
+  }
+
+  void checkMember(const PortSpec& port, const MemberSpec& m, const std::string& path) {
+    const ResourceSpec& r = m.resource;
+    const bool image = r.kind == ResourceKind::Image;
+    const uint32_t allowed = static_cast<uint32_t>(image ? kImageUsages : kBufferUsages);
+    if (static_cast<uint32_t>(m.usage) & ~allowed)
+      wrong(fmt::format("port `{}`: a usage that {} cannot have", path, image ? "an image" : "a buffer"));
+    if (d_.kind == PassKind::Host && (static_cast<uint32_t>(m.usage) & ~static_cast<uint32_t>(kHostUsages)))
+      wrong(fmt::format("port `{}`: a host pass only has HostRead and HostWrite", path));
+    if (d_.kind != PassKind::Host && any(m.usage, kHostUsages))
+      wrong(fmt::format("port `{}`: HostRead and HostWrite are for host passes", path));
+    const bool attachment = any(m.usage, Usage::ColorAttachment | Usage::DepthAttachment);
+    if (attachment && d_.kind == PassKind::Compute)
+      wrong(fmt::format("port `{}`: a compute pass has no attachments", path));
+    // A depth attachment on an input is tested, not written.
+    const Usage written = port.direction == Direction::Input
+                              ? Usage(uint32_t(kWriteUsages) & ~uint32_t(Usage::DepthAttachment))
+                              : kWriteUsages;
+    if (port.direction == Direction::Input && any(m.usage, written))
+      wrong(fmt::format("port `{}`: an input with a writing usage", path));
+    if (port.direction != Direction::Input && !any(m.usage, kWriteUsages))
+      wrong(fmt::format("port `{}`: nothing writes it; give it a writing usage", path));
+    if (any(m.usage, Usage::DepthAttachment) && !isDepthFormat(r.format) && r.format != VK_FORMAT_UNDEFINED)
+      wrong(fmt::format("port `{}`: a depth attachment needs a depth format", path));
+    const bool makes = port.direction == Direction::Output || port.direction == Direction::Scratch;
+    if (image && makes && r.format == VK_FORMAT_UNDEFINED)
+      wrong(fmt::format("port `{}`: an output needs a format", path));
+    if (image && r.volume && r.array) wrong(fmt::format("port `{}`: a volume has no layers", path));
+    if (!image && r.element.empty()) wrong(fmt::format("port `{}`: a buffer needs an element type", path));
+    if (!image && r.stride == 0) wrong(fmt::format("port `{}`: a buffer needs a stride", path));
+    if (!makes) return;
+    for (const SizeExpr* size : {&r.width, &r.height, &r.depth, &r.layers, &r.mips, &r.count})
+      checkSize(*size, path);
+  }
+
+  void checkSize(const SizeExpr& size, const std::string& path) {
+    using Op = SizeExpr::Op;
+    for (const SizeExpr::Term& term : size.terms()) {
+      if (term.op == Op::Parameter) {
+        const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
+                                    [&](const ParameterSpec& s) { return s.name == term.name; });
+        using Type = ParameterSpec::Type;
+        if (p == d_.parameters.end() ||
+            (p->type != Type::Int && p->type != Type::Choice && p->type != Type::Bool))
+          wrong(fmt::format(
+              "port `{}`: size `{}` is over `{}`, which is no whole-number parameter, choice or flag", path,
+              size.print(), term.name));
+      } else if (term.op >= Op::PortWidth && term.op <= Op::PortCount) {
+        checkSizePort(size, term, path);
+      }
+    }
+  }
+
+  void checkSizePort(const SizeExpr& size, const SizeExpr::Term& term, const std::string& path) {
+    const size_t dot = term.name.find('.');
+    const PortSpec* port = d_.findPort(std::string_view(term.name).substr(0, dot));
+    const std::string memberName = dot == std::string::npos ? std::string() : term.name.substr(dot + 1);
+    const MemberSpec* found = nullptr;
+    if (port && (port->direction == Direction::Input || port->direction == Direction::InOut))
+      for (const MemberSpec& m : port->members)
+        if (m.name == memberName) found = &m;
+    if (!found)
+      return wrong(
+          fmt::format("port `{}`: size `{}` is over `{}`, which is no input", path, size.print(), term.name));
+    const bool wantsBuffer = term.op == SizeExpr::Op::PortCount;
+    if (wantsBuffer != (found->resource.kind == ResourceKind::Buffer))
+      wrong(fmt::format("port `{}`: size `{}` asks `{}` for what {} does not have", path, size.print(),
+                        term.name, wantsBuffer ? "an image" : "a buffer"));
+  }
+
+  const PassDeclaration& d_;
+  Diagnostics found_;
+  std::set<std::string> shaderNames_;
+};
+
+}  // namespace
+
+void validateDeclaration(const PassDeclaration& declaration) { Validator(declaration).run(); }
+
+}  // namespace fovea::graph

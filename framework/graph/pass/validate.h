@@ -1,0 +1,28 @@
+// Checks a declaration against itself when it is registered, so that a graph never meets a contradictory
+// pass.
+#pragma once
+
+#include "fovea/pass.h"
+
+namespace fovea::graph {
+
+// Throws Error(Internal) with everything that is wrong.
+void validateDeclaration(const PassDeclaration& declaration);
+
+inline constexpr Usage kWriteUsages = Usage::StorageWrite | Usage::ColorAttachment | Usage::DepthAttachment |
+                                      Usage::TransferWrite | Usage::HostWrite;
+inline constexpr Usage kReadUsages = Usage::Sampled | Usage::StorageRead | Usage::Uniform | Usage::TexelRead |
+                                     Usage::Indirect | Usage::TransferRead | Usage::HostRead;
+inline constexpr Usage kImageUsages = Usage::Sampled | Usage::StorageRead | Usage::StorageWrite |
+                                      Usage::ColorAttachment | Usage::DepthAttachment | Usage::TransferRead |
+                                      Usage::TransferWrite | Usage::HostRead | Usage::HostWrite;
+inline constexpr Usage kBufferUsages = Usage::StorageRead | Usage::StorageWrite | Usage::Uniform |
+                                       Usage::TexelRead | Usage::Indirect | Usage::TransferRead |
+                                       Usage::TransferWrite | Usage::HostRead | Usage::HostWrite;
+inline constexpr Usage kHostUsages = Usage::HostRead | Usage::HostWrite;
+
+// Both depth-only and depth-stencil formats.
+bool isDepthFormat(VkFormat format);
+bool isIntegerFormat(VkFormat format);
+
+}  // namespace fovea::graph

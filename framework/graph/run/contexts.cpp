@@ -1,0 +1,281 @@
+// The contexts through which passes see the graph: names in, resources and commands out.
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "fovea/error.h"
+#include "framework/gpu/barrier.h"
+#include "framework/gpu/format.h"
+#include "framework/graph/run/execute_state.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::graph {
+namespace {
+
+std::string memberPath(const PortSpec& port, const MemberSpec& member) {
+  return member.name.empty() ? port.name : port.name + "." + member.name;
+}
+
+}  // namespace
+
+PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
+                           std::unique_ptr<Pass> implementation)
+    : state(&executorState),
+      bound(&executorState.plan->graph->passes[passIndex]),
+      index(passIndex),
+      pass(std::move(implementation)) {
+  for (uint32_t i = 0; i < bound->accesses.size(); ++i) {
+    const Access& a = bound->accesses[i];
+    const PortSpec& port = bound->declaration->ports[a.port];
+    const std::string path = memberPath(port, port.members[a.member]);
+    accessByPath.emplace(path, i);
+    accessByShader.emplace(shaderName(path), i);
+  }
+  const auto& counters = bound->declaration->counters;
+  for (uint32_t i = 0; i < counters.size(); ++i) counterByName.emplace(counters[i].name, i);
+  counterValues.resize(counters.size());
+  counterSet.resize(counters.size());
+}
+
+std::vector<std::string> PassInstance::paths() const {
+  std::vector<std::string> names;
+  for (const auto& [path, i] : accessByPath) names.push_back(path);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const Access* PassInstance::findAccess(std::string_view path) const {
+  auto it = accessByPath.find(path);
+  return it == accessByPath.end() ? nullptr : &bound->accesses[it->second];
+}
+
+const Access& PassInstance::access(std::string_view path) const {
+  if (const Access* a = findAccess(path)) return *a;
+  std::string message = "pass `" + bound->name + "` (" + bound->declaration->type + ") asks for `" +
+                        std::string(path) + "`, which is not one of its wired ports";
+  const std::string nearest = nearestName(path, paths());
+  throw Error(ExitCode::Internal, message, nearest.empty() ? "" : "did you mean `" + nearest + "`?");
+}
+
+// ---- PrepareContext --------------------------------------------------------------------------------------------
+
+gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
+const Parameters& PrepareContext::parameters() const { return pass_.bound->parameters; }
+
+// A bundle is wired when one of its members is.
+static bool portWired(const PassInstance& pass, std::string_view port) {
+  if (pass.findAccess(port)) return true;
+  return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(),
+                     [&](const Access& a) { return pass.bound->declaration->ports[a.port].name == port; });
+}
+
+static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
+  const ResourceDesc& d = pass.desc(pass.access(port));
+  return {d.width, d.height, d.depth};
+}
+
+bool PrepareContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool PrepareContext::isRead(std::string_view path) const {
+  const BoundGraph& graph = *pass_.state->plan->graph;
+  const uint32_t index = pass_.access(path).resource;
+  if (graph.resources[index].output || graph.resources[index].history) return true;
+  return std::any_of(graph.passes.begin(), graph.passes.end(), [&](const BoundPass& pass) {
+    return &pass != pass_.bound &&
+           std::any_of(pass.accesses.begin(), pass.accesses.end(),
+                       [&](const Access& a) { return a.resource == index && a.reads; });
+  });
+}
+VkExtent3D PrepareContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint32_t PrepareContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
+uint64_t PrepareContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+// ---- RecordContext ---------------------------------------------------------------------------------------------
+
+RecordContext::RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame,
+                             uint64_t frameNumber)
+    : pass_(pass), cmd_(cmd), frame_(frame), frameNumber_(frameNumber) {}
+
+gpu::Device& RecordContext::device() const { return *pass_.state->device; }
+const Parameters& RecordContext::parameters() const { return pass_.bound->parameters; }
+const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
+bool RecordContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
+static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
+
+// As errors start: `act` is what the pass does, "fills `sums`".
+static std::string passDoes(const PassInstance& pass, const std::string& act) {
+  return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
+}
+
+static void requireKind(const PassInstance& pass, const Access& access, std::string_view port,
+                        ResourceKind kind) {
+  if (pass.desc(access).kind == kind) return;
+  throw Error(ExitCode::Internal, passDoes(pass, "takes " + quoted(port) + " for ") +
+                                      (kind == ResourceKind::Image ? "an image, but it is a buffer"
+                                                                   : "a buffer, but it is an image"));
+}
+
+gpu::Image& RecordContext::image(std::string_view port) const {
+  const Access& access = pass_.access(port);
+  requireKind(pass_, access, port, ResourceKind::Image);
+  return pass_.state->image(access);
+}
+gpu::Buffer& RecordContext::buffer(std::string_view port) const {
+  const Access& access = pass_.access(port);
+  requireKind(pass_, access, port, ResourceKind::Buffer);
+  return pass_.state->buffer(access);
+}
+VkExtent3D RecordContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint64_t RecordContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+Commands RecordContext::use(Kernel kernel) {
+  if (!kernel.state_)
+    throw Error(ExitCode::Internal, "pass `" + pass_.bound->name + "` uses a kernel that was never made",
+                "make it in prepare()");
+  kernel.state_->overrides.clear();
+  return Commands(*this, *kernel.state_);
+}
+
+void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
+                           const std::function<void()>& body, uint32_t layers) {
+  const VkExtent3D e = extent(colors.empty() ? depth->port : colors.front().port);
+  render(colors, depth, VkRect2D{{0, 0}, {e.width, e.height}}, body, layers);
+}
+
+void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
+                           const std::function<void()>& body, uint32_t layers) {
+  auto describe = [&](const Attachment& a) {
+    const Access& access = pass_.access(a.port);
+    VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    info.imageView = pass_.state->image(access).view();
+    info.imageLayout = access.layout;
+    info.loadOp = a.load == Attachment::Load::Clear  ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                  : a.load == Attachment::Load::Keep ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                     : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    info.clearValue = a.clear;
+    return info;
+  };
+  std::vector<VkRenderingAttachmentInfo> colorInfos;
+  for (const Attachment& a : colors) colorInfos.push_back(describe(a));
+  VkRenderingAttachmentInfo depthInfo{};
+  if (depth) depthInfo = describe(*depth);
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = area;
+  info.layerCount = layers;
+  info.colorAttachmentCount = static_cast<uint32_t>(colorInfos.size());
+  info.pColorAttachments = colorInfos.data();
+  info.pDepthAttachment = depth ? &depthInfo : nullptr;
+  vkCmdBeginRendering(cmd_, &info);
+  const VkViewport viewport{float(area.offset.x),
+                            float(area.offset.y),
+                            float(area.extent.width),
+                            float(area.extent.height),
+                            0.0f,
+                            1.0f};
+  vkCmdSetViewport(cmd_, 0, 1, &viewport);
+  vkCmdSetScissor(cmd_, 0, 1, &area);
+  body();
+  vkCmdEndRendering(cmd_);
+}
+
+// `act()` is what the pass does, put together only for a message.
+template <class Act>
+static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port,
+                            ResourceKind kind, Usage usage, const Act& act) {
+  requireKind(pass, access, port, kind);
+  if (any(access.usage, usage)) return;
+  const char* name = usage == Usage::TransferRead ? "TransferRead" : "TransferWrite";
+  throw Error(ExitCode::Internal,
+              passDoes(pass, act()) + " without declaring Usage::" + name + " on " + quoted(port));
+}
+
+void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
+  const Access& access = pass_.access(bufferPort);
+  requireTransfer(pass_, access, bufferPort, ResourceKind::Buffer, Usage::TransferWrite,
+                  [&] { return "fills " + quoted(bufferPort); });
+  vkCmdFillBuffer(cmd_, pass_.state->buffer(access).handle(), 0, VK_WHOLE_SIZE, word);
+}
+
+void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
+  const Access& access = pass_.access(imagePort);
+  requireTransfer(pass_, access, imagePort, ResourceKind::Image, Usage::TransferWrite,
+                  [&] { return "clears " + quoted(imagePort); });
+  gpu::Image& target = pass_.state->image(access);
+  const VkImageSubresourceRange range = wholeImage(target);
+  vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
+}
+
+static std::string sizeText(const ResourceDesc& d) {
+  std::string text = std::to_string(d.width) + "x" + std::to_string(d.height);
+  if (d.depth > 1) text += "x" + std::to_string(d.depth);
+  if (d.layers > 1) text += ", " + std::to_string(d.layers) + " layers";
+  if (d.mips > 1) text += ", " + std::to_string(d.mips) + " mips";
+  return text + ", " + std::string(gpu::formatInfo(d.format).name);
+}
+
+void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
+  const Access &from = pass_.access(imageFrom), &to = pass_.access(imageTo);
+  const auto act = [&] { return "copies " + quoted(imageFrom) + " to " + quoted(imageTo); };
+  requireTransfer(pass_, from, imageFrom, ResourceKind::Image, Usage::TransferRead, act);
+  requireTransfer(pass_, to, imageTo, ResourceKind::Image, Usage::TransferWrite, act);
+  const ResourceDesc &source = pass_.desc(from), &d = pass_.desc(to);
+  if (std::tie(source.width, source.height, source.depth, source.layers, source.format) !=
+          std::tie(d.width, d.height, d.depth, d.layers, d.format) ||
+      source.mips > 1 || d.mips > 1)
+    throw Error(ExitCode::BadInput,
+                passDoes(pass_, act()) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
+                    quoted(imageTo) + " is " + sizeText(d),
+                "wire images of one size and format, without mips");
+  const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, d.layers};
+  const VkImageCopy region{layers, {0, 0, 0}, layers, {0, 0, 0}, {d.width, d.height, d.depth}};
+  vkCmdCopyImage(cmd_, pass_.state->image(from).handle(), from.layout, pass_.state->image(to).handle(),
+                 to.layout, 1, &region);
+}
+
+void RecordContext::barrier() {
+  constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  gpu::memoryBarrier(cmd_, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kAll,
+                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+}
+
+static void setCounter(PassInstance& pass, std::string_view name, double value) {
+  auto it = pass.counterByName.find(name);
+  if (it == pass.counterByName.end())
+    throw Error(ExitCode::Internal,
+                "pass `" + pass.bound->declaration->type + "` has no counter `" + std::string(name) + "`");
+  pass.counterValues[it->second] = value;
+  pass.counterSet[it->second] = true;
+}
+
+void RecordContext::counter(std::string_view name, double value) { setCounter(pass_, name, value); }
+
+// ---- HostContext -----------------------------------------------------------------------------------------------
+
+HostContext::HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t frameNumber)
+    : pass_(pass), frame_(frame), frameNumber_(frameNumber) {}
+
+const Parameters& HostContext::parameters() const { return pass_.bound->parameters; }
+const scene::View& HostContext::view() const { return frame_.views[pass_.viewIndex]; }
+bool HostContext::has(std::string_view port) const { return portWired(pass_, port); }
+bool HostContext::firstFrame() const { return pass_.state->viewReset; }
+VkExtent3D HostContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint64_t HostContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+static std::span<std::byte> stagingOf(PassInstance& pass, std::string_view port) {
+  const Access& access = pass.access(port);
+  HostStaging& staging = pass.staging.at(&access - pass.bound->accesses.data());
+  return {static_cast<std::byte*>(staging.slots[pass.state->slot].mapped()),
+          resourceBytes(pass.desc(access))};
+}
+
+std::span<const std::byte> HostContext::input(std::string_view port) const { return stagingOf(pass_, port); }
+std::span<std::byte> HostContext::output(std::string_view port) const { return stagingOf(pass_, port); }
+void HostContext::counter(std::string_view name, double value) { setCounter(pass_, name, value); }
+
+bool HostContext::progress(double share) const {
+  const HostProgress& report = pass_.state->hostProgress;
+  return !report || report(pass_.bound->name, share);
+}
+
+}  // namespace fovea::graph

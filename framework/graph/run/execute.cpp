@@ -1,0 +1,392 @@
+// The frame loop: barriers of the plan, commands of the passes, timestamps, staging for host passes.
+#include "framework/graph/run/execute.h"
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "fovea/error.h"
+#include "framework/base/paths.h"
+#include "framework/gpu/barrier.h"
+#include "framework/gpu/timestamps.h"
+#include "framework/graph/pass/registry.h"
+#include "framework/graph/run/frame_slot.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::graph {
+
+struct Executor::Impl {
+  gpu::Device& device;
+  std::shared_ptr<const Plan> plan;
+  scene::FrameDescriptors& descriptors;
+  ExecutorOptions options;
+  ExecutorState state;
+  PassInstances passes;  // the live ones, in order of execution
+  std::optional<gpu::TimestampRing> timestamps;
+  std::deque<FrameSlot> slots;
+  std::deque<uint32_t> inFlight;  // slots, oldest first
+  std::deque<FrameResult> finished;
+  uint64_t frameCount = 0;
+  uint64_t residentAtStart = 0;
+  std::optional<Clock::time_point> lastFinish;
+  VkCommandBuffer cmd = VK_NULL_HANDLE;
+  uint32_t segment = 0;
+  std::vector<VkImageMemoryBarrier2> imageBarriers;  // of one batch
+
+  Impl(gpu::Device& d, std::shared_ptr<const Plan> p, scene::FrameDescriptors& s, const ExecutorOptions& o)
+      : device(d), plan(std::move(p)), descriptors(s), options(o) {}
+  ~Impl();
+
+  void build(const Registry& registry);
+  void buildPasses(const Registry& registry);
+  void buildStaging(PassInstance& pass);
+
+  void beginSegment(FrameSlot& slot);
+  void submitSegment(FrameSlot& slot, bool last);
+  void emitBarriers(const BarrierBatch& batch);
+  void runPass(FrameSlot& slot, PassInstance& pass, const scene::Frame& frame, RecordedPass& recorded);
+  // Milliseconds spent on waiting for the device; nothing when the pass reads nothing of it.
+  std::optional<double> runHostPass(FrameSlot& slot, PassInstance& pass, const scene::Frame& frame);
+  void bindViews(const scene::Frame& frame);
+  void finish(uint32_t slotIndex);
+  bool isFinished(uint32_t slotIndex) const;
+  void recordMoves(FrameSlot& slot);
+  void timestamp();
+  void flushTimestamp();
+};
+
+Executor::Impl::~Impl() {
+  vkDeviceWaitIdle(device.handle());
+  slots.clear();
+  passes.clear();
+  freeResources(state);
+}
+
+void Executor::Impl::build(const Registry& registry) {
+  residentAtStart = device.allocatedBytes();
+  state.device = &device;
+  state.plan = plan.get();
+  state.hostProgress = options.hostProgress;
+  state.sharedLayout = descriptors.setLayout();
+  allocateResources(state);
+  buildPasses(registry);
+  const uint32_t frames = std::max(1u, options.framesInFlight);
+  timestamps.emplace(device, uint32_t(4 + 2 * passes.size()), frames);
+  for (uint32_t i = 0; i < frames; ++i) slots.emplace_back(state, passes, options.readback);
+}
+
+void Executor::Impl::buildPasses(const Registry& registry) {
+  for (const auto& path : dataFolders("shaders")) device.shaders().addSearchPath(path);
+  for (const auto& path : registry.pluginShaderPaths()) device.shaders().addSearchPath(path);
+  uint64_t counterBytes = 0;
+  const uint64_t alignment = std::max<uint64_t>(device.limits().minStorageBufferOffsetAlignment, 4);
+  for (const Level& level : plan->levels) {
+    for (uint32_t index : level.passes) {
+      passes.push_back(std::make_unique<PassInstance>(
+          state, index, registry.create(plan->graph->passes[index].declaration->type)));
+      PassInstance& pass = *passes.back();
+      pass.counterOffset = counterBytes;
+      counterBytes += (pass.counterValues.size() * sizeof(uint32_t) + alignment - 1) / alignment * alignment;
+    }
+  }
+  state.counters =
+      gpu::Buffer(device, {"counters", std::max<uint64_t>(counterBytes, 16),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                               VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           gpu::MemoryKind::Device});
+  for (const auto& pass : passes) {
+    if (pass->bound->declaration->kind == PassKind::Host) buildStaging(*pass);
+    PrepareContext context(*pass);
+    pass->pass->prepare(context);
+  }
+}
+
+void Executor::Impl::buildStaging(PassInstance& pass) {
+  pass.staging.resize(pass.bound->accesses.size());
+  for (size_t i = 0; i < pass.staging.size(); ++i) {
+    const Access& access = pass.bound->accesses[i];
+    const std::string& name = plan->graph->resources[access.resource].name;
+    const uint64_t bytes = std::max<uint64_t>(16, resourceBytes(pass.desc(access)));
+    for (uint32_t s = 0; s < std::max(1u, options.framesInFlight); ++s)
+      pass.staging[i].slots.emplace_back(
+          device, gpu::BufferDesc{"host staging of " + name, bytes,
+                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                  access.reads ? gpu::MemoryKind::Readback : gpu::MemoryKind::Upload});
+  }
+}
+
+void Executor::Impl::bindViews(const scene::Frame& frame) {
+  for (const auto& pass : passes) {
+    const std::string& name = plan->graph->views[pass->bound->view];
+    const auto view = std::find_if(frame.views.begin(), frame.views.end(),
+                                   [&](const scene::View& v) { return v.name == name; });
+    if (view == frame.views.end())
+      throw Error(ExitCode::BadInput,
+                  "pass `" + pass->bound->name + "` looks through view `" + name +
+                      "`, which this frame does not have",
+                  "give the frame a view of that name, or change `view` in the graph file");
+    pass->viewIndex = static_cast<uint32_t>(view - frame.views.begin());
+    pass->viewOffset = descriptors.viewOffset(pass->viewIndex);
+  }
+}
+
+void Executor::Impl::beginSegment(FrameSlot& slot) {
+  cmd = slot.commands[segment];
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  gpu::check(vkBeginCommandBuffer(cmd, &begin), "beginning a command buffer");
+}
+
+void Executor::Impl::submitSegment(FrameSlot& slot, bool last) {
+  gpu::check(vkEndCommandBuffer(cmd), "ending a command buffer");
+  VkCommandBufferSubmitInfo command{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+  command.commandBuffer = cmd;
+  VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  submit.commandBufferInfoCount = 1;
+  submit.pCommandBufferInfos = &command;
+  gpu::check(vkQueueSubmit2(device.queue(), 1, &submit, slot.fence), "submitting a frame");
+  if (last) return;
+  gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX),
+             "waiting for a host pass's inputs");
+  gpu::check(vkResetFences(device.handle(), 1, &slot.fence), "resetting a fence");
+  ++segment;
+  beginSegment(slot);
+}
+
+void Executor::Impl::emitBarriers(const BarrierBatch& batch) {
+  if (batch.empty()) return;
+  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  memory.srcStageMask = batch.srcStage;
+  memory.srcAccessMask = batch.srcAccess;
+  memory.dstStageMask = batch.dstStage;
+  memory.dstAccessMask = batch.dstAccess;
+  imageBarriers.clear();
+  for (const ImageBarrier& b : batch.images) {
+    const bool history = plan->graph->resources[b.resource].history;
+    const uint32_t copy = !history ? 0 : b.previous ? 1 - state.parity : state.parity;
+    const gpu::Image& image = state.resources[b.resource].images[copy];
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = b.srcStage;
+    barrier.srcAccessMask = b.srcAccess;
+    // What the memory's last occupant wrote may have been flushed levels ago. Naming it again costs nothing
+    // and lets validation follow, which takes an overlap for one resource.
+    if (b.oldLayout == VK_IMAGE_LAYOUT_UNDEFINED) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = b.dstStage;
+    barrier.dstAccessMask = b.dstAccess;
+    barrier.oldLayout = b.oldLayout;
+    barrier.newLayout = b.newLayout;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image.handle();
+    barrier.subresourceRange = wholeImage(image);
+    imageBarriers.push_back(barrier);
+  }
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = batch.srcStage || batch.dstStage ? 1 : 0;
+  info.pMemoryBarriers = &memory;
+  info.imageMemoryBarrierCount = static_cast<uint32_t>(imageBarriers.size());
+  info.pImageMemoryBarriers = imageBarriers.data();
+  vkCmdPipelineBarrier2(cmd, &info);
+}
+
+std::optional<double> Executor::Impl::runHostPass(FrameSlot& slot, PassInstance& pass,
+                                                  const scene::Frame& frame) {
+  bool waits = false;
+  std::optional<double> waited;
+  for (size_t i = 0; i < pass.staging.size(); ++i) {
+    const Access& a = pass.bound->accesses[i];
+    if (!a.reads) continue;
+    copyToStaging(cmd, state.resources[a.resource], state.copyIndex(a), a.layout,
+                  pass.staging[i].slots[state.slot], resourceBytes(pass.desc(a)));
+    waits = true;
+  }
+  if (waits) {
+    gpu::memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+    const auto start = Clock::now();
+    submitSegment(slot, false);
+    waited = millisecondsSince(start);
+  }
+  HostContext context(pass, frame, frameCount);
+  pass.pass->execute(context);
+  for (size_t i = 0; i < pass.staging.size(); ++i) {
+    const Access& a = pass.bound->accesses[i];
+    if (!a.writes) continue;
+    copyFromStaging(cmd, state.resources[a.resource], state.copyIndex(a), a.layout,
+                    pass.staging[i].slots[state.slot], resourceBytes(pass.desc(a)));
+  }
+  return waited;
+}
+
+void Executor::Impl::timestamp() { timestamps->write(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT); }
+
+// Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty
+// barrier is one) a pass of dispatches alone would start after its own work.
+void Executor::Impl::flushTimestamp() {
+  if (!device.isCpu()) return;
+  const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  vkCmdPipelineBarrier2(cmd, &nothing);
+}
+
+void Executor::Impl::recordMoves(FrameSlot& slot) {
+  slot.moves = descriptors.moves();
+  if (!slot.moves) return;
+  device.beginLabel(cmd, "animate");
+  timestamp();
+  flushTimestamp();
+  descriptors.recordMoves(cmd, state.slot);
+  flushTimestamp();
+  timestamp();
+  device.endLabel(cmd);
+}
+
+void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::Frame& frame,
+                             RecordedPass& recorded) {
+  const auto start = Clock::now();
+  std::optional<double> waited;
+  std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
+  device.beginLabel(cmd, pass.bound->name.c_str());
+  timestamp();
+  flushTimestamp();
+  if (pass.bound->declaration->kind == PassKind::Host) {
+    device.endLabel(cmd);  // a label cannot span two command buffers
+    waited = runHostPass(slot, pass, frame);
+  } else {
+    RecordContext context(pass, cmd, frame, frameCount);
+    pass.pass->record(context);
+    device.endLabel(cmd);
+  }
+  timestamp();
+  recorded.cpuMs = millisecondsSince(start) - waited.value_or(0);
+  recorded.hostMs = waited ? recorded.cpuMs : 0;
+  recorded.counterValues = pass.counterValues;
+  recorded.counterSet = pass.counterSet;
+}
+
+bool Executor::Impl::isFinished(uint32_t slotIndex) const {
+  return vkGetFenceStatus(device.handle(), slots[slotIndex].fence) == VK_SUCCESS;
+}
+
+// Waits for the slot's frame and keeps what it brought.
+void Executor::Impl::finish(uint32_t slotIndex) {
+  FrameSlot& slot = slots[slotIndex];
+  gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a frame");
+  const auto now = Clock::now();
+  const auto times = timestamps->results(slot.number);
+  if (!times) throw Error(ExitCode::Internal, "a finished frame has no timestamps");
+  FrameResult result = slot.result(*times, passes);
+  const auto since = lastFinish.value_or(slot.submitted);
+  result.wallMs = std::chrono::duration<double, std::milli>(now - since).count();
+  lastFinish = now;
+  slot.busy = false;
+  finished.push_back(std::move(result));
+}
+
+Executor::Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,
+                   scene::FrameDescriptors& scene, const ExecutorOptions& options)
+    : impl_(std::make_unique<Impl>(device, std::move(plan), scene, options)) {
+  impl_->build(registry);
+}
+
+Executor::~Executor() = default;
+
+void Executor::setInput(const std::string& name, std::span<const std::byte> bytes) {
+  const BoundGraph& graph = *impl_->plan->graph;
+  for (uint32_t i = 0; i < graph.resources.size(); ++i) {
+    const BoundResource& resource = graph.resources[i];
+    if (!resource.external || resource.name != name) continue;
+    if (!impl_->plan->resourceLive[i]) return;
+    if (bytes.size() != resourceBytes(resource.desc))
+      throw Error(ExitCode::BadInput, "input `" + name + "` wants " +
+                                          std::to_string(resourceBytes(resource.desc)) + " bytes, got " +
+                                          std::to_string(bytes.size()));
+    impl_->device.waitIdle();
+    if (resource.desc.kind == ResourceKind::Image)
+      gpu::upload(impl_->device, impl_->state.resources[i].images[0], bytes, impl_->plan->startLayout[i][0]);
+    else
+      gpu::upload(impl_->device, impl_->state.resources[i].buffers[0], bytes);
+    return;
+  }
+  throw Error(ExitCode::BadInput, "graph " + graph.name + " has no input `" + name + "`");
+}
+
+void Executor::submit(const scene::Frame& frame, bool readOutputs) {
+  Impl& e = *impl_;
+  const uint32_t slotIndex = static_cast<uint32_t>(e.frameCount % e.slots.size());
+  FrameSlot& slot = e.slots[slotIndex];
+  if (slot.busy) {
+    e.finish(slotIndex);
+    e.inFlight.pop_front();
+  }
+  const auto start = Clock::now();
+  gpu::check(vkResetFences(e.device.handle(), 1, &slot.fence), "resetting a fence");
+  gpu::check(vkResetCommandPool(e.device.handle(), slot.pool, 0), "resetting a command pool");
+  slot.readOutputs = readOutputs;
+  slot.number = e.frameCount;
+  slot.frame = frame.index;
+  slot.submitted = start;
+  e.state.slot = slotIndex;
+  e.state.parity = static_cast<uint32_t>(e.frameCount & 1);
+  e.state.sceneReset = e.frameCount == 0;
+  e.state.viewReset = e.state.sceneReset || frame.cameraCut;
+  e.descriptors.update(frame, slotIndex);
+  slot.animateCpuMs = e.descriptors.moves() ? millisecondsSince(start) : 0;
+  e.state.sharedSet = e.descriptors.set(slotIndex);
+  e.bindViews(frame);
+
+  e.segment = 0;
+  e.beginSegment(slot);
+  e.timestamps->beginFrame(e.cmd, slot.number);
+  e.timestamp();
+  constexpr VkPipelineStageFlags2 kFirst =
+      VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  constexpr VkAccessFlags2 kAny = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  gpu::memoryBarrier(e.cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAny, kFirst, kAny);
+  vkCmdFillBuffer(e.cmd, e.state.counters.handle(), 0, VK_WHOLE_SIZE, 0);
+  e.recordMoves(slot);
+  gpu::memoryBarrier(e.cmd, kFirst, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAny);
+  if (e.state.viewReset) zeroKeptResources(e.state, e.cmd, e.state.sceneReset);
+  uint32_t position = 0;
+  for (const Level& level : e.plan->levels) {
+    e.emitBarriers(level.before);
+    for (size_t i = 0; i < level.passes.size(); ++i, ++position)
+      e.runPass(slot, *e.passes[position], frame, slot.passes[position]);
+  }
+  e.emitBarriers(e.plan->end);
+  e.timestamp();
+  slot.recordReadback(e.cmd);
+  e.submitSegment(slot, true);
+  slot.cpuMs = millisecondsSince(start);
+  slot.busy = true;
+  e.inFlight.push_back(slotIndex);
+  ++e.frameCount;
+}
+
+std::optional<FrameResult> Executor::poll() {
+  Impl& e = *impl_;
+  while (!e.inFlight.empty() && e.isFinished(e.inFlight.front())) {
+    e.finish(e.inFlight.front());
+    e.inFlight.pop_front();
+  }
+  if (e.finished.empty()) return std::nullopt;
+  FrameResult result = std::move(e.finished.front());
+  e.finished.pop_front();
+  return result;
+}
+
+std::optional<FrameResult> Executor::next() {
+  Impl& e = *impl_;
+  if (e.finished.empty() && !e.inFlight.empty()) {
+    e.finish(e.inFlight.front());
+    e.inFlight.pop_front();
+  }
+  return poll();
+}
+
+bool Executor::readsGeometry() const {
+  return std::any_of(impl_->passes.begin(), impl_->passes.end(),
+                     [](const auto& pass) { return pass->bound->declaration->kind == PassKind::Host; });
+}
+
+uint64_t Executor::residentBytes() const { return impl_->device.allocatedBytes() - impl_->residentAtStart; }
+
+}  // namespace fovea::graph

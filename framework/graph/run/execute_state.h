@@ -1,0 +1,133 @@
+// Internal to the executor: what passes, kernels and resources look like while a plan runs.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "fovea/pass.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/graph/compile/plan.h"
+#include "framework/graph/run/execute.h"
+
+namespace fovea::graph {
+
+// The memory behind one BoundResource. History has two copies that change places every frame; others use [0]
+// only.
+struct PhysicalResource {
+  std::array<gpu::Image, 2> images;
+  std::array<gpu::Buffer, 2> buffers;
+};
+
+// Mapped memory through which a host pass reads or writes one of its resources; one a frame in flight.
+struct HostStaging {
+  std::vector<gpu::Buffer> slots;
+};
+
+struct StringHash {
+  using is_transparent = void;
+  size_t operator()(std::string_view s) const { return std::hash<std::string_view>{}(s); }
+};
+template <class T>
+using NameMap = std::unordered_map<std::string, T, StringHash, std::equal_to<>>;
+
+// What every pass of one executor shares.
+struct ExecutorState {
+  gpu::Device* device = nullptr;
+  const Plan* plan = nullptr;
+  VkDescriptorSetLayout sharedLayout = VK_NULL_HANDLE;
+  std::vector<PhysicalResource> resources;
+  gpu::Buffer counters;     // uint32 counters of all passes, zeroed every frame
+  gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
+  std::vector<VkDeviceMemory> heaps;
+  HostProgress hostProgress;
+
+  // This frame.
+  VkDescriptorSet sharedSet = VK_NULL_HANDLE;
+  uint32_t slot = 0;
+  uint32_t parity = 0;
+  bool viewReset = false, sceneReset = false;
+
+  uint32_t copyIndex(const Access& access) const {
+    if (!plan->graph->resources[access.resource].history) return 0;
+    return access.previous ? 1 - parity : parity;
+  }
+  gpu::Image& image(const Access& a) { return resources[a.resource].images[copyIndex(a)]; }
+  gpu::Buffer& buffer(const Access& a) { return resources[a.resource].buffers[copyIndex(a)]; }
+};
+
+struct KernelBinding {
+  enum class Source { Port, Counters, Sampler, Manual } source = Source::Manual;
+  gpu::ReflectedBinding reflected;
+  uint32_t access = kNone;  // index into BoundPass::accesses
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkSampler sampler = VK_NULL_HANDLE;
+  std::string port;  // for messages
+};
+
+struct KernelConstant {
+  gpu::ReflectedConstant reflected;
+  enum class Source { Manual, Parameter, FrameIndex, Seed } source = Source::Manual;
+  uint32_t parameter = kNone;
+};
+
+struct KernelState {
+  PassInstance* pass = nullptr;
+  std::string name;
+  gpu::Pipeline pipeline;
+  std::vector<KernelBinding> bindings;
+  std::vector<KernelConstant> constants;
+  // Set by Commands::bind and ::range for the command being put together.
+  struct Override {
+    uint32_t binding = kNone;
+    VkImageView view = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    uint64_t offset = 0, range = VK_WHOLE_SIZE;
+  };
+  std::vector<Override> overrides;
+  std::vector<Attachment> covers;  // what a full-screen kernel writes
+};
+
+struct PassInstance {
+  ExecutorState* state = nullptr;
+  const BoundPass* bound = nullptr;
+  uint32_t index = 0;  // in BoundGraph::passes
+  std::unique_ptr<Pass> pass;
+  NameMap<uint32_t> accessByPath;    // "radiance", "gbuffer.position"
+  NameMap<uint32_t> accessByShader;  // "radiance", "gbufferPosition"
+  NameMap<uint32_t> counterByName;
+  std::deque<KernelState> kernels;    // stable addresses
+  std::vector<double> counterValues;  // set by the CPU
+  std::vector<bool> counterSet;
+  uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
+  std::vector<HostStaging> staging;  // host passes: one an access
+  uint32_t viewIndex = 0;            // into Frame::views, this frame
+  uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
+
+  PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation);
+  const Access& access(std::string_view path) const;  // throws Error(Internal) with the nearest port
+  const Access* findAccess(std::string_view path) const;
+  const ResourceDesc& desc(const Access& a) const { return state->plan->graph->resources[a.resource].desc; }
+  std::vector<std::string> paths() const;
+};
+
+// memory.cpp: everything a plan needs on the device.
+gpu::BufferDesc bufferDesc(const BoundResource& resource);
+gpu::ImageDesc imageDesc(const BoundResource& resource);
+void allocateResources(ExecutorState& state);
+void freeResources(ExecutorState& state);
+uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, all layers
+// Zeroes kept and history resources whose lifetime is at least `view` (all of them when `scene`), leaving
+// images in the layout the plan expects at the start of a frame.
+void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene);
+VkImageSubresourceRange wholeImage(const gpu::Image& image);
+// Copies between an image (all mips, all layers) and a tightly packed buffer.
+std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image);
+
+}  // namespace fovea::graph

@@ -1,0 +1,143 @@
+#include "framework/graph/run/frame_slot.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "fovea/error.h"
+#include "framework/gpu/barrier.h"
+
+namespace fovea::graph {
+namespace {
+
+uint32_t outputResource(const BoundGraph& graph, const std::string& name) {
+  std::vector<std::string> names;
+  for (const BoundOutput& output : graph.outputs) {
+    if (output.name == name) return output.resource;
+    names.push_back(output.name);
+  }
+  const std::string nearest = nearestName(name, names);
+  throw Error(ExitCode::BadInput, "graph " + graph.name + " has no output `" + name + "`",
+              nearest.empty() ? "" : "did you mean `" + nearest + "`?");
+}
+
+// A segment for the start and one for each host pass that has to wait for the GPU.
+uint32_t segmentCount(const PassInstances& instances) {
+  return uint32_t(1 + std::count_if(instances.begin(), instances.end(), [](const auto& instance) {
+                    const BoundPass& pass = *instance->bound;
+                    return pass.declaration->kind == PassKind::Host &&
+                           std::any_of(pass.accesses.begin(), pass.accesses.end(),
+                                       [](const Access& a) { return a.reads; });
+                  }));
+}
+
+}  // namespace
+
+FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instances,
+                     const std::vector<std::string>& readback)
+    : FrameSlot(executorState) {
+  gpu::Device& device = *state.device;
+  const BoundGraph& graph = *state.plan->graph;
+  VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  poolInfo.queueFamilyIndex = device.queueFamily();
+  gpu::check(vkCreateCommandPool(device.handle(), &poolInfo, nullptr, &pool), "creating a command pool");
+  commands.resize(segmentCount(instances));
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  allocate.commandPool = pool;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = uint32_t(commands.size());
+  gpu::check(vkAllocateCommandBuffers(device.handle(), &allocate, commands.data()),
+             "allocating command buffers");
+  VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  gpu::check(vkCreateFence(device.handle(), &fenceInfo, nullptr, &fence), "creating a fence");
+  counters = gpu::Buffer(device, {"counters readback", state.counters.bytes(),
+                                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback});
+  for (const std::string& name : readback) {
+    const uint32_t resource = outputResource(graph, name);
+    const uint64_t bytes = std::max<uint64_t>(16, resourceBytes(graph.resources[resource].desc));
+    outputs.push_back({name, resource,
+                       gpu::Buffer(device, {"readback of output " + name, bytes,
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback})});
+  }
+  passes.resize(instances.size());
+}
+
+FrameSlot::~FrameSlot() {
+  const VkDevice device = state.device->handle();
+  if (fence) vkDestroyFence(device, fence, nullptr);
+  if (pool) vkDestroyCommandPool(device, pool, nullptr);
+}
+
+void FrameSlot::recordReadback(VkCommandBuffer cmd) {
+  gpu::memoryBarrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+  const VkBufferCopy all{0, 0, state.counters.bytes()};
+  vkCmdCopyBuffer(cmd, state.counters.handle(), counters.handle(), 1, &all);
+  if (readOutputs) {
+    for (const Output& output : outputs) {
+      const BoundResource& r = state.plan->graph->resources[output.resource];
+      copyToStaging(cmd, state.resources[output.resource], r.history ? state.parity : 0,
+                    state.plan->endLayout[output.resource], output.buffer, resourceBytes(r.desc));
+    }
+  }
+  gpu::memoryBarrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
+FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInstances& instances) const {
+  const auto milliseconds = [&](size_t from) { return (timestamps[from + 1] - timestamps[from]) * 1e-6; };
+  FrameResult result;
+  result.frame = frame;
+  result.cpuMs = cpuMs;
+  result.gpuMs = timestamps.back() * 1e-6;
+  result.animateMs = moves ? milliseconds(1) : 0;
+  result.animateCpuMs = animateCpuMs;
+  const auto* gpuCounters = static_cast<const std::byte*>(counters.mapped());
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const PassInstance& pass = *instances[i];
+    const RecordedPass& recorded = passes[i];
+    const double gpuMs = milliseconds((moves ? 3 : 1) + 2 * i) - recorded.hostMs;
+    result.passes.push_back({pass.index, std::max(gpuMs, 0.0), recorded.cpuMs});
+    const auto& declared = pass.bound->declaration->counters;
+    for (size_t c = 0; c < declared.size(); ++c) {
+      uint32_t counted;
+      std::memcpy(&counted, gpuCounters + pass.counterOffset + c * sizeof(uint32_t), sizeof(counted));
+      result.counters.emplace_back(pass.bound->name + "." + declared[c].name,
+                                   recorded.counterSet[c] ? recorded.counterValues[c] : double(counted));
+    }
+  }
+  if (readOutputs) {
+    for (const Output& output : outputs) {
+      OutputData& data = result.outputs[output.name];
+      data.desc = state.plan->graph->resources[output.resource].desc;
+      data.bytes.resize(resourceBytes(data.desc));
+      std::memcpy(data.bytes.data(), output.buffer.mapped(), data.bytes.size());
+    }
+  }
+  return result;
+}
+
+void copyToStaging(VkCommandBuffer cmd, const PhysicalResource& r, uint32_t copy, VkImageLayout layout,
+                   const gpu::Buffer& staging, uint64_t bytes) {
+  if (r.images[copy]) {
+    const auto regions = packedCopy(r.images[copy]);
+    vkCmdCopyImageToBuffer(cmd, r.images[copy].handle(), layout, staging.handle(), uint32_t(regions.size()),
+                           regions.data());
+  } else {
+    const VkBufferCopy region{0, 0, bytes};
+    vkCmdCopyBuffer(cmd, r.buffers[copy].handle(), staging.handle(), 1, &region);
+  }
+}
+
+void copyFromStaging(VkCommandBuffer cmd, const PhysicalResource& r, uint32_t copy, VkImageLayout layout,
+                     const gpu::Buffer& staging, uint64_t bytes) {
+  if (r.images[copy]) {
+    const auto regions = packedCopy(r.images[copy]);
+    vkCmdCopyBufferToImage(cmd, staging.handle(), r.images[copy].handle(), layout, uint32_t(regions.size()),
+                           regions.data());
+  } else {
+    const VkBufferCopy region{0, 0, bytes};
+    vkCmdCopyBuffer(cmd, staging.handle(), r.buffers[copy].handle(), 1, &region);
+  }
+}
+
+}  // namespace fovea::graph

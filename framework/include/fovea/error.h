@@ -1,0 +1,81 @@
+// Errors as data: one type from the JSON parser to the command line.
+#pragma once
+
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fovea {
+
+// Process exit codes. They are documented in the README and never renumbered.
+enum class ExitCode : int {
+  Ok = 0,
+  Internal = 1,     // a defect of fovea itself
+  Usage = 2,        // wrong command line
+  BadInput = 3,     // graph, scene, image or shader that cannot be used
+  NoDevice = 4,     // no Vulkan device, or one that lacks a required feature
+  OutOfMemory = 5,  // device or host memory exhausted
+  DeviceLost = 6,
+  CannotWrite = 7,    // an output file could not be written
+  Interrupted = 130,  // Ctrl-C
+};
+
+// Where in a text file something stands. line and column count from 1; 0 means unknown.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+enum class Severity { Note, Warning, Error };
+
+// One message to the user: what is wrong, where, and what to do about it.
+struct Diagnostic {
+  Severity severity = Severity::Error;
+  SourceLocation where;
+  std::string path;     // place inside the document, e.g. "passes.deferred.params.kernel"
+  std::string message;  // what is wrong, naming the thing and the limit
+  std::string remedy;   // what the user can do; may be empty
+
+  // "file:12:7: error: message (at passes.deferred) - remedy"
+  std::string format() const;
+};
+
+// All messages of one phase. Phases append and go on, so that every mistake of a file is reported at once.
+class Diagnostics {
+ public:
+  void add(Diagnostic d) { list_.push_back(std::move(d)); }
+  [[gnu::cold]] void error(SourceLocation where, std::string path, std::string message,
+                           std::string remedy = {});
+  [[gnu::cold]] void warning(SourceLocation where, std::string path, std::string message,
+                             std::string remedy = {});
+  bool hasErrors() const;
+  const std::vector<Diagnostic>& list() const { return list_; }
+  std::string format() const;  // one line each
+  // Throws Error(code) when there is an error.
+  void throwIfErrors(ExitCode code = ExitCode::BadInput) const;
+
+ private:
+  std::vector<Diagnostic> list_;
+};
+
+// The one exception type. what() is the formatted diagnostics.
+class Error : public std::exception {
+ public:
+  Error(ExitCode code, std::string message, std::string remedy = {});
+  Error(ExitCode code, std::vector<Diagnostic> diagnostics);
+  const char* what() const noexcept override { return text_.c_str(); }
+  ExitCode code() const { return code_; }
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+ private:
+  ExitCode code_;
+  std::vector<Diagnostic> diagnostics_;
+  std::string text_;
+};
+
+// The candidate nearest to `word` by edit distance, or "" when none is close enough to be a likely typo.
+std::string nearestName(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace fovea

@@ -1,0 +1,397 @@
+#include "framework/scene/device/gpu_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "fovea/error.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/resources.h"
+#include "framework/scene/device/animator.h"
+#include "framework/scene/device/gpu_textures.h"
+#include "framework/scene/lights.h"
+
+namespace fovea::scene {
+
+namespace {
+
+// ---- The blocks of shaders/common/scene.glsl, std140
+// ---------------------------------------------------------------
+
+struct FrameBlock {
+  uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
+  float time, exposure;
+  glm::vec4 boundsMin, boundsMax, environment;
+  glm::uvec4 firstMoving;
+};
+static_assert(sizeof(FrameBlock) == 96);
+
+struct ViewBlock {
+  glm::mat4 worldToView, viewToClip, worldToClip, clipToWorld, previousWorldToClip;
+  glm::vec4 eye, gaze, size;
+};
+static_assert(sizeof(ViewBlock) == 368);
+
+struct LightBlock {
+  struct Light {
+    glm::vec4 position, direction, intensity, cone;
+  } lights[kMaxLights];
+};
+static_assert(sizeof(LightBlock) == 64 * kMaxLights);
+
+// One vec4 a texel; the shader's kObjectTexels of them.
+struct ObjectTexels {
+  glm::vec4 toWorld[3], previous[3], toObject[3], flags;
+};
+static_assert(sizeof(ObjectTexels) == 10 * sizeof(glm::vec4));
+
+// One vec4 a texel; the shader's kMaterialTexels of them.
+struct TextureTexels {
+  glm::vec4 place{-1, 0, 0, 0}, extent{0}, axes{0};
+};
+struct MaterialTexels {
+  glm::vec4 color, emission;
+  TextureTexels colorTexture, emissionTexture;
+};
+static_assert(sizeof(MaterialTexels) == 8 * sizeof(glm::vec4));
+
+constexpr uint32_t kTextureLinear = 16, kMaterialDoubleSided = 32;  // flags
+
+uint32_t wrapCode(Wrap wrap) { return wrap == Wrap::Clamp ? 1 : wrap == Wrap::Mirror ? 2 : 0; }
+
+// Meyer et al. 2010; octEncode in scene.glsl.
+glm::vec2 octEncode(glm::vec3 n) {
+  n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  if (n.z >= 0) return {n.x, n.y};
+  return {(1 - std::abs(n.y)) * (n.x >= 0 ? 1.0f : -1.0f), (1 - std::abs(n.x)) * (n.y >= 0 ? 1.0f : -1.0f)};
+}
+
+constexpr VkBufferUsageFlags kTexelUsage =
+    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+// A buffer with at least one (zero) element: empty ones do not exist in Vulkan.
+template <class T>
+gpu::Buffer makeBuffer(gpu::Device& device, const char* name, std::vector<T> data, VkBufferUsageFlags usage) {
+  if (data.empty()) data.emplace_back();
+  gpu::Buffer buffer(device, {name, data.size() * sizeof(T), usage, gpu::MemoryKind::Device});
+  gpu::upload(device, buffer, std::as_bytes(std::span(data)));
+  return buffer;
+}
+
+std::vector<uint32_t> indexList(const Geometry& g) {
+  std::vector<uint32_t> list;
+  list.reserve(g.triangles.size() * 3);
+  for (const Triangle& t : g.triangles) list.insert(list.end(), t.v, t.v + 3);
+  return list;
+}
+
+std::vector<Triangle> triangleList(const Geometry& g) {
+  std::vector<Triangle> list = g.triangles;
+  list.insert(list.end(), g.lightTriangles.begin(), g.lightTriangles.end());
+  return list;
+}
+
+std::vector<glm::vec4> positionList(const Geometry& g) {
+  std::vector<glm::vec4> list;
+  list.reserve(g.positions.size());
+  for (const glm::vec3& p : g.positions) list.emplace_back(p, 1);
+  return list;
+}
+
+std::vector<glm::vec4> attributeList(const Geometry& g) {
+  std::vector<glm::vec4> list;
+  list.reserve(g.positions.size());
+  for (size_t i = 0; i < g.positions.size(); ++i) list.emplace_back(octEncode(g.normals[i]), g.uvs[i]);
+  return list;
+}
+
+void checkCount(const char* what, size_t count, size_t limit) {
+  if (count <= limit) return;
+  throw Error(ExitCode::BadInput,
+              "the scene has " + std::to_string(count) + " " + what + "; at most " + std::to_string(limit) +
+                  " are supported",
+              std::string("remove some ") + what);
+}
+
+ObjectTexels objectEntry(const ObjectTransform& o) {
+  ObjectTexels texels;
+  const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld),
+                            glm::transpose(o.toObject)};
+  for (int i = 0; i < 3; ++i)
+    texels.toWorld[i] = rows[0][i], texels.previous[i] = rows[1][i], texels.toObject[i] = rows[2][i];
+  texels.flags = glm::vec4(o.visible, o.previousVisible, o.deforms, 0);
+  return texels;
+}
+
+LightBlock::Light lightEntry(const Light& light, uint32_t firstShadowLayer) {
+  const SpotCone cone = spotCone(light);
+  return {glm::vec4(light.position, float(light.type)), glm::vec4(light.direction, light.range),
+          glm::vec4(light.color * light.intensity, float(firstShadowLayer)),
+          glm::vec4(cone.cosInner, cone.cosOuter, cone.scale(), 0)};
+}
+
+ViewBlock viewEntry(const View& v) {
+  const glm::vec2 size = glm::max(glm::vec2(v.size), glm::vec2(1));
+  return {v.worldToView,         v.viewToClip,        v.worldToClip,           v.clipToWorld,
+          v.previousWorldToClip, glm::vec4(v.eye, 1), glm::vec4(v.gaze, 0, 0), glm::vec4(size, 1.0f / size)};
+}
+
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
+
+}  // namespace
+
+struct GpuScene::Impl {
+  gpu::Device& device;
+  uint32_t triangleCount, staticTriangles, vertexCount;
+  glm::vec3 boundsMin{0}, boundsMax{0}, environment;
+  uint32_t staticVertices, firstMovingLight;
+  gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
+  uint32_t objectCount;
+  std::vector<gpu::Buffer> objects;    // one a slot
+  std::unique_ptr<Animator> animator;  // null: nothing moves
+  GpuTextures textures;
+  uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
+  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> sets;
+  std::vector<DrawRun> runs;
+
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
+      : device(d),
+        triangleCount(uint32_t(g.triangles.size())),
+        staticTriangles(g.staticTriangles),
+        vertexCount(uint32_t(g.positions.size())),
+        environment(scene.environment),
+        staticVertices(g.staticVertices()),
+        firstMovingLight(g.light().firstMoving),
+        objectCount(std::max(1u, uint32_t(g.objects.size()))),
+        textures(d, scene),
+        runs(fovea::scene::drawRuns(scene, g)) {
+    checkCount("lights", scene.lights.size(), kMaxLights);
+    if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
+    indices = makeBuffer(device, "scene indices", indexList(g),
+                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    static_assert(sizeof(Triangle) == 16);
+    triangles = makeBuffer(device, "scene triangles", triangleList(g), kTexelUsage);
+    positions = makeBuffer(device, "scene positions", positionList(g),
+                           kTexelUsage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    previous = gpu::Buffer(device,
+                           {"last positions of what moves", std::max(1u, movedVertices()) * sizeof(glm::vec4),
+                            kTexelUsage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                            gpu::MemoryKind::Device});
+    attributes = makeBuffer(device, "scene attributes", attributeList(g), kTexelUsage);
+    std::vector<MaterialTexels> list;
+    for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
+    materials = makeBuffer(device, "scene materials", list, kTexelUsage);
+  }
+  ~Impl() {
+    vkDestroyDescriptorPool(device.handle(), pool, nullptr);
+    vkDestroyDescriptorSetLayout(device.handle(), layout, nullptr);
+  }
+
+  TextureTexels textureEntry(const Scene& scene, const TextureUse& use) const;
+  MaterialTexels materialEntry(const Scene& scene, const Material& m) const;
+  void makeUniforms(uint32_t slots);
+  void makeMoves(const Scene& scene, const Geometry& g, uint32_t slots);
+  void storeObjects(const Frame& frame, uint32_t slot) const;
+  uint32_t movedVertices() const { return vertexCount - staticVertices; }
+  void makeLayout();
+  void makeSets(uint32_t slots);
+  void writeSet(uint32_t slot);
+  template <class T>
+  void store(uint32_t slot, uint64_t offset, const T& value) {
+    std::memcpy(static_cast<std::byte*>(uniforms.mapped()) + slot * slotStride + offset, &value, sizeof(T));
+  }
+};
+
+TextureTexels GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse& use) const {
+  const TexturePages::Place* place = textures.find(use.texture);
+  if (!place) return {};
+  const Texture& t = scene.textures[use.texture];
+  const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear);
+  const glm::mat3x2& m = use.transform;
+  return {glm::vec4(place->page, place->x, place->y, flags), glm::vec4(t.width, t.height, m[2].x, m[2].y),
+          glm::vec4(m[0].x, m[0].y, m[1].x, m[1].y)};
+}
+
+MaterialTexels GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
+  MaterialTexels texels;
+  texels.color = glm::vec4(glm::vec3(m.baseColor) * (1.0f - m.metallic), m.baseColor.a);
+  texels.emission = glm::vec4(m.emission, m.masked ? m.alphaCutoff : 0.0f);
+  texels.colorTexture = textureEntry(scene, m.baseColorTexture);
+  texels.emissionTexture = textureEntry(scene, m.emissionTexture);
+  if (m.doubleSided) texels.colorTexture.place.w += float(kMaterialDoubleSided);
+  return texels;
+}
+
+void GpuScene::Impl::makeUniforms(uint32_t slots) {
+  const uint64_t alignment = std::max<uint64_t>(16, device.limits().minUniformBufferOffsetAlignment);
+  lightOffset = alignUp(sizeof(FrameBlock), alignment);
+  viewOffset = alignUp(lightOffset + sizeof(LightBlock), alignment);
+  viewStride = alignUp(sizeof(ViewBlock), alignment);
+  slotStride = viewOffset + kMaxViews * viewStride;
+  uniforms = gpu::Buffer(device, {"scene uniforms", slots * slotStride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                                  gpu::MemoryKind::Upload});
+  std::memset(uniforms.mapped(), 0, slots * slotStride);
+}
+
+void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t slots) {
+  if (movedVertices() > 0) animator = std::make_unique<Animator>(device, scene, g, slots);
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    objects.emplace_back(device,
+                         gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
+                                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
+    storeObjects({}, slot);
+  }
+}
+
+// Objects that the frame says nothing about stay where their vertices are.
+void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
+  auto* entries = static_cast<ObjectTexels*>(objects[slot].mapped());
+  for (uint32_t i = 0; i < objectCount; ++i)
+    entries[i] = objectEntry(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
+}
+
+constexpr VkDescriptorType kBindings[] = {
+    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,          // 0 frame
+    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,  // 1 view
+    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,          // 2 lights
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 3 triangles
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 4 positions
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 5 attributes
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 6 materials
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
+};
+constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
+
+void GpuScene::Impl::makeLayout() {
+  VkDescriptorSetLayoutBinding bindings[kBindingCount]{};
+  for (uint32_t i = 0; i < kBindingCount; ++i)
+    bindings[i] = {i, kBindings[i], 1, VK_SHADER_STAGE_ALL, nullptr};
+  VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  info.bindingCount = kBindingCount;
+  info.pBindings = bindings;
+  gpu::check(vkCreateDescriptorSetLayout(device.handle(), &info, nullptr, &layout),
+             "the layout of the scene's set");
+}
+
+void GpuScene::Impl::makeSets(uint32_t slots) {
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
+  VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  poolInfo.maxSets = slots;
+  poolInfo.poolSizeCount = uint32_t(std::size(sizes));
+  poolInfo.pPoolSizes = sizes;
+  gpu::check(vkCreateDescriptorPool(device.handle(), &poolInfo, nullptr, &pool),
+             "the descriptor pool of the scene");
+  const std::vector<VkDescriptorSetLayout> layouts(slots, layout);
+  sets.resize(slots);
+  VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  info.descriptorPool = pool;
+  info.descriptorSetCount = slots;
+  info.pSetLayouts = layouts.data();
+  gpu::check(vkAllocateDescriptorSets(device.handle(), &info, sets.data()),
+             "the descriptor sets of the scene");
+  for (uint32_t slot = 0; slot < slots; ++slot) writeSet(slot);
+}
+
+void GpuScene::Impl::writeSet(uint32_t slot) {
+  const uint64_t base = slot * slotStride;
+  const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
+                                            {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
+                                            {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
+  const VkBufferView texels[6] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
+                                  positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
+                                  previous.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
+  const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  const VkDescriptorImageInfo image{nearest, textures.image().view(),
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  VkWriteDescriptorSet writes[kBindingCount]{};
+  for (uint32_t i = 0; i < kBindingCount; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    writes[i].dstSet = sets[slot];
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = kBindings[i];
+    if (i < 3)
+      writes[i].pBufferInfo = &blocks[i];
+    else if (i == 7)
+      writes[i].pImageInfo = &image;
+    else
+      writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
+  }
+  vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
+}
+
+GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight)
+    : impl_(std::make_unique<Impl>(device, scene, geometry)) {
+  const uint32_t slots = std::max(1u, framesInFlight);
+  impl_->makeUniforms(slots);
+  impl_->makeMoves(scene, geometry, slots);
+  impl_->makeLayout();
+  impl_->makeSets(slots);
+}
+
+GpuScene::~GpuScene() = default;
+
+void GpuScene::update(const Frame& frame, uint32_t slot) {
+  checkCount("lights", frame.lights.size(), kMaxLights);
+  checkCount("views", frame.views.size(), kMaxViews);
+  if (slot >= impl_->sets.size())
+    throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
+  Impl& s = *impl_;
+  const FrameBlock block{uint32_t(frame.index),
+                         frame.seed,
+                         uint32_t(frame.lights.size()),
+                         s.triangleCount,
+                         s.staticTriangles,
+                         s.vertexCount,
+                         float(frame.time),
+                         frame.exposure,
+                         glm::vec4(s.boundsMin, 0),
+                         glm::vec4(s.boundsMax, 0),
+                         glm::vec4(s.environment, 0),
+                         glm::uvec4(s.staticVertices, s.firstMovingLight, 0, 0)};
+  impl_->store(slot, 0, block);
+  uint32_t layer = 0;
+  for (size_t i = 0; i < frame.lights.size(); ++i) {
+    impl_->store(slot, s.lightOffset + i * sizeof(LightBlock::Light), lightEntry(frame.lights[i], layer));
+    layer += shadowLayers(frame.lights[i]);
+  }
+  for (size_t i = 0; i < frame.views.size(); ++i)
+    impl_->store(slot, s.viewOffset + i * s.viewStride, viewEntry(frame.views[i]));
+  s.storeObjects(frame, slot);
+  if (s.animator) s.animator->update(frame, slot);
+}
+
+void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
+  Impl& s = *impl_;
+  if (s.animator) s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
+}
+
+bool GpuScene::moves() const { return impl_->animator != nullptr; }
+
+VkDescriptorSetLayout GpuScene::setLayout() const { return impl_->layout; }
+VkDescriptorSet GpuScene::set(uint32_t slot) const { return impl_->sets.at(slot); }
+uint32_t GpuScene::viewOffset(uint32_t view) const { return uint32_t(view * impl_->viewStride); }
+gpu::Buffer& GpuScene::indices() const { return impl_->indices; }
+gpu::Buffer& GpuScene::triangles() const { return impl_->triangles; }
+gpu::Buffer& GpuScene::positions() const { return impl_->positions; }
+gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
+gpu::Buffer& GpuScene::previous() const { return impl_->previous; }
+gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
+const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
+uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }
+uint32_t GpuScene::vertexCount() const { return impl_->vertexCount; }
+
+}  // namespace fovea::scene

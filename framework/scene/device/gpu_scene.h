@@ -1,0 +1,59 @@
+// The scene on the device: descriptor set 1, the same for every pass of a frame (shaders/common/scene.glsl).
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <memory>
+#include <vector>
+
+#include "framework/scene/device/draw_runs.h"
+#include "framework/scene/frame.h"
+
+namespace fovea::gpu {
+class Device;
+class Buffer;
+}  // namespace fovea::gpu
+
+namespace fovea::scene {
+
+inline constexpr uint32_t kMaxLights = 64;
+inline constexpr uint32_t kMaxViews = 8;
+
+// Works for a scene without triangles, lights or textures too.
+class GpuScene : public FrameDescriptors {
+ public:
+  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more
+  // than kMaxLights or a texture larger than the device takes.
+  GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
+  ~GpuScene() override;
+
+  // Frame::geometry is not read. Throws Error(BadInput) on more than kMaxViews or kMaxLights.
+  void update(const Frame& frame, uint32_t slot) override;
+  // Brings positions() and attributes() to that frame on the device, and last frame's positions of what moves
+  // into binding 10.
+  void recordMoves(VkCommandBuffer cmd, uint32_t slot) const override;
+  bool moves() const override;
+
+  VkDescriptorSetLayout setLayout() const override;
+  VkDescriptorSet set(uint32_t slot) const override;
+  uint32_t viewOffset(uint32_t view) const override;
+
+  gpu::Buffer& indices() const;  // uint32, 3 a triangle, for indexed draws
+  // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the
+  // device.
+  // uvec4: 3 vertices, material | object << 16; Geometry::lightTriangles behind those of the picture.
+  gpu::Buffer& triangles() const;
+  gpu::Buffer& positions() const;   // vec4: world space, m; w 1
+  gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
+  gpu::Buffer& previous() const;    // vec4: last frame's positions of the vertices that move
+  gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
+  const std::vector<DrawRun>& drawRuns() const;
+  uint32_t triangleCount() const;
+  uint32_t vertexCount() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fovea::scene

@@ -1,0 +1,93 @@
+#include "framework/scene/device/subdivider.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fovea/error.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/texel_table.h"
+
+namespace fovea::scene {
+namespace {
+
+// Push constants of subdivide.comp.
+struct Constants {
+  uint32_t firstRange, count, firstPoint, firstVertex;
+  float side;
+};
+
+constexpr const char* kRemedy = "lower the subdivision level of the surfaces that deform";
+
+}  // namespace
+
+struct Subdivider::Impl {
+  struct Table {
+    uint32_t firstRange, count;
+  };
+  gpu::Device& device;
+  std::vector<Table> tables;
+  gpu::Buffer ranges, entries;
+  gpu::Pipeline pipeline;
+
+  Impl(gpu::Device& d, std::span<const Stencils> stencils)
+      : device(d), pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("subdivide/subdivide.comp")}) {
+    static_assert(sizeof(Stencils::Range) == 8 && sizeof(Stencils::Entry) == 16);
+    std::vector<Stencils::Range> allRanges;
+    std::vector<Stencils::Entry> allEntries;
+    for (const Stencils& s : stencils) {
+      tables.push_back({uint32_t(allRanges.size()), s.vertexCount()});
+      for (Stencils::Range r : s.ranges()) {
+        r.first += uint32_t(allEntries.size());
+        allRanges.push_back(r);
+      }
+      allEntries.insert(allEntries.end(), s.entries().begin(), s.entries().end());
+    }
+    ranges = texelTable(device, "stencil ranges", std::move(allRanges), kRemedy);
+    entries = texelTable(device, "stencil entries", std::move(allEntries), kRemedy);
+  }
+};
+
+Subdivider::Subdivider(gpu::Device& device, std::span<const Stencils> tables)
+    : impl_(std::make_unique<Impl>(device, tables)) {}
+Subdivider::~Subdivider() = default;
+
+void Subdivider::record(VkCommandBuffer cmd, gpu::Buffer& points, gpu::Buffer& positions,
+                        gpu::Buffer& attributes, std::span<const Surface> surfaces) const {
+  if (surfaces.empty()) return;
+  const gpu::Pipeline& pipeline = impl_->pipeline;
+  const VkBufferView rangeView = impl_->ranges.texelView(VK_FORMAT_R32G32_UINT);
+  const VkBufferView entryView = impl_->entries.texelView(VK_FORMAT_R32G32B32A32_UINT);
+  const VkBufferView pointView = points.texelView(VK_FORMAT_R32G32B32A32_SFLOAT);
+  const VkDescriptorBufferInfo positionInfo{positions.handle(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo attributeInfo{attributes.handle(), 0, VK_WHOLE_SIZE};
+  std::array<VkWriteDescriptorSet, 5> writes{};
+  size_t count = 0;
+  for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
+    VkWriteDescriptorSet& w = writes.at(count++);
+    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    w.dstBinding = b.binding;
+    w.descriptorCount = 1;
+    w.descriptorType = gpu::descriptorType(b.kind);
+    if (b.name == "ranges") w.pTexelBufferView = &rangeView;
+    if (b.name == "entries") w.pTexelBufferView = &entryView;
+    if (b.name == "points") w.pTexelBufferView = &pointView;
+    if (b.name == "Positions") w.pBufferInfo = &positionInfo;
+    if (b.name == "Attributes") w.pBufferInfo = &attributeInfo;
+  }
+  vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+  impl_->device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0,
+                                  std::span(writes).first(count));
+  const uint32_t group = pipeline.interface().localSize[0];
+  for (const Surface& s : surfaces) {
+    const Impl::Table& t = impl_->tables.at(s.table);
+    const Constants constants{t.firstRange, t.count, s.firstPoint, s.firstVertex, s.mirrored ? -1.0f : 1.0f};
+    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof constants, &constants);
+    vkCmdDispatch(cmd, (t.count + group - 1) / group, 1, 1);
+  }
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,78 @@
+#include "framework/scene/export/files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+#include "fovea/error.h"
+
+namespace fovea::scene {
+namespace fs = std::filesystem;
+
+std::string safeFileName(const std::string& name) {
+  std::string out;
+  for (const char c : name.substr(0, 100)) {
+    const bool plain =
+        (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+    out += plain ? c : '_';
+  }
+  return out.empty() ? "unnamed" : out;
+}
+
+std::string UniqueNames::add(const std::string& name) {
+  std::string candidate = name;
+  for (uint32_t n = 2; !seen_.emplace(candidate, 0).second; ++n)
+    candidate = name + separator_ + std::to_string(n);
+  return candidate;
+}
+
+double shortest(float value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  double out = value;
+  std::from_chars(text, end, out);
+  return out;
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error))
+    throw Error(
+        ExitCode::CannotWrite,
+        "cannot make the folder `" + folder.string() + "`: " + (error ? error.message() : "it is a file"),
+        "choose another place");
+}
+
+void writeWholeFile(const fs::path& file, const std::string& bytes) {
+  const fs::path temporary = file.string() + ".partial" + std::to_string(::getpid());
+  const auto fail = [&](int reason) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw Error(ExitCode::CannotWrite,
+                "cannot write `" + file.string() + "`: " + std::strerror(reason ? reason : EIO),
+                "choose another place, or make room and permission there");
+  };
+  errno = 0;
+  std::ofstream stream(temporary, std::ios::binary);
+  stream.write(bytes.data(), std::streamsize(bytes.size()));
+  stream.close();  // a full disk may show only here
+  if (!stream) fail(errno);
+  std::error_code error;
+  fs::rename(temporary, file, error);
+  if (error) fail(error.value());
+}
+
+image::Image texelImage(const Texture& texture, uint32_t channels) {
+  image::Image image{texture.width, texture.height, channels, {}};
+  const size_t count = size_t(texture.width) * texture.height;
+  image.data.reserve(count * channels);
+  for (size_t i = 0; i < count; ++i)
+    for (uint32_t c = 0; c < channels; ++c) image.data.push_back(float(texture.rgba[4 * i + c]) / 255.0f);
+  return image;
+}
+
+}  // namespace fovea::scene

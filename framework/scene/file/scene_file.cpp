@@ -1,0 +1,265 @@
+// A scene file: models, lights, camera, exposure and gaze as data (samples/scenes/README.md).
+#include "framework/scene/file/scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "framework/scene/file/reader.h"
+#include "framework/scene/load.h"
+#include "framework/scene/motion/motion.h"
+
+namespace fovea::scene {
+namespace fs = std::filesystem;
+namespace {
+
+using json::ObjectReader;
+using json::Value;
+
+struct ModelEntry {
+  std::string file, builtin, get;
+  SourceLocation where;
+  std::string path;
+  Placement placement;
+  std::optional<SubdivisionEntry> subdivision;
+  AnimationChoice animation;
+};
+
+class Parser {
+ public:
+  Parser(const Value& root, const fs::path& file) : root_(root) {
+    scene_.source = file.string();
+    scene_.name = file.stem().string();
+  }
+
+  // Everything but the models themselves.
+  void parse() {
+    ObjectReader r(root_, "", errors_);
+    r.text("$schema");
+    r.text("description");
+    scene_.name = r.text("name", scene_.name);
+    eachItem(r, "models", [&](const Value& v, const std::string& path) { model(v, path); });
+    if (root_.isObject() && !r.has("models"))
+      mistake(r, "models", "the scene has no `models`",
+              R"(add "models": [{"file": "folder/model.gltf"}] or [{"builtin": "cornellbox"}])");
+    eachItem(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
+    if (const Value* c = r.find("camera")) camera(*c);
+    hasExposure_ = r.has("exposure");
+    scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
+    hasEnvironment_ = r.has("environment");
+    scene_.environment = readColor(r, "environment", glm::vec3(0));
+    scene_.ipd = float(r.number("ipd", scene_.ipd, 0, 10));
+    if (const Value* l = r.find("lens")) lens(*l);
+    gaze(r);
+    motion_.read(r);
+    r.finish();
+    errors_.throwIfErrors();
+  }
+
+  Scene assemble(const fs::path& folder, Diagnostics& warnings) {
+    Scene out = std::move(scene_);
+    if (gazeFile_) out.gaze = readGazeCsv(findFile(*gazeFile_, folder));
+    for (const ModelEntry& m : models_) {
+      Scene model =
+          m.builtin.empty()
+              ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings)
+              : builtin(m.builtin);
+      if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
+      if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
+      if (out.gaze.empty()) out.gaze = model.gaze;
+      if (m.subdivision) applySubdivision(*m.subdivision, model);
+      chooseAnimation(model, m.animation, errors_);
+      appendModel(out, std::move(model), m.placement);
+    }
+    errors_.throwIfErrors();
+    motion_.apply(out, folder, warnings);
+    return out;
+  }
+
+ private:
+  void model(const Value& v, const std::string& path) {
+    ObjectReader r(v, path, errors_);
+    ModelEntry m;
+    m.where = v.where.location();
+    m.path = path;
+    m.file = r.text("file");
+    m.builtin = r.text("builtin");
+    m.get = r.text("get");
+    if (v.isObject() && m.file.empty() == m.builtin.empty())
+      errors_.error(m.where, path, "a model is named either by `file` or by `builtin`");
+    const std::vector<std::string> names = builtinNames();
+    if (!m.builtin.empty() && std::find(names.begin(), names.end(), m.builtin) == names.end())
+      r.choice("builtin", "", names);
+    Placement& p = m.placement;
+    p.name = r.text("name", m.builtin.empty() ? fs::path(m.file).stem().string() : m.builtin);
+    p.translation = readVector(r, "translate", glm::vec3(0));
+    p.rotation = glm::quat(glm::radians(readVector(r, "rotate", glm::vec3(0))));
+    p.scale = readScale(r, "scale", glm::vec3(1));
+    p.lights = r.boolean("lights", true);
+    if (const Value* s = r.object("subdivision"))
+      m.subdivision = readSubdivision(*s, r.pathOf("subdivision"), errors_);
+    readAnimation(r, m.animation);
+    r.finish();
+    models_.push_back(std::move(m));
+  }
+
+  void light(const Value& v, const std::string& path) {
+    ObjectReader r(v, path, errors_);
+    Light l;
+    const std::string type = r.require("type") ? r.choice("type", "", {"directional", "point", "spot"}) : "";
+    if (type.empty()) return;  // what else it needs depends on the type
+    l.type = type == "directional" ? LightType::Directional
+             : type == "spot"      ? LightType::Spot
+                                   : LightType::Point;
+    l.name = r.text("name", type);
+    l.color = readColor(r, "color", glm::vec3(1));
+    l.intensity = float(r.number("intensity", 1, 0, 1e12));
+    if (l.type != LightType::Directional) {
+      r.require("position");
+      l.position = readVector(r, "position", glm::vec3(0));
+      l.range = float(r.number("range", 0, 0, 1e12));
+    }
+    if (l.type != LightType::Point) {
+      r.require("direction");
+      l.direction = readDirection(r, "direction", glm::vec3(0, -1, 0));
+    }
+    if (l.type == LightType::Spot) {
+      const double inner = r.number("inner_cone_deg", 0, 0, 90),
+                   outer = r.number("outer_cone_deg", 45, 0, 90);
+      if (inner >= outer) mistake(r, "outer_cone_deg", "outer_cone_deg must be larger than inner_cone_deg");
+      l.innerConeAngle = float(glm::radians(inner));
+      l.outerConeAngle = float(glm::radians(outer));
+    }
+    r.finish();
+    scene_.lights.push_back(l);
+  }
+
+  void camera(const Value& v) {
+    ObjectReader r(v, "camera", errors_);
+    const double fov = r.number("fov_deg", 50, 1, 170);
+    const glm::vec3 up = readDirection(r, "up", glm::vec3(0, 1, 0));
+    Camera base;
+    base.name = "scene";
+    base.zNear = float(r.number("near", 0.05, 1e-5, 1e6));
+    base.zFar = float(r.number("far", 0, 0, 1e9));
+    if (base.zFar != 0 && base.zFar <= base.zNear) mistake(r, "far", "`far` must be larger than `near`");
+    if (r.has("path")) {
+      eachItem(r, "path",
+               [&](const Value& key, const std::string& path) { cameraKey(key, path, base, up, fov); });
+      if (const Value* list = r.value().find("path"); list->isArray() && list->items.empty())
+        mistake(r, "path", "a camera path needs at least one key");
+      if (!scene_.cameraPath.empty()) scene_.cameras.push_back(scene_.cameraPath.front().camera);
+    } else {
+      look(r, base, up, fov);
+      scene_.cameras.push_back(base);
+    }
+    r.finish();
+  }
+
+  void cameraKey(const Value& v, const std::string& path, Camera base, glm::vec3 up, double fov) {
+    ObjectReader r(v, path, errors_);
+    r.require("t");
+    CameraKey key;
+    key.time = float(r.number("t", 0, 0, 1e6));
+    if (!scene_.cameraPath.empty() && r.has("t") && key.time <= scene_.cameraPath.back().time)
+      mistake(r, "t", "the times of a path must increase");
+    fov = r.number("fov_deg", fov, 1, 170);
+    up = readDirection(r, "up", up);
+    look(r, base, up, fov);
+    key.camera = base;
+    r.finish();
+    scene_.cameraPath.push_back(key);
+  }
+
+  void look(ObjectReader& r, Camera& camera, glm::vec3 up, double fov) {
+    r.require("eye");
+    r.require("target");
+    camera.position = readVector(r, "eye", glm::vec3(0));
+    const glm::vec3 target = readVector(r, "target", camera.position + glm::vec3(0, 0, -1));
+    camera.verticalFov = float(glm::radians(fov));
+    const glm::vec3 forward = target - camera.position;
+    if (glm::length(forward) <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
+    camera.orientation = lookAlong(forward, up);
+  }
+
+  void lens(const Value& v) {
+    ObjectReader r(v, "lens", errors_);
+    const auto angle = [&](const char* key) {
+      r.require(key);
+      return float(glm::radians(r.number(key, 45, kLeastLensAngle, kMostLensAngle)));
+    };
+    scene_.lens = Lens{angle("outward_deg"), angle("inward_deg"), angle("up_deg"), angle("down_deg")};
+    r.finish();
+  }
+
+  // An array of samples, or the name of a table.
+  void gaze(ObjectReader& r) {
+    const Value* v = r.find("gaze");
+    if (!v) return;
+    if (v->isString())
+      gazeFile_ = {"gaze file", v->string, "", v->where.location(), "gaze"};
+    else if (r.array("gaze"))
+      scene_.gaze = readGaze(*v, errors_);
+  }
+
+  const Value& root_;
+  Scene scene_;
+  std::vector<ModelEntry> models_;
+  Diagnostics errors_;
+  MotionReader motion_{errors_};
+  std::optional<NamedFile> gazeFile_;
+  bool hasExposure_ = false, hasEnvironment_ = false;
+};
+
+void warnOfDarkness(const Scene& scene, Diagnostics& warnings) {
+  const bool shines = !scene.lights.empty() || scene.environment != glm::vec3(0) ||
+                      std::any_of(scene.materials.begin(), scene.materials.end(),
+                                  [](const Material& m) { return m.emission != glm::vec3(0); });
+  if (!shines)
+    warnings.warning({scene.source, 0, 0}, "lights",
+                     "nothing in this scene shines: the picture will be black", "add `lights`");
+}
+
+}  // namespace
+
+// Beside the scene file, then along the search path.
+fs::path findFile(const NamedFile& m, const fs::path& folder) {
+  std::vector<fs::path> folders = {folder};
+  const std::vector<fs::path> search = modelSearchPath();
+  folders.insert(folders.end(), search.begin(), search.end());
+  std::string tried;
+  std::error_code ec;
+  for (const fs::path& f : folders) {
+    const fs::path candidate = f / m.file;  // an absolute m.file replaces f
+    if (fs::is_regular_file(candidate, ec)) return candidate;
+    if (tried.find(candidate.string()) == std::string::npos)
+      tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  std::string remedy =
+      "put it there, or name the folder that holds it in the environment variable FOVEA_SCENES";
+  if (!m.get.empty()) remedy = m.get + "; then " + remedy;
+  throw Error(ExitCode::BadInput,
+              {{Severity::Error, m.where, m.path,
+                "the " + m.what + " `" + m.file + "` is missing; looked for " + tried, remedy}});
+}
+
+Scene parseSceneFile(const Value& root, const fs::path& file, Diagnostics& warnings) {
+  Parser parser(root, file);
+  parser.parse();
+  Scene scene = parser.assemble(file.parent_path(), warnings);
+  if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
+  if (scene.cameras.empty()) {
+    addDefaultCamera(scene, flatten(scene));
+    warnings.warning({file.string(), 0, 0}, "camera",
+                     "the scene has no camera: the whole of it is shown from its front");
+  }
+  warnOfDarkness(scene, warnings);
+  scene.hash = contentHash(scene);
+  return scene;
+}
+
+Scene loadSceneFile(const fs::path& file, Diagnostics& warnings) {
+  return parseSceneFile(json::parseFile(file), file, warnings);
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,127 @@
+// Everything about a glTF document that can be told from its JSON: types, indices, sizes, the node graph.
+// Runs before tinygltf sees the file, and reports each mistake with its line.
+#include "framework/scene/gltf/check.h"
+
+#include <algorithm>
+
+namespace fovea::scene::gltf {
+namespace {
+
+const std::vector<std::string>& supportedExtensions() {
+  static const std::vector<std::string> list = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                "KHR_mesh_quantization", "KHR_texture_transform"};
+  return list;
+}
+
+class VersionChecker : DocumentReader {
+ public:
+  using DocumentReader::DocumentReader;
+  bool run(Diagnostics& warnings) {
+    if (!root_.isObject()) {
+      error(root_, "", "a glTF document is an object, this is " + root_.describe());
+      return false;
+    }
+    return checkAsset() && checkExtensions(warnings);
+  }
+
+ private:
+  bool checkAsset() {
+    const Value* asset = root_.find("asset");
+    const Value* version = asset && asset->isObject() ? asset->find("version") : nullptr;
+    if (!version || !version->isString()) {
+      // glTF 1.0 drafts knew no asset.version but kept their lists as objects.
+      const Value* meshes = root_.find("meshes");
+      error(asset ? *asset : root_, "asset.version",
+            meshes && meshes->isObject()
+                ? "no glTF version; the layout looks like glTF 1.0, which is not supported"
+                : "the glTF version is missing",
+            "only glTF 2.0 can be read");
+      return false;
+    }
+    nameOfObject(*asset, "asset");
+    const std::string& v = version->string;
+    if (v.substr(0, 2) != "2." || v.size() < 3) {
+      error(*version, "asset.version", "glTF version \"" + v.substr(0, 32) + "\" is not supported",
+            "convert the model to glTF 2.0");
+      return false;
+    }
+    if (const Value* min = asset->find("minVersion"); min && min->isString() && min->string != "2.0") {
+      error(*min, "asset.minVersion",
+            "needs glTF version \"" + min->string.substr(0, 32) + "\"; 2.0 is supported");
+      return false;
+    }
+    return true;
+  }
+
+  std::vector<const Value*> stringsOf(std::string_view key) {
+    std::vector<const Value*> list;
+    const Value* v = root_.find(key);
+    if (!v) return list;
+    if (!v->isArray()) {
+      error(*v, std::string(key), "expected an array, found " + v->describe());
+      return list;
+    }
+    for (size_t i = 0; i < v->items.size(); ++i) {
+      if (v->items[i].isString())
+        list.push_back(&v->items[i]);
+      else
+        error(v->items[i], at(key, i), "expected a text, found " + v->items[i].describe());
+    }
+    return list;
+  }
+
+  bool checkExtensions(Diagnostics& warnings) {
+    const auto supported = [](const std::string& name) {
+      const auto& list = supportedExtensions();
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    bool fine = true;
+    for (const Value* v : stringsOf("extensionsRequired")) {
+      if (supported(v->string)) continue;
+      fine = false;
+      error(*v, "extensionsRequired",
+            "the model requires the extension `" + v->string + "`, which is not supported",
+            "export it without " + v->string + "; supported are " + join(supportedExtensions()));
+    }
+    if (!fine) return false;
+    std::vector<std::string> ignored;
+    for (const Value* v : stringsOf("extensionsUsed"))
+      if (!supported(v->string)) ignored.push_back(v->string);
+    if (!ignored.empty())
+      warnings.warning({source_.name, 0, 0}, "extensionsUsed",
+                       "ignored: " + join(ignored) + "; the model's fall-back is shown instead");
+    return true;
+  }
+
+  static std::string join(const std::vector<std::string>& list) {
+    std::string text;
+    for (const std::string& s : list) text += (text.empty() ? "" : ", ") + s;
+    return text;
+  }
+};
+
+}  // namespace
+
+bool checkVersion(const json::Value& root, const Source& source, Diagnostics& errors, Diagnostics& warnings) {
+  return VersionChecker(root, source, errors).run(warnings);
+}
+
+void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings) {
+  Diagnostics errors;
+  if (checkVersion(root, source, errors, warnings)) {
+    checkData(root, source, errors);
+    checkContent(root, source, errors);
+  }
+  if (!errors.hasErrors()) return;
+  // A file of another kind can be wrong in a million places.
+  constexpr size_t kMaxReported = 20;
+  std::vector<Diagnostic> list = errors.list();
+  if (list.size() > kMaxReported) {
+    const size_t more = list.size() - kMaxReported;
+    list.resize(kMaxReported);
+    list.push_back({Severity::Error, {source.name, 0, 0}, "", std::to_string(more) + " more mistakes", ""});
+  }
+  throw Error(ExitCode::BadInput, std::move(list));
+}
+
+}  // namespace fovea::scene::gltf

@@ -1,0 +1,126 @@
+// The rules of checkDocument, in three parts; private to framework/scene.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "framework/scene/gltf/internal.h"
+
+namespace fovea::scene::gltf {
+
+inline constexpr int64_t kIntMax = 0x7fffffff;  // tinygltf keeps offsets and counts in int
+
+inline std::string at(std::string_view array, size_t i) {
+  return std::string(array) + "[" + std::to_string(i) + "]";
+}
+
+// What all parts need: lists of objects, indices into other lists, extensions.
+class DocumentReader {
+ public:
+  using Value = json::Value;
+  using ObjectReader = json::ObjectReader;
+  DocumentReader(const Value& root, const Source& source, Diagnostics& errors)
+      : root_(root), source_(source), errors_(errors) {}
+
+ protected:
+  void error(const Value& v, std::string path, std::string message, std::string remedy = {}) {
+    errors_.error(v.where.location(), std::move(path), std::move(message), std::move(remedy));
+  }
+
+  size_t sizeOf(std::string_view array) const {
+    const Value* v = root_.find(array);
+    return v && v->isArray() ? v->items.size() : 0;
+  }
+
+  void each(std::string_view array, const std::function<void(const Value&, const std::string&)>& visit) {
+    const Value* v = root_.find(array);
+    if (!v) return;
+    eachOf(*v, std::string(array), visit);
+  }
+
+  // Every item must be an object.
+  void eachOf(const Value& v, const std::string& path,
+              const std::function<void(const Value&, const std::string&)>& visit) {
+    if (!v.isArray()) return error(v, path, "expected an array, found " + v.describe());
+    for (size_t i = 0; i < v.items.size(); ++i) {
+      if (!v.items[i].isObject())
+        error(v.items[i], at(path, i), "expected an object, found " + v.items[i].describe());
+      else
+        visit(v.items[i], at(path, i));
+    }
+  }
+
+  bool indexValue(const Value& v, const std::string& path, std::string_view target) {
+    const size_t count = sizeOf(target);
+    if (!v.isInt()) {
+      error(v, path, "expected an index into `" + std::string(target) + "`, found " + v.describe());
+      return false;
+    }
+    if (v.integer < 0 || uint64_t(v.integer) >= count) {
+      error(v, path,
+            "index " + std::to_string(v.integer) + " into `" + std::string(target) + "`, which has " +
+                std::to_string(count) + " entries");
+      return false;
+    }
+    return true;
+  }
+
+  // -1 when absent or wrong.
+  int64_t index(const Value& object, const std::string& path, std::string_view key, std::string_view target,
+                bool required = false) {
+    const Value* v = object.find(key);
+    if (!v) {
+      if (required) error(object, path, "`" + std::string(key) + "` is missing");
+      return -1;
+    }
+    return indexValue(*v, json::joinPath(path, key), target) ? v->integer : -1;
+  }
+
+  void indexArray(const Value& object, const std::string& path, std::string_view key,
+                  std::string_view target) {
+    const Value* v = object.find(key);
+    if (!v) return;
+    const std::string place = json::joinPath(path, key);
+    if (!v->isArray()) return error(*v, place, "expected an array, found " + v->describe());
+    for (size_t i = 0; i < v->items.size(); ++i) indexValue(v->items[i], at(place, i), target);
+  }
+
+  void numbersIfPresent(const Value& object, const std::string& path, std::string_view key, size_t count) {
+    if (object.find(key)) ObjectReader(object, path, errors_).numbers(key, count);
+  }
+
+  void nameOfObject(const Value& object, const std::string& path) {
+    ObjectReader(object, path, errors_).text("name");
+  }
+
+  // Extensions of any object: an object of objects.
+  const Value* extension(const Value& object, const std::string& path, std::string_view name) {
+    const Value* all = object.find("extensions");
+    if (!all) return nullptr;
+    if (!all->isObject()) {
+      error(*all, json::joinPath(path, "extensions"), "expected an object, found " + all->describe());
+      return nullptr;
+    }
+    const Value* v = all->find(name);
+    if (!v) return nullptr;
+    if (!v->isObject()) {
+      error(*v, json::joinPath(json::joinPath(path, "extensions"), name),
+            "expected an object, found " + v->describe());
+      return nullptr;
+    }
+    return v;
+  }
+
+  const Value& root_;
+  const Source& source_;
+  Diagnostics& errors_;
+};
+
+// Version and extensions. False: nothing else in the file can be trusted to mean what it says.
+bool checkVersion(const json::Value& root, const Source& source, Diagnostics& errors, Diagnostics& warnings);
+// Buffers, views, accessors, images, textures: everything that could reach past the end of something.
+void checkData(const json::Value& root, const Source& source, Diagnostics& errors);
+// Materials, meshes, cameras, lights, nodes, skins, animations.
+void checkContent(const json::Value& root, const Source& source, Diagnostics& errors);
+
+}  // namespace fovea::scene::gltf

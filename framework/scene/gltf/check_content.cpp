@@ -1,0 +1,256 @@
+// What a glTF document describes: materials, meshes, cameras, lights, the node tree, skins, animations.
+#include "framework/scene/gltf/check.h"
+
+namespace fovea::scene::gltf {
+namespace {
+
+class ContentChecker : DocumentReader {
+ public:
+  using DocumentReader::DocumentReader;
+  void run() {
+    each("materials", [&](const Value& v, const std::string& path) { checkMaterial(v, path); });
+    each("meshes", [&](const Value& v, const std::string& path) { checkMesh(v, path); });
+    checkCamerasAndLights();
+    checkNodes();
+    checkSkinsAndAnimations();
+  }
+
+ private:
+  void checkTextureInfo(const Value& object, const std::string& path, std::string_view key) {
+    const Value* v = object.find(key);
+    if (!v) return;
+    const std::string place = json::joinPath(path, key);
+    if (!v->isObject()) return error(*v, place, "expected an object, found " + v->describe());
+    index(*v, place, "index", "textures", true);
+    ObjectReader r(*v, place, errors_);
+    r.integer("texCoord", 0, 0, 255);
+    r.number("scale", 1);
+    r.number("strength", 1);
+    const Value* t = extension(*v, place, "KHR_texture_transform");
+    if (!t) return;
+    const std::string inside = place + ".extensions.KHR_texture_transform";
+    numbersIfPresent(*t, inside, "offset", 2);
+    numbersIfPresent(*t, inside, "scale", 2);
+    ObjectReader x(*t, inside, errors_);
+    x.number("rotation", 0);
+    x.integer("texCoord", 0, 0, 255);
+  }
+
+  void checkMaterial(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    ObjectReader r(v, path, errors_);
+    numbersIfPresent(v, path, "emissiveFactor", 3);
+    r.choice("alphaMode", "OPAQUE", {"OPAQUE", "MASK", "BLEND"});
+    r.number("alphaCutoff", 0.5);
+    r.boolean("doubleSided", false);
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+      checkTextureInfo(v, path, key);
+    if (const Value* e = extension(v, path, "KHR_materials_emissive_strength"))
+      ObjectReader(*e, path + ".extensions.KHR_materials_emissive_strength", errors_)
+          .number("emissiveStrength", 1, 0);
+    if (const Value* pbr = r.object("pbrMetallicRoughness")) {
+      const std::string place = path + ".pbrMetallicRoughness";
+      ObjectReader p(*pbr, place, errors_);
+      numbersIfPresent(*pbr, place, "baseColorFactor", 4);
+      p.number("metallicFactor", 1);
+      p.number("roughnessFactor", 1);
+      checkTextureInfo(*pbr, place, "baseColorTexture");
+      checkTextureInfo(*pbr, place, "metallicRoughnessTexture");
+    }
+  }
+
+  void checkAttributes(const Value& v, const std::string& path) {
+    if (!v.isObject()) return error(v, path, "expected an object, found " + v.describe());
+    for (const json::Member& m : v.members) indexValue(m.value, json::joinPath(path, m.key), "accessors");
+  }
+
+  void checkMesh(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    const Value* primitives = v.find("primitives");
+    if (!primitives) return error(v, path, "the mesh has no `primitives`");
+    if (primitives->isArray() && primitives->items.empty())
+      error(*primitives, path + ".primitives", "the list is empty");
+    eachOf(*primitives, path + ".primitives", [&](const Value& p, const std::string& place) {
+      index(p, place, "indices", "accessors");
+      index(p, place, "material", "materials");
+      ObjectReader r(p, place, errors_);
+      r.integer("mode", 4, 0, 6);
+      if (const Value* attributes = r.require("attributes"))
+        checkAttributes(*attributes, place + ".attributes");
+      if (const Value* targets = r.array("targets"))
+        for (size_t i = 0; i < targets->items.size(); ++i)
+          checkAttributes(targets->items[i], at(place + ".targets", i));
+    });
+    if (const Value* weights = ObjectReader(v, path, errors_).array("weights"))
+      numbersIfPresent(v, path, "weights", weights->items.size());
+  }
+
+  void checkCamerasAndLights() {
+    each("cameras", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      ObjectReader r(v, path, errors_);
+      const std::string type = r.choice("type", "perspective", {"perspective", "orthographic"});
+      if (const Value* p = r.object("perspective")) {
+        ObjectReader q(*p, path + ".perspective", errors_);
+        q.number("yfov", 1, 1e-3, 3.14159);
+        q.number("znear", 0.1, 1e-6);
+        q.number("zfar", 0, 0);
+        q.number("aspectRatio", 1, 0);
+      } else if (type == "perspective") {
+        error(v, path, "a perspective camera needs `perspective`");
+      }
+    });
+    const Value* lights = extension(root_, "", "KHR_lights_punctual");
+    if (!lights) return;
+    const std::string place = "extensions.KHR_lights_punctual.lights";
+    const Value* list = lights->find("lights");
+    if (!list) return error(*lights, place, "`lights` is missing");
+    if (list->isArray()) lightCount_ = list->items.size();
+    eachOf(*list, place, [&](const Value& v, const std::string& path) { checkLight(v, path); });
+  }
+
+  void checkLight(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    ObjectReader r(v, path, errors_);
+    if (!r.require("type")) return;
+    const std::string type = r.choice("type", "point", {"directional", "point", "spot"});
+    numbersIfPresent(v, path, "color", 3);
+    r.number("intensity", 1, 0);
+    r.number("range", 0, 0);
+    const Value* spot = r.object("spot");
+    if (!spot) {
+      if (type == "spot") error(v, path, "a spot light needs `spot`");
+      return;
+    }
+    ObjectReader s(*spot, path + ".spot", errors_);
+    constexpr double kRightAngle = 1.5708;
+    const double inner = s.number("innerConeAngle", 0, 0, kRightAngle);
+    const double outer = s.number("outerConeAngle", 0.7853981633974483, 0, kRightAngle);
+    if (inner >= outer)
+      error(*spot, path + ".spot",
+            "innerConeAngle " + std::to_string(inner) + " is not below outerConeAngle " +
+                std::to_string(outer));
+  }
+
+  void checkNodes() {
+    each("nodes", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      index(v, path, "mesh", "meshes");
+      index(v, path, "camera", "cameras");
+      index(v, path, "skin", "skins");
+      indexArray(v, path, "children", "nodes");
+      numbersIfPresent(v, path, "matrix", 16);
+      numbersIfPresent(v, path, "translation", 3);
+      numbersIfPresent(v, path, "rotation", 4);
+      numbersIfPresent(v, path, "scale", 3);
+      if (const Value* weights = ObjectReader(v, path, errors_).array("weights"))
+        numbersIfPresent(v, path, "weights", weights->items.size());
+      if (const Value* e = extension(v, path, "KHR_lights_punctual")) checkLightOfNode(*e, path);
+    });
+    each("scenes", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      indexArray(v, path, "nodes", "nodes");
+    });
+    // A file without scenes may still name scene 0 (and show nothing).
+    if (root_.find("scenes") || (root_.find("scene") && !root_.find("scene")->isInt()))
+      index(root_, "", "scene", "scenes");
+    checkNodeTree();
+  }
+
+  void checkLightOfNode(const Value& e, const std::string& path) {
+    const std::string place = path + ".extensions.KHR_lights_punctual.light";
+    const Value* light = e.find("light");
+    if (!light || !light->isInt() || light->integer < 0 || uint64_t(light->integer) >= lightCount_)
+      error(light ? *light : e, place,
+            "expected an index into the model's " + std::to_string(lightCount_) + " lights");
+  }
+
+  // Strict trees (glTF 2.0, 3.5.1): at most one parent each, no cycles.
+  void checkNodeTree() {
+    const size_t count = sizeOf("nodes");
+    std::vector<int64_t> parent(count, -1);
+    const Value* nodes = root_.find("nodes");
+    for (size_t i = 0; i < count; ++i) {
+      const Value* children = nodes->items[i].find("children");
+      if (!children || !children->isArray()) continue;
+      for (const Value& child : children->items) {
+        if (!child.isInt() || child.integer < 0 || uint64_t(child.integer) >= count) continue;
+        int64_t& p = parent[size_t(child.integer)];
+        if (p >= 0)
+          error(child, at("nodes", i) + ".children",
+                "node " + std::to_string(child.integer) + " is a child of node " + std::to_string(p) +
+                    " and of node " + std::to_string(i) + "; a node has one parent");
+        p = int64_t(i);
+      }
+    }
+    // With one parent each, walking up either ends at a root or runs in a circle.
+    std::vector<uint8_t> known(count, 0);  // 1: on the current walk, 2: ends at a root or was reported
+    for (size_t i = 0; i < count; ++i) {
+      std::vector<size_t> walk;
+      int64_t n = int64_t(i);
+      while (n >= 0 && known[size_t(n)] == 0) {
+        known[size_t(n)] = 1;
+        walk.push_back(size_t(n));
+        n = parent[size_t(n)];
+      }
+      if (n >= 0 && known[size_t(n)] == 1)
+        error(nodes->items[size_t(n)], at("nodes", size_t(n)),
+              "node " + std::to_string(n) + " is its own ancestor");
+      for (size_t w : walk) known[w] = 2;
+    }
+  }
+
+  void checkSkinsAndAnimations() {
+    each("skins", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      index(v, path, "inverseBindMatrices", "accessors");
+      index(v, path, "skeleton", "nodes");
+      const Value* joints = v.find("joints");
+      if (!joints || (joints->isArray() && joints->items.empty()))
+        error(joints ? *joints : v, path, "the skin has no `joints`");
+      indexArray(v, path, "joints", "nodes");
+    });
+    each("animations", [&](const Value& v, const std::string& path) { checkAnimation(v, path); });
+  }
+
+  void checkAnimation(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    const Value* samplers = listOf(v, path, "samplers");
+    const Value* channels = listOf(v, path, "channels");
+    if (!samplers || !channels) return;
+    eachOf(*samplers, path + ".samplers", [&](const Value& s, const std::string& place) {
+      index(s, place, "input", "accessors", true);
+      index(s, place, "output", "accessors", true);
+      ObjectReader(s, place, errors_).choice("interpolation", "LINEAR", {"LINEAR", "STEP", "CUBICSPLINE"});
+    });
+    const size_t count = samplers->isArray() ? samplers->items.size() : 0;
+    eachOf(*channels, path + ".channels", [&](const Value& c, const std::string& place) {
+      ObjectReader r(c, place, errors_);
+      if (r.require("sampler")) r.integer("sampler", 0, 0, int64_t(count) - 1);
+      const Value* target = r.require("target") ? r.object("target") : nullptr;
+      if (!target) return;
+      index(*target, place + ".target", "node", "nodes");
+      ObjectReader t(*target, place + ".target", errors_);
+      if (t.require("path")) t.text("path");
+    });
+  }
+
+  // A list that must not be empty; nullptr when it is not there.
+  const Value* listOf(const Value& v, const std::string& path, std::string_view key) {
+    const Value* list = v.find(key);
+    if (list && !(list->isArray() && list->items.empty())) return list;
+    error(list ? *list : v, json::joinPath(path, key),
+          "the animation has no `" + std::string(key) + "`: nothing moves");
+    return nullptr;
+  }
+
+  size_t lightCount_ = 0;
+};
+
+}  // namespace
+
+void checkContent(const json::Value& root, const Source& source, Diagnostics& errors) {
+  ContentChecker(root, source, errors).run();
+}
+
+}  // namespace fovea::scene::gltf

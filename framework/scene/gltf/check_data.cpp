@@ -1,0 +1,222 @@
+// Sizes and offsets of a glTF document: buffers, views, accessors, images.
+#include <algorithm>
+#include <array>
+
+#include "framework/scene/gltf/check.h"
+
+namespace fovea::scene::gltf {
+namespace {
+
+int componentBytes(int64_t type) {
+  switch (type) {
+    case 5120:
+    case 5121:
+      return 1;
+    case 5122:
+    case 5123:
+      return 2;
+    case 5125:
+    case 5126:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+int componentCount(const std::string& type) {
+  static const std::array<std::pair<const char*, int>, 7> kTypes = {
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+  for (const auto& [name, count] : kTypes)
+    if (type == name) return count;
+  return 0;
+}
+
+// Columns of matrices start at multiples of four bytes (glTF 2.0, 3.6.2.4).
+int64_t elementBytes(const std::string& type, int64_t componentType) {
+  const int bytes = componentBytes(componentType);
+  if (type == "MAT2" && bytes == 1) return 8;
+  if (type == "MAT3" && bytes == 1) return 12;
+  if (type == "MAT3" && bytes == 2) return 24;
+  return int64_t(componentCount(type)) * bytes;
+}
+
+class DataChecker : DocumentReader {
+ public:
+  using DocumentReader::DocumentReader;
+  void run() {
+    checkBuffers();
+    checkBufferViews();
+    each("accessors", [&](const Value& v, const std::string& path) { checkAccessor(v, path); });
+    checkImagesAndTextures();
+  }
+
+ private:
+  void checkUri(const Value& object, const std::string& path, bool mustExist) {
+    const Value* uri = object.find("uri");
+    if (!uri) return;
+    const std::string place = path + ".uri";
+    if (!uri->isString()) return error(*uri, place, "expected a text, found " + uri->describe());
+    if (isDataUri(uri->string)) return;
+    const ResolvedUri r = resolveUri(source_.folder, uri->string);
+    if (!r.problem.empty())
+      return error(*uri, place, "uri \"" + uri->string.substr(0, 200) + "\": " + r.problem,
+                   "put the file into the model's folder and name it relative to that");
+    std::error_code ec;
+    if (mustExist && !std::filesystem::is_regular_file(r.file, ec))
+      error(*uri, place, "the file " + r.file.string() + " is missing", "copy it beside the model");
+  }
+
+  void checkBuffers() {
+    uint64_t total = 0;
+    size_t i = 0;
+    each("buffers", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      ObjectReader r(v, path, errors_);
+      if (!r.require("byteLength")) return;
+      const int64_t size = r.integer("byteLength", 0, 1, int64_t(kMaxFileBytes));
+      total += uint64_t(std::max<int64_t>(size, 0));
+      checkUri(v, path, true);
+      if (!v.find("uri")) {
+        if (!source_.binary || i > 0)
+          error(v, path, "the buffer has no uri",
+                "only the first buffer of a GLB file may live in the file itself");
+        else if (uint64_t(size) > source_.binarySize)
+          error(v, path,
+                "byteLength " + std::to_string(size) + " exceeds the GLB's BIN chunk of " +
+                    std::to_string(source_.binarySize) + " bytes");
+      }
+      ++i;
+    });
+    if (total > kMaxBufferBytes)
+      error(*root_.find("buffers"), "buffers",
+            "the buffers have " + std::to_string(total) + " bytes in all; at most " +
+                std::to_string(kMaxBufferBytes) + " can be read");
+  }
+
+  void checkBufferViews() {
+    each("bufferViews", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      ObjectReader r(v, path, errors_);
+      const int64_t buffer = index(v, path, "buffer", "buffers", true);
+      const int64_t offset = r.integer("byteOffset", 0, 0, kIntMax);
+      const int64_t length = r.require("byteLength") ? r.integer("byteLength", 0, 1, kIntMax) : 0;
+      r.integer("byteStride", 4, 1, 252);
+      r.integer("target", 34962, 0, kIntMax);
+      if (buffer < 0) return;
+      const int64_t size = integerAt("buffers", buffer, "byteLength", 0);
+      if (offset + length > size)
+        error(v, path,
+              "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) + " of buffers[" +
+                  std::to_string(buffer) + "], which has " + std::to_string(size) + " bytes");
+    });
+  }
+
+  // A number of another object, whatever its type; that object's own check has reported it if it is wrong.
+  int64_t integerAt(std::string_view array, int64_t i, std::string_view key, int64_t fallback) const {
+    const Value* v = root_.find(array);
+    const Value* member = v->items[size_t(i)].find(key);
+    return member && member->isInt() && member->integer >= 0 && member->integer <= kIntMax ? member->integer
+                                                                                           : fallback;
+  }
+
+  void checkSpan(const Value& v, const std::string& path, int64_t view, int64_t offset, int64_t count,
+                 int64_t bytes, bool strided) {
+    if (view < 0 || count <= 0 || bytes <= 0) return;
+    const int64_t stride = strided ? integerAt("bufferViews", view, "byteStride", bytes) : bytes;
+    const int64_t length = integerAt("bufferViews", view, "byteLength", 0);
+    if (length == 0) return;  // reported with the view
+    if (stride < bytes)
+      return error(v, path,
+                   "elements of " + std::to_string(bytes) + " bytes overlap: bufferViews[" +
+                       std::to_string(view) + "].byteStride is " + std::to_string(stride));
+    // All factors are below 2^31: no overflow in 64 bits.
+    const int64_t end = offset + (count - 1) * stride + bytes;
+    if (end > length)
+      error(v, path,
+            std::to_string(count) + " elements end at byte " + std::to_string(end) + " of bufferViews[" +
+                std::to_string(view) + "], which has " + std::to_string(length) + " bytes");
+  }
+
+  void checkAccessor(const Value& v, const std::string& path) {
+    nameOfObject(v, path);
+    ObjectReader r(v, path, errors_);
+    const int64_t view = index(v, path, "bufferView", "bufferViews");
+    const int64_t offset = r.integer("byteOffset", 0, 0, kIntMax);
+    const int64_t count = r.require("count") ? r.integer("count", 0, 1, kIntMax) : 0;
+    const int64_t component = r.require("componentType") ? r.integer("componentType", 0, 0, kIntMax) : 0;
+    const std::string type = r.require("type") ? r.text("type") : "";
+    r.boolean("normalized", false);
+    if (v.find("componentType") && componentBytes(component) == 0)
+      return error(
+          v, path,
+          "componentType " + std::to_string(component) + " is none of 5120, 5121, 5122, 5123, 5125, 5126");
+    if (componentCount(type) == 0) {
+      if (v.find("type") && v.find("type")->isString())
+        error(v, path,
+              "type \"" + type.substr(0, 32) + "\" is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4");
+      return;
+    }
+    for (const char* key : {"min", "max"}) numbersIfPresent(v, path, key, size_t(componentCount(type)));
+    checkSpan(v, path, view, offset, count, elementBytes(type, component), true);
+    if (!v.find("bufferView") && uint64_t(count) > kMaxZeroElements)
+      error(v, path,
+            "an accessor without a bufferView claims " + std::to_string(count) + " elements; at most " +
+                std::to_string(kMaxZeroElements) + " are accepted");
+    if (v.find("sparse"))
+      checkSparse(*v.find("sparse"), path + ".sparse", count, elementBytes(type, component));
+  }
+
+  void checkSparse(const Value& v, const std::string& path, int64_t elements, int64_t bytes) {
+    if (!v.isObject()) return error(v, path, "expected an object, found " + v.describe());
+    ObjectReader r(v, path, errors_);
+    const int64_t count = r.require("count") ? r.integer("count", 0, 1, std::max<int64_t>(elements, 1)) : 0;
+    for (const char* key : {"indices", "values"}) {
+      const Value* part = r.require(key) ? r.object(key) : nullptr;
+      if (!part) continue;
+      const std::string place = json::joinPath(path, key);
+      ObjectReader p(*part, place, errors_);
+      const int64_t view = index(*part, place, "bufferView", "bufferViews", true);
+      const int64_t offset = p.integer("byteOffset", 0, 0, kIntMax);
+      int64_t size = bytes;
+      if (std::string_view(key) == "indices") {
+        const int64_t component = p.require("componentType") ? p.integer("componentType", 0, 0, kIntMax) : 0;
+        if (component != 5121 && component != 5123 && component != 5125) {
+          error(*part, place, "componentType " + std::to_string(component) + " is none of 5121, 5123, 5125");
+          continue;
+        }
+        size = componentBytes(component);
+      }
+      checkSpan(*part, place, view, offset, count, size, false);
+    }
+  }
+
+  void checkImagesAndTextures() {
+    each("images", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      index(v, path, "bufferView", "bufferViews");
+      ObjectReader(v, path, errors_).text("mimeType");
+      if (v.find("uri") && v.find("bufferView"))
+        error(v, path, "an image has either a uri or a bufferView, this one both");
+      if (!v.find("uri") && !v.find("bufferView")) error(v, path, "the image has neither uri nor bufferView");
+      checkUri(v, path, false);
+    });
+    each("samplers", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      ObjectReader r(v, path, errors_);
+      for (const char* key : {"wrapS", "wrapT", "magFilter", "minFilter"}) r.integer(key, 10497, 0, kIntMax);
+    });
+    each("textures", [&](const Value& v, const std::string& path) {
+      nameOfObject(v, path);
+      index(v, path, "source", "images");
+      index(v, path, "sampler", "samplers");
+    });
+  }
+};
+
+}  // namespace
+
+void checkData(const json::Value& root, const Source& source, Diagnostics& errors) {
+  DataChecker(root, source, errors).run();
+}
+
+}  // namespace fovea::scene::gltf

@@ -1,0 +1,327 @@
+// Meshes: attributes to triangles, with the morph targets and joints that move their vertices.
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <set>
+
+#include "framework/scene/gltf/internal.h"
+
+namespace fovea::scene::gltf {
+namespace {
+
+bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Zero when the triangle has no area. In double: thin slivers of large models are triangles still.
+glm::dvec3 areaVector(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+}
+
+// Strips and fans as triangles, winding kept (glTF 2.0, 3.7.2.1).
+std::vector<uint32_t> toTriangles(const std::vector<uint32_t>& in, int mode) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) return {in.begin(), in.end() - long(in.size() % 3)};
+  std::vector<uint32_t> out;
+  for (size_t i = 0; i + 2 < in.size(); ++i) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+      out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
+    else
+      out.insert(out.end(), {in[0], in[i + 1], in[i + 2]});
+  }
+  return out;
+}
+
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(Context& c) : c_(c) {}
+
+  Mesh build(size_t index) {
+    const tinygltf::Mesh& from = c_.model.meshes[index];
+    mesh_ = nameOf("meshes", index, from.name);
+    Mesh mesh;
+    mesh.name = from.name.empty() ? "mesh " + std::to_string(index) : from.name;
+    const json::Value* written = c_.root.find("meshes")->items[index].find("primitives");
+    if (written->items.size() != from.primitives.size())
+      c_.fail(mesh_, "a primitive could not be understood", "check the types of its attributes");
+    isCage_ = hasCage(*written);
+    for (size_t i = 0; i < from.primitives.size(); ++i) {
+      Primitive p;
+      if (!primitive(from.primitives[i], mesh_ + ".primitives[" + std::to_string(i) + "]", p)) continue;
+      mesh.primitives.push_back(std::move(p));
+    }
+    readWeights(from, mesh);
+    if (isCage_) buildCage(*written, mesh_, mesh);
+    return mesh;
+  }
+
+ private:
+  std::string accessorPath(const std::string& place, const std::string& attribute, int accessor) const {
+    return place + "." + attribute + ", accessors[" + std::to_string(accessor) + "]";
+  }
+
+  size_t countOf(int accessor) const { return c_.model.accessors[size_t(accessor)].count; }
+
+  void checkCount(int accessor, size_t count, const std::string& path) const {
+    if (countOf(accessor) != count)
+      c_.fail(path, "has " + std::to_string(countOf(accessor)) + " elements, POSITION has " +
+                        std::to_string(count));
+  }
+
+  bool primitive(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    if (from.mode != TINYGLTF_MODE_TRIANGLES && from.mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
+        from.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
+      c_.warn(place, "points and lines are not drawn: the primitive is left out");
+      return false;
+    }
+    const auto position = from.attributes.find("POSITION");
+    if (position == from.attributes.end()) {
+      c_.warn(place, "without POSITION there is nothing to draw: the primitive is left out");
+      return false;
+    }
+    out.material = materialOf(from.material);
+    readPositions(position->second, place, out);
+    readUvs(from, place, out);
+    std::vector<uint32_t> indices = indicesOf(from, place, out.positions.size());
+    out.indices = toTriangles(indices, from.mode);
+    if (!isCage_) dropDegenerate(out);
+    readSkin(from, place, out);
+    readTargets(from, place, out);
+    if (!isCage_) readNormals(from, place, out);
+    if (from.attributes.count("COLOR_0")) colorsIgnored_.insert(mesh_);
+    c_.vertices += out.positions.size();
+    checkSize(place);
+    return !out.indices.empty();
+  }
+
+  void checkSize(const std::string& place) const {
+    if (c_.vertices > kMaxVertices)
+      c_.fail(place, "the meshes have more than " + std::to_string(kMaxVertices) + " vertices in all",
+              "simplify the model");
+  }
+
+  uint32_t materialOf(int material) {
+    if (material >= 0) return uint32_t(material);
+    if (c_.defaultMaterial == kNoIndex) {
+      // glTF's default material is a white metal, which a diffuse renderer would show black.
+      c_.defaultMaterial = uint32_t(c_.scene.materials.size());
+      Material m;
+      m.name = "default";
+      m.baseColor = {0.8f, 0.8f, 0.8f, 1.0f};
+      c_.scene.materials.push_back(m);
+    }
+    return c_.defaultMaterial;
+  }
+
+  void readPositions(int accessor, const std::string& place, Primitive& out) {
+    const std::string path = accessorPath(place, "POSITION", accessor);
+    c_.vertices += countOf(accessor);
+    checkSize(place);
+    c_.vertices -= countOf(accessor);
+    const std::vector<float> v = readFloats(c_, accessor, 3, path);
+    out.positions.resize(v.size() / 3);
+    for (size_t i = 0; i < out.positions.size(); ++i) {
+      out.positions[i] = glm::make_vec3(&v[3 * i]);
+      if (!isFinite(out.positions[i]))
+        c_.fail(path, "vertex " + std::to_string(i) + " has a position that is not finite (NaN or infinity)",
+                "repair the mesh in a modelling program, then export it again");
+    }
+  }
+
+  void readUvs(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    out.uvs.assign(out.positions.size(), glm::vec2(0.0f));
+    const int set = from.material >= 0 ? c_.texCoordOfMaterial[size_t(from.material)] : 0;
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    const auto found = from.attributes.find(name);
+    if (found == from.attributes.end()) return;
+    const std::string path = accessorPath(place, name, found->second);
+    checkCount(found->second, out.positions.size(), path);
+    const std::vector<float> v = readFloats(c_, found->second, 2, path);
+    for (size_t i = 0; i < out.uvs.size(); ++i) {
+      const glm::vec2 uv = glm::make_vec2(&v[2 * i]);
+      out.uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
+    }
+  }
+
+  // Four joints a vertex; further sets are rare and carry little weight.
+  void readSkin(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    const auto joints = from.attributes.find("JOINTS_0"), weights = from.attributes.find("WEIGHTS_0");
+    if (joints == from.attributes.end() || weights == from.attributes.end()) return;
+    const size_t count = out.positions.size();
+    const std::string path = accessorPath(place, "JOINTS_0", joints->second);
+    const std::string weightPath = accessorPath(place, "WEIGHTS_0", weights->second);
+    checkCount(joints->second, count, path);
+    checkCount(weights->second, count, weightPath);
+    const std::vector<float> j = readFloats(c_, joints->second, 4, path);
+    const std::vector<float> w = readFloats(c_, weights->second, 4, weightPath);
+    out.joints.assign(count, glm::u16vec4(0));
+    out.weights.assign(count, glm::vec4(1, 0, 0, 0));
+    for (size_t i = 0; i < count; ++i) {
+      const glm::vec4 weight = glm::max(glm::make_vec4(&w[4 * i]), 0.0f);
+      const float sum = weight.x + weight.y + weight.z + weight.w;
+      if (sum > 0.0f && std::isfinite(sum)) out.weights[i] = weight / sum;
+      // What a joint without weight is called does not matter.
+      for (int k = 0; k < 4; ++k)
+        if (out.weights[i][k] > 0.0f)
+          out.joints[i][k] = uint16_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
+    }
+  }
+
+  std::vector<glm::vec3> displacements(const std::map<std::string, int>& target, const char* attribute,
+                                       const std::string& place, size_t count) {
+    std::vector<glm::vec3> list;
+    const auto found = target.find(attribute);
+    if (found == target.end()) return list;
+    const std::string path = accessorPath(place, attribute, found->second);
+    checkCount(found->second, count, path);
+    c_.vertices += count;
+    checkSize(place);
+    const std::vector<float> v = readFloats(c_, found->second, 3, path);
+    list.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      list[i] = glm::make_vec3(&v[3 * i]);
+      if (!isFinite(list[i]))
+        c_.fail(path, "vertex " + std::to_string(i) + " is displaced by what is not finite");
+    }
+    return list;
+  }
+
+  void readTargets(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    for (size_t t = 0; t < from.targets.size(); ++t) {
+      const std::string path = place + ".targets[" + std::to_string(t) + "]";
+      out.targets.push_back({displacements(from.targets[t], "POSITION", path, out.positions.size()),
+                             displacements(from.targets[t], "NORMAL", path, out.positions.size())});
+    }
+  }
+
+  void readWeights(const tinygltf::Mesh& from, Mesh& mesh) {
+    size_t targets = 0;
+    for (const Primitive& p : mesh.primitives) {
+      targets = std::max(targets, p.targets.size());
+      if (p.targets.size() != mesh.primitives[0].targets.size())
+        c_.fail(mesh_, "its primitives have different numbers of morph targets");
+    }
+    if (!from.weights.empty() && from.weights.size() != targets && !mesh.primitives.empty())
+      c_.fail(mesh_ + ".weights", std::to_string(from.weights.size()) + " weights for " +
+                                      std::to_string(targets) + " morph targets");
+    for (size_t i = 0; i < std::min(targets, from.weights.size()); ++i)
+      mesh.weights.push_back(float(from.weights[i]));
+  }
+
+  std::vector<uint32_t> indicesOf(const tinygltf::Primitive& from, const std::string& place, size_t count) {
+    std::vector<uint32_t> indices;
+    if (from.indices < 0) {
+      indices.resize(count);
+      for (size_t i = 0; i < count; ++i) indices[i] = uint32_t(i);
+      return indices;
+    }
+    const std::string path = accessorPath(place, "indices", from.indices);
+    if (countOf(from.indices) > 3 * kMaxVertices)
+      c_.fail(path, "more than " + std::to_string(3 * kMaxVertices) + " indices", "simplify the model");
+    indices = readIndices(c_, from.indices, path);
+    for (size_t i = 0; i < indices.size(); ++i)
+      if (indices[i] >= count)
+        c_.fail(path, "index number " + std::to_string(i) + " is " + std::to_string(indices[i]) +
+                          ", but there are only " + std::to_string(count) + " vertices");
+    return indices;
+  }
+
+  void dropDegenerate(Primitive& p) {
+    std::vector<uint32_t>& ix = p.indices;
+    size_t kept = 0;
+    for (size_t i = 0; i + 2 < ix.size(); i += 3) {
+      const glm::dvec3 area = areaVector(p.positions[ix[i]], p.positions[ix[i + 1]], p.positions[ix[i + 2]]);
+      if (area == glm::dvec3(0.0)) {
+        ++c_.degenerateTriangles;
+        continue;
+      }
+      for (size_t k = 0; k < 3; ++k) ix[kept + k] = ix[i + k];
+      kept += 3;
+    }
+    ix.resize(kept);
+  }
+
+  void readNormals(const tinygltf::Primitive& from, const std::string& place, Primitive& p) {
+    const auto found = from.attributes.find("NORMAL");
+    if (found == from.attributes.end()) return flatNormals(p);
+    const std::string path = accessorPath(place, "NORMAL", found->second);
+    checkCount(found->second, p.positions.size(), path);
+    const std::vector<float> v = readFloats(c_, found->second, 3, path);
+    p.normals.resize(p.positions.size());
+    std::vector<bool> bad(p.positions.size());
+    for (size_t i = 0; i < p.normals.size(); ++i) {
+      const glm::vec3 n = glm::make_vec3(&v[3 * i]);
+      const float length = glm::length(n);
+      bad[i] = !(length > 1e-6f && std::isfinite(length));
+      p.normals[i] = bad[i] ? glm::vec3(0, 1, 0) : n / length;
+    }
+    // A vertex without a usable normal takes that of the first triangle it belongs to.
+    for (size_t i = 0; i + 2 < p.indices.size(); i += 3) {
+      const uint32_t* t = &p.indices[i];
+      for (int k = 0; k < 3; ++k) {
+        if (!bad[t[k]]) continue;
+        bad[t[k]] = false;
+        ++c_.badNormals;
+        p.normals[t[k]] =
+            glm::vec3(glm::normalize(areaVector(p.positions[t[0]], p.positions[t[1]], p.positions[t[2]])));
+      }
+    }
+  }
+
+  // Without normals a mesh is flat-shaded (glTF 2.0, 3.7.2.1): every triangle gets vertices of its own.
+  void flatNormals(Primitive& p) {
+    c_.vertices += p.indices.size();
+    checkSize(mesh_);
+    c_.vertices -= p.indices.size();
+    std::vector<uint32_t> vertices = std::move(p.indices);
+    const auto spread = [&](auto& list) {
+      auto all = std::move(list);
+      list.clear();
+      if (all.empty()) return;
+      list.reserve(vertices.size());
+      for (uint32_t v : vertices) list.push_back(all[v]);
+    };
+    p.normals.clear();
+    p.indices.clear();
+    for (size_t i = 0; i + 2 < vertices.size(); i += 3) {
+      const uint32_t* t = &vertices[i];
+      const glm::vec3 n(glm::normalize(areaVector(p.positions[t[0]], p.positions[t[1]], p.positions[t[2]])));
+      p.normals.insert(p.normals.end(), 3, n);
+      for (uint32_t k = 0; k < 3; ++k) p.indices.push_back(uint32_t(i) + k);
+    }
+    spread(p.positions);
+    spread(p.uvs);
+    spread(p.joints);
+    spread(p.weights);
+    for (MorphTarget& t : p.targets) {
+      spread(t.positions);
+      spread(t.normals);
+    }
+  }
+
+ public:
+  std::set<std::string> colorsIgnored_;
+
+ private:
+  Context& c_;
+  std::string mesh_;
+  bool isCage_ = false;  // faces and vertices stay as they are
+};
+
+}  // namespace
+
+void buildMeshes(Context& c) {
+  MeshBuilder builder(c);
+  for (size_t i = 0; i < c.model.meshes.size(); ++i) c.scene.meshes.push_back(builder.build(i));
+  refineCages(c);
+  if (c.degenerateTriangles > 0)
+    c.warn("meshes", std::to_string(c.degenerateTriangles) + " triangles without area were left out");
+  if (c.badNormals > 0)
+    c.warn("meshes", std::to_string(c.badNormals) +
+                         " normals were zero or not finite; they now follow their triangles");
+  if (!builder.colorsIgnored_.empty())
+    c.warn(*builder.colorsIgnored_.begin(), "vertex colours (COLOR_0) of " +
+                                                std::to_string(builder.colorsIgnored_.size()) +
+                                                " mesh(es) are ignored");
+}
+
+}  // namespace fovea::scene::gltf

@@ -1,0 +1,193 @@
+// The node tree of the scene to show, and what hangs on it: meshes, cameras, lights.
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "framework/scene/gltf/internal.h"
+#include "framework/scene/motion/deform.h"
+
+namespace fovea::scene::gltf {
+namespace {
+
+// The rotation of a world transform, scale and shear removed: where its -Z and +Y point.
+glm::quat orientationOf(const glm::mat4& m) {
+  glm::vec3 back(m[2]), up(m[1]);
+  if (glm::length(back) <= 0.0f) back = {0, 0, 1};
+  back = glm::normalize(back);
+  up -= glm::dot(up, back) * back;
+  if (glm::length(up) <= 1e-12f) up = std::abs(back.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  up = glm::normalize(up - glm::dot(up, back) * back);
+  return glm::normalize(glm::quat_cast(glm::mat3(glm::cross(up, back), up, back)));
+}
+
+class NodeBuilder {
+ public:
+  explicit NodeBuilder(Context& c) : c_(c), nodeOf_(c.sceneNode) {
+    nodeOf_.assign(c.model.nodes.size(), kNoIndex);
+  }
+
+  void run() {
+    // Parents before children: an explicit stack, since trees may be as deep as the file is long.
+    std::vector<std::pair<int, uint32_t>> stack;
+    const std::vector<int> roots = rootNodes();
+    for (auto r = roots.rbegin(); r != roots.rend(); ++r) stack.push_back({*r, kNoIndex});
+    while (!stack.empty()) {
+      const auto [from, parent] = stack.back();
+      stack.pop_back();
+      const uint32_t index = add(size_t(from), parent);
+      const std::vector<int>& children = c_.model.nodes[size_t(from)].children;
+      for (auto child = children.rbegin(); child != children.rend(); ++child)
+        stack.push_back({*child, index});
+    }
+    world_ = worldTransforms(c_.scene);
+    for (size_t i = 0; i < nodeOf_.size(); ++i)
+      if (nodeOf_[i] != kNoIndex) attach(i);
+  }
+
+ private:
+  std::vector<int> parents() const {
+    std::vector<int> parent(c_.model.nodes.size(), -1);
+    for (size_t i = 0; i < c_.model.nodes.size(); ++i)
+      for (int child : c_.model.nodes[i].children) parent[size_t(child)] = int(i);
+    return parent;
+  }
+
+  // The default scene's nodes, else the first scene's, else every node without a parent.
+  std::vector<int> rootNodes() const {
+    const std::vector<int> parent = parents();
+    std::vector<int> roots;
+    if (c_.model.scenes.empty()) {
+      for (size_t i = 0; i < parent.size(); ++i)
+        if (parent[i] < 0) roots.push_back(int(i));
+      return roots;
+    }
+    const tinygltf::Scene& scene = c_.model.scenes[size_t(std::max(c_.model.defaultScene, 0))];
+    std::vector<bool> listed(parent.size());
+    for (int n : scene.nodes) {
+      if (listed[size_t(n)]) continue;
+      listed[size_t(n)] = true;
+      roots.push_back(n);
+    }
+    // Some exporters list children too; they come with their parents.
+    const auto underListed = [&](int n) {
+      for (int p = parent[size_t(n)]; p >= 0; p = parent[size_t(p)])
+        if (listed[size_t(p)]) return true;
+      return false;
+    };
+    const size_t before = roots.size();
+    roots.erase(std::remove_if(roots.begin(), roots.end(), underListed), roots.end());
+    if (roots.size() != before)
+      c_.warn("scenes",
+              "the scene lists nodes that are children of others; they are shown once, with their parents");
+    return roots;
+  }
+
+  uint32_t add(size_t from, uint32_t parent) {
+    const tinygltf::Node& n = c_.model.nodes[from];
+    Node node;
+    node.name = n.name.empty() ? "node " + std::to_string(from) : n.name;
+    node.parent = parent;
+    if (n.matrix.size() == 16) {
+      glm::mat4 m(1.0f);
+      for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = float(n.matrix[size_t(i)]);
+      node.matrix = m;
+    } else {
+      if (n.translation.size() == 3)
+        node.translation = {n.translation[0], n.translation[1], n.translation[2]};
+      if (n.scale.size() == 3) node.scale = {n.scale[0], n.scale[1], n.scale[2]};
+      if (n.rotation.size() == 4) node.rotation = rotationOf(n, from);
+    }
+    const glm::mat4 local = localTransform(node);
+    for (int i = 0; i < 16; ++i)
+      if (!std::isfinite(local[i / 4][i % 4]))
+        c_.fail(nameOf("nodes", from, n.name), "its transform is not finite in single precision");
+    if (n.mesh >= 0) node.mesh = uint32_t(n.mesh);
+    if (n.mesh >= 0 && !n.weights.empty()) readWeights(n, from, node);
+    const uint32_t index = uint32_t(c_.scene.nodes.size());
+    c_.scene.nodes.push_back(node);
+    nodeOf_[from] = index;
+    return index;
+  }
+
+  void readWeights(const tinygltf::Node& n, size_t from, Node& node) const {
+    const Mesh& mesh = c_.scene.meshes[node.mesh];
+    const size_t targets = morphTargets(mesh);
+    if (n.weights.size() != targets && (mesh.cage || !mesh.primitives.empty()))
+      c_.fail(nameOf("nodes", from, n.name) + ".weights", std::to_string(n.weights.size()) + " weights for " +
+                                                              std::to_string(targets) + " morph targets");
+    for (double w : n.weights) node.weights.push_back(float(w));
+  }
+
+  glm::quat rotationOf(const tinygltf::Node& n, size_t from) const {
+    const glm::quat q(float(n.rotation[3]), float(n.rotation[0]), float(n.rotation[1]), float(n.rotation[2]));
+    const float length = glm::length(q);
+    if (length > 1e-6f && std::isfinite(length)) return q / length;
+    c_.warn(nameOf("nodes", from, n.name), "its rotation is not a unit quaternion and is ignored");
+    return glm::quat(1, 0, 0, 0);
+  }
+
+  void attach(size_t from) {
+    const tinygltf::Node& n = c_.model.nodes[from];
+    Node& node = c_.scene.nodes[nodeOf_[from]];
+    const glm::mat4& world = world_[nodeOf_[from]];
+    if (n.camera >= 0) {
+      node.camera = camera(size_t(n.camera), world);
+    }
+    const auto extension = n.extensions.find("KHR_lights_punctual");
+    if (extension == n.extensions.end() || !extension->second.Has("light")) return;
+    const int light = extension->second.Get("light").GetNumberAsInt();
+    if (light < 0 || size_t(light) >= c_.model.lights.size())
+      c_.fail(nameOf("nodes", from, n.name), "names no light");
+    node.light = uint32_t(c_.scene.lights.size());
+    c_.scene.lights.push_back(lightAt(c_.model.lights[size_t(light)], size_t(light), world));
+  }
+
+  uint32_t camera(size_t index, const glm::mat4& world) {
+    const tinygltf::Camera& from = c_.model.cameras[index];
+    if (from.type != "perspective") {
+      c_.warn(nameOf("cameras", index, from.name), "orthographic cameras are not supported; it is left out");
+      return kNoIndex;
+    }
+    Camera camera;
+    camera.name = from.name.empty() ? "camera " + std::to_string(index) : from.name;
+    camera.position = glm::vec3(world[3]);
+    camera.orientation = orientationOf(world);
+    camera.verticalFov = float(from.perspective.yfov);
+    camera.zNear = float(from.perspective.znear);
+    camera.zFar = float(from.perspective.zfar);
+    c_.scene.cameras.push_back(camera);
+    return uint32_t(c_.scene.cameras.size() - 1);
+  }
+
+  Light lightAt(const tinygltf::Light& from, size_t index, const glm::mat4& world) {
+    Light light;
+    light.name = from.name.empty() ? "light " + std::to_string(index) : from.name;
+    light.type = from.type == "directional" ? LightType::Directional
+                 : from.type == "spot"      ? LightType::Spot
+                                            : LightType::Point;
+    if (from.color.size() == 3)
+      light.color = glm::max(glm::vec3(from.color[0], from.color[1], from.color[2]), 0.0f);
+    light.intensity = float(from.intensity);
+    light.range = float(from.range);
+    if (light.type == LightType::Spot) {
+      light.innerConeAngle = float(from.spot.innerConeAngle);
+      light.outerConeAngle = float(from.spot.outerConeAngle);
+    }
+    light.position = glm::vec3(world[3]);
+    // Along the node's -Z; a node's scale does not touch its light (KHR_lights_punctual).
+    light.direction = orientationOf(world) * glm::vec3(0, 0, -1);
+    return light;
+  }
+
+  Context& c_;
+  std::vector<uint32_t>& nodeOf_;
+  std::vector<glm::mat4> world_;
+};
+
+}  // namespace
+
+void buildNodes(Context& c) { NodeBuilder(c).run(); }
+
+}  // namespace fovea::scene::gltf

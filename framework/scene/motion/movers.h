@@ -1,0 +1,132 @@
+// Where the things that move are, for passes that keep what they made of the rest.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "framework/base/random.h"
+#include "framework/scene/motion/deform.h"
+#include "framework/scene/motion/motion.h"
+
+namespace fovea::scene {
+
+// Of a dynamic object that is visible; around the whole of its animation where it deforms.
+inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
+  Bounds box;
+  for (int c = 0; c < 8; ++c) {
+    const glm::vec3 corner(c & 1 ? object.high.x : object.low.x, c & 2 ? object.high.y : object.low.y,
+                           c & 4 ? object.high.z : object.low.z);
+    box.include(object.deforms ? corner : place.fromObject(corner));
+  }
+  return box;
+}
+
+// Boxes in which all dynamic objects lie, in world space; low > high: unused. An object has one of its own
+// while there are enough; the others share the last. Of a hidden object: where its vertices are gathered.
+struct MoverBoxes {
+  static constexpr size_t kCount = 3;  // MOVER_BOXES of the shaders
+  // Low and high of each; w 0.
+  std::array<glm::vec4, 2 * kCount> corners = [] {
+    std::array<glm::vec4, 2 * kCount> none;
+    for (size_t i = 0; i < kCount; ++i) {
+      none[2 * i] = glm::vec4(glm::vec3(std::numeric_limits<float>::max()), 0);
+      none[2 * i + 1] = glm::vec4(glm::vec3(std::numeric_limits<float>::lowest()), 0);
+    }
+    return none;
+  }();
+  bool empty() const {
+    for (size_t i = 0; i < kCount; ++i)
+      if (corners[2 * i].x <= corners[2 * i + 1].x) return false;
+    return true;
+  }
+  // One around them all; low above high when all are unused.
+  Bounds all() const {
+    Bounds box;
+    for (size_t i = 0; i < kCount; ++i) {
+      box.low = glm::min(box.low, glm::vec3(corners[2 * i]));
+      box.high = glm::max(box.high, glm::vec3(corners[2 * i + 1]));
+    }
+    return box;
+  }
+};
+
+inline MoverBoxes moverBoxes(const Frame& frame) {
+  std::array<Bounds, MoverBoxes::kCount> boxes;
+  const Geometry& geometry = *frame.geometry;
+  size_t used = 0;
+  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic || object.vertexCount == 0) continue;
+    const ObjectTransform& place = frame.objects[i];
+    Bounds box;
+    box.include(glm::vec3(place.toWorld[3]));
+    if (place.visible) box = boundsOf(object, place);
+    Bounds& into = boxes[std::min(used++, boxes.size() - 1)];
+    into.include(box.low);
+    into.include(box.high);
+  }
+  MoverBoxes result;
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    result.corners[2 * i] = glm::vec4(boxes[i].low, 0);
+    result.corners[2 * i + 1] = glm::vec4(boxes[i].high, 0);
+  }
+  return result;
+}
+
+// Each box around both of the same place.
+inline MoverBoxes around(const MoverBoxes& a, const MoverBoxes& b) {
+  MoverBoxes result;
+  for (size_t i = 0; i < MoverBoxes::kCount; ++i) {
+    result.corners[2 * i] = glm::min(a.corners[2 * i], b.corners[2 * i]);
+    result.corners[2 * i + 1] = glm::max(a.corners[2 * i + 1], b.corners[2 * i + 1]);
+  }
+  return result;
+}
+
+// Spheres in which all visible dynamic objects lie. An object has one of its own while there are enough; the
+// others share the last.
+template <size_t kCount>
+struct MoverSpheres {
+  std::array<glm::vec4, kCount> spheres;  // xyz centre, w radius, below 0: unused
+  std::array<uint32_t, kCount> poses{};   // the same number as long as what lies in the sphere keeps its pose
+};
+
+// A hash of where all points of an object are.
+inline uint32_t poseHash(const Object& object, size_t index, const Frame& frame) {
+  uint32_t hash = uint32_t(index) + 1;
+  auto add = [&](const float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i) hash = hashCombine(std::bit_cast<uint32_t>(values[i]), hash);
+  };
+  const ObjectPose pose = poseOf(object, index, frame);
+  add(&pose.toWorld[0][0], 16);
+  for (const glm::mat4& joint : pose.joints) add(&joint[0][0], 16);
+  add(pose.weights.data(), pose.weights.size());
+  return hash;
+}
+
+template <size_t kCount>
+MoverSpheres<kCount> moverSpheres(const Frame& frame) {
+  MoverSpheres<kCount> movers;
+  std::array<Bounds, kCount> boxes;
+  const Geometry& geometry = *frame.geometry;
+  size_t used = 0;
+  for (size_t i = 0; i < std::min(geometry.objects.size(), frame.objects.size()); ++i) {
+    const Object& object = geometry.objects[i];
+    if (!object.dynamic || object.vertexCount == 0 || !frame.objects[i].visible) continue;
+    const Bounds box = boundsOf(object, frame.objects[i]);
+    const size_t into = std::min(used++, kCount - 1);
+    boxes[into].include(box.low);
+    boxes[into].include(box.high);
+    movers.poses[into] = hashCombine(movers.poses[into], poseHash(object, i, frame));
+  }
+  for (size_t i = 0; i < kCount; ++i)
+    movers.spheres[i] = i >= used ? glm::vec4(0, 0, 0, -1)
+                                  : glm::vec4(0.5f * (boxes[i].low + boxes[i].high),
+                                              0.5f * glm::length(boxes[i].high - boxes[i].low));
+  return movers;
+}
+
+}  // namespace fovea::scene

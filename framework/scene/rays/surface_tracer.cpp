@@ -1,0 +1,109 @@
+#include "framework/scene/rays/surface_tracer.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "framework/base/random.h"
+#include "framework/scene/lights.h"
+#include "framework/shader_twins/paraboloid.h"
+
+namespace fovea::scene {
+
+namespace {
+constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
+}
+
+glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u) {
+  const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
+  return toWorld(orthonormalFrame(normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - u.x)});
+}
+
+glm::vec2 streamSequence(uint32_t stream, uint32_t turn) {
+  return {uniformFloat(hashCombine(stream, 0u) + turn * 3242174889u),
+          uniformFloat(hashCombine(stream, 1u) + turn * 2447445414u)};
+}
+
+SurfaceTracer::SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays)
+    : frame_(frame), view_(view), rays_(rays) {
+  for (const Material& m : frame.scene->materials) shines_ = shines_ || m.emission != glm::vec3(0);
+}
+
+TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) const {
+  const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
+  const Material& material = frame_.scene->materials[s.material];
+  const bool front = glm::dot(s.geometricNormal, direction) < 0;
+  TracedSurface v;
+  if (!front && !material.doubleSided) return v;
+  const float side = front ? 1.0f : -1.0f;
+  v.there = true;
+  v.position = s.position;
+  v.normal = side * s.shadingNormal;
+  v.face = side * s.geometricNormal;
+  v.origin = s.position + (v.face - direction) * rays_.epsilon();
+  v.uv = s.uv;
+  v.material = &material;
+  return v;
+}
+
+TracedSurface SurfaceTracer::look(glm::vec2 pixel, uint64_t& rays) const {
+  Ray ray;
+  ray.origin = view_.eye;
+  ray.direction = glm::normalize(view_.rayDirection(pixel));
+  for (;;) {
+    ++rays;
+    const RayHit hit = rays_.intersect(ray);
+    if (!hit) return {};
+    if (const TracedSurface v = surfaceOf(hit, ray.direction); v.there) return v;
+    ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
+  }
+}
+
+TracedSurface SurfaceTracer::arrive(glm::vec3 origin, glm::vec3 direction, float reach,
+                                    uint64_t& rays) const {
+  ++rays;
+  const RayHit hit = rays_.intersect({origin, direction, 0, reach});
+  return hit ? surfaceOf(hit, direction) : TracedSurface{};
+}
+
+glm::vec3 SurfaceTracer::reflectance(const TracedSurface& v) const {
+  return glm::vec3(scene::reflectance(*frame_.scene, *v.material, v.uv));
+}
+
+glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) const {
+  glm::vec3 sum(0);
+  for (const Light& light : frame_.lights) {
+    const LightSample l = sampleLight(light, v.position);
+    const float cosine = glm::dot(v.normal, l.direction);
+    if (cosine <= 0 || glm::dot(v.face, l.direction) <= 0 || l.irradiance == glm::vec3(0)) continue;
+    Ray ray;
+    ray.origin = v.origin;
+    ray.direction = l.direction;
+    if (l.distance < kFarAway) ray.far = l.distance * kShadowEnd;
+    ++rays;
+    if (!rays_.occluded(ray)) sum += l.irradiance * cosine;
+  }
+  return sum;
+}
+
+glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const {
+  glm::vec3 sum = rho * glm::one_over_pi<float>() * irradiance(v, rays);
+  if (shines_) sum += emission(*frame_.scene, *v.material, v.uv);
+  return sum;
+}
+
+glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
+                                uint64_t& rays) const {
+  glm::vec3 sum(0);
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, i));
+    if (glm::dot(direction, v.face) <= 0) continue;
+    const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
+    if (!next.there) continue;
+    const glm::vec3 rho = reflectance(next);
+    sum += direct(next, rho, rays);
+    if (bounces > 1) sum += rho * gather(next, bounces - 1, 1, hashCombine(stream, i + 2), rays);
+  }
+  return sum / float(count);
+}
+
+}  // namespace fovea::scene

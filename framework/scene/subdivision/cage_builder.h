@@ -1,0 +1,57 @@
+// Control cages from triangle meshes, whose vertices are split where normals or texture coordinates differ.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "framework/scene/subdivision/subdivision.h"
+
+namespace fovea::json {
+class ObjectReader;
+}
+
+namespace fovea::scene {
+
+// SubdivisionCage::lightLevel as files give it, beside the picture's `level`; what is wrong goes to the
+// reader's diagnostics.
+std::optional<uint32_t> readLightLevel(json::ObjectReader& r, std::string_view key, uint32_t level);
+
+// Vertices in exactly the same place become one point of the cage, with the morph targets and joints of the
+// first of them; texture coordinates join where they are equal. Vertices that no face uses are left out.
+class CageBuilder {
+ public:
+  // The faces that follow are of this primitive, which must outlive them.
+  void begin(const Primitive& primitive);
+  void face(std::span<const uint32_t> vertices);  // of the primitive
+  // The point that a vertex of the primitive became; kNoIndex when no face uses it.
+  uint32_t point(uint32_t vertex) const { return vertex < points_.size() ? points_[vertex] : kNoIndex; }
+  // Everything but scheme, level, creases and corners. Unchecked: checkCage.
+  SubdivisionCage take();
+
+ private:
+  struct Key {
+    uint32_t bits[3];
+    bool operator==(const Key&) const = default;
+  };
+  struct Hash {
+    size_t operator()(const Key& k) const;
+  };
+  uint32_t pointOf(uint32_t vertex);
+  uint32_t uvOf(uint32_t vertex);
+
+  const Primitive* primitive_ = nullptr;
+  SubdivisionCage cage_;
+  std::unordered_map<Key, uint32_t, Hash> known_, knownUvs_;
+  std::vector<uint32_t> points_, uvs_;  // of the primitive's vertices
+};
+
+// Infinitely sharp creases along the edges whose two faces' planes enclose more than `degrees`. The cage must
+// have passed checkCage.
+void creaseByAngle(SubdivisionCage& cage, float degrees);
+
+}  // namespace fovea::scene

@@ -1,0 +1,84 @@
+#include "framework/session/graph_run.h"
+
+#include <fmt/format.h>
+
+#include "framework/base/paths.h"
+#include "framework/gpu/format.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/graph/pass/registry.h"
+#include "framework/graph/report/report.h"
+#include "framework/scene/motion/motion.h"
+
+namespace fovea::session {
+
+std::unique_ptr<gpu::Device> openDevice(const std::string& name, bool validation) {
+  gpu::DeviceOptions options;
+  options.device = name;
+  if (validation) options.validation = gpu::Validation::On;
+  auto device = std::make_unique<gpu::Device>(options);
+  for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
+  return device;
+}
+
+graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
+                                    const scene::Geometry& geometry, glm::uvec2 size) {
+  graph::Environment environment = graph::deviceEnvironment(device);
+  environment.views = scene::frameViews({size.x, size.y});
+  environment.quantities = scene::quantities(scene, geometry);
+  return environment;
+}
+
+double parameterOr(const graph::BoundGraph& graph, const char* name, double otherwise) {
+  double value = otherwise;
+  for (const graph::BoundPass& pass : graph.passes)
+    if (pass.parameters.find(name)) value = pass.parameters.real(name);
+  return value;
+}
+
+image::Image toImage(const graph::OutputData& output) {
+  return {output.desc.width, output.desc.height, gpu::formatInfo(output.desc.format).channels,
+          gpu::texelsToFloats(output.desc.format, output.bytes)};
+}
+
+GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, const scene::Scene& scene,
+                   scene::Geometry& geometry, Options options, Diagnostics& messages)
+    : device_(device), scene_(scene), geometry_(geometry), options_(std::move(options)) {
+  const glm::uvec2 size = options_.size;
+  const uint32_t limit = device_.limits().maxImageDimension2D;
+  if (size.x > limit || size.y > limit)
+    throw Error(ExitCode::Usage,
+                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size.x,
+                            size.y, limit),
+                "render a smaller picture");
+  auto bound = std::make_shared<const graph::BoundGraph>(
+      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages));
+  if (options_.readback) readback_ = options_.readback(*bound);
+  plan_ =
+      std::make_shared<const graph::Plan>(graph::compile(bound, graph::deviceCompileOptions(device_, bound)));
+  graph::warnAboutPlan(*plan_, messages);
+}
+
+void GraphRun::prepare() {
+  inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
+  gpuScene_ = std::make_unique<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
+  graph::ExecutorOptions executorOptions;
+  executorOptions.framesInFlight = inFlight_;
+  executorOptions.readback = readback_;
+  executorOptions.hostProgress = options_.hostProgress;
+  executor_ = std::make_unique<graph::Executor>(device_, plan_, graph::Registry::global(), *gpuScene_,
+                                                executorOptions);
+}
+
+scene::Frame GraphRun::frame(uint64_t index) const {
+  scene::Frame f =
+      scene::makeFrame(scene_, geometry_, options_.size, index, options_.seed, options_.frameRate);
+  f.gpu = gpuScene_.get();
+  return f;
+}
+
+void GraphRun::submit(const scene::Frame& frame, bool readOutputs) {
+  if (executor_->readsGeometry()) scene::moveObjects(frame, geometry_);
+  executor_->submit(frame, readOutputs);
+}
+
+}  // namespace fovea::session

@@ -1,9 +1,0 @@
-// Ctrl-C: the first one asks to finish the frame under way, the second one ends the process.
-#pragma once
-
-namespace fovea::cli {
-
-void catchInterrupts();
-bool interrupted();
-
-}  // namespace fovea::cli

@@ -1,0 +1,28 @@
+// Strategies `pdf` and `constant`: the share of the eye paths that find a surface, from one diffuse bounce at each of the
+// first screen points, the same ones as long as nothing moves. Counting this frame's candidates instead would make a still
+// picture tremble.
+#include "common/scene.glsl"
+#include "common/fovea.glsl"
+#include "common/paraboloid.glsl"
+#include "common/diffuse_bounce.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer screen;
+layout(std430) buffer TotalsBlock { Totals value; } totals;
+
+layout(push_constant) uniform Constants { uint escapePoints; };
+
+const uint kEscapeStream = 0x65736361u;
+
+void main() {
+  uint point = gl_GlobalInvocationID.x;
+  if (point >= escapePoints) return;
+  vec4 from = texelFetch(screen, int(3u * point));
+  if (!(from.w > 0.0)) return;
+  vec3 normal = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
+  vec2 u = streamPoint(randomStream(0u, 0u, kEscapeStream, point), 0u);
+  vec3 direction = diffuseBounce(normal, face, u);  // as pass candidates
+  if (traceVoxels(voxelsGrid(), from.xyz, direction, face).side != kNoSide) atomicAdd(totals.value.found, 1u);
+}

@@ -1,0 +1,86 @@
+// VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's place.
+// Defines: SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with what
+// discs.comp found; NEAR 0/1: no disc is smaller than pass near-field says.
+#include "common/scene.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+#include "common/finite.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer placed;
+layout(std430) readonly buffer AreasBlock { float list[]; } areas;
+layout(std430) writeonly buffer EmittersBlock { Vpl list[]; } emitters;
+layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
+#if NEAR
+uniform samplerBuffer spread;  // x: area, m^2
+#endif
+layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
+
+#if GAINS
+layout(std430) readonly buffer GainsBlock { float list[]; } gains;
+#endif
+#if TRACED
+uniform samplerBuffer tracedEnds;
+uniform samplerBuffer densities;
+layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
+
+// Intensity of a VPL of area `area` that shines as its paths do on average; one that the region does not see shines of its
+// own.
+vec3 intensityOf(uint slot, vec3 own, float area) {
+  PathSum sum = sums.list[slot];
+  vec3 light = vec3(sum.lightX, sum.lightY, sum.lightZ) * texelFetch(tracedEnds, 2).w * kPathUnits;
+  if (!(texelFetch(densities, int(slot)).r > 0.0)) return own * area;
+  return sum.paths > 0u ? light / float(sum.paths) * area : vec3(0.0);
+}
+#elif SHARED
+uniform samplerBuffer vpls;
+uniform samplerBuffer radiosity;
+uniform samplerBuffer radiance;
+layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
+
+// Mean light of the paths given to a VPL over its own, all of it when there are none. Direct light is that at the ends of
+// the paths; for what comes by more bounces the VPL speaks for all of them.
+float meanLight(uint slot, int side, float radiosity) {
+  PathSum sum = sums.list[slot];
+  float own = side >= 0 && side < textureSize(radiance) ? kPi * texelFetch(radiance, side).w : 0.0;
+  if (sum.paths == 0u || !(own > 0.0) || !(radiosity > 0.0)) return 1.0;
+  float direct = min(own / radiosity, 1.0);
+  return 1.0 + direct * (float(sum.lightX) / float(sum.paths) - 1.0);
+}
+
+vec3 intensityOf(uint slot, vec3 own, float area) {
+  int side = int(floatBitsToUint(texelFetch(vpls, int(slot) * kStateTexels + 2).w));
+  return own * (area * meanLight(slot, side, texelFetch(radiosity, int(slot)).w));
+}
+#else
+vec3 intensityOf(uint slot, vec3 own, float area) { return own * area; }
+#endif
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+};
+
+const float kBrightest = 1e18;  // W/sr: far from any real light, and its products stay finite where it is shaded
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= vplCount) return;
+  int first = 3 * int(slot);
+  vec4 place = texelFetch(placed, first), light = texelFetch(placed, first + 2);
+  float area = areas.list[slot];
+  vec3 intensity = intensityOf(slot, light.rgb, area);
+#if GAINS
+  intensity *= gains.list[slot];
+#endif
+  Vpl vpl = Vpl(vec4(0.0), vec4(0.0), vec4(0.0));
+  if (place.w > 0.0 && finite(vec4(intensity, area))) {
+#if NEAR
+    area = max(area, texelFetch(spread, 0).x);
+#endif
+    vpl.positionArea = vec4(place.xyz, area);
+    vpl.normal = texelFetch(placed, first + 1);
+    vpl.intensity = clamp(vec4(intensity, 0.0), vec4(0.0), vec4(kBrightest));
+  }
+  emitters.list[slot] = vpl;
+  if (slot == 0u) counters.alive = totals.value.alive;
+}

@@ -1,0 +1,50 @@
+// Strategy `area`, second step: every side gives its area to the nearest VPL, by d^2 + lambda (1 - n.n') (METHOD
+// section 3); the lowest slot wins a tie. One invocation a side.
+#include "common/scene.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer radiance;
+uniform samplerBuffer sites;
+uniform usamplerBuffer masks;
+layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
+layout(std430) buffer SumsBlock { uvec2 list[]; } sums;
+layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+  uint sideCapacity;
+  float normalShare;
+};
+
+void main() {
+  uint side = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  if (side >= min(2u * voxelsInfo.value.voxels, sideCapacity)) return;
+  vec4 positionArea = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels);
+  if (!(positionArea.w > 0.0)) return;
+#if LIT_ONLY
+  if (!(texelFetch(radiance, int(side)).w > 0.0)) return;
+#endif
+  vec3 normal = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 1).xyz;
+  VoxelGrid grid = voxelsGrid();
+  float lambda = normalWeight(grid, normalShare, totals.value.areaLow, totals.value.areaHigh);
+  uint words = (vplCount + 31u) / 32u, first = brickIndex(grid, brickOf(grid, positionArea.xyz)) * words;
+  float best = 1e38;
+  uint owner = kNoSide;
+  for (uint word = 0u; word < words; ++word)
+    for (uint bits = texelFetch(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
+      uint i = 32u * word + uint(findLSB(bits));
+      vec3 d = texelFetch(sites, int(2u * i)).xyz - positionArea.xyz;
+      precise float cost = dot(d, d) + lambda * (1.0 - dot(normal, texelFetch(sites, int(2u * i + 1u)).xyz));
+      if (cost < best) {
+        best = cost;
+        owner = i;
+      }
+    }
+  if (owner == kNoSide) return;  // no VPL competes
+  uint units = areaUnits(grid, positionArea.w);
+  ADD_WIDE(sums.list[owner].x, sums.list[owner].y, units);
+  atomicAdd(counters.givenSides, 1u);
+}

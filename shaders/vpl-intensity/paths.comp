@@ -1,0 +1,43 @@
+// Strategy `importance-area`: eye paths from the fixed screen points, one diffuse bounce each, the same ones as long as
+// nothing moves. A point's paths follow each other as the R2 sequence (see points.comp) from a start of its own.
+#include "common/scene.glsl"
+#include "common/fovea.glsl"
+#include "common/paraboloid.glsl"
+#include "common/diffuse_bounce.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer screen;
+uniform samplerBuffer radiance;
+layout(std430) writeonly buffer EndsBlock { vec4 list[]; } ends;  // position, w: kind; normal, w: luminance
+
+layout(push_constant) uniform Constants {
+  uint points;
+  uint paths;
+};
+
+const uint kPathStream = 0x70617468u;
+
+void main() {
+  uint path = gl_GlobalInvocationID.x;
+  if (path >= paths) return;
+  uint point = path % points, turn = path / points;
+  vec4 from = texelFetch(screen, int(3u * point)), position = vec4(0.0), normal = vec4(0.0);
+  if (from.w > 0.0) {
+    uint stream = randomStream(0u, 0u, kPathStream, point);
+    vec2 u = vec2(uniformFloat(hashCombine(stream, 0u) + turn * 3242174889u),
+                  uniformFloat(hashCombine(stream, 1u) + turn * 2447445414u));
+    vec3 up = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
+    uint side = traceVoxels(voxelsGrid(), from.xyz, diffuseBounce(up, face, u), face).side;
+    if (side != kNoSide) {
+      int first = int(side) * kVoxelSideTexels;
+      float light = texelFetch(radiance, int(side)).w;
+      light = light > 0.0 ? light : 0.0;  // nor not a number
+      position = vec4(texelFetch(voxelsSurface, first).xyz, siteKind(light));
+      normal = vec4(texelFetch(voxelsSurface, first + 1).xyz, light);
+    }
+  }
+  ends.list[2u * path] = position;
+  ends.list[2u * path + 1u] = normal;
+}

@@ -1,0 +1,96 @@
+// Strategy `importance-area`, first step: p_l, what the region gets from a VPL per area and radiosity, and with it which VPLs
+// are seen at all. One work group a VPL.
+//
+// p_l is the mean over the region's points s of   cos_s cos_l V / (pi d^2 + cell^2);   discs.comp puts the disc of the VPL's
+// own area in place of a cell's once that is known. V is what pass deferred takes it to be, a look-up in the VPL's own shadow
+// map: by any other visibility (rays through voxels, say) VPLs would be made up for what they do not lose, or not for what
+// they do. Points that show the background count as dark.
+#include "common/scene.glsl"
+#include "common/paraboloid.glsl"
+#include "common/vpl_shadow.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+#include "vpl-intensity/landing.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer vpls;
+uniform samplerBuffer placed;
+layout(r32ui) uniform readonly uimage2DArray atlas;
+layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
+
+uniform samplerBuffer radiance;
+layout(std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: handicap; normal, w: luminance
+layout(std430) writeonly buffer SeenBlock { uint words[]; } seen;   // see landing.glsl
+layout(std430) writeonly buffer SeenFromBlock { float list[]; } seenFrom;
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+  uint points;
+  float nearest;  // m; above 0: nothing counts as nearer, as for the kernel `clamp`
+  uint fadeFrames;
+};
+
+shared vec2 sums[64];
+
+struct Map {
+  uint slot;
+  vec3 position;
+  mat3 frame;  // the VPL's
+  AtlasLayout layout_;
+};
+
+// As pass deferred has it.
+bool sees(Map map, vec3 point, vec3 face) {
+  vec3 local = toLocal(map.frame, point - map.position), tilt = toLocal(map.frame, face);
+  float len = length(local);
+  ivec2 texel = paraboloidTexel(paraboloidProject(local, len), map.layout_.size);
+  float stored = uintBitsToFloat(imageLoad(atlas, atlasTexel(map.slot, texel, map.layout_)).x);
+  return vplSees(stored, dot(tilt, local), len, len + local.z, tilt, texel, map.layout_.size, 1.0);
+}
+
+// Sum of the terms of p_l, and of their squares.
+vec2 seenSum(float area, uint slot, uint lane) {
+  vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
+  Map map = Map(slot, position, orthonormalFrame(normal), atlasLayout(imageSize(atlas)));
+  vec2 sum = vec2(0.0);
+  uint bits = 0u, turn = 0u;
+  for (uint i = lane; i < points; i += 64u, ++turn) {
+    float p = landing(i, position, normal, area, nearest);
+    vec3 from = texelFetch(screen, int(3u * i)).xyz, face = texelFetch(screen, int(3u * i + 2u)).xyz;
+    bool seen_ = p > 0.0 && sees(map, from, face);
+    sum += seen_ ? vec2(p, p * p) : vec2(0.0);
+    bits |= seen_ ? 1u << (turn & 31u) : 0u;
+    if ((turn & 31u) == 31u || i + 64u >= points) {
+      seen.words[(slot * 64u + lane) * laneWords(points) + turn / 32u] = bits;
+      bits = 0u;
+    }
+  }
+  return sum;
+}
+
+void main() {
+  uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x, lane = gl_LocalInvocationIndex;
+  bool inside = slot < vplCount;
+  int first = int(min(slot, vplCount - 1u)) * kStateTexels;
+  vec4 normalLife = texelFetch(vpls, first + 1);
+  // Also what pass vpl-origins has let go as no number.
+  bool wanted = inside && normalLife.w > 0.0 && texelFetch(placed, int(3u * min(slot, vplCount - 1u))).w > 0.0;
+  VoxelGrid grid = voxelsGrid();
+  sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec2(0.0);
+  barrier();
+  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
+    if (lane < half_) sums[lane] += sums[lane + half_];
+    barrier();
+  }
+  if (lane != 0u || !inside) return;
+  float sum = sums[0].x;
+  densities.list[slot] = sum / float(points);
+  seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
+  int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
+  float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
+  // A new VPL is put at a disadvantage, at first of the area that there would be to each, so that it grows from nothing.
+  float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
+  float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
+  sites.list[2u * slot] = vec4(texelFetch(vpls, first).xyz, handicap);
+  sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
+}

@@ -1,0 +1,148 @@
+// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), a lit one if the
+// end is lit.
+//
+// The light that the region gets by way of a piece of surface C is the integral of B p over C: what the eye paths that end
+// there find, summed and divided by their number M. A VPL with the flux F sends it F p_l. So F = (sum of B over its n
+// paths) / (M p_l) keeps that light, whatever picked the VPLs; p_l is the only thing that has to be estimated. It has to be
+// what the region gets from the VPL as that is shaded: with the VPL's own shadow map (seen.comp), with its own disc
+// (discs.comp) or, where that is asked for, with the clamp, whose light comes back to the region's mean.
+//
+// A VPL that the region hardly sees (one in a crack, or within what its voxel averages) would have to shine without bounds to
+// bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path, and
+// likewise one whose p_l is the average of less than a few points (partKept()); the rest goes to the nearest VPL that is seen
+// well, so that no light is lost: a third of it in rooms full of small things.
+//
+// TRACED 1: the paths are those of pass eye-paths, whose ends know all the light that leaves there, in colour: a VPL shines
+// with it in place of its own. So it can go to any VPL, and goes to the nearest of those that the path's start sees: given to
+// another, it would go to whoever does see that one: after a jump of the gaze, when no VPL is where the new paths end yet, that
+// is a flash on the far wall.
+//
+// PATHS: of an invocation.
+#include "common/scene.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer sites;
+#if TRACED
+uniform samplerBuffer tracedEnds;
+#else
+uniform samplerBuffer ends;
+#endif
+uniform samplerBuffer densities;
+uniform samplerBuffer seenFrom;
+uniform usamplerBuffer seen;
+layout(std430) buffer TotalsBlock { Totals value; } totals;
+layout(std430) buffer SumsBlock { PathSum list[]; } sums;
+layout(std430) readonly buffer KeptBlock { float total, median; } kept;
+
+#if NEAR
+uniform samplerBuffer screen;  // see points.comp
+uniform samplerBuffer spread;  // x: area, m^2
+#endif
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+  uint tried;  // paths
+  uint points;
+  float normalShare;
+  float areaCap;
+};
+
+// Of all VPLs those of the highest rank come first, then the nearest.
+const uint kSeen = 2u;      // by the start of the path; of traced paths only: dark VPLs could not shine with what others give
+const uint kSameKind = 1u;  // lit as the end is
+
+const uint kPaths = uint(PATHS);
+
+vec4 endTexel(uint path, int texel) {
+#if TRACED
+  return texelFetch(tracedEnds, int(path) * kTracedEndTexels + texel);
+#else
+  return texelFetch(ends, int(path) * kEndTexels + texel);
+#endif
+}
+
+void give(uint vpl, uint path, float luminance, uint pathUnits) {
+  if (vpl == kNoSide || pathUnits == 0u) return;
+  atomicAdd(sums.list[vpl].paths, pathUnits);
+#if TRACED
+  vec4 radiance = endTexel(path, 2);
+  if (!(radiance.w > 0.0)) return;
+#if NEAR
+  // What pass near-field brings of it comes from no VPL.
+  vec3 away = endTexel(path, 0).xyz - texelFetch(screen, int(3u * (path % points))).xyz;
+  float d2 = dot(away, away);
+  radiance.rgb *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
+#endif
+  uvec3 light = uvec3(radiance.rgb / radiance.w * (float(pathUnits) / kPathUnits) + 0.5);
+  atomicAdd(sums.list[vpl].lightX, light.x);
+  atomicAdd(sums.list[vpl].lightY, light.y);
+  atomicAdd(sums.list[vpl].lightZ, light.z);
+#else
+  atomicAdd(sums.list[vpl].lightX, lightUnits(luminance, texelFetch(sites, int(2u * vpl + 1u)).w, pathUnits));
+#endif
+}
+
+struct Path {
+  vec3 position, normal;
+  float kind;               // of its end, 0: it ends nowhere
+  uint bit;                 // of its start in a VPL's words of `seen`,
+  int word;                 // and which of the words
+  float best, bestWhole;
+  uint owner, whole;        // first of all; of those that are seen well
+  uint rank, rankWhole;
+};
+
+Path pathAt(uint path) {
+  bool inside = path < tried;
+  vec4 end = endTexel(inside ? path : 0u, 0), normal = endTexel(inside ? path : 0u, 1);
+  uint point = path % points, turn = point >> 6u;
+  return Path(end.xyz, normal.xyz, inside && end.w > 0.0 ? end.w : 0.0, 1u << (turn & 31u),
+              int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
+}
+
+void offer(inout Path p, uint vpl, vec4 site, vec4 siteNormal, float lambda, int words) {
+  vec3 d = site.xyz - p.position;
+  bool thin = site.w <= kThinSite;
+  float handicap = thin ? kThinSite - site.w : site.w;
+  precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, siteNormal.xyz)) + handicap;
+  uint its = siteKind(siteNormal.w) == p.kind ? kSameKind : 0u;
+#if TRACED
+  its += (texelFetch(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
+#endif
+  bool takes = handicap >= 0.0;
+  bool nearer = takes && (its > p.rank || (its == p.rank && cost < p.best));
+  bool nearerWhole = takes && !thin && (its > p.rankWhole || (its == p.rankWhole && cost < p.bestWhole));
+  p.owner = nearer ? vpl : p.owner;
+  p.best = nearer ? cost : p.best;
+  p.rank = nearer ? its : p.rank;
+  p.whole = nearerWhole ? vpl : p.whole;
+  p.bestWhole = nearerWhole ? cost : p.bestWhole;
+  p.rankWhole = nearerWhole ? its : p.rankWhole;
+}
+
+void finish(Path p, uint path) {
+  if (p.kind == 0.0) return;
+  atomicAdd(totals.value.found, 1u);
+  if (p.owner == kNoSide) return;
+  float part = partKept(texelFetch(densities, int(p.owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(p.owner)).r);
+  uint units = p.owner == p.whole || p.whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
+  float luminance = endTexel(path, 1).w;
+  give(p.owner, path, luminance, units);
+  give(p.whole, path, luminance, uint(kPathUnits) - units);
+}
+
+// An invocation takes several paths past each VPL: on a CPU device loading the VPL is most of the work.
+void main() {
+  float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
+  uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x * kPaths + gl_LocalInvocationIndex;
+  int words = 64 * int(laneWords(points));
+  Path paths[kPaths];
+  for (uint k = 0u; k < kPaths; ++k) paths[k] = pathAt(first + k * gl_WorkGroupSize.x);
+  for (uint i = 0u; i < vplCount; ++i) {
+    vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
+    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, siteNormal, lambda, words);
+  }
+  for (uint k = 0u; k < kPaths; ++k) finish(paths[k], first + k * gl_WorkGroupSize.x);
+}

@@ -1,0 +1,65 @@
+// Counts what the areas hang on: VPLs alive, surface of the voxels; marks the bricks that hold
+// sides (for `area`: to give away); and for `area` lists the VPLs that compete for them.
+// Defines: AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
+#include "common/scene.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform samplerBuffer vpls;
+layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
+layout(std430) buffer BricksBlock { uint list[]; } bricks;
+layout(std430) buffer TotalsBlock { Totals value; } totals;
+#if AREA
+uniform samplerBuffer radiance;
+layout(std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
+#endif
+
+layout(push_constant) uniform Constants {
+  uint vplCount;
+  uint sideCapacity;
+};
+
+#if AREA
+bool litSide(uint side) { return side < sideCapacity && texelFetch(radiance, int(side)).w > 0.0; }
+#endif
+
+void tallyVpls(uint first, uint stride) {
+  uint alive = 0u;
+  for (uint i = first; i < vplCount; i += stride) {
+    vec4 normalLife = texelFetch(vpls, int(i) * kStateTexels + 1);
+    bool there = normalLife.w > 0.0;
+    alive += uint(there);
+#if AREA
+    uint side = floatBitsToUint(texelFetch(vpls, int(i) * kStateTexels + 2).w);
+    bool competes = there && (LIT_ONLY == 0 || litSide(side));
+    sites.list[2u * i] = vec4(texelFetch(vpls, int(i) * kStateTexels).xyz, competes ? 1.0 : 0.0);
+    sites.list[2u * i + 1u] = vec4(normalLife.xyz, 0.0);
+#endif
+  }
+  if (alive > 0u) atomicAdd(totals.value.alive, alive);
+}
+
+void tallySides(uint first, uint stride) {
+  VoxelGrid grid = voxelsGrid();
+  uint low = 0u, high = 0u, sides = min(2u * voxelsInfo.value.voxels, sideCapacity);
+  for (uint i = first; i < sides; i += stride) {
+    vec4 positionArea = texelFetch(voxelsSurface, int(i) * kVoxelSideTexels);
+    if (!(positionArea.w > 0.0)) continue;
+    uint units = areaUnits(grid, positionArea.w);
+    low += units;
+    high += uint(low < units);
+#if AREA && LIT_ONLY
+    if (!litSide(i)) continue;
+#endif
+    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
+  }
+  ADD_WIDE(totals.value.areaLow, totals.value.areaHigh, low);
+  if (high > 0u) atomicAdd(totals.value.areaHigh, high);
+}
+
+void main() {
+  uint first = gl_GlobalInvocationID.x, stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  tallyVpls(first, stride);
+  tallySides(first, stride);
+}

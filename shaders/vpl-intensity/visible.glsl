@@ -1,0 +1,55 @@
+// Does a point of a surface see a VPL, by the voxels? Needs weights/weights.glsl; `bricks` holds the bricks with any surface.
+#ifndef FOVEA_VISIBLE_GLSL
+#define FOVEA_VISIBLE_GLSL
+
+uniform usamplerBuffer bricks;
+
+// Sides block that face the ray and lie in front of the start's tangent plane (as traceVoxels has it), but not those near
+// the VPL, in cells, nor parts of the surface that the VPL lies on, that far off its tangent plane: a ray that comes in flat
+// meets the layer of its voxels long before its end. Against traced rays, weighted by the light they would carry, this loses 1%
+// in the Cornell box and gains none; in Sponza, 128^3 cells, it loses 16% and gains 11% (without the second exception: 21%, 9%).
+const float kNearby = 1.5;
+const float kSamePlane = 1.0;
+
+struct Segment {
+  vec3 from, face, direction;  // face: normal of the start
+  vec3 to, normal;             // the VPL
+};
+
+bool blocks(VoxelGrid grid, Segment s, uint side) {
+  int first = int(side) * kVoxelSideTexels;
+  vec4 positionArea = texelFetch(voxelsSurface, first);
+  vec3 sideNormal = texelFetch(voxelsSurface, first + 1).xyz;
+  vec3 off = positionArea.xyz - s.to;
+  bool faces = positionArea.w > 0.0 && dot(sideNormal, s.direction) < 0.0;
+  bool own = dot(positionArea.xyz - s.from, s.face) <= kOwnSurface * grid.cell;
+  bool near = dot(off, off) < kNearby * kNearby * grid.cell * grid.cell;
+  bool same = dot(sideNormal, s.normal) > 0.5 && abs(dot(off, s.normal)) < kSamePlane * grid.cell;
+  return faces && !own && !near && !same;
+}
+
+// Walks from cell to cell, over empty bricks in one step.
+bool seesVpl(VoxelGrid grid, vec3 from, vec3 face, vec3 to, vec3 normal) {
+  float d = distance(from, to);
+  Segment s = Segment(from, face, (to - from) / d, to, normal);
+  vec3 p = worldToVoxel(grid, from);  // in cells, as is t
+  bvec3 moves = greaterThan(abs(s.direction), vec3(1e-7));
+  vec3 inverse = mix(vec3(1e30), 1.0 / s.direction, moves);
+  vec3 ahead = mix(vec3(1.0), vec3(greaterThan(s.direction, vec3(0.0))), moves);
+  float t = 0.0, end = d / grid.cell - 1.0;
+  for (int turn = 0; turn < 3 * grid.resolution + 3 && t < end; ++turn) {
+    ivec3 cell = ivec3(floor(p + (t + 1e-3) * s.direction));  // a little on, so that no wall holds the walk up
+    if (!insideGrid(grid, cell)) break;
+    bool full = texelFetch(bricks, int(brickIndex(grid, cell / kBrick))).r != 0u;
+    if (full) {
+      uint voxel = imageLoad(voxelsIndex, cell).r;
+      if (voxel != 0u && (blocks(grid, s, 2u * voxel - 2u) || blocks(grid, s, 2u * voxel - 1u))) return false;
+    }
+    vec3 low = vec3(full ? cell : cell / kBrick * kBrick);
+    vec3 walls = (low + ahead * (full ? 1.0 : float(kBrick)) - p) * inverse;
+    t = max(t, min(min(walls.x, walls.y), walls.z));
+  }
+  return true;
+}
+
+#endif

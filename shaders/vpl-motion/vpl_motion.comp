@@ -1,0 +1,61 @@
+// One slot an invocation: the VPL moves with its object and takes what the voxel it comes to says of the surface there.
+#include "common/scene.glsl"
+#include "common/voxel_trace.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) readonly buffer Previous { VplState previous[]; };
+layout(std430) writeonly buffer Vpls { VplState vpls[]; };
+layout(std430) buffer Counters { uint counters[]; };  // alive, deleted
+
+layout(push_constant) uniform Push {
+  float turnCos;  // of the largest angle between the VPL's own normal and its voxel's
+};
+
+// Side of this frame's voxel at `position` that is the VPL's surface: of its object, and the one of the two that turned the
+// least; kNoSide: none, it came, went or turned.
+uint sideAt(vec3 position, vec3 normal, float object) {
+  VoxelGrid grid = voxelsGrid();
+  vec3 p = worldToVoxel(grid, position);
+  if (!(all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, vec3(grid.resolution))))) return kNoSide;
+  uint voxel = imageLoad(voxelsIndex, ivec3(p)).r;
+  if (voxel == 0u) return kNoSide;
+  uint found = kNoSide;
+  float best = turnCos;
+  for (uint side = 2u * voxel - 2u; side < 2u * voxel; ++side) {
+    VoxelSide s = loadSide(side);
+    float cosine = dot(s.normal, normal);
+    if (s.area > 0.0 && s.object == object && cosine >= best && (found == kNoSide || cosine > best)) {
+      best = cosine;
+      found = side;
+    }
+  }
+  return found;
+}
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= uint(previous.length())) return;
+  VplState vpl = previous[slot];
+  bool lived = vpl.normalLife.w > 0.0;
+  if (lived) {
+    uint object = uint(vpl.localPosition.w);
+    bool deforms = objectDeforms(object);
+    vec3 position = deforms ? attachedPosition(vpl.localPosition.xyz) : fromObject(object, vpl.localPosition.xyz);
+    vec3 normal = deforms ? triangleAxes(uint(vpl.localPosition.x)) * vpl.localNormal.xyz
+                          : normalFromObject(object, vpl.localNormal.xyz);
+    uint side = sideAt(position, normal, vpl.localPosition.w);
+    if (side != kNoSide) {
+      VoxelSide surface = loadSide(side);
+      vpl.localNormal.w = vpl.positionImportance.w;  // I of the frame before; pass `importance` makes a new one
+      vpl.positionImportance.xyz = position;
+      vpl.normalLife = vec4(surface.normal, vpl.normalLife.w + 1.0);
+      vpl.reflectanceSide = vec4(surface.reflectance, uintBitsToFloat(side));
+      vpls[slot] = vpl;
+      atomicAdd(counters[0], 1u);
+      return;
+    }
+    atomicAdd(counters[1], 1u);
+  }
+  vpls[slot] = VplState(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+}

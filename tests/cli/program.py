@@ -1,0 +1,58 @@
+"""What the tests of the command-line program share. Arguments of every test: PROGRAM SOURCE_DIR [CLASS...]"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
+SOURCE = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
+
+USAGE, BAD_INPUT, NO_DEVICE, OUT_OF_MEMORY, CANNOT_WRITE, INTERRUPTED = 2, 3, 4, 5, 7, 130
+# Small and quick; what is tested here does not depend on the size of the work.
+SMALL = ["--size", "48x32"]
+DIRECT = ["render", "direct", "--scene", "cornellbox", *SMALL]
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="fovea-cli-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def command(self, *arguments):
+        return [str(PROGRAM), *map(str, arguments)]
+
+    def call(self, *arguments, env=None, **more):
+        return subprocess.run(self.command(*arguments), cwd=self.folder, env={**os.environ, **(env or {})},
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300, **more)
+
+    def succeeds(self, *arguments, **more):
+        run = self.call(*arguments, **more)
+        self.assertEqual(run.returncode, 0, f"{arguments}: {run.stderr}")
+        return run
+
+    def fails(self, code, *arguments, says=(), **more):
+        """Exit code, one clear message that names things, and no file that was not there before."""
+        before = sorted(self.folder.iterdir())
+        run = self.call(*arguments, **more)
+        self.assertEqual(run.returncode, code, f"{arguments}: {run.stderr}")
+        self.assertTrue(run.stderr.startswith("fovea: "), run.stderr)
+        self.assertNotIn("defect", run.stderr)
+        self.assertEqual(run.stdout, "")
+        for text in says:
+            self.assertIn(text, run.stderr)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+        return run
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_text(content if isinstance(content, str) else json.dumps(content, indent=2))
+        return path
+
+    def graph(self, **changes):
+        """A graph file that extends direct.json."""
+        return self.write("graph.json", {"extends": "direct.json", **changes})
