@@ -6,13 +6,13 @@ using namespace fovea::graph;
 class Outline : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("outline", "dark lines where the surface turns or jumps");
-    d.input("picture", image2D(), Usage::Sampled, "what to draw on");
+    PassDeclaration d("outline", "Draws dark lines where the surface turns or jumps.");
+    d.input("picture", image2D(), Usage::Sampled, "the picture to draw on");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(), Usage::Sampled), member("normal", image2D(), Usage::Sampled)},
-            "where the surfaces are");
+            "the surfaces that the eye sees");
     d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM), Usage::StorageWrite, "the picture with lines");
-    d.parameter("strength", real(0.8, 0, 1), "0: no lines, 1: black lines");
+    d.parameter("strength", real(0.8, 0, 1), "0 draws no lines, 1 draws black ones");
     return d;
   }
   void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("outline/outline.comp"); }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs fovea to an empty prefix and uses it from there as a stranger would: every installed header compiles, the
-# sample pass builds against the package, renders through --plugin, and changes the picture as its parameter says.
+# Installs fovea to an empty prefix and uses it from there as a stranger would: every installed header compiles
+# alone, the sample pass builds against the package, passes its own test, renders through --plugin, and changes the picture as
+# its parameter says.
 # Usage: own_pass_test.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
 build=$1 source=$2
@@ -15,15 +16,22 @@ for file in bin/fovea share/fovea/graphs/direct.json share/fovea/shaders/tonemap
 done
 
 echo "== installed headers"
-(cd "$prefix/include/fovea" && find framework -name '*.h' | sort | sed 's/.*/#include "&"/') >"$work/headers.cpp"
-grep -c include "$work/headers.cpp"
-c++ -std=c++20 -fsyntax-only -Wall -Wextra -Wno-missing-field-initializers -I"$prefix/include/fovea" "$work/headers.cpp"
+(cd "$prefix/include" && find . -name '*.h' | sort) >"$work/headers"
+printf './fovea/%s.h\n' error graph image pass scene test | diff - "$work/headers" ||
+  { echo "the installation holds other headers than the facade"; exit 1; }
+while read -r header; do
+  echo "#include \"$header\"" >"$work/header.cpp"
+  c++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror -Wno-missing-field-initializers -I"$prefix/include" "$work/header.cpp"
+done <"$work/headers"
 
 echo "== the sample, built against the package"
 cp -r "$source/samples/own_pass" "$work/own_pass"
 cmake -S "$work/own_pass" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release >"$work/log" ||
   { cat "$work/log"; exit 1; }
 cmake --build "$work/build"
+
+echo "== its own test"
+ctest --test-dir "$work/build" --output-on-failure --no-tests=error
 
 echo "== rendered through"
 fovea=$prefix/bin/fovea
