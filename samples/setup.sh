@@ -18,7 +18,7 @@ packages=(
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema python3-matplotlib
+  clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema python3-matplotlib
 )
 
 fail() {
