@@ -29,6 +29,7 @@ MEASURES = {
     "error.fovea.mse": ("MSE fovea ×10⁻³", 1e3, "mean square error of the displayed picture inside the foveal circle, reference noise subtracted"),
     "error.fovea.mse_over_ours": ("more than ours ×10⁻³", 1e3, "MSE in the fovea less that of ours, seed by seed: above its ±, ours is better"),
     "error.periphery.mse": ("MSE periphery ×10⁻³", 1e3, "the same outside it"),
+    "error.light": ("light", 1, "sum of the compared radiance over the whole picture, as a part of the reference's"),
     "error.fovea.relmse": ("relMSE indirect fovea", 1, "relative square error of the indirect radiance alone"),
     "error.periphery.relmse": ("relMSE indirect periphery", 1, "the same outside the fovea"),
     "error.fovea.flip": ("FLIP fovea", 1, "visible difference when one picture replaces the other, 0 to 1"),

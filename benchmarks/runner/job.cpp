@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "benchmarks/runner/compared.h"
@@ -259,7 +260,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
     sequence.frames.push_back(toFile(*run, result));
     if (&result != &kept.back())  // only the last one's layers are looked at one by one
       std::erase_if(sequence.frames.back().layers,
-                    [](const image::Layer& l) { return l.name != "radiance"; });
+                    [&](const image::Layer& l) { return l.name != job.layer; });
   }
   RunInfo info;
   info.device = device_->name();
@@ -330,11 +331,20 @@ void BenchRunner::writePicture(const std::string& name, const image::Image& pict
   image::write(folder_.picture(name), {{"", picture}});
 }
 
+namespace {
+
+double sumOf(const image::Image& radiance) {
+  return std::accumulate(radiance.data.begin(), radiance.data.end(), 0.0);
+}
+
+}  // namespace
+
 Json BenchRunner::errors(const Job& job, const image::File& last) {
   const uint64_t frame = uint64_t(job.first) + job.frames - 1;
   const image::File truth = reference(job, frame);
   progress_.stage("measuring");
   CompareOptions options;
+  options.layer = job.layer;
   const Compared c = compareRadiance("picture", last, "reference", truth, options);
   const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
   std::optional<image::PerRegion<image::Measures>> indirect;
@@ -364,6 +374,7 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
       {"fovea", region(whole.fovea, indirect ? &indirect->fovea : nullptr, floor.fovea)},
       {"periphery", region(whole.periphery, indirect ? &indirect->periphery : nullptr, floor.periphery)},
       {"whole", region(whole.whole, indirect ? &indirect->whole : nullptr, floor.whole)}};
+  json["light"] = number(sumOf(c.image.radiance) / sumOf(c.reference.radiance));
   json["disc"] = {c.fovea.x, c.fovea.y, c.fovea.radius};
   return json;
 }
@@ -371,9 +382,11 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
 Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
   image::SequenceComparison comparison;
   Compared previous;
+  CompareOptions options;
+  options.layer = job.layer;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     Compared c =
-        compareRadiance("picture", sequence.frames[i], "reference", reference(job, job.first + i), {});
+        compareRadiance("picture", sequence.frames[i], "reference", reference(job, job.first + i), options);
     if (job.pictures && i > 0 && i + 1 == sequence.frames.size())
       writePicture(job.name() + "-temporal",
                    image::errorPicture(changeErrors(c.image, previous.image, c.reference, previous.reference),

@@ -292,7 +292,7 @@ ExitCode Bench::compare(const Json& now, const Json& before) const {
                  spreadOf(old.get<std::vector<double>>()).median,
                  spreadOf(values.get<std::vector<double>>()).median);
   }
-  return slower ? kSlower : ExitCode::Ok;
+  return slower ? ExitCode::Slower : ExitCode::Ok;
 }
 
 Json readBaseline(const std::string& file) {

@@ -8,9 +8,6 @@
 
 namespace fovea::bench {
 
-// Some pass, or the frame, became slower than the baseline beyond the noise.
-inline constexpr ExitCode kSlower{8};
-
 struct PassBenchOptions {
   std::string graph, scene, baseline;
   std::vector<std::string> set;

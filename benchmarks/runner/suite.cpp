@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "benchmarks/runner/inputs.h"
 #include "framework/base/json.h"
 
 namespace fovea::bench {
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 using json::ObjectReader;
 using json::Value;
 
-constexpr int64_t kMaxSide = 16384, kMaxFrames = 1'000'000;
+constexpr int64_t kMaxFrames = 1'000'000;
 constexpr size_t kMaxJobs = 100'000;
 
 template <class T>
@@ -42,6 +43,7 @@ struct Settings {
   std::vector<double> frameRates = {42};
   uint32_t first = 40, frames = 1, warmup = 0, seeds = 1, spp = 512, depth = 4;
   std::vector<std::string> measures = {"error"};
+  std::string layer = "radiance";
   std::vector<SpeedUp> speedUps;
 };
 
@@ -60,21 +62,12 @@ void expected(Diagnostics& messages, const Value& value, const std::string& path
   messages.error(value.where.location(), path, "expected " + what + ", found " + value.describe());
 }
 
-// "1024x768"
 std::optional<glm::uvec2> sizeOf(const std::string& text) {
-  const size_t x = text.find('x');
-  if (x == text.npos) return std::nullopt;
-  const auto side = [](std::string_view digits) -> std::optional<uint32_t> {
-    uint32_t value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || value < 1 || value > kMaxSide)
-      return std::nullopt;
-    return value;
-  };
-  const auto width = side(std::string_view(text).substr(0, x)),
-             height = side(std::string_view(text).substr(x + 1));
-  if (!width || !height) return std::nullopt;
-  return glm::uvec2(*width, *height);
+  try {
+    return parseSize(text);
+  } catch (const Error&) {
+    return std::nullopt;  // the caller says what was expected, and where
+  }
 }
 
 class SuiteReader {
@@ -233,6 +226,7 @@ class SuiteReader {
       rr.finish();
     }
     readMeasures(r, s);
+    s.layer = r.choice("layer", s.layer, {"radiance", "indirect"});
     if (const Value* speed = r.object("speed_up")) {
       ObjectReader rr(*speed, r.pathOf("speed_up"), messages_);
       SpeedUp wanted;
@@ -367,7 +361,7 @@ class SuiteReader {
     Job job;
     job.sweep = sweep, job.scene = scene.value, job.graph = graph.graph, job.label = graph.label;
     job.first = s.first, job.frames = s.frames, job.warmup = graph.warmup.value_or(s.warmup);
-    job.spp = s.spp, job.depth = s.depth;
+    job.spp = s.spp, job.depth = s.depth, job.layer = s.layer;
     job.error = has("error"), job.temporal = has("temporal"), job.pictures = has("pictures");
     job.match = graph.match;
     job.sceneWhere = scene.where, job.graphWhere = graph.where;
@@ -422,6 +416,7 @@ nlohmann::ordered_json Job::json() const {
                                 {"warmup", warmup},         {"seed", seed},      {"frame_rate", frameRate},
                                 {"measures", measures}};
   if (needsReference()) all["reference"] = {{"spp", spp}, {"depth", depth}};
+  if (layer != "radiance") all["layer"] = layer;
   if (match)
     all["match"] = {{"parameter", match->parameter}, {"like", match->like}, {"like_set", match->likeSet},
                     {"measure", match->measure},     {"from", match->from}, {"to", match->to}};

@@ -36,6 +36,7 @@ struct Job {
   double frameRate = 42;
   uint32_t spp = 512, depth = 4;                           // of the reference
   bool error = false, temporal = false, pictures = false;  // times and counters are always measured
+  std::string layer = "radiance";                          // that is compared; or "indirect"
   std::optional<Match> match;
   SourceLocation sceneWhere, graphWhere;
   bool sceneOptional = false;

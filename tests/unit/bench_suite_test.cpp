@@ -188,5 +188,20 @@ TEST(BenchSuite, Globs) {
   EXPECT_TRUE(matchesGlob("*", ""));
 }
 
+TEST(BenchSuite, ALayerOfItsOwnIsComparedAndPartOfTheKey) {
+  const Suite suite = parseSuite(R"({"scenes": ["a"], "graphs": ["ours"],
+    "sweeps": [{"name": "whole"}, {"name": "part", "layer": "indirect"}]})",
+                                 "s.json");
+  ASSERT_EQ(suite.jobs.size(), 2u);
+  EXPECT_EQ(suite.jobs[0].layer, "radiance");
+  EXPECT_FALSE(suite.jobs[0].json().contains("layer"));
+  EXPECT_EQ(suite.jobs[1].layer, "indirect");
+  EXPECT_EQ(suite.jobs[1].json()["layer"], "indirect");
+  EXPECT_THROW(
+      parseSuite(R"({"scenes": ["a"], "graphs": ["ours"], "layer": "albedo", "sweeps": [{"name": "n"}]})",
+                 "s.json"),
+      Error);
+}
+
 }  // namespace
 }  // namespace fovea::bench

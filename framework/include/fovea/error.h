@@ -8,7 +8,7 @@
 
 namespace fovea {
 
-// Process exit codes. They are documented in the README and never renumbered.
+// Exit codes of the program. samples/fovea/README.md documents them, and they are never renumbered.
 enum class ExitCode : int {
   Ok = 0,
   Internal = 1,     // a defect of fovea itself
@@ -18,6 +18,7 @@ enum class ExitCode : int {
   OutOfMemory = 5,  // device or host memory exhausted
   DeviceLost = 6,
   CannotWrite = 7,    // an output file could not be written
+  Slower = 8,         // `fovea bench passes`: something became slower than the baseline beyond the noise
   Interrupted = 130,  // Ctrl-C
 };
 
