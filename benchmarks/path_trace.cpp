@@ -1,6 +1,5 @@
-// Path tracing against the rays alone: records the rays that pass path-trace makes for a picture, traces them
-// once more with nothing around them, and compares. Usage: path_trace_benchmark [scene [side [samples
-// [repetitions]]]]
+// Compares path tracing with its rays alone: records the rays that the pass path-trace casts for a picture and traces
+// them again with nothing else. Usage: path_trace_benchmark [scene [side [samples [repetitions]]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +25,8 @@ namespace {
 using namespace fovea;
 using passes::PathIntegrator;
 
-// Wall time, and time that the process was on a core: the one to look at on a machine that others use, too.
+// Wall time, and time for which the process ran on a core; the latter is the one to compare on a machine
+// with other users.
 struct Seconds {
   double wall = 0, cpu = 0;
 };
@@ -44,8 +44,7 @@ Seconds measure(const Work& work) {
   return {now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu};
 }
 
-// As tracePaths() makes them: rounds of 2, 2, 4, 8 ... 64 samples over the picture, the eye's ray anew in
-// each.
+// As tracePaths() casts them: rounds of 2, 2, 4, 8 ... 64 samples over the picture, with a new eye ray in each.
 std::vector<PathIntegrator::TracedRay> recordRays(const scene::Frame& frame, const scene::RayScene& rays,
                                                   uint32_t samples) {
   const scene::View& view = frame.views[0];
@@ -60,7 +59,7 @@ std::vector<PathIntegrator::TracedRay> recordRays(const scene::Frame& frame, con
         const passes::EyePoint eye = integrator.look(glm::vec2(x, y) + 0.5f, count);
         for (uint32_t s = begin; eye.surface && s < end;) {
           std::array<passes::PathSampler, PathIntegrator::kMaxPaths> random;
-          std::array<glm::vec3, PathIntegrator::kMaxPaths> light;
+          std::array<glm::vec3, PathIntegrator::kMaxPaths> light{};
           const uint32_t atOnce = std::min(end - s, uint32_t(random.size()));
           for (uint32_t i = 0; i < atOnce; ++i, ++s)
             random[i] = {false, hashCombine(y * view.size.x + x, s % 16), s / 16};
@@ -102,7 +101,7 @@ int run(int argc, char** argv) {
   const scene::Geometry geometry = scene::flatten(s);
   const scene::Frame frame = scene::makeFrame(s, geometry, {side, side}, 0, 1);
   const auto rays = scene::RayScene::cached(s, geometry);
-  // A sixteenth of the samples: alike in kind, and few enough to keep.
+  // A sixteenth of the samples: representative, and few enough to keep.
   const auto recorded = recordRays(frame, *rays, std::max(samples / 16, 2u));
   std::vector<double> ratios, cpuRatios;
   fmt::print("{}, {}x{}, {} samples a pixel, depth 4, {} threads; {} rays recorded\n", name, side, side,
@@ -112,7 +111,7 @@ int run(int argc, char** argv) {
     settings.samples = samples;
     std::vector<glm::vec4> radiance(size_t(side) * side);
     passes::PathTraceStatistics statistics;
-    // The rays alone before and after: a machine that others use changes from second to second.
+    // Traces the rays alone before and after, because the speed of a shared machine changes from second to second.
     const Seconds before = measure([&] { traceAlone(*rays, recorded); });
     const Seconds paths = measure([&] {
       statistics = tracePaths(frame, frame.views[0], *rays, settings, {radiance, {}, {}, {}, {}, {}});

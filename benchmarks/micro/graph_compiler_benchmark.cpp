@@ -1,6 +1,6 @@
-// What compiling a graph costs, phase by phase, per pass: chains, diamonds and fan-ins of 19 to 500 passes.
-// "ResolveToPlan" is what editing a graph's text live costs after it has been parsed; "BindToPlan" is the
-// same less resolve: what another size of a view costs.
+// Measures what compiling a graph costs, by phase and per pass, for chains, diamonds and fan-ins of 19 to 500 passes.
+// "ResolveToPlan" is the cost, after parsing, of editing the text of a graph live. "BindToPlan" is the same without
+// resolving: the cost of another view size.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -69,7 +69,7 @@ std::string makeGraph(Shape shape, int passes) {
     }
     text += fmt::format("  \"p{}\": {{{}}}{}\n", p, pass, p + 1 < passes ? "," : "");
   }
-  // A diamond that ends before its join is left with its last pass.
+  // A diamond cut off before its join ends with its last pass.
   return text + fmt::format("}},\n\"outputs\": {{\"image\": \"p{}\"}}}}\n", passes - 1);
 }
 
@@ -193,7 +193,7 @@ void sizes(benchmark::internal::Benchmark* b) {
     for (const int passes : {19, 100, 500}) b->Args({shape, passes});
 }
 
-// As program fovea does.
+// As the program fovea does.
 const bool kKeepsMemory = (keepFreedMemory(), true);
 
 BENCHMARK(parse)->Name("Parse")->Apply(sizes);

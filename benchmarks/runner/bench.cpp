@@ -42,7 +42,7 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-// Room that the suite's files take at most.
+// Upper bound of the space that the suite's files take.
 struct Room {
   uint64_t results = 0, references = 0;
 };
@@ -66,7 +66,7 @@ Room roomFor(const std::vector<const Job*>& jobs) {
   return room;
 }
 
-// Where references are kept when --cache does not say.
+// Folder of the references if --cache is not given.
 std::string cacheOf(const SuiteOptions& options) {
   const char* environment = std::getenv("FOVEA_BENCH_CACHE");
   return options.cache.empty() && environment ? environment : options.cache;
@@ -103,14 +103,14 @@ class Bench {
   BenchFolder folder_;
   Progress progress_;
   Suite suite_;
-  std::vector<bool> chosen_;        // of its jobs: those that --only names, or all
-  std::vector<const Job*> wanted_;  // the same
+  std::vector<bool> chosen_;        // for each job, whether --only names it; all without --only
+  std::vector<const Job*> wanted_;  // the chosen jobs
   std::unique_ptr<BenchRunner> runner_;
   struct Task {
     const Job* job = nullptr;
     Fingerprint fingerprint;
   };
-  std::vector<Task> tasks_;                     // of this shard, not done yet
+  std::vector<Task> tasks_;                     // of this shard, not yet done
   std::map<std::string, std::string> missing_;  // scene -> why
   size_t done_ = 0;
 };
@@ -130,7 +130,7 @@ void Bench::chooseJobs() {
                 "see its jobs with --list");
 }
 
-// A result that was measured with something else must not stand in a table beside today's.
+// A result that was measured with other code or inputs must not be in a table with new ones.
 void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const {
   for (const StoredResult& old : folder_.results(job)) {
     if (old.json["key"] == key) continue;
@@ -148,7 +148,7 @@ void Bench::refuseOrRemove(const Job& job, const std::string& key, const Fingerp
   }
 }
 
-// Finds what is wrong with any job, and what is done already, before anything is rendered.
+// Finds every mistake in the jobs, and the jobs that are already done, before anything is rendered.
 void Bench::identify() {
   for (size_t i = 0; i < wanted_.size(); ++i) {
     const Job& job = *wanted_[i];
@@ -199,7 +199,7 @@ void Bench::measure() {
   progress_.setPrefix("");
 }
 
-// The references of the chosen jobs and nothing else; a shard makes every N-th of them.
+// Makes the references of the chosen jobs and nothing else; a shard makes every N-th of them.
 void Bench::makeReferences() {
   struct Entry {
     const Job* job;
@@ -230,7 +230,7 @@ void Bench::makeReferences() {
   say("{} references: {} made, {} were there\n", made + there, made, there);
 }
 
-// The page needs Python and matplotlib; without them there are the tables.
+// The page needs Python and matplotlib; without them, only the tables are written.
 void Bench::makePage() const {
   fs::path script;
   for (const fs::path& folder : dataFolders("benchmarks"))
@@ -254,7 +254,7 @@ void Bench::makePage() const {
                  "python3-matplotlib); the tables are there\n");
 }
 
-// Also those that a process before this one looked for, and this one did not.
+// Includes scenes that an earlier process found missing and this one did not look for.
 std::map<std::string, std::string> Bench::missingScenes(const std::vector<StoredResult>& results) const {
   std::map<std::string, std::string> missing = missing_;
   std::ifstream in(folder_.path() / "report.json", std::ios::binary);
@@ -266,7 +266,7 @@ std::map<std::string, std::string> Bench::missingScenes(const std::vector<Stored
   return missing;
 }
 
-// What a reader types to get all of the tables.
+// The command that produces all of the tables.
 std::string Bench::command() const {
   std::string text = "fovea bench " + options_.suite + " -o DIR";
   if (!options_.size.empty()) text += " --size " + options_.size;
@@ -274,7 +274,7 @@ std::string Bench::command() const {
   return text;
 }
 
-// Tables and page hold all that the folder holds and can be compared, not only what --only names.
+// Tables and page contain everything in the folder that can be compared, not only what --only names.
 void Bench::finish() {
   const std::vector<StoredResult> results =
       mergedResults(folder_, suite_.jobs, chosen_, [](const std::string& why) {

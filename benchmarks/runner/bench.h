@@ -1,4 +1,4 @@
-// A suite of measurements, job after job, to results, tables and a report.
+// Runs a suite of measurements job by job and writes results, tables and a report.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct SuiteOptions {
   bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
 };
 
-// Says what it does on the terminal. Throws Error(Usage) on options that contradict each other, Error(BadInput) on a
-// suite, graph or scene that cannot be used, and Error(Interrupted) after Ctrl-C.
+// Reports its progress on the terminal. Throws Error(Usage) on options that contradict each other, Error(BadInput) on
+// a suite, graph or scene that cannot be used, and Error(Interrupted) after Ctrl-C.
 ExitCode runSuite(const SuiteOptions& options);
 
 }  // namespace fovea::bench

@@ -24,7 +24,7 @@ constexpr const char* kRadiance = "radiance";
 struct Source {
   std::string name;
   image::File file;
-  bool radiance = false;  // else what a screen shows
+  bool radiance = false;  // otherwise display values
 };
 
 Source open(const std::string& name) {
@@ -38,7 +38,7 @@ const image::Image* findLayer(const Source& source, const std::string& layer) {
   return source.file.find(layer);
 }
 
-// Missing and unusable layers end here.
+// Throws for missing and unusable layers.
 const image::Image& checked(const Source& source, const std::string& layer, const image::Image* found) {
   std::vector<std::string> names;
   for (const image::Layer& l : source.file.layers) names.push_back(l.name);
@@ -54,20 +54,19 @@ const image::Image& layerOf(const Source& source, const CompareOptions& options,
   if (source.file.layers.empty()) bad("`" + source.name + "` is empty", "render it again");
   if (!source.radiance || source.file.layers.size() == 1) {
     const image::Layer& only = source.file.layers.at(0);
-    // A file of one unnamed layer shows whatever its name says.
+    // The only layer of a file is used, whether it has a name or not.
     if (!options.layer.empty() && only.name != options.layer) return checked(source, options.layer, nullptr);
     return checked(source, layer = only.name, &only.image);
   }
   layer = options.layer.empty() ? kRadiance : options.layer;
-  // What other programs write: a picture, and more beside it.
+  // A file of another program: a picture with further layers.
   if (options.layer.empty() && !findLayer(source, layer) && findLayer(source, "")) layer.clear();
   return checked(source, layer, findLayer(source, layer));
 }
 
-// ---- Metadata
-// ----------------------------------------------------------------------------------------------------
+// ---- Metadata ----
 
-// The numbers of an entry, separated by commas; none when there is no such entry.
+// The comma-separated numbers of an entry; empty if there is no such entry.
 std::vector<float> numbers(const Source& source, const std::string& key, size_t count) {
   const auto entry = source.file.metadata.find(key);
   if (entry == source.file.metadata.end()) return {};
@@ -128,8 +127,7 @@ void warnAboutScenes(const Source& image, const Source& reference) {
   printWarnings(messages);
 }
 
-// ---- Halves and floors
-// -------------------------------------------------------------------------------------------
+// ---- Halves and floors ----
 
 image::Image combined(const image::Image& a, const image::Image& b, float sign) {
   image::Image sum = image::toRgb(a);
@@ -142,8 +140,8 @@ image::Picture toPicture(const Source& source, const image::Image& image, float 
   return source.radiance ? image::fromRadiance(image, exposure) : image::fromDisplay(image);
 }
 
-// `half_a` and `half_b` are halves of `radiance`. Less `direct` they are halves of `indirect`, with all the
-// noise of the former: none comes from direct light in scenes without emissive surfaces and sky.
+// `half_a` and `half_b` are halves of `radiance`. Minus `direct` they are halves of `indirect` with all the noise of
+// the former, since in scenes without emissive surfaces and sky direct light has none.
 std::optional<image::Halves> halvesInside(const Source& reference, const std::string& layer, float exposure) {
   const image::Image *a = findLayer(reference, "half_a"), *b = findLayer(reference, "half_b");
   if (!a && !b) return {};

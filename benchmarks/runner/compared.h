@@ -1,4 +1,4 @@
-// A picture and its reference as files, made ready for the error measures.
+// Reads a picture and its reference from files and prepares them for the error measures.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,11 +11,10 @@
 
 namespace fovea::bench {
 
-inline constexpr double kMaxRadius = 4;  // of a fovea, image widths: as the passes have it
+inline constexpr double kMaxRadius = 4;  // of a fovea, image widths; the same limit as in the passes
 
-// How to compare.
 struct CompareOptions {
-  std::string layer, gaze;  // empty: the files decide
+  std::string layer, gaze;  // if empty, taken from the files
   std::optional<float> radius, exposure;
   bool json = false;
 };
@@ -24,31 +23,31 @@ struct Compared {
   image::Picture image, reference;
   std::optional<image::Halves> halves;  // of the reference
   std::optional<image::Picture>
-      perfectIndirect;  // the picture's direct light and the reference's indirect light
+      perfectIndirect;  // direct light of the picture, indirect light of the reference
   image::Disc fovea;
   glm::uvec2 size{0};
-  // How they were read: "" of pictures without layers.
+  // How the files were read; `layer` is empty for pictures without layers.
   std::string layer;
   float exposure = 1, radius = 0;  // radius: image widths
   glm::vec2 gaze{0};
 };
 
-// Floating-point files (EXR, PFM) hold radiance, others what a screen shows. Layer, exposure, gaze and radius
-// come from the options, else from the picture's metadata, else from the reference's, else they are
-// `radiance` (or the only layer), 1, the middle and kFoveaRadius. Halves: two files, or none, and then the
-// layers `half_a` and `half_b` of the reference where they are. Throws Error(BadInput) on missing layers,
-// other sizes, NaN and infinity, exposures that contradict each other and metadata that cannot be read;
-// Error(Usage) on bad options.
+// Floating-point files (EXR, PFM) hold radiance, others display values. Layer, exposure, gaze and radius come from
+// the options, else from the metadata of the picture, else from those of the reference; the defaults are `radiance`
+// (or the only layer), 1, the middle and kFoveaRadius. `halves` names two files or none; without them the layers
+// `half_a` and `half_b` of the reference are used if they exist. Throws Error(BadInput) on missing layers, different
+// sizes, NaN or infinity, contradicting exposures and unreadable metadata, and Error(Usage) on invalid options.
 Compared loadCompared(const std::string& image, const std::string& reference,
                       const std::vector<std::string>& halves, const CompareOptions& options);
 
-// The same of pictures in memory, all of whose layers hold radiance; the names are for messages.
+// The same for pictures in memory, all of whose layers hold radiance; the names appear in messages.
 Compared compareRadiance(const std::string& imageName, image::File image, const std::string& referenceName,
                          image::File reference, const CompareOptions& options);
 
-// What both commands say of how they compared, and their numbers: null where they are not known.
+// Describes how the pictures were compared and gives the measures, for both commands; a measure that is not
+// known is null.
 nlohmann::ordered_json describe(const Compared& compared);
 std::string describeInWords(const Compared& compared);
-std::string formatMeasure(double value);  // "0.00123", "-" where it is not known
+std::string formatMeasure(double value);  // "0.00123", or "-" if it is not known
 
 }  // namespace fovea::bench

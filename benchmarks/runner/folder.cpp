@@ -27,10 +27,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-// A claim that its owner has not touched for so long is void: the owner is gone, or its machine is.
+// A claim that its owner has not touched for this long is void: the owner or its machine is gone.
 constexpr auto kStale = 180s;
 constexpr auto kTouch = 10s;
-// One that names nobody after so long: its owner was killed before it had written its name.
+// Likewise a claim that names no owner for this long: the owner was killed before it wrote its name.
 constexpr auto kNameless = 5s;
 
 [[noreturn]] void cannotWrite(const fs::path& where, const std::string& reason) {
@@ -101,11 +101,11 @@ class Claim {
     std::error_code ignored;
     fs::last_write_time(file_, fs::file_time_type::clock::now(), ignored);
   }
-  // Takes a claim away whose owner is gone; two who do so at once make the file twice, which does no harm.
+  // Removes a claim whose owner is gone. If two processes do so at once, the file is made twice, which does no harm.
   void dropIfStale() const {
     std::error_code failed;
     const auto age = fs::file_time_type::clock::now() - fs::last_write_time(file_, failed);
-    if (failed) return;  // given up meanwhile
+    if (failed) return;  // abandoned meanwhile
     std::istringstream owner(contentOf(file_));
     std::string host;
     pid_t pid = 0;
@@ -125,7 +125,7 @@ std::optional<image::File> readIfWhole(const fs::path& file) {
   if (!fs::exists(file, ignored)) return {};
   try {
     return image::read(file);
-  } catch (const Error&) {  // of a machine that went down: made again
+  } catch (const Error&) {  // left by a machine that went down; it is made again
     fs::remove(file, ignored);
     return {};
   }
@@ -224,11 +224,11 @@ std::string firstDifference(const Json& there, const Json& here, const std::stri
 
 namespace {
 
-// What all results of one report must share: the device, the framework, and each scene and pass wherever they
-// are used.
+// What all results of one report must share: the device, the framework, and each scene and pass wherever
+// they are used.
 class Common {
  public:
-  // "" when the result belongs to those added before.
+  // "" if the result belongs to those added before.
   std::string difference(const StoredResult& result) const {
     for (const auto& [what, value] : facts(result))
       if (const auto seen = known_.find(what); seen != known_.end() && seen->second.first != value)
@@ -250,14 +250,14 @@ class Common {
     for (const char* part : {"passes", "reference"})
       if (made.contains(part) && made[part].is_object())
         for (const auto& [name, code] : made[part].items())
-          if (!name.starts_with("parameters"))  // the suite's own: samples may differ from sweep to sweep
+          if (!name.starts_with("parameters"))  // belongs to the suite: samples may differ between sweeps
             list.emplace_back((std::string(part) == "passes" ? "pass " : "reference's ") + name, code);
     return list;
   }
   std::map<std::string, std::pair<Json, fs::path>> known_;
 };
 
-// The one result of the job that belongs to `common`, if there is any; else `why` says what is wrong.
+// The result of the job that belongs to `common`, if there is one; otherwise `why` gives the reason.
 std::optional<StoredResult> resultOf(const BenchFolder& folder, const Job& job, const Common& common,
                                      std::string& why) {
   std::optional<StoredResult> found;

@@ -1,5 +1,5 @@
-// The folder of a benchmark: results, pictures, references and tables, shared by every process that works on
-// the suite. Every file appears whole, by a rename; two processes never wait for each other but for a
+// The folder of a benchmark holds results, pictures, references and tables and is shared by every process that works
+// on the suite. Every file appears as a whole, by a rename. Processes never wait for each other except for a
 // reference that one of them is making.
 #pragma once
 
@@ -29,7 +29,7 @@ struct StoredResult {
 
 class BenchFolder {
  public:
-  // `cache`: where references are, for several folders to share; empty: references/ in `folder`.
+  // `cache`: folder of the references, which several benchmark folders may share; if empty, references/ in `folder`.
   explicit BenchFolder(std::filesystem::path folder, std::filesystem::path cache = {})
       : folder_(std::move(folder)), cache_(cache.empty() ? folder_ / "references" : std::move(cache)) {}
 
@@ -40,16 +40,16 @@ class BenchFolder {
   std::filesystem::path table(const std::string& name) const { return folder_ / "tables" / (name + ".csv"); }
   std::filesystem::path reference(const std::string& name) const { return cache_ / (name + ".exr"); }
 
-  // Makes the sub-folders and tries to write `bytes` of results and `referenceBytes` of references into them.
-  // Throws Error(CannotWrite) naming what is in the way: permissions, or too little room.
+  // Creates the subfolders and tries to write `bytes` of results and `referenceBytes` of references into them. Throws
+  // Error(CannotWrite) naming the obstacle: permissions or too little space.
   void prepare(uint64_t bytes, uint64_t referenceBytes) const;
-  // All results of the job, whatever their key: one, unless something that they depend on changed. Throws
-  // Error(BadInput) on a file that is no result.
+  // All results of the job, whatever their key; there is one unless something on which it depends has changed. Throws
+  // Error(BadInput) on a file that is not a result.
   std::vector<StoredResult> results(const Job& job) const;
   void write(const Job& job, const std::string& key, const nlohmann::ordered_json& result) const;
 
-  // The reference `name`, made by `make` unless it is there; a process that is making it is waited for as
-  // long as it lives. `waiting` is called meanwhile; false gives up (Error(Interrupted)).
+  // Returns the reference `name` and calls `make` if it does not exist. If another process is making it, waits for as
+  // long as that process lives; `waiting` is called meanwhile and gives up by returning false (Error(Interrupted)).
   image::File findOrMakeReference(const std::string& name,
                                   const std::function<image::File(const std::function<void()>& alive)>& make,
                                   const std::function<bool()>& waiting) const;
@@ -58,14 +58,14 @@ class BenchFolder {
   std::filesystem::path folder_, cache_;
 };
 
-// The one result of each job that has any, in the order of the jobs. Those of the jobs that are `chosen` must
-// belong together: Error(BadInput) names files and what differs otherwise: sizes, parameters, devices, scenes
-// or passes. Of the other jobs those are taken that belong to them; `leaveOut` is told why one does not.
+// The result of each job that has one, in the order of the jobs. The results of the `chosen` jobs must belong
+// together; otherwise Error(BadInput) names the files and the difference: sizes, parameters, devices, scenes or
+// passes. Results of other jobs are included if they belong with these; `leaveOut` is told why one does not.
 std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::vector<Job>& jobs,
                                         const std::vector<bool>& chosen,
                                         const std::function<void(const std::string&)>& leaveOut);
 
-// "passes.deferred: 0123.. there, 4567.. here"; "" when alike.
+// The first difference as text, such as "passes.deferred: 0123.. there, 4567.. here"; "" if there is none.
 std::string firstDifference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here,
                             const std::string& path = {});
 

@@ -43,7 +43,7 @@ glm::vec2 parseGaze(std::string_view text) {
   const size_t comma = text.find(',');
   const auto x = parseNumber<float>(text.substr(0, comma));
   const auto y = comma == text.npos ? std::nullopt : parseNumber<float>(text.substr(comma + 1));
-  // Written so that NaN fails too.
+  // Written so that NaN also fails.
   const auto inside = [](std::optional<float> v) { return v && *v >= 0 && *v <= 1; };
   if (!inside(x) || !inside(y))
     throw Error(ExitCode::Usage, fmt::format("--gaze `{}` is not X,Y with both from 0 to 1", text),

@@ -1,4 +1,4 @@
-// What users name on a command line or in a suite, and what it means.
+// Parses what users name on a command line or in a suite: sizes, gazes, graphs and plug-ins.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,25 +11,25 @@
 
 namespace fovea::bench {
 
-inline constexpr uint32_t kMaxSize = 16384;   // pixels a side: what Vulkan devices promise at most
-inline constexpr double kFoveaRadius = 0.25;  // image widths, where nothing says otherwise
+inline constexpr uint32_t kMaxSize = 16384;   // pixels per side
+inline constexpr double kFoveaRadius = 0.25;  // image widths, the default
 
 struct GraphOptions {
   std::string graph;
   std::vector<std::string> set, plugins;
 };
 
-// "1024x768". Throws Error(Usage) naming the limits.
+// Parses "1024x768". Throws Error(Usage) naming the limits.
 glm::uvec2 parseSize(std::string_view text);
-// "0.5,0.4" in normalised image coordinates with the origin at the top left. Throws Error(Usage).
+// Parses "0.5,0.4" in normalised image coordinates with the origin at the top left. Throws Error(Usage).
 glm::vec2 parseGaze(std::string_view text);
 
 void loadPlugins(const std::vector<std::string>& plugins);
-// Loads the plug-ins, then the graph with its overrides. Mistakes inside the file go to `messages`, and bind() throws
-// them.
+// Loads the plug-ins, then the graph with its overrides. Mistakes inside the file are collected in `messages`;
+// bind() throws them.
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages);
 
-// Writes warnings and notes to stderr, each text once in the life of the process.
+// Writes warnings and notes to stderr, each text once per process.
 void printWarnings(const Diagnostics& messages);
 
 std::string formatHash(uint64_t hash);  // 16 hexadecimal digits

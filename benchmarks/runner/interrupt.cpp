@@ -11,7 +11,7 @@ namespace {
 std::atomic<bool> asked = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
-// Said at once rather than when the frame is done, which may be seconds away.
+// Printed at once because finishing the frame may take seconds.
 extern "C" void onInterrupt(int) {
   asked = true;
   static constexpr char kText[] = "\nfovea: interrupted: finishing the frame (Ctrl-C again: stop at once)\n";

@@ -1,4 +1,4 @@
-// Ctrl-C: the first one asks to finish the frame under way, the second one ends the process.
+// Handles Ctrl-C: the first one asks the program to finish the current frame, the second one ends the process.
 #pragma once
 
 namespace fovea::bench {

@@ -26,15 +26,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kReferenceSeed = 4711;  // none that a method is run with
+constexpr uint32_t kReferenceSeed = 4711;  // no method is run with this seed
 constexpr const char* kLayers[] = {"radiance", "direct", "indirect", "half_a", "half_b"};
 
 bool isLayer(const std::string& output) {
   return std::find(std::begin(kLayers), std::end(kLayers), output) != std::end(kLayers);
 }
-constexpr double kErrorScale = 0.1, kTemporalScale = 0.02;  // of error pictures: the lightest colour
+constexpr double kErrorScale = 0.1, kTemporalScale = 0.02;  // errors of the lightest colour in error pictures
 constexpr int kMaxSearchSteps = 12;
-constexpr double kSearchTolerance = 0.04;  // of the number searched for
+constexpr double kSearchTolerance = 0.04;  // relative, of the number searched for
 
 void throwIfInterrupted() {
   if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted");
@@ -49,7 +49,7 @@ graph::Description describe(const std::string& graph,
   return loadGraph(options, messages);
 }
 
-// The mistake, after the place in the suite that leads to it.
+// The mistake, preceded by the place in the suite that leads to it.
 [[noreturn]] void rethrowAt(const Error& error, const SourceLocation& where, const std::string& message) {
   std::vector<Diagnostic> all = {{Severity::Error, where, "", message, ""}};
   all.insert(all.end(), error.diagnostics().begin(), error.diagnostics().end());
@@ -70,7 +70,7 @@ std::string hashOf(std::string_view text) {
   return formatHash(hash.value());
 }
 
-// null for what is not known.
+// null if it is not known.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 std::vector<float> changeErrors(const image::Picture& now, const image::Picture& before,
@@ -88,8 +88,8 @@ std::vector<float> changeErrors(const image::Picture& now, const image::Picture&
   return errors;
 }
 
-// Milliseconds of the second eye of stereo graphs, those as a share of the first eye's whole frame, and its
-// share of new pixels.
+// Time of the second eye of stereo graphs in milliseconds and as a share of the first eye's whole frame, and the
+// second eye's share of new pixels.
 void addSecondEye(Json& time) {
   double first = 0, second = 0, pixels = 0, fresh = 0;
   for (const Json& pass : time["passes"])
@@ -103,8 +103,8 @@ void addSecondEye(Json& time) {
                         {"new_pixels", pixels > 0 ? Json(fresh / pixels) : Json()}};
 }
 
-// The random numbers of all frames are the same: what noise remains stands still as far as the picture does,
-// so that less of it is in the changes between frames.
+// All frames use the same random numbers: remaining noise stands still as far as the picture does, and less of it is
+// in the changes between frames.
 std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& job) {
   return {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}, {"per_frame", "false"}};
 }
@@ -191,7 +191,7 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
   return made;
 }
 
-// What is stored is what the path tracer, which works on the CPU, hands over: passes after it do not count.
+// Only the output of the path tracer, which works on the CPU, is stored, so later passes do not count.
 Json BenchRunner::referenceParts(const Job& job) {
   Diagnostics messages;
   const auto description = describe("reference", referenceParameters(job), messages);
@@ -234,7 +234,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   run->prepare();
   Timings timings(run->plan());
   Sequence sequence;
-  std::vector<graph::FrameResult> kept;  // converted afterwards: a frame's wall time is to be its own
+  std::vector<graph::FrameResult> kept;  // converted afterwards, so that the wall time excludes it
   uint64_t finished = 0;
   const uint64_t total = uint64_t(job.warmup) + job.frames;
   const auto take = [&](graph::FrameResult result) {
@@ -258,7 +258,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   throwIfInterrupted();
   for (graph::FrameResult& result : kept) {
     sequence.frames.push_back(toFile(*run, result));
-    if (&result != &kept.back())  // only the last one's layers are looked at one by one
+    if (&result != &kept.back())  // only the last frame's layers are used individually
       std::erase_if(sequence.frames.back().layers,
                     [&](const image::Layer& l) { return l.name != job.layer; });
   }
@@ -425,7 +425,7 @@ double BenchRunner::errorWith(const Job& job, uint32_t count) {
   return value.is_number() ? value.get<double>() : image::kUnknown;
 }
 
-// Leaves the number found among the parameters of `job`.
+// Stores the number found in the parameters of `job`.
 Json BenchRunner::search(Job& job) {
   const Match match = *job.match;
   Job like = job;
@@ -433,14 +433,14 @@ Json BenchRunner::search(Job& job) {
   std::erase_if(job.set, [&](const auto& entry) { return entry.first == match.parameter; });
   const double target = errorWith(like, 0);
   Json steps = Json::array();
-  Job last = job;  // whose error counts
+  Job last = job;  // the job whose error is reported
   last.first += job.frames - 1, last.frames = 1;
   const auto reaches = [&](uint32_t count) {
     const double error = errorWith(last, count);
     steps.push_back({{"value", count}, {"error", number(error)}});
     return error <= target;
   };
-  uint32_t low = match.from, high = match.to;  // low does not reach it, high does
+  uint32_t low = match.from, high = match.to;  // low does not reach the error, high does
   bool reached = true;
   if (reaches(low)) {
     high = low;

@@ -1,4 +1,4 @@
-// One job of a benchmark suite, from its graph to its result.
+// Runs one job of a benchmark suite, from its graph to its result.
 #pragma once
 
 #include <functional>
@@ -20,24 +20,24 @@ class BenchRunner {
  public:
   BenchRunner(const BenchFolder& folder, std::unique_ptr<gpu::Device> device, Progress& progress);
 
-  // What the result depends on; finds every mistake in the job's scene, graph and parameters. Throws
-  // Error(BadInput) with the place in the suite. nullopt: an optional scene that is not there; `why` says so.
+  // What the result depends on; finds every mistake in the job's scene, graph and parameters. Throws Error(BadInput)
+  // with the place in the suite. Returns nullopt if an optional scene is missing; `why` then gives the reason.
   std::optional<Fingerprint> fingerprint(const Job& job, std::string& why);
-  // Throws Error(Interrupted) when Ctrl-C was pressed.
+  // Throws Error(Interrupted) if Ctrl-C was pressed.
   nlohmann::ordered_json measure(const Job& job, const Fingerprint& fingerprint);
 
   struct Reference {
-    std::string name;  // of its file, without .exr: scene, size, frame and a hash of all that it depends on
+    std::string name;  // of its file, without .exr: scene, size, frame and a hash of its inputs
     uint64_t frame = 0;
   };
-  // Those that the job is compared with: of every frame, or of the last one.
+  // The references with which the job is compared: those of every frame, or that of the last one.
   std::vector<Reference> references(const Job& job);
-  // Makes it unless it is there; false: it was. Throws as measure() does.
+  // Makes the reference unless it exists; returns false if it did. Throws as measure() does.
   bool makeReference(const Job& job, const Reference& wanted);
 
  private:
   struct Sequence {                   // frames of one run
-    std::vector<image::File> frames;  // `frames` of the job when all were asked for, else the last
+    std::vector<image::File> frames;  // all `frames` of the job if requested, else the last one
     nlohmann::ordered_json time;
   };
   bool useScene(const Job& job, std::string& why);
@@ -59,7 +59,7 @@ class BenchRunner {
   std::string sceneName_;
   scene::Scene scene_;
   scene::Geometry geometry_;
-  std::map<std::string, std::string> missing_;  // optional scenes that are not there, and why
+  std::map<std::string, std::string> missing_;  // optional scenes that are missing, and why
 };
 
 }  // namespace fovea::bench

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Shaders = std::map<std::string, std::string>;  // name as others include it -> its text
+using Shaders = std::map<std::string, std::string>;  // name in #include -> text
 
 std::optional<std::string> readShader(const std::string& name) {
   for (const fs::path& folder : dataFolders("shaders")) {
@@ -35,7 +35,7 @@ std::string withoutComments(const std::string& text) {
   return std::regex_replace(std::regex_replace(text, kComment, ""), kSpace, " ");
 }
 
-// A shader and all that it includes, directly or not.
+// A shader and everything that it includes, directly or indirectly.
 void addShader(const std::string& name, Shaders& shaders) {
   if (shaders.contains(name)) return;
   const std::optional<std::string> text = readShader(name);

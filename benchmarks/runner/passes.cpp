@@ -31,14 +31,14 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr uint32_t kResamples = 4000;
-constexpr double kTail = 0.005;       // of the bootstrap interval, on each side: a graph has many passes
-constexpr double kResolvedMs = 0.02;  // smaller differences are the clocks'
+constexpr double kTail = 0.005;  // of the bootstrap interval per side, small since a graph has many passes
+constexpr double kResolvedMs = 0.02;  // smaller differences are below the resolution of the clocks
 constexpr const char* kFrame = "frame";
 
-// Milliseconds by repeat and frame.
+// Milliseconds, by repeat and frame.
 using Samples = std::vector<std::vector<double>>;
 
-// What a run was made with; only runs that agree in it are compared.
+// The settings of a run; only runs with equal settings are compared.
 Json describe(const PassBenchOptions& options, const std::string& device) {
   return {{"device", device},   {"graph", options.graph}, {"scene", options.scene},  {"size", options.size},
           {"set", options.set}, {"first", options.first}, {"warmup", options.warmup}};
@@ -80,8 +80,7 @@ void Bench::open() {
   printWarnings(messages);
 }
 
-// {"deferred": {"gpu_ms": [..], "cpu_ms": [..], "host": false}, .., "frame": {"gpu_ms", "cpu_ms",
-// "wall_ms"}}.
+// {"deferred": {"gpu_ms": [..], "cpu_ms": [..], "host": false}, .., "frame": {"gpu_ms", "cpu_ms", "wall_ms"}}.
 Json Bench::passesOf(const graph::Plan& plan, const std::vector<graph::FrameResult>& frames) {
   Json passes = Json::object(),
        whole = {{"gpu_ms", Json::array()}, {"cpu_ms", Json::array()}, {"wall_ms", Json::array()}};
@@ -138,7 +137,7 @@ Json Bench::repeat() {
   return passesOf(*graphRun.plan(), frames);
 }
 
-// One repeat by another build of this program.
+// One repeat, by another build of this program.
 Json Bench::fromProgram() const {
   const auto quoted = [](const std::string& text) {
     std::string safe = "'";
@@ -186,7 +185,7 @@ std::vector<std::string> passNames(const Json& run) {
   return names;
 }
 
-// Where the pass does its work.
+// The clock of the device on which the pass works.
 const char* clockOf(const Json& run, const std::string& pass) {
   if (pass == kFrame) return "wall_ms";
   return run["repeats"][0]["passes"][pass].value("host", false) ? "cpu_ms" : "gpu_ms";
@@ -236,8 +235,8 @@ double medianOfMedians(const Samples& samples, uint32_t stream, uint32_t& draw) 
   return spreadOf(std::move(medians)).median;
 }
 
-// Hierarchical bootstrap (Efron and Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13:
-// percentile interval): what differs between repeats, such as where memory came to lie, counts once a repeat.
+// Hierarchical bootstrap (Efron and Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13: percentile
+// interval). What differs between repeats, such as the placement of memory, counts once per repeat.
 Change changeOf(const Samples& before, const Samples& now) {
   Change change;
   change.before = spreadOf(flat(before)).median, change.now = spreadOf(flat(now)).median;
@@ -328,7 +327,7 @@ ExitCode Bench::run() {
   }
   for (uint32_t i = 0; i < options_.repeats; ++i) {
     progress_.setPrefix(fmt::format("repeat {}/{}: ", i + 1, options_.repeats));
-    // In turns, so that what slows the machine for a while slows both.
+    // Alternates, so that a temporary slowdown of the machine affects both.
     if (isProgram) {
       Json other = fromProgram();
       if (before.is_null()) before = {{"with", other["with"]}, {"repeats", Json::array()}};

@@ -1,4 +1,4 @@
-// fovea bench passes: what the passes of one graph cost, and whether that changed.
+// The command `fovea bench passes`: measures what the passes of one graph cost and whether that has changed.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct PassBenchOptions {
   uint32_t frames = 5, warmup = 3, first = 0, repeats = 5;
   double threshold = 2;  // percent
   bool json = false;
-  std::string output, size, device;  // the suite's options of the same names
+  std::string output, size, device;  // as the suite's options of the same names
   std::vector<std::string> plugins;
   bool quiet = false;
 };

@@ -1,4 +1,4 @@
-// What the user waits for, on one line of the terminal.
+// Shows what the user is waiting for on one line of the terminal.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace fovea::bench {
 
-// Writes to stderr, and only when that is a terminal. The line is wiped when the object goes, so that errors
+// Writes to stderr, and only if that is a terminal. The line is wiped when the object is destroyed, so that errors
 // and results stand alone.
 class Progress {
  public:
@@ -17,18 +17,18 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void stage(const std::string& what);  // "loading sponza"
-  // Stands before everything that follows: "job 3/40 (12 min left), ".
+  // Precedes everything that follows, such as "job 3/40 (12 min left), ".
   void setPrefix(const std::string& prefix) { prefix_ = prefix; }
-  // Frames done so far; the remaining time follows from those done.
+  // Number of frames done so far, from which the remaining time is estimated.
   void frames(uint64_t done, uint64_t total);
-  // Share of its work that a pass of the frame under way has done.
+  // Share of its work that a pass of the current frame has done.
   void pass(const std::string& name, double share);
   void clear();
 
  private:
   bool enabled_ = false, shown_ = false;
   std::chrono::steady_clock::time_point start_, passStart_;
-  std::string prefix_, framesLine_, pass_;  // what frames() said last; the pass that was heard last
+  std::string prefix_, framesLine_, pass_;  // last text of frames(); the pass that reported last
   double passShare_ = 0;
   void show(const std::string& line);
 };

@@ -30,11 +30,11 @@ struct GraphEntry {
   std::string graph, label;
   std::vector<std::pair<std::string, std::vector<std::string>>> set;
   std::optional<Match> match;
-  std::optional<uint32_t> warmup;  // in place of the sweep's
+  std::optional<uint32_t> warmup;  // overrides the sweep's
   SourceLocation where;
 };
 
-// What the suite's head and each of its sweeps may say; a sweep's word replaces the head's.
+// Settings allowed at the head of the suite and in each sweep; those of a sweep replace those of the head.
 struct Settings {
   Texts scenes;
   std::vector<GraphEntry> graphs;
@@ -66,7 +66,7 @@ std::optional<glm::uvec2> sizeOf(const std::string& text) {
   try {
     return parseSize(text);
   } catch (const Error&) {
-    return std::nullopt;  // the caller says what was expected, and where
+    return std::nullopt;  // the caller reports what was expected, and where
   }
 }
 
@@ -106,7 +106,7 @@ class SuiteReader {
     return list;
   }
 
-  // "vpl_count": 500, or a list of values to go through.
+  // Either one value, as in "vpl_count": 500, or a list of values.
   void readSet(ObjectReader& r, std::vector<std::pair<std::string, std::vector<std::string>>>& set) {
     const Value* object = r.object("set");
     if (!object) return;
@@ -305,8 +305,8 @@ class SuiteReader {
     if (!error) messages_.error(graph.where, graph.label, "match needs the measure `error`");
   }
 
-  // All combinations, the first parameter slowest; but those of a scene seed by seed, so that what is
-  // compared is measured in turns, on a machine that is now faster and now slower.
+  // All combinations, with the first parameter slowest. Those of a scene go seed by seed, so that what is compared is
+  // measured in turns, in case the speed of the machine varies.
   void expand(const std::string& sweep, const Settings& s, Suite& suite) {
     for (const auto& scene : s.scenes) {
       const auto first = std::ptrdiff_t(suite.jobs.size());
@@ -340,7 +340,7 @@ class SuiteReader {
     }
   }
 
-  // What the other graph is run with: the sweep's parameters as in this job, and its own.
+  // Parameters of the other graph: those of the sweep, as in this job, and its own.
   static void completeMatch(const Settings& s, const GraphEntry& graph, Job& job) {
     for (const GraphEntry& like : s.graphs) {
       if (like.label != job.match->like) continue;

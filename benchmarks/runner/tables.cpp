@@ -18,12 +18,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kMatch = "match.value";
 
-// 97.5% points of Student's t for 1, 2, .. degrees of freedom.
+// 97.5% points of Student's t distribution for 1, 2, .. degrees of freedom.
 constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
                                2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131};
 
-// The paper's numbers: {"scenes": {"atrium": "Sponza"}, "tables": {"table1": {"Sponza": {"ours": {NAME:
-// x}}}}}.
+// The paper's numbers: {"scenes": {"atrium": "Sponza"}, "tables": {"table1": {"Sponza": {"ours": {NAME: x}}}}}.
 Json readPaper() {
   for (const auto& folder : dataFolders("benchmarks")) {
     std::ifstream in(folder / "paper.json", std::ios::binary);
@@ -61,7 +60,7 @@ std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6
 struct Row {
   std::string scene, graph;
   std::vector<std::string> axes;
-  std::vector<std::string> order;  // of the numbers
+  std::vector<std::string> order;  // order of the numbers
   std::map<std::string, std::vector<double>> values;
   std::map<std::string, char>
       bounds;  // those only known to be '>' or '<' their value; '~': now one, now the other
@@ -77,7 +76,7 @@ struct Row {
   }
 };
 
-// Where a search ended at an end of its range the number it was after lies beyond.
+// If a search ended at an end of its range, the number that it sought lies beyond.
 char matchBound(const Json& match) {
   if (!match.value("reached", true)) return '>';
   return match.contains("steps") && match["steps"].size() == 1 ? '<' : ' ';
@@ -116,7 +115,7 @@ Table tableOf(const std::string& sweep, const std::vector<StoredResult>& results
   return table;
 }
 
-// Ratios of frame times, seed by seed; bounds where the number of VPLs of the other graph is one.
+// Ratios of frame times, seed by seed; they are bounds if the number of VPLs of the other graph is a bound.
 void addSpeedUps(const SpeedUp& wanted, Table& table) {
   const std::string time = "time.wall_ms";
   for (Row& row : table.rows) {
@@ -135,8 +134,8 @@ void addSpeedUps(const SpeedUp& wanted, Table& table) {
   }
 }
 
-// How much more the others err than `ours`, seed by seed: what their scenes and references have in common
-// drops out, and an interval that does not hold 0 decides who is better.
+// How much larger the errors of the others are than those of `ours`, seed by seed. What their scenes and references
+// have in common cancels out, and an interval without 0 decides which is better.
 void addDifferences(const std::string& measure, Table& table) {
   for (const Row& ours : table.rows) {
     if (ours.graph != "ours" || !ours.values.contains(measure)) continue;
@@ -151,7 +150,7 @@ void addDifferences(const std::string& measure, Table& table) {
   }
 }
 
-// The paper's numbers are those of its parameters, at 42 frames a second; a bound cannot be set against them.
+// The paper's numbers apply to its parameters, at 42 frames a second; a bound cannot be compared with them.
 bool likeThePaper(const Table& table, const Row& row, const std::string& name) {
   if (row.bound(name) != ' ') return false;
   for (size_t i = 0; i < table.axes.size(); ++i)
@@ -179,7 +178,7 @@ std::string csvOf(const Table& table, const Json& paper, const std::string& pape
   return text;
 }
 
-// What a terminal shows of a table: the errors, frame time and ratios, a row for each graph of a scene.
+// The part of a table that a terminal shows: errors, frame time and ratios, one row per graph of a scene.
 std::string shownOf(const std::string& sweep, const Table& table, const Json& paper,
                     const std::string& paperTable) {
   std::vector<std::string> measures;
@@ -234,10 +233,12 @@ std::vector<std::pair<std::string, double>> numbersOf(const Json& result) {
   };
   for (const char* part : {"error", "temporal"})
     if (result.contains(part))
-      for (const auto& [region, measures] : result[part].items())
+      for (const auto& [region, measures] : result[part].items()) {
+        add(fmt::format("{}.{}", part, region), measures);  // of the whole picture
         if (measures.is_object())
           for (const auto& [name, value] : measures.items())
             add(fmt::format("{}.{}.{}", part, region, name), value);
+      }
   if (result.contains("match")) add(kMatch, result["match"].value("value", Json()));
   if (!result.contains("time")) return list;
   const Json& time = result["time"];

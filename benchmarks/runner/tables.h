@@ -1,4 +1,4 @@
-// The tables of a benchmark: means over seeds, beside the paper's numbers.
+// Writes the tables of a benchmark: means over seeds, beside the paper's numbers.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace fovea::bench {
 
-// Every number of a result by name, in its order: "error.fovea.mse", "time.wall_ms" (median),
+// Every number of a result by name, in the order of the result: "error.fovea.mse", "time.wall_ms" (median),
 // "pass.deferred.gpu_ms", "counter.deferred.pairs", "second_eye.ms", "match.value".
 std::vector<std::pair<std::string, double>> numbersOf(const nlohmann::ordered_json& result);
 
@@ -21,12 +21,12 @@ struct Mean {
 };
 Mean meanOf(const std::vector<double>& values);
 
-// tables/SWEEP.csv: a row per scene, graph, combination of the varied parameters, and number; `paper` and
-// `ratio` (ours / the paper's) where benchmarks/paper.json has that number; `bound` is `>` or `<` where a
-// number is only known to be above or below what is shown, as when all of a search's range was not enough,
-// `~` where seeds disagree on that. Also writes report.json, which the report is made from, with the
-// `command` that makes all of it. Returns the tables as a terminal shows them: errors, times and ratios
-// alone. Throws Error(CannotWrite).
+// Writes tables/SWEEP.csv with one row per scene, graph, combination of the varied parameters, and number.
+// `paper` and `ratio` (ours / the paper's) are given if benchmarks/paper.json has that number. `bound` is `>` or
+// `<` if the number is only known to be above or below what is shown, for example because the whole range of a
+// search was not enough, and `~` if seeds disagree on that. Also writes report.json, from which the report is
+// made, with the `command` that makes all of it. Returns the tables as shown on a terminal: errors, times and
+// ratios alone. Throws Error(CannotWrite).
 std::string writeTables(const BenchFolder& folder, const Suite& suite,
                         const std::vector<StoredResult>& results,
                         const std::map<std::string, std::string>& missingScenes, const std::string& command);

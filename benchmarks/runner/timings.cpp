@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 double medianOf(std::vector<double> values) { return spreadOf(std::move(values)).median; }
 
-// Microseconds are what the clocks resolve; more digits would only pretend.
+// The clocks resolve microseconds; more digits would be meaningless.
 double rounded(double ms) { return std::round(ms * 1000.0) / 1000.0; }
 
 Json toJson(const Spread& s) {
@@ -95,12 +95,12 @@ std::vector<Timings::Row> Timings::rows() const {
   return rows;
 }
 
-// Passes of the second eye and of whatever else has a view of its own: their time where they do their work.
-// The passes of a part of a graph (right/direct) have the view that the part was given.
+// Totals of the passes of the second eye and of every other separate view, by the time where each pass works. The
+// passes of a part of a graph (right/direct) have the view that the part was given.
 std::vector<Timings::ViewTotal> Timings::viewTotals() const {
   const graph::BoundGraph& graph = *plan_->graph;
   std::vector<ViewTotal> totals = {{"none", 0, {}}};
-  std::vector<size_t> slot(graph.views.size(), 0);  // of each view, in `totals`
+  std::vector<size_t> slot(graph.views.size(), 0);  // index of each view in `totals`
   const auto slotOf = [&](uint32_t pass) {
     if (pass == kAnimate) return size_t(0);
     const graph::BoundPass& p = graph.passes[pass];

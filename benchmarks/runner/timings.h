@@ -1,4 +1,4 @@
-// Times and counters of a run: collected frame by frame, then printed as a table or written as JSON or CSV.
+// Times and counters of a run, collected frame by frame, then printed as a table or written as JSON or CSV.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fovea::bench {
 
-// What a run was made with; goes into every file that the run writes.
+// The settings of a run, which every file that the run writes contains.
 struct RunInfo {
   std::string device, graph, graphHash, scene;
   uint32_t width = 0, height = 0;
@@ -20,7 +20,7 @@ struct RunInfo {
   uint64_t peakDeviceBytes = 0, peakHostBytes = 0;
 };
 
-// Milliseconds. p95: nearest rank, the smallest value that at least 95% of the frames do not exceed.
+// In milliseconds. p95 is the nearest rank: the smallest value that at least 95% of the frames do not exceed.
 struct Spread {
   double median = 0, min = 0, p95 = 0;
 };
@@ -32,14 +32,14 @@ class Timings {
 
   void add(const graph::FrameResult& result);  // outputs are not kept
   const std::vector<graph::FrameResult>& frames() const { return frames_; }
-  // Of a PassTiming's pass. Before the passes of a scene that moves comes `animate`: its vertices.
+  // Name of a PassTiming's pass. In a scene that moves, `animate` precedes the passes and computes the vertices.
   std::string name(uint32_t pass) const;
   std::string type(uint32_t pass) const;
 
   std::string table() const;  // for people
   std::string json(const RunInfo& run) const;
   std::string csv() const;  // a row per frame and pass
-  // By extension, .json or .csv. Throws Error(CannotWrite).
+  // The extension, .json or .csv, selects the format. Throws Error(CannotWrite).
   void write(const std::filesystem::path& file, const RunInfo& run) const;
 
  private:
@@ -50,15 +50,15 @@ class Timings {
     Spread gpu, cpu;
     double time() const { return host ? cpu.median : gpu.median; }  // where the pass does its work
   };
-  struct ViewTotal {   // of all passes of one view, ms a frame
-    std::string view;  // "none": of the passes that are given none, the first eye's shading among them
+  struct ViewTotal {   // total of all passes of one view, ms per frame
+    std::string view;  // "none" for passes without a view, such as the first eye's shading
     uint32_t passes = 0;
     Spread time;
   };
   std::string viewTable() const;
   std::string counterTable() const;
   std::vector<Row> rows() const;                                 // in order of execution
-  std::vector<ViewTotal> viewTotals() const;                     // none of graphs with a single view
+  std::vector<ViewTotal> viewTotals() const;                     // empty for graphs with a single view
   std::vector<std::pair<std::string, double>> counters() const;  // medians, in order of first appearance
   template <class Get>
   Spread frameSpread(Get get) const;

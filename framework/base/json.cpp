@@ -13,7 +13,7 @@
 namespace fovea::json {
 namespace {
 
-// Column and line of ascending byte offsets.
+// Computes line and column of ascending byte offsets.
 class LineCounter {
  public:
   LineCounter(std::string_view text, std::shared_ptr<const std::string> file)
@@ -40,9 +40,9 @@ class LineCounter {
   int line_ = 1, column_ = 1;
 };
 
-// Builds a Value from nlohmann's events. The parser does not say where a token starts, but it reports every
-// token except ',' and ':' in the order of the text; so the start of the next one is found by skipping those
-// and white space, and its end by the shape of the token.
+// Builds a Value from nlohmann's events. The parser does not tell where a token starts, but it reports every token
+// except ',' and ':' in the order of the text. The start of the next token is therefore found by skipping these and
+// white space, and its end by the shape of the token.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(std::string_view text, std::shared_ptr<const std::string> file)
@@ -111,7 +111,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return at;
   }
 
-  // Past a number as RFC 8259 has it: "01" is two of them.
+  // Skips a number as defined by RFC 8259; "01" is two of them.
   size_t skipNumber(size_t at) const {
     auto digits = [&] {
       while (at < text_.size() && text_[at] >= '0' && text_[at] <= '9') ++at;
@@ -136,7 +136,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return at;
   }
 
-  // Start of the next token; moves end_ past it.
+  // The start of the next token; moves end_ past it.
   Position nextToken() {
     const size_t start = skipSeparators(end_);
     size_t at = start;
@@ -183,7 +183,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Value& value = place();
     value.type = type;
     value.where = where;
-    open_.push_back(&value);  // stays valid: the parent grows only after this one is closed
+    open_.push_back(&value);  // stays valid, because the parent grows only after this one is closed
     keys_.emplace_back();
     return true;
   }
@@ -234,7 +234,7 @@ Value parse(std::string_view text, std::string_view file) {
         std::vector<Diagnostic>{
             {Severity::Error, lines.at(offset).location(), {}, std::move(message), std::move(remedy)}});
   };
-  // nlohmann skips a byte-order mark and takes a NUL for the end of the text: both would hide something.
+  // nlohmann skips a byte-order mark and takes a NUL for the end of the text; either would hide something.
   if (text.substr(0, 3) == "\xEF\xBB\xBF")
     fail(0, "the file starts with a byte-order mark", "save it as UTF-8 without BOM");
   if (const size_t nul = text.find('\0'); nul != std::string_view::npos)
@@ -424,7 +424,7 @@ std::string printOnOneLine(const Value& value) {
   return text.empty() ? "{}" : "{" + text + " }";
 }
 
-// `before` and `after` are what else stands on the value's first and last line.
+// `before` and `after` are the numbers of other characters on the first and last line of the value.
 void printInto(std::string& out, const Value& value, size_t indent, size_t before, size_t after) {
   const std::string line = printOnOneLine(value);
   const size_t count = value.isObject() ? value.members.size() : value.items.size();

@@ -1,6 +1,6 @@
-// JSON with source positions: every value and key knows its file, line and column, so that a wrong value can
-// be reported where the user wrote it. Free of any meaning: graph files and scene files are both read through
-// it.
+// JSON with source positions: every value and key knows its file, line and column, so that a wrong value can be
+// reported where the user wrote it. Nothing here depends on the meaning of a document; graph files and scene files
+// are both read through it.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@
 
 namespace fovea::json {
 
-// Lines and columns count from 1, columns in characters (UTF-8 code points). line 0: unknown.
+// Lines and columns count from 1, columns in characters (UTF-8 code points). Line 0 means unknown.
 struct Position {
   std::shared_ptr<const std::string> file;
   int line = 0;
@@ -42,7 +42,7 @@ struct Value {
   double real = 0;              // Real and Int; always finite
   std::string string;           // String
   std::vector<Value> items;     // Array
-  std::vector<Member> members;  // Object, in the order of the file; no key twice
+  std::vector<Member> members;  // Object, in the order of the file; keys are unique
   Position where;               // first character of the value
 
   bool isNull() const { return type == Type::Null; }
@@ -53,9 +53,9 @@ struct Value {
   bool isArray() const { return type == Type::Array; }
   bool isObject() const { return type == Type::Object; }
 
-  const Member* findMember(std::string_view key) const;  // nullptr also when this is no object
+  const Member* findMember(std::string_view key) const;  // nullptr also if this is not an object
   const Value* find(std::string_view key) const;
-  // "an object", "the number 3.5", "the text \"abc\"": for messages that say what was found.
+  // For messages that say what was found: "an object", "the number 3.5", "the text \"abc\"".
   std::string describe() const;
 };
 
@@ -65,7 +65,7 @@ struct Member {
   Value value;
 };
 
-// Keys are mostly literals: inlined, each costs a comparison or two of whole words.
+// Most keys are literals. Inlined, each costs a comparison or two of whole words.
 [[gnu::always_inline]] inline const Member* Value::findMember(std::string_view key) const {
   for (const Member& member : members)
     if (sameText(member.key, key)) return &member;
@@ -80,32 +80,32 @@ struct Member {
 inline constexpr int kMaxDepth = 64;                   // nesting of arrays and objects
 inline constexpr size_t kMaxBytes = size_t(64) << 20;  // of one file
 
-// Strict RFC 8259. `file` is the name used in messages. Throws Error(BadInput), with place, for: a syntax
-// error, text after the document, a byte-order mark, a NUL, invalid UTF-8, a number that no double holds,
-// nesting deeper than kMaxDepth, and keys that occur twice in one object (all of those at once).
+// Parses strict RFC 8259. `file` is the name used in messages. Throws Error(BadInput) with the place of a syntax
+// error, text after the document, a byte-order mark, a NUL, invalid UTF-8, a number that no double holds, nesting
+// deeper than kMaxDepth, or keys that occur twice in one object (all of these at once).
 Value parse(std::string_view text, std::string_view file);
-// Throws Error(BadInput) also when the file cannot be read or is larger than kMaxBytes.
+// Also throws Error(BadInput) if the file cannot be read or is larger than kMaxBytes.
 Value parseFile(const std::filesystem::path& file);
-// The text of a value, indented by two spaces, with what fits into 110 characters on one line. Ends in a newline.
+// The text of a value, indented by two spaces; whatever fits into 110 characters is on one line. Ends with a newline.
 std::string print(const Value& value);
 
-// Reads an object member by member. A value of a wrong type or out of range is reported and replaced by the
-// fallback (or nothing); finish() reports every member that nobody asked for, with the nearest name that
-// somebody did. Keys are literals: the reader keeps where they are, not what they say.
+// Reads an object member by member. A value of a wrong type or out of range is reported and replaced by the fallback
+// (or nothing). finish() reports every member that was not asked for, with the nearest name that was. Keys must be
+// literals, because the reader keeps references to them.
 //   ObjectReader r(value, "camera", diagnostics);
 //   camera.fov = r.number("fov_degrees", 60, 1, 179);
 //   r.finish();
 class ObjectReader {
  public:
-  // Reports when `value` is no object; every member is then absent. `path` is the place inside the document.
+  // Reports a `value` that is not an object; every member is then absent. `path` is the place inside the document.
   ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics);
-  // The same at "parent.key"; both are kept by reference.
+  // The same at "parent.key". Both strings are kept by reference.
   ObjectReader(const Value& value, std::string_view parent, std::string_view key, Diagnostics& diagnostics)
       : value_(value), parent_(parent), key_(key), diagnostics_(diagnostics) {
     if (!value.isObject()) reportKind();
   }
 
-  [[gnu::always_inline]] const Value* find(std::string_view key) {  // any type; nullptr when absent
+  [[gnu::always_inline]] const Value* find(std::string_view key) {  // any type; nullptr if absent
     known_.push_back(key);
     const Member* member = value_.findMember(key);
     if (!member) return nullptr;
@@ -113,16 +113,16 @@ class ObjectReader {
     if (index < 64) asked_ |= uint64_t(1) << index;
     return &member->value;
   }
-  [[gnu::always_inline]] const Value* require(std::string_view key) {  // reports when absent
+  [[gnu::always_inline]] const Value* require(std::string_view key) {  // reports an absent member
     const Value* value = find(key);
     if (!value) reportMissing(key);
     return value;
   }
-  [[gnu::always_inline]] const Value* object(std::string_view key) {  // nullptr when absent or wrong
+  [[gnu::always_inline]] const Value* object(std::string_view key) {  // nullptr if absent or wrong
     return object(key, find(key));
   }
   const Value* array(std::string_view key);
-  // Several keys, a constant array, in one walk over the members: the values, nullptr where absent.
+  // Looks up several keys, a constant array, in one walk over the members. Returns their values, nullptr where absent.
   template <const auto& keys>
   [[gnu::always_inline]] auto findAll() {
     listed_ = keys;
@@ -137,7 +137,7 @@ class ObjectReader {
     }
     return found;
   }
-  // What findAll() found, unless it is of another type, which is reported.
+  // Takes a value that findAll() returned; a value of another type is reported.
   const Value* object(std::string_view key, const Value* value) {
     return !value || value->isObject() ? value : notObject(key, *value);
   }
@@ -157,7 +157,7 @@ class ObjectReader {
     return value ? textOf(key, *value, std::move(fallback)) : fallback;
   }
   std::string choice(std::string_view key, std::string fallback, const std::vector<std::string>& choices);
-  // An array of exactly `count` numbers; nullopt when absent or wrong.
+  // An array of exactly `count` numbers; nullopt if absent or wrong.
   std::optional<std::vector<double>> numbers(std::string_view key, size_t count);
 
   void finish() {
@@ -177,15 +177,15 @@ class ObjectReader {
   [[gnu::cold]] void reportKind();
   [[gnu::cold]] void reportUnknown();
   const Value& value_;
-  std::string path_;  // unless there is a key
+  std::string path_;  // used if there is no key
   std::string_view parent_, key_;
   Diagnostics& diagnostics_;
   SmallVector<std::string_view, 8> known_;
   std::span<const std::string_view> listed_;  // known as well
-  uint64_t asked_ = 0;                        // of the first 64 members, those that somebody asked for
+  uint64_t asked_ = 0;                        // a bit for each of the first 64 members that was asked for
 };
 
-// "a.b", or "b" when path is empty.
+// "a.b", or "b" if `path` is empty.
 std::string joinPath(std::string_view path, std::string_view key);
 
 }  // namespace fovea::json

@@ -14,8 +14,8 @@ constexpr uint32_t reverseBits(uint32_t x) {
   return __builtin_bswap32(x);
 }
 
-// Random flips of each bit that depend on the lower bits only: nested uniform scrambling of a reversed
-// fraction (Laine and Karras 2011, with the constants of Vegdahl, 2021).
+// Flips each bit randomly depending on the lower bits only: nested uniform scrambling of a reversed fraction (Laine
+// and Karras 2011, with the constants of Vegdahl, 2021).
 constexpr uint32_t laineKarras(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -27,8 +27,8 @@ constexpr uint32_t laineKarras(uint32_t x, uint32_t seed) {
 
 using Directions = std::array<std::array<uint32_t, 32>, 4>;
 
-// Direction numbers of the first four dimensions: primitive polynomials and initial values of Joe and Kuo,
-// 2008.
+// Direction numbers of the first four dimensions, from the primitive polynomials and initial
+// values of Joe and Kuo, 2008.
 constexpr Directions makeDirections() {
   struct Polynomial {
     uint32_t degree, coefficients, initial[3];
@@ -54,9 +54,8 @@ constexpr Directions makeDirections() {
 
 constexpr Directions kDirections = makeDirections();
 
-// Points are made with the bits of their fractions reversed, the form in which they are scrambled.
-// kByteTables[d][b][x] combines the direction numbers of dimension d + 2 for the bits set in byte b of the
-// index.
+// Points are computed with the bits of their fractions reversed, which is the form in which they are scrambled.
+// kByteTables[d][b][x] combines the direction numbers of dimension d + 2 for the bits set in byte b of the index.
 using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, 2>;
 
 constexpr ByteTables makeByteTables() {
@@ -64,7 +63,7 @@ constexpr ByteTables makeByteTables() {
   for (uint32_t d = 0; d < 2; ++d)
     for (uint32_t byte = 0; byte < 4; ++byte)
       for (uint32_t x = 1; x < 256; ++x) {
-        uint32_t low = 0;  // the lowest bit set; the table knows the rest
+        uint32_t low = 0;  // the lowest bit set; the rest is in the table
         while (!((x >> low) & 1u)) ++low;
         tables[d][byte][x] = tables[d][byte][x & (x - 1)] ^ reverseBits(kDirections[d + 2][8 * byte + low]);
       }
@@ -74,8 +73,8 @@ constexpr ByteTables makeByteTables() {
 constexpr ByteTables kByteTables = makeByteTables();
 
 constexpr uint32_t unscrambledPoint(uint32_t index, uint32_t within) {
-  // The direction numbers of the first dimension are the unit matrix, those of the second one Pascal's
-  // triangle modulo 2, which is a product of five matrices that are nearly empty.
+  // The direction numbers of the first dimension form the unit matrix. Those of the second form Pascal's triangle
+  // modulo 2, which is a product of five nearly empty matrices.
   if (within == 0) return index;
   if (within == 1) {
     uint32_t x = index ^ index >> 16;
@@ -88,8 +87,8 @@ constexpr uint32_t unscrambledPoint(uint32_t index, uint32_t within) {
   return t[0][index & 255u] ^ t[1][index >> 8 & 255u] ^ t[2][index >> 16 & 255u] ^ t[3][index >> 24];
 }
 
-// A nested scramble of the index permutes aligned blocks of every power-of-two length: nets stay nets, and
-// the groups become independent of one another.
+// A nested scramble of the index permutes aligned blocks of every power-of-two length. Nets thus stay nets, and the
+// groups become independent of one another.
 struct Group {
   uint32_t seed, index;
   Group(uint32_t i, uint32_t group, uint32_t s)

@@ -1,4 +1,4 @@
-// What the C library does with memory that is freed.
+// How the C library treats freed memory.
 #pragma once
 
 #include <cstdlib>
@@ -9,9 +9,9 @@
 
 namespace fovea {
 
-// Keeps up to 256 MiB of freed memory instead of giving its pages back at once: compiling a graph of some
-// hundred passes again and again otherwise spends a quarter of its time on getting them anew. For the start
-// of a program.
+// Keeps up to 256 MiB of freed memory instead of returning its pages at once. Otherwise, compiling a graph
+// of several hundred passes again and again spends a quarter of its time on obtaining them anew. Call it
+// at the start of a program.
 inline void keepFreedMemory() {
 #ifdef __GLIBC__
   mallopt(M_TRIM_THRESHOLD, 256 << 20);

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Keeps the first of equal folders, and only what exists.
+// Adds a folder if it exists and is not yet in the list.
 void addFolder(std::vector<fs::path>& list, const fs::path& folder) {
   std::error_code ignored;
   if (folder.empty() || !fs::is_directory(folder, ignored)) return;
@@ -22,7 +22,7 @@ void addFolder(std::vector<fs::path>& list, const fs::path& folder) {
     list.push_back(canonical);
 }
 
-// A program's or library's own folder is a data folder only when it holds data: /usr/bin is none.
+// The folder of a program or library counts as a data folder only if it holds data; /usr/bin does not.
 void addBeside(std::vector<fs::path>& list, const fs::path& folder) {
   if (folder.empty()) return;
   addFolder(list, folder / "../share/fovea");

@@ -15,12 +15,12 @@ constexpr uint32_t hashPcg(uint32_t v) {
 
 constexpr uint32_t hashCombine(uint32_t a, uint32_t b) { return hashPcg(a ^ hashPcg(b)); }
 
-// Key of one random stream. Draw number k of stream s is uniformFloat(hashCombine(s, k)).
+// The key of one random stream. Number k of stream s is uniformFloat(hashCombine(s, k)).
 constexpr uint32_t randomStream(uint32_t seed, uint32_t frame, uint32_t pass, uint32_t index) {
   return hashCombine(hashCombine(hashCombine(seed, frame), pass), index);
 }
 
-// [0, 1) with 24 bits.
+// A number in [0, 1) with 24 bits.
 constexpr float uniformFloat(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
 }  // namespace fovea

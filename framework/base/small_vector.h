@@ -1,6 +1,6 @@
-// A list whose first N elements lie in the object itself, for lists that are nearly always short: a graph has
-// thousands of them, and asking for memory would cost more than filling them. Elements are plain data. As in
-// std::vector, growing and moving invalidate iterators; moving the object also moves its elements.
+// A list whose first N elements are stored in the object itself, for lists that are nearly always short: a graph has
+// thousands of them, and allocating memory would cost more than filling them. Elements are plain data. As in
+// std::vector, growing invalidates iterators; so does moving, because it moves the elements in the object as well.
 #pragma once
 
 #include <algorithm>
@@ -54,8 +54,8 @@ class SmallVector {
     if (count > capacity_) grow(count);
   }
   [[gnu::always_inline]] void push_back(T value) { emplace_back(value); }
-  // Made in place, for a copy of what has just been written field by field would have to wait for it. No
-  // argument may be part of this list.
+  // Constructs the element in place, because copying one that was just written field by field would have to wait for
+  // the writes. No argument may be part of this list.
   template <class... Arguments>
   [[gnu::always_inline]] T& emplace_back(Arguments&&... arguments) {
     if (size_ == capacity_) grow(size_ + 1);
@@ -93,7 +93,7 @@ class SmallVector {
   }
 
  private:
-  [[gnu::noinline]] void grow(size_t count) {  // rare, so that what is not can be inlined
+  [[gnu::noinline]] void grow(size_t count) {  // rare; out of line so that callers can be inlined
     const auto capacity = static_cast<uint32_t>(std::max<size_t>(count, size_t(capacity_) * 2));
     T* grown = std::allocator<T>().allocate(capacity);
     std::memcpy(static_cast<void*>(grown), data_, size_ * sizeof(T));

@@ -39,7 +39,7 @@ void writeText(const fs::path& file, const std::string& text) {
   };
   if (std::fwrite(text.data(), 1, text.size(), out.get()) != text.size() || std::fflush(out.get()) != 0)
     giveUp(errno);
-  if (std::fclose(out.release()) != 0) giveUp(errno);  // a full disk may show only here
+  if (std::fclose(out.release()) != 0) giveUp(errno);  // a full disk may only be noticed here
   if (std::rename(temporary.c_str(), file.c_str()) != 0) giveUp(errno);
 }
 

@@ -6,9 +6,9 @@
 
 namespace fovea {
 
-// Written under a temporary name, checked, renamed. Throws Error(CannotWrite) naming the file and the reason.
+// Writes under a temporary name, checks and renames. Throws Error(CannotWrite) naming the file and the reason.
 void writeText(const std::filesystem::path& file, const std::string& text);
-// Throws Error(CannotWrite) when `file` cannot be created there; leaves nothing behind.
+// Throws Error(CannotWrite) if `file` cannot be created there; leaves nothing behind.
 void checkTextWritable(const std::filesystem::path& file);
 
 }  // namespace fovea

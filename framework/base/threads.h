@@ -1,4 +1,4 @@
-// The same work on several threads at once.
+// Runs the same work on several threads at once.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace fovea {
 
-// 0: one a core.
+// 0 means one thread per core.
 inline uint32_t threadCount(uint32_t wanted) {
   return std::max(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u);
 }
 
-// Calls work() `count` times at once, on this thread, too; returns when all calls have.
+// Calls work() `count` times concurrently, including once on this thread, and returns when all calls have returned.
 template <class Work>
 void onThreads(uint32_t count, const Work& work) {
   std::vector<std::jthread> helpers;

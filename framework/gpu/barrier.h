@@ -1,4 +1,4 @@
-// One barrier for all memory.
+// A single barrier for all memory.
 #pragma once
 
 #include <vulkan/vulkan.h>

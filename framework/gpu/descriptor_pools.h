@@ -1,4 +1,4 @@
-// Plain descriptor sets in place of pushed ones, for GPU-assisted validation only.
+// Ordinary descriptor sets in place of push descriptors, for GPU-assisted validation only.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -8,9 +8,8 @@
 
 namespace fovea::gpu {
 
-// The validation layer 1.3.239 takes pushed descriptors for uninitialized ones in its instrumented shaders
-// and reports every access. In that mode a "push" allocates a set, writes and binds it; the sets live as long
-// as the device.
+// Validation layer 1.3.239 takes push descriptors for uninitialised ones in its instrumented shaders and reports
+// every access. In that mode a "push" allocates, writes and binds a set; the sets live as long as the device.
 class DescriptorPools {
  public:
   explicit DescriptorPools(VkDevice device) : device_(device) {}
@@ -18,7 +17,7 @@ class DescriptorPools {
   DescriptorPools(const DescriptorPools&) = delete;
   DescriptorPools& operator=(const DescriptorPools&) = delete;
 
-  // The layout of set 0 of a pipeline layout.
+  // Registers the layout of set 0 of a pipeline layout.
   void remember(VkPipelineLayout layout, VkDescriptorSetLayout set) { layouts_[layout] = set; }
   void bind(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t set,
             std::vector<VkWriteDescriptorSet> writes);

@@ -17,7 +17,7 @@
 namespace fovea::gpu {
 namespace {
 
-constexpr size_t kMaxMessages = 200;  // a mistake in a loop would otherwise fill the memory
+constexpr size_t kMaxMessages = 200;  // otherwise a mistake in a loop would exhaust memory
 
 std::string mebibytes(uint64_t bytes) {
   if (bytes < (1u << 20)) return std::to_string(bytes) + " bytes";
@@ -25,7 +25,7 @@ std::string mebibytes(uint64_t bytes) {
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MiB";
 }
 
-// What the validation layers said.
+// The messages of the validation layers.
 struct MessageLog {
   Validation validation = Validation::Off;
   std::function<void(const std::string&)> forward;
@@ -33,25 +33,25 @@ struct MessageLog {
   std::vector<std::string> messages;
 };
 
-// Messages of the layers that say nothing about a mistake of fovea.
+// Whether a message does not point to a mistake of fovea.
 bool ignored(Validation validation, const VkDebugUtilsMessengerCallbackDataEXT& data) {
   const std::string_view id = data.pMessageIdName ? data.pMessageIdName : "";
-  // The mode announces the features that it switches on for itself.
+  // This mode announces the features that it enables for itself.
   if (validation == Validation::GpuAssisted) return id == "UNASSIGNED-GPU-Assisted Validation Setup";
   if (validation != Validation::BestPractices) return false;
   constexpr std::string_view kAdvice[] = {
-      // The extensions by which these very messages come.
+      // The extensions that deliver these very messages.
       "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
-      // One allocation a resource is meant: there are some hundred of them, and transient ones share a heap.
+      // One allocation per resource is intended: there are a few hundred of them, and transient ones share a heap.
       "UNASSIGNED-BestPractices-vkAllocateMemory-small-allocation",
       "UNASSIGNED-BestPractices-vkBindMemory-small-dedicated-allocation",
-      // Set-up transfers fence off everything before and after them; the frame's own barriers are exact.
+      // Set-up transfers are fenced off from everything before and after them; the barriers of frames are exact.
       "UNASSIGNED-BestPractices-pipeline-stage-flags",
       "UNASSIGNED-BestPractices-ImageBarrierAccessLayout",
-      // The layer knows only requirements of objects, not vkGetDevice{Buffer,Image}MemoryRequirements.
+      // The layer knows only requirements queried from objects, not vkGetDevice{Buffer,Image}MemoryRequirements.
       "UNASSIGNED-BestPractices-vkBindBufferMemory-requirements-not-retrieved",
       "UNASSIGNED-BestPractices-vkBindImageMemory-requirements-not-retrieved",
-      // A query whether a format works may well answer no.
+      // A query whether a format is supported may well be answered with no.
       "UNASSIGNED-BestPractices-Error-Result",
   };
   return std::find(std::begin(kAdvice), std::end(kAdvice), id) != std::end(kAdvice);
@@ -91,7 +91,7 @@ struct Device::Impl {
   void queryFeatures(FeatureChain& enabled);
   void createCaches(const DeviceOptions& options);
   void savePipelineCache();
-  uint32_t memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const;  // ~0u: none
+  uint32_t memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const;  // ~0u if there is none
 
   MessageLog log;
   VkInstance instance = VK_NULL_HANDLE;
@@ -109,14 +109,14 @@ struct Device::Impl {
   VkQueue queue = VK_NULL_HANDLE;
   VkCommandPool pool = VK_NULL_HANDLE;
   VkPipelineCache pipelineCache = VK_NULL_HANDLE;
-  std::filesystem::path pipelineCacheFile;  // empty: not kept on disk
-  uint64_t pipelineCacheHash = 0;           // of what was loaded
+  std::filesystem::path pipelineCacheFile;  // empty if not kept on disk
+  uint64_t pipelineCacheHash = 0;           // hash of the loaded data
   std::unique_ptr<ShaderCompiler> shaders;
   std::map<std::pair<VkFilter, VkSamplerAddressMode>, VkSampler> samplers;
   std::unique_ptr<DescriptorPools> plainSets;  // GPU-assisted validation only
 
   std::mutex memoryMutex;
-  uint64_t limit = 0;  // 0: each heap's size
+  uint64_t limit = 0;  // 0 for the size of each heap
   uint64_t allocated = 0, peak = 0;
   uint64_t heapAllocated[VK_MAX_MEMORY_HEAPS] = {};
   std::unordered_map<VkDeviceMemory, std::pair<uint32_t, uint64_t>> allocations;  // heap, bytes
@@ -149,7 +149,7 @@ void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
   VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
   info.messageSeverity =
       VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  // GENERAL is the loader's talk about drivers without hardware; PERFORMANCE belongs to best practices.
+  // GENERAL contains the loader's messages about drivers without hardware; PERFORMANCE belongs to best practices.
   info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
   if (options.validation == Validation::BestPractices)
     info.messageType |= VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
@@ -241,7 +241,7 @@ void Device::Impl::createCaches(const DeviceOptions& options) {
   shaders = std::make_unique<ShaderCompiler>(directory);
   std::vector<std::byte> initial;
   if (!directory.empty()) {
-    // The UUID changes with driver and device; the driver checks the same once more in the blob's header.
+    // The UUID changes with driver and device; the driver checks it again in the header of the blob.
     std::string uuid;
     for (uint8_t byte : properties.pipelineCacheUUID) {
       uuid += "0123456789abcdef"[byte >> 4];
@@ -378,7 +378,7 @@ VkSampler Device::sampler(VkFilter filter, VkSamplerAddressMode mode) {
 }
 
 void Device::runOnce(const std::function<void(VkCommandBuffer)>& record) {
-  // Both are released however this ends; freeing a command buffer that never ran is fine.
+  // Both are released in any case; a command buffer that never ran may be freed.
   struct Scope {
     Impl& d;
     VkCommandBuffer cmd = VK_NULL_HANDLE;

@@ -18,35 +18,35 @@ class ShaderCompiler;
 enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
 
 struct DeviceOptions {
-  std::string device;  // index or part of the name; "" takes the best one (discrete, integrated, CPU)
+  std::string device;  // index or part of the name; "" selects the best one (discrete, integrated, CPU)
   Validation validation = Validation::Off;
-  uint64_t memoryLimit = 0;  // bytes of device memory fovea may take; 0 means what the device reports
+  uint64_t memoryLimit = 0;  // bytes of device memory that fovea may use; 0 for what the device reports
   std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
   bool useCache = true;
-  // Gets each validation message as it comes, besides their being kept: also those of the device's own
-  // destruction (objects never destroyed). May be called from any thread.
+  // Receives each validation message as it arrives, also those about the destruction of the device itself (objects
+  // that were never destroyed). May be called from any thread. Messages are kept as well.
   std::function<void(const std::string&)> onValidationMessage;
 };
 
-// What `fovea devices` lists.
+// One entry of the list that `fovea devices` prints.
 struct DeviceInfo {
   uint32_t index = 0;
   std::string name, type, driver, apiVersion;
   uint64_t memoryBytes = 0;
-  std::vector<std::string> missing;  // required features it lacks; empty means usable
+  std::vector<std::string> missing;  // required features that it lacks; empty if usable
 };
 
-// All physical devices, usable or not; empty when there is no Vulkan driver.
+// All physical devices, usable or not; empty if there is no Vulkan driver.
 std::vector<DeviceInfo> listDevices();
 
-// What a device may have beyond the required features. Enabled when present.
+// Features beyond the required ones, which are enabled where present.
 struct Features {
   bool shaderInt64 = false;
   bool bufferInt64Atomics = false, sharedInt64Atomics = false;
   bool drawIndirectCount = false;
   bool samplerAnisotropy = false;
   bool depthClamp = false;
-  bool largePoints = false;               // gl_PointSize over 1
+  bool largePoints = false;               // gl_PointSize above 1
   bool storageReadWithoutFormat = false;  // storage images without a format qualifier
   bool storageWriteWithoutFormat = false;
   bool sampledImageArrayDynamicIndexing = false;
@@ -54,8 +54,8 @@ struct Features {
   VkSubgroupFeatureFlags subgroupOperations = 0;  // in compute shaders
 };
 
-// One thread at a time, except for allocate, release and the shader compiler. Throws Error: NoDevice (no
-// loader, no device, missing feature: each is named), OutOfMemory, DeviceLost.
+// To be used by one thread at a time, except for allocate, release and the shader compiler. Throws Error(NoDevice) if
+// there is no loader, no device or a missing feature (each is named), Error(OutOfMemory) or Error(DeviceLost).
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
@@ -70,8 +70,8 @@ class Device {
   uint32_t queueFamily() const;
   const VkPhysicalDeviceProperties& properties() const;
   const VkPhysicalDeviceLimits& limits() const { return properties().limits; }
-  std::string name() const;  // "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6": goes into every report
-  bool isCpu() const;        // lavapipe and the like
+  std::string name() const;  // e.g. "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6"; part of every report
+  bool isCpu() const;        // lavapipe and similar devices
   const Features& features() const;
   float timestampPeriodNs() const;
   uint32_t maxPushDescriptors() const;
@@ -79,34 +79,34 @@ class Device {
   VkPipelineCache pipelineCache() const;
   ShaderCompiler& shaders() const;
 
-  // Memory. what names the resource in the out-of-memory message.
+  // `what` names the resource in the out-of-memory message.
   VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
                           const std::string& what);
   void release(VkDeviceMemory memory, uint64_t bytes);
   uint64_t allocatedBytes() const;
   uint64_t peakAllocatedBytes() const;
 
-  uint64_t memoryLimit() const;  // what allocatedBytes() may reach
+  uint64_t memoryLimit() const;  // upper limit of allocatedBytes()
 
-  // Shared samplers: nearest or linear (between mips as well), all mips, clamped or repeating.
+  // Shared samplers: nearest or linear (also between mips), with all mips, clamped or repeating.
   VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode);
 
-  // Records, submits and waits: for set-up work only, never inside the frame loop.
+  // Records, submits and waits. For set-up work only, never inside the frame loop.
   void runOnce(const std::function<void(VkCommandBuffer)>& record);
   void waitIdle();
 
-  // Debugger names and labels; no-ops when VK_EXT_debug_utils is absent.
+  // Debugger names and labels; without VK_EXT_debug_utils these do nothing.
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
   void beginLabel(VkCommandBuffer cmd, const char* name) const;
   void endLabel(VkCommandBuffer cmd) const;
   void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
                          uint32_t set, std::span<const VkWriteDescriptorSet> writes) const;
-  // False under GPU-assisted validation, where pushDescriptorSet binds plain sets instead: set layouts must
-  // then be made without the push flag and be announced.
+  // False under GPU-assisted validation, where pushDescriptorSet binds ordinary sets instead. Set layouts must then be
+  // created without the push flag and be passed to announceLayout().
   bool pushesDescriptors() const;
   void announceLayout(VkPipelineLayout layout, VkDescriptorSetLayout set0) const;
 
-  // Validation messages (warnings and errors) so far; tests fail when there is one.
+  // Validation warnings and errors so far; tests fail if there are any.
   std::vector<std::string> validationMessages() const;
   void clearValidationMessages();
 
@@ -115,7 +115,7 @@ class Device {
   std::unique_ptr<Impl> impl_;
 };
 
-// Throws Error with the exit code that belongs to the result: OutOfMemory, DeviceLost, otherwise Internal.
+// Throws Error with the exit code that corresponds to the result: OutOfMemory, DeviceLost, otherwise Internal.
 void check(VkResult result, const std::string& what);
 const char* resultName(VkResult result);
 

@@ -102,7 +102,7 @@ std::vector<float> convertAll(std::span<const std::byte> texels, Convert convert
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels) {
   const FormatInfo& info = formatInfo(format);
   const bool unorm = info.type == T::Unorm || info.type == T::Srgb;
-  // Packed formats have channels of unequal bits; bgra8 would need its channels swapped.
+  // Packed formats have channels of different widths, and bgra8 would need its channels swapped.
   const bool plain = info.name.find('_') == std::string_view::npos || info.name.ends_with("_snorm") ||
                      info.name.ends_with("_srgb");
   if (plain && !info.name.starts_with("bgra")) {

@@ -20,14 +20,14 @@ struct FormatInfo {
   enum class Type : uint8_t { Float, Unorm, Snorm, Uint, Sint, Srgb } type;
 };
 
-std::span<const FormatInfo> formats();  // all of them
-// The formats fovea knows; throws Error(Internal) for others.
+std::span<const FormatInfo> formats();  // all formats that fovea knows
+// Throws Error(Internal) for formats that fovea does not know.
 const FormatInfo& formatInfo(VkFormat format);
-// VK_FORMAT_UNDEFINED when there is no such name.
+// VK_FORMAT_UNDEFINED if there is no such name.
 VkFormat formatFromName(std::string_view name);
 
-// Tightly packed texels as floats, channels interleaved; unorm and sRGB to [0, 1] (no curve removed), snorm
-// to [-1, 1]. Throws Error(Internal) for integer and packed formats.
+// Converts tightly packed texels to floats with interleaved channels: unorm and sRGB to [0, 1] (without removing the
+// sRGB curve), snorm to [-1, 1]. Throws Error(Internal) for integer and packed formats.
 std::vector<float> texelsToFloats(VkFormat format, std::span<const std::byte> texels);
 
 }  // namespace fovea::gpu

@@ -1,4 +1,4 @@
-// An image in a buffer: tightly packed, mip after mip, all layers of each.
+// An image in a buffer, tightly packed: mip after mip, each with all its layers.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -12,7 +12,7 @@
 
 namespace fovea::gpu {
 
-// The copies of as many mips as make up `bytes`, which is set to what they take in all.
+// Copies for as many mips as make up `bytes`, which is set to the size that they take in total.
 inline std::vector<VkBufferImageCopy> packedMips(const Image& image, uint64_t& bytes) {
   const ImageDesc& d = image.desc();
   std::vector<VkBufferImageCopy> copies;

@@ -32,7 +32,7 @@ const char* typeName(VkPhysicalDeviceType type) {
   }
 }
 
-// Higher is better.
+// Higher ranks are better.
 int rank(VkPhysicalDeviceType type) {
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
@@ -92,7 +92,7 @@ std::vector<VkValidationFeatureEnableEXT> validationEnables(Validation validatio
   return {};
 }
 
-// The first family that does everything and can be timed; -1 when there is none.
+// The first family that supports everything, including timestamps; -1 if there is none.
 int findQueueFamily(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -213,7 +213,7 @@ FeatureChain::List FeatureChain::required() {
       {"synchronization2", &v13.synchronization2},
       {"maintenance4", &v13.maintenance4},  // LocalSizeId, requirements without objects
       {"shaderDemoteToHelperInvocation", &v13.shaderDemoteToHelperInvocation},
-      {"shaderTerminateInvocation", &v13.shaderTerminateInvocation},  // what `discard` becomes in SPIR-V 1.6
+      {"shaderTerminateInvocation", &v13.shaderTerminateInvocation},  // `discard` in SPIR-V 1.6
   };
 }
 
@@ -237,7 +237,7 @@ FeatureChain::List FeatureChain::optional() {
       {"drawIndirectCount", &v12.drawIndirectCount},
       {"storageBuffer8BitAccess", &v12.storageBuffer8BitAccess},
       {"storageBuffer16BitAccess", &v11.storageBuffer16BitAccess},
-      {"bufferDeviceAddress", &v12.bufferDeviceAddress},  // GPU-assisted validation uses it
+      {"bufferDeviceAddress", &v12.bufferDeviceAddress},  // used by GPU-assisted validation
       {"subgroupSizeControl", &v13.subgroupSizeControl},
       {"computeFullSubgroups", &v13.computeFullSubgroups},
       {"shaderZeroInitializeWorkgroupMemory", &v13.shaderZeroInitializeWorkgroupMemory},
@@ -269,7 +269,7 @@ VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCrea
   features.enabledValidationFeatureCount = uint32_t(enables.size());
   features.pEnabledValidationFeatures = enables.data();
   VkDebugUtilsMessengerCreateInfoEXT creationMessenger{};
-  if (debugUtils && messenger) {  // so that mistakes in creating and destroying the instance are seen too
+  if (debugUtils && messenger) {  // reports mistakes in creating and destroying the instance, too
     creationMessenger = *messenger;
     features.pNext = &creationMessenger;
   }

@@ -1,4 +1,4 @@
-// Instance and physical devices: what there is, what each lacks, which one to take.
+// Instance and physical devices: which exist, what each of them lacks, and which one to choose.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -11,7 +11,7 @@
 
 namespace fovea::gpu {
 
-// Vulkan 1.0 to 1.3 features as one pNext chain. Not copyable: it points into itself.
+// The features of Vulkan 1.0 to 1.3 as one pNext chain. Not copyable, because it points into itself.
 struct FeatureChain {
   FeatureChain();
   FeatureChain(const FeatureChain&) = delete;
@@ -33,15 +33,15 @@ struct PhysicalDevice {
   DeviceInfo info;
 };
 
-// VK_NULL_HANDLE when there is no driver at all. debugUtils tells whether VK_EXT_debug_utils is on.
-// Throws Error(NoDevice) when the validation layer is wanted and absent, or the loader is older than 1.3.
+// VK_NULL_HANDLE if there is no driver at all. `debugUtils` tells whether VK_EXT_debug_utils is enabled. Throws
+// Error(NoDevice) if the validation layer is requested but absent, or if the loader is older than 1.3.
 VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCreateInfoEXT* messenger,
                           bool& debugUtils);
 
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
 
-// wanted: index, part of the name (any case), or "" for the best. Throws Error(NoDevice) that lists what
-// there is.
+// `wanted` is an index, part of the name (in any case), or "" for the best device. Throws Error(NoDevice) listing the
+// devices that exist.
 const PhysicalDevice& choose(const std::vector<PhysicalDevice>& devices, const std::string& wanted);
 
 }  // namespace fovea::gpu

@@ -52,7 +52,7 @@ void checkWorkGroup(const Device& device, const CompiledShader& shader) {
               "choose a smaller local_size");
 }
 
-// The fixed-function state, which points into itself.
+// The fixed-function state. It points into itself.
 struct GraphicsState {
   explicit GraphicsState(const GraphicsPipelineDesc& desc);
   GraphicsState(const GraphicsState&) = delete;

@@ -1,6 +1,6 @@
-// Compute and graphics pipelines whose layout comes from reflection.
-// Set 0 belongs to the pass and is pushed (VK_KHR_push_descriptor); set 1 is shared by all passes of a frame.
-// Layouts differ in set 0, so set 1 has to be bound again after each change of pipeline.
+// Compute and graphics pipelines whose layout comes from reflection. Set 0 belongs to the pass and is pushed
+// (VK_KHR_push_descriptor); set 1 is shared by all passes of a frame. Layouts differ in set 0, so set 1 must be bound
+// again after each change of pipeline.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -15,20 +15,21 @@ namespace fovea::gpu {
 
 class Device;
 
-// What both kinds share: merged bindings of all stages, merged push constants. A name is one binding in all
-// stages; numbers the compiler chose are changed where stages disagree, written ones must agree.
+// What both kinds of pipeline have in common: the merged bindings and push constants of all stages. A name
+// is one binding in all stages. Numbers that the compiler chose are changed where stages disagree;
+// explicit numbers must agree.
 struct PipelineInterface {
   std::vector<ReflectedBinding> bindings;  // set 0 only
   std::vector<ReflectedConstant> constants;
   uint32_t pushConstantBytes = 0;
   VkShaderStageFlags stages = 0;
-  bool usesSharedSet = false;  // some stage has a binding in set 1
+  bool usesSharedSet = false;  // a stage has a binding in set 1
   uint32_t localSize[3] = {1, 1, 1};
 };
 
 struct ComputePipelineDesc {
   std::shared_ptr<const CompiledShader> shader;
-  VkDescriptorSetLayout sharedSet = VK_NULL_HANDLE;  // layout of set 1; required when the shader uses it
+  VkDescriptorSetLayout sharedSet = VK_NULL_HANDLE;  // layout of set 1; required if the shader uses it
 };
 
 struct GraphicsPipelineDesc {
@@ -45,7 +46,8 @@ struct GraphicsPipelineDesc {
   uint32_t clipDistances = 0;
 };
 
-// Move-only. Dynamic state: viewport, scissor. Dynamic rendering, no vertex input (vertices are pulled).
+// Move-only. Viewport and scissor are dynamic state; rendering is dynamic; there is no vertex
+// input (vertices are pulled).
 class Pipeline {
  public:
   Pipeline() = default;
@@ -76,9 +78,9 @@ class Pipeline {
 
 VkDescriptorType descriptorType(BindingKind kind);
 
-// The stages of one pipeline brought into line. spirv[i] is shaders[i] with its final binding numbers.
-// Throws Error(BadInput) naming shaders and resource when they contradict each other, or on a set other than
-// 0 and 1.
+// The stages of one pipeline, made consistent: spirv[i] is shaders[i] with its final binding numbers. mergeStages()
+// throws Error(BadInput) naming the shaders and the resource if they contradict each other or if a set other than 0
+// and 1 is used.
 struct MergedStages {
   PipelineInterface interface;
   std::vector<std::vector<uint32_t>> spirv;

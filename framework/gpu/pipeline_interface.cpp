@@ -1,4 +1,4 @@
-// Merging the reflections of a pipeline's stages; no device needed.
+// Merges the reflections of a pipeline's stages; needs no device.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,7 +14,7 @@ namespace {
   throw Error(ExitCode::BadInput, {{Severity::Error, {shader.file, 0, 0}, {}, what, {}}});
 }
 
-// The entry of `shader` among those of earlier stages, or null.
+// The entry of `b` among those of earlier stages, or null.
 ReflectedBinding* findByName(PipelineInterface& interface, const ReflectedBinding& b) {
   for (ReflectedBinding& other : interface.bindings) {
     if (other.name == b.name) return &other;
@@ -32,14 +32,14 @@ void mergeSame(const CompiledShader& shader, ReflectedBinding& into, const Refle
   into.readOnly = into.readOnly && b.readOnly;
   into.writeOnly = into.writeOnly && b.writeOnly;
   into.blockBytes = std::max(into.blockBytes, b.blockBytes);
-  if (!b.automatic) {  // a written number wins
+  if (!b.automatic) {  // an explicit number wins
     into.binding = b.binding;
     into.automatic = false;
   }
 }
 
 void mergeBindings(const CompiledShader& shader, PipelineInterface& interface) {
-  std::set<std::string> own;  // one stage may alias a number under two names, but not a name
+  std::set<std::string> own;  // one stage may give a number two names, but not a name two numbers
   for (const ReflectedBinding& b : shader.reflection.bindings) {
     if (b.set == 1) interface.usesSharedSet = true;
     if (b.set > 1)
@@ -55,7 +55,7 @@ void mergeBindings(const CompiledShader& shader, PipelineInterface& interface) {
   }
 }
 
-// Automatic numbers give way to written ones and to each other.
+// Automatic numbers give way to explicit ones and to each other.
 void numberBindings(PipelineInterface& interface) {
   std::set<uint32_t> taken;
   for (const ReflectedBinding& b : interface.bindings) {
@@ -105,7 +105,7 @@ void mergeConstants(const CompiledShader& shader, PipelineInterface& interface) 
 }
 
 std::vector<uint32_t> withFinalNumbers(const CompiledShader& shader, const PipelineInterface& interface) {
-  std::map<uint32_t, uint32_t> numbers;  // this shader's -> the pipeline's
+  std::map<uint32_t, uint32_t> numbers;  // from this shader's numbers to the pipeline's
   for (const ReflectedBinding& b : shader.reflection.bindings) {
     if (b.set != 0) continue;
     for (const ReflectedBinding& merged : interface.bindings) {

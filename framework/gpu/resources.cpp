@@ -93,7 +93,8 @@ VkMemoryPropertyFlags memoryFlags(MemoryKind kind) {
   return 0;
 }
 
-// Uncached reads are slow; every desktop driver has cached coherent memory, but it is not promised.
+// Uncached memory is slow to read. Every desktop driver offers memory that is cached and
+// coherent, but none is guaranteed.
 VkDeviceMemory allocateFor(Device& device, MemoryKind kind, const VkMemoryRequirements& needs,
                            const std::string& what) {
   if (kind == MemoryKind::Readback) {

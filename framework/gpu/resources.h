@@ -1,4 +1,4 @@
-// Buffers and images that own their memory, or are placed into memory of the graph's transient heap.
+// Buffers and images that own their memory or are placed into memory of the graph's transient heap.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -27,9 +27,9 @@ struct BufferDesc {
 class Buffer {
  public:
   Buffer() = default;
-  Buffer(Device& device, const BufferDesc& desc);  // own memory
-  Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory,
-         uint64_t offset);  // placed, memory not owned
+  Buffer(Device& device, const BufferDesc& desc);  // owns its memory
+  // Placed into memory that it does not own.
+  Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory, uint64_t offset);
   ~Buffer();
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
@@ -79,7 +79,8 @@ class Image {
   const std::string& name() const { return desc_.name; }
   VkExtent3D extent() const { return {desc_.width, desc_.height, desc_.depth}; }
   VkImageAspectFlags aspect() const;
-  // The whole image, or one mip level (all layers), or one layer of one mip; created on first use and cached.
+  // Views of the whole image, of one mip level (all layers), or of one layer of one mip level. They are created on
+  // first use and cached.
   VkImageView view();
   VkImageView mipView(uint32_t mip);
   VkImageView layerView(uint32_t mip, uint32_t layer);
@@ -96,15 +97,15 @@ class Image {
   std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, bool>, VkImageView> views_;
 };
 
-// Memory requirements without creating memory; what the aliasing phase is fed with.
+// Memory requirements, determined without creating memory; input to the aliasing phase.
 VkMemoryRequirements memoryRequirements(Device& device, const BufferDesc& desc);
 VkMemoryRequirements memoryRequirements(Device& device, const ImageDesc& desc);
 
-// Set-up time transfers: wait for completion. The image is left in `layout`.
+// Transfers for set-up, which wait for completion. The image is left in `layout`.
 void upload(Device& device, Buffer& buffer, std::span<const std::byte> data, uint64_t offset = 0);
 void upload(Device& device, Image& image, std::span<const std::byte> texels, VkImageLayout layout);
 std::vector<std::byte> download(Device& device, const Buffer& buffer);
-// Tightly packed, layer after layer (mip 0); the image is in `layout` before and after.
+// Returns mip 0, tightly packed, layer after layer. The image is in `layout` before and after.
 std::vector<std::byte> download(Device& device, const Image& image, VkImageLayout layout);
 
 // Shared samplers: nearest or linear, clamped or repeating.

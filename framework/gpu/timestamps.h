@@ -1,4 +1,4 @@
-// GPU times of frames in flight: written now, read frames later, never waited for.
+// GPU times of frames in flight, which are written now, read some frames later and never waited for.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -19,13 +19,14 @@ class TimestampRing {
   TimestampRing(const TimestampRing&) = delete;
   TimestampRing& operator=(const TimestampRing&) = delete;
 
-  // Outside of rendering. The fence of frame - framesInFlight must have signalled; its results are dropped.
+  // To be called outside of rendering. The fence of frame - framesInFlight must have
+  // signalled; its results are dropped.
   void beginFrame(VkCommandBuffer cmd, uint64_t frame);
-  // The time at which everything recorded before has passed `stage`. Returns the index into results().
-  // Throws Error(Internal) past maxPerFrame.
+  // Writes the time at which everything recorded before has passed `stage`. Returns the index into results(). Throws
+  // Error(Internal) beyond maxPerFrame.
   uint32_t write(VkCommandBuffer cmd, VkPipelineStageFlags2 stage);
-  // Nanoseconds since the frame's first timestamp; nothing while the GPU is not done, or when the slot went
-  // to a later frame.
+  // Nanoseconds since the frame's first timestamp; nullopt while the GPU is not done, or if a later
+  // frame has taken the slot.
   std::optional<std::vector<double>> results(uint64_t frame) const;
 
  private:

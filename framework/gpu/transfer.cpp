@@ -1,5 +1,4 @@
-// Set-up time transfers through staging buffers: each submission is fenced from everything before and after
-// it.
+// Set-up transfers through staging buffers. Each submission is fenced off from everything before and after it.
 #include <algorithm>
 #include <cstring>
 
@@ -13,11 +12,11 @@
 namespace fovea::gpu {
 namespace {
 
-constexpr uint64_t kStagingBytes =
-    32u << 20;  // buffers travel in pieces, so that staging does not double the memory
+// Buffers are copied in pieces of this many bytes, so that staging does not double the memory.
+constexpr uint64_t kStagingBytes = 32u << 20;
 
-// Whatever was submitted before is done and visible to copies; what copies did is visible to whatever comes,
-// the host included.
+// beforeCopy() makes everything submitted before complete and visible to copies; afterCopy() makes copies visible to
+// everything that follows, including the host.
 void beforeCopy(VkCommandBuffer cmd) {
   memoryBarrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);

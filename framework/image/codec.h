@@ -1,5 +1,5 @@
-// What one image library has to offer; image.cpp builds files, layers and safety on it. One implementation is linked:
-// codec_oiio.cpp (OpenImageIO) or codec_small.cpp (tinyexr, libpng, stb: small enough for a portable bundle).
+// The interface of one image library; image.cpp adds files, layers and safety. Exactly one implementation is linked:
+// codec_oiio.cpp (OpenImageIO) or codec_small.cpp (tinyexr, libpng and stb; small enough for a portable bundle).
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace fovea::image::codec {
 
-// Named channels, interleaved, rows from the top.
+// Named, interleaved channels; rows run from top to bottom.
 struct Pixels {
   uint32_t width = 0, height = 0;
   std::vector<std::string> channels;  // "R", "indirect.G", ...
@@ -18,15 +18,15 @@ struct Pixels {
   Metadata metadata;  // keys as in the file: "fovea.graph"
 };
 
-// Extensions both read and written, without the dot. PFM is not among them: image.cpp does it itself.
+// Extensions that are both read and written, without the dot. PFM is not among them; image.cpp handles it itself.
 std::vector<std::string> extensions();
 
-// All three throw std::runtime_error with the library's reason. The format follows the (lower-case) extension.
-// EXR: 32-bit float; PNG: 8 bits a channel, values 0..1, alpha not premultiplied.
+// All three throw std::runtime_error with the library's reason. The format follows from the (lower-case) extension.
+// EXR holds 32-bit floats. PNG holds 8 bits per channel, values from 0 to 1 and alpha that is not premultiplied.
 void write(const std::filesystem::path& file, const Pixels& pixels);
 Pixels read(const std::filesystem::path& file);
 Image8 decode8(const uint8_t* bytes, size_t size);
 
-inline constexpr uint32_t kMaxSide = 32768;  // pixels; larger headers are taken for broken files
+inline constexpr uint32_t kMaxSide = 32768;  // pixels; larger sizes in a header indicate a broken file
 
 }  // namespace fovea::image::codec

@@ -14,7 +14,7 @@ namespace {
   throw std::runtime_error(reason.empty() ? "the image library gives no reason" : reason);
 }
 
-// Pixels as they are stored: OpenImageIO would multiply PNG colours by alpha.
+// Reads pixels as they are stored; by default OpenImageIO multiplies PNG colours by alpha.
 OIIO::ImageSpec readConfig() {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;

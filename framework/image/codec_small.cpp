@@ -37,7 +37,7 @@ std::vector<uint8_t> readBytes(const std::filesystem::path& file) {
 struct Exr {
   EXRHeader header;
   EXRImage image;
-  bool owned = false;  // by tinyexr, after loading
+  bool owned = false;  // owned by tinyexr, after loading
   Exr() { InitEXRHeader(&header), InitEXRImage(&image); }
   ~Exr() {
     if (owned) FreeEXRImage(&image), FreeEXRHeader(&header);
@@ -57,7 +57,7 @@ void copyName(char (&to)[256], const std::string& name) {
 
 void writeExr(const std::filesystem::path& file, const Pixels& pixels) {
   const size_t channels = pixels.channels.size(), count = size_t(pixels.width) * pixels.height;
-  std::vector<size_t> order(channels);  // EXR wants its channels sorted by name
+  std::vector<size_t> order(channels);  // EXR requires channels sorted by name
   std::iota(order.begin(), order.end(), size_t(0));
   std::sort(order.begin(), order.end(),
             [&](size_t a, size_t b) { return pixels.channels[a] < pixels.channels[b]; });
@@ -140,8 +140,8 @@ Pixels readExr(const std::filesystem::path& file) {
 
 // ---- PNG ---------------------------------------------------------------------------------------------------------
 
-// libpng reports through a callback that must not return; an exception passes through its C code, which Debian builds
-// with unwind tables, as every amd64 and arm64 library.
+// libpng reports errors through a callback that must not return. An exception passes through its C code, which Debian
+// builds with unwind tables, as all amd64 and arm64 libraries are.
 [[noreturn]] void onPngError(png_structp, png_const_charp message) { fail(message); }
 void onPngWarning(png_structp, png_const_charp) {}
 
@@ -226,7 +226,7 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
   file.extension() == ".png" ? writePng(file, pixels) : writeExr(file, pixels);
 }
 
-// By content: the name may be anything.
+// The format is recognised by content; the name may be anything.
 Pixels read(const std::filesystem::path& file) {
   uint8_t magic[8] = {};
   std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(magic), sizeof(magic));

@@ -8,8 +8,7 @@
 namespace fovea::image {
 namespace {
 
-// From the chromaticities of IEC 61966-2-1: primaries (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), white
-// (0.3127, 0.3290).
+// From the chromaticities of IEC 61966-2-1: primaries (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), white (0.3127, 0.3290).
 constexpr double kToXyz[3][3] = {{0.41239079926596, 0.35758433938388, 0.18048078840183},
                                  {0.21263900587151, 0.71516867876776, 0.07219231536073},
                                  {0.01933081871559, 0.11919477979463, 0.95053215224966}};
@@ -23,7 +22,7 @@ Color multiply(const double (&m)[3][3], const Color& v) {
   return result;
 }
 
-// CIELAB's compression: a cube root with a straight piece near black.
+// The compression of CIELAB: a cube root with a linear segment near black.
 constexpr double kDelta = 6.0 / 29;
 
 double compress(double t) {

@@ -1,5 +1,5 @@
-// Colour spaces of the sRGB screen: linear RGB, CIE XYZ and CIELAB. White is D65, as sRGB has it. The
-// transfer function is in image.h.
+// Colour spaces of the sRGB display: linear RGB, CIE XYZ and CIELAB, with white D65 as in sRGB. The transfer function
+// is in fovea/image.h.
 #pragma once
 
 #include <array>
@@ -16,8 +16,7 @@ const Color& whiteXyz();
 Color labFromXyz(const Color& xyz);
 Color xyzFromLab(const Color& lab);
 
-// The linear space YCxCz, whose axes are those of the channels in which the eye's contrast sensitivity is
-// measured.
+// The linear space YCxCz, whose axes are the channels in which the contrast sensitivity of the eye is measured.
 Color ycxczFromXyz(const Color& xyz);
 Color xyzFromYcxcz(const Color& ycxcz);
 

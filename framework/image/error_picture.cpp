@@ -13,7 +13,7 @@
 namespace fovea::image {
 namespace {
 
-// Three by five dots a character, rows from the top, three bits each.
+// Three by five dots per character; rows run from top to bottom, three bits each.
 struct Glyph {
   char character;
   uint16_t dots;
@@ -21,8 +21,8 @@ struct Glyph {
 constexpr Glyph kGlyphs[] = {{'0', 075557}, {'1', 026227}, {'2', 071747}, {'3', 071717}, {'4', 055711},
                              {'5', 074717}, {'6', 074757}, {'7', 071111}, {'8', 075757}, {'9', 075717},
                              {'.', 000002}, {'e', 007547}, {'-', 000700}, {'+', 002720}};
-constexpr uint32_t kGlyphWidth = 4, kGlyphHeight = 5;  // with the gap behind it
-constexpr uint32_t kLegendWidth = 64;                  // of a picture too narrow for a legend
+constexpr uint32_t kGlyphWidth = 4, kGlyphHeight = 5;  // including the gap behind it
+constexpr uint32_t kLegendWidth = 64;                  // narrower images have no legend
 constexpr float kPaper = 0.12f, kInk = 0.9f;
 
 void setPixel(Image& picture, uint32_t x, uint32_t y, const Color& color) {
@@ -50,7 +50,7 @@ std::string number(double value) {
   return text;
 }
 
-// From row `top` on: the scale, and its numbers.
+// Draws the scale and its numbers from row `top` on.
 void drawLegend(Image& picture, uint32_t top, uint32_t scale, double greatest) {
   const uint32_t margin = 2 * scale, bar = 4 * scale, length = picture.width - 2 * margin;
   for (uint32_t y = top; y < picture.height; ++y)
@@ -66,7 +66,7 @@ void drawLegend(Image& picture, uint32_t top, uint32_t scale, double greatest) {
 
 }  // namespace
 
-// A path through CIELAB: lightness grows evenly while the hue turns from violet to yellow.
+// Follows a path through CIELAB: lightness grows evenly while the hue turns from violet to yellow.
 Color mapColor(double value) {
   const double t = std::isnan(value) ? 0 : std::clamp(value, 0.0, 1.0);
   const double lightness = 4 + 92 * t, hue = (290 + 170 * t) * std::numbers::pi / 180,

@@ -1,4 +1,4 @@
-// Where a picture differs from its reference, as a picture.
+// Shows as an image where another image differs from its reference.
 #pragma once
 
 #include "framework/image/color.h"
@@ -6,16 +6,16 @@
 
 namespace fovea::image {
 
-// Colour of a value from 0 (black) to 1 (light yellow), through violet, red and orange; beyond, the end's.
-// Its lightness L* grows evenly, so that it keeps its order for every eye and in print. Encoded sRGB.
+// Maps a value from 0 (black) through violet, red and orange to 1 (light yellow); values outside are clamped. The
+// lightness L* grows evenly, so that the order of values is kept for every eye and in print. Returns encoded sRGB.
 Color mapColor(double value);
 
-// The errors of the pixels: root of the mean over RGB of (T(a) - T(g))^2.
+// The error of each pixel: the root of the mean over RGB of (T(a) - T(g))^2.
 std::vector<float> pixelErrors(const Picture& picture, const Picture& reference);
 
-// `values` (0 to `greatest`, a pixel each, rows of `width`) in the colours of mapColor, the foveal circle,
-// and below them, where there is room, a scale with the numbers 0, greatest / 2 and greatest. Throws
-// Error(BadInput) for a greatest that is not positive. Display-referred RGB.
+// Draws `values` (from 0 to `greatest`, one per pixel, in rows of `width`) in the colours of mapColor, with the
+// foveal circle and, if there is room, a scale below with the numbers 0, greatest / 2 and greatest. Throws
+// Error(BadInput) if `greatest` is not positive. Returns display-referred RGB.
 Image errorPicture(const std::vector<float>& values, uint32_t width, double greatest,
                    const Disc* fovea = nullptr);
 

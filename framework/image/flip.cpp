@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Constants of the paper. Contrast sensitivity (FLIP 4.1.1, table 1): sums of a sqrt(pi / b) exp(-pi^2 x^2 /
-// b), x in degrees, for the achromatic, red-green and blue-yellow channel.
+// Constants of the paper. Contrast sensitivities (FLIP 4.1.1, table 1) are sums of a sqrt(pi / b) exp(-pi^2 x^2 / b),
+// x in degrees, for the achromatic, red-green and blue-yellow channels.
 struct Bell {
   double a, b;
 };
@@ -33,7 +33,7 @@ using Kernel = std::vector<double>;  // 2 radius + 1 taps
 
 size_t pixelCount(const Image& image) { return size_t(image.width) * image.height; }
 
-// Rows, then columns; beyond the picture its border goes on.
+// Filters rows, then columns; outside the image the border continues.
 Plane filtered(const Plane& in, uint32_t width, uint32_t height, const Kernel& alongX, const Kernel& alongY) {
   const int radius = int(alongX.size() / 2), w = int(width), h = int(height);
   Plane rows(in.size()), out(in.size(), 0.0);
@@ -71,11 +71,11 @@ Planes toYcxcz(const Image& image) {
   return planes;
 }
 
-// One channel as the eye resolves it. Each of its bells is separable; their common support is a square, and
+// Filters one channel as the eye resolves it. Each of its bells is separable; their common support is a square, and
 // the weights of all of them together sum to 1.
 Plane blurred(const Plane& in, uint32_t width, uint32_t height, const std::array<Bell, 2>& bells,
               double pixelsPerDegree) {
-  // The widest of all channels' bells decides (FLIP 4.1.1): three standard deviations.
+  // The widest bell of all channels determines the radius (FLIP 4.1.1): three standard deviations.
   double widest = 0;
   for (const auto& channel : kSensitivity)
     for (const Bell& bell : channel) widest = std::max(widest, bell.b);
@@ -100,7 +100,7 @@ Plane blurred(const Plane& in, uint32_t width, uint32_t height, const std::array
   return out;
 }
 
-// CIELAB with the Hunt effect: colours of dark surfaces look less colourful.
+// CIELAB with the Hunt effect: darker surfaces look less colourful.
 Color huntLab(const Color& linear) {
   Color lab = labFromXyz(xyzFromLinear(linear));
   lab[1] *= 0.01 * lab[0];
@@ -108,7 +108,7 @@ Color huntLab(const Color& linear) {
   return lab;
 }
 
-// HyAB distance, made for large differences.
+// HyAB distance, which is designed for large differences.
 double hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
@@ -126,7 +126,7 @@ std::vector<Color> seenColors(const Planes& ycxcz, const Image& image, double pi
   return colors;
 }
 
-// To 0..1: the greatest error there is lies between pure green and pure blue.
+// Maps to 0..1. The greatest possible error is that between pure green and pure blue.
 double redistributed(double distance) {
   static const double greatest = std::pow(hyab(huntLab({0, 1, 0}), huntLab({0, 0, 1})), kColorExponent);
   const double knee = kKnee * greatest, error = std::pow(distance, kColorExponent);
@@ -141,8 +141,8 @@ struct Features {
   Plane edges, points;
 };
 
-// Lengths of the first and of the second derivatives of the luminance, smoothed to the width that the eye
-// sees best. Of each kernel the positive weights sum to 1, and the negative ones to -1.
+// Lengths of the first and second derivatives of the luminance, smoothed to the width that the eye detects best. The
+// positive weights of each kernel sum to 1, the negative ones to -1.
 Features features(const Planes& ycxcz, const Image& image, double pixelsPerDegree) {
   const double sigma = 0.5 * kFeatureWidth * pixelsPerDegree;
   const int radius = int(std::ceil(3 * sigma));
@@ -192,7 +192,7 @@ std::vector<float> flip(const Image& reference, const Image& test, double pixels
                                              std::abs(featuresA.points[i] - featuresB.points[i])) /
                                         std::numbers::sqrt2,
                                     kFeatureExponent);
-    // Where features differ, a difference in colour counts for more (FLIP 4.3).
+    // Where features differ, a difference in colour counts more (FLIP 4.3).
     map[i] = float(std::pow(color, 1 - std::min(feature, 1.0)));
   }
   return map;

@@ -34,7 +34,7 @@ std::string extensionOf(const fs::path& file) {
   return e;
 }
 
-// The extension, known to be writable.
+// The extension, after checking that it is writable.
 std::string checkExtension(const fs::path& file) {
   const std::string extension = extensionOf(file);
   const std::vector<std::string> known = writableExtensions();
@@ -58,7 +58,7 @@ fs::path folderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// In the same folder, so that the final rename is atomic; the same extension, since libraries go by it.
+// In the same folder, so that the final rename is atomic, and with the same extension, because libraries depend on it.
 fs::path temporaryName(const fs::path& file, const std::string& extension) {
   return folderOf(file) /
          ("." + file.stem().string() + ".tmp" + std::to_string(::getpid()) + "." + extension);
@@ -103,7 +103,7 @@ void checkLayers(const fs::path& file, const std::vector<Layer>& layers, bool ma
   }
 }
 
-// Channels in alphabetical order, as EXR files keep them.
+// Puts channels in alphabetical order, as EXR files keep them.
 Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
   struct Source {
     std::string name;
@@ -115,7 +115,7 @@ Pixels toPixels(const std::vector<Layer>& layers, const Metadata& metadata) {
     for (uint32_t c = 0; c < layer.image.channels; ++c)
       sources.push_back({(layer.name.empty() ? "" : layer.name + ".") + channelName(c, layer.image.channels),
                          &layer.image, c});
-  // A single layer stays in its own order, which one-layer formats rely on.
+  // A single layer keeps its own order, on which one-layer formats rely.
   if (layers.size() > 1)
     std::sort(sources.begin(), sources.end(),
               [](const Source& a, const Source& b) { return a.name < b.name; });
@@ -171,7 +171,7 @@ File toFile(const Pixels& pixels) {
   return file;
 }
 
-// 0..1 to the nearest of 256 steps. A pixel with a NaN becomes magenta, so that a defect is seen and not hidden.
+// Rounds 0..1 to the nearest of 256 steps. A pixel with a NaN becomes magenta, so that a defect is visible.
 void quantise(Pixels& pixels) {
   const size_t channels = pixels.channels.size();
   static constexpr float kMagenta[4] = {1, 0, 1, 1};
@@ -185,7 +185,7 @@ void quantise(Pixels& pixels) {
 
 // ---- Writing -----------------------------------------------------------------------------------------------------
 
-// A file that came back different from what was written: truncated by a full disk, or a defect of a library.
+// Describes how a file differs from what was written, because of a full disk or a defect of a library.
 std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit, bool metadata) {
   if (wanted.width != found.width || wanted.height != found.height) return "its size";
   if (wanted.channels.size() != found.channels.size()) return "its channels";
@@ -209,7 +209,7 @@ std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit,
   return {};
 }
 
-// Everything on the disk before the rename: a crash must not leave an empty file under the final name.
+// Brings everything to the disk before the rename; a crash must not leave an empty file under the final name.
 void synchronise(const fs::path& file) {
   const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) throw std::runtime_error(std::strerror(errno));
@@ -256,7 +256,7 @@ void checkWritable(const fs::path& file) {
   if (!fs::exists(folder, failed)) cannotWrite(file, "the folder `" + folder.string() + "` does not exist");
   if (!fs::is_directory(folder, failed)) cannotWrite(file, "`" + folder.string() + "` is not a folder");
   if (fs::is_directory(file, failed)) cannotWrite(file, "it is a folder");
-  // Trying is the only test that is right for every file system and user.
+  // Trying is the only reliable test for every file system and user.
   const RemoveOnExit temporary{temporaryName(file, extension)};
   const int handle = ::open(temporary.file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (handle < 0) cannotWrite(file, std::strerror(errno));

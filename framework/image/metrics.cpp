@@ -10,7 +10,7 @@
 namespace fovea::image {
 namespace {
 
-constexpr double kDark = 0.01;  // radiance below which an error stops counting in proportion
+constexpr double kDark = 0.01;  // radiance below which an error no longer counts in proportion
 
 size_t pixelCount(const Image& image) { return size_t(image.width) * image.height; }
 
@@ -20,7 +20,7 @@ struct RegionMean {
   double mean() const { return pixels == 0 ? kUnknown : sum / double(pixels); }
 };
 
-// `error` of every pixel, summed row by row.
+// Sums the `error` of every pixel, row by row.
 template <class Error>
 PerRegion<RegionMean> regionMeans(const Image& size, const Disc& fovea, Error error) {
   PerRegion<RegionMean> means;
@@ -60,7 +60,7 @@ PerRegion<RegionMean> relativeErrors(const Picture& a, const Picture& b, const P
   });
 }
 
-// Applies `f` to the same region of each.
+// Applies `f` to the same region of each argument.
 template <class F, class First, class... More>
 void forRegions(F f, First& first, More&&... more) {
   f(first.fovea, more.fovea...);
@@ -139,7 +139,7 @@ Picture fromDisplay(const Image& display) { return {{}, toRgb(display)}; }
 
 PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Disc& fovea) {
   checkComparable(a.display, "the first picture", b.display, "the second picture");
-  PerRegion<double> result;
+  PerRegion<double> result{};
   forRegions([](double& mse, const RegionMean& mean) { mse = mean.mean(); }, result,
              displayErrors(a, b, fovea));
   return result;
@@ -230,7 +230,7 @@ void SequenceComparison::addPair(const Frame& now, const Disc& fovea) {
                return step(now.image, before.image, i) - step(now.reference, before.reference, i);
              }));
   if (!now.halves) return;
-  // Of the difference of two frames, so that noise they share does not count.
+  // The noise of the difference of two frames, so that noise they share does not count.
   forRegions([](Sums& s, const RegionMean& mean) { s.excessNoise.add(mean.mean() / 4); }, sums_,
              meanSquares(now.image.display, fovea, [&](size_t i) {
                return step(now.halves->a, before.halves->a, i) - step(now.halves->b, before.halves->b, i);

@@ -1,11 +1,11 @@
-// Error measures of pictures against a reference, in the fovea, outside it, and over the whole picture.
+// Error measures of images against a reference, in the fovea, outside it, and over the whole image.
 //
-// T is what a screen shows: sRGB(clamp01(exposure * x)). The paper's MSE and MSE' (Eq. 4) are means over
-// pixels and RGB of squares of differences of T. A reference of finite samples has noise of its own, which
-// adds to every error measured with it: from two independent halves of it, whose mean it is, the noise is
-// E[(h1 - h2)^2] / 4. Where halves are given it is subtracted, so that a measure may come out slightly below
-// 0 by chance, and its mean over seeds stays right. (T is curved: with few samples the floor is off,
-// by a tenth one way or the other with 16 to 32 samples a pixel.)
+// T is what a screen shows: sRGB(clamp01(exposure * x)). The paper's MSE and MSE' (Eq. 4) are means over pixels and
+// RGB of squared differences of T. A reference of finitely many samples has noise of its own, which adds to every
+// error measured against it. In the mean of two independent halves, this noise is E[(h1 - h2)^2] / 4. If
+// the halves are given, it is subtracted; a measure may then fall slightly below 0 by chance, but its mean over seeds
+// stays correct. (T is curved, so with few samples this noise floor is off: by a tenth in either direction with 16 to
+// 32 samples per pixel.)
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace fovea::image {
 
-// The fovea: pixels whose centre is no farther than `radius` from the gaze, in pixels from the top left
-// corner (a scene::Fovea). It may lie outside the picture.
+// The fovea (see scene::Fovea): pixels whose centres are at most `radius` from the gaze. Everything is in pixels from
+// the top left corner. The disc may lie outside the image.
 struct Disc {
   float x = 0, y = 0, radius = 0;
   bool contains(uint32_t px, uint32_t py) const {
@@ -27,14 +27,14 @@ struct Disc {
   }
 };
 
-// Throws Error(BadInput) on pictures of different size or number of channels, without pixels, or with a NaN
-// or infinity.
+// Throws Error(BadInput) if the images differ in size or number of channels, have no pixels,
+// or contain NaN or infinity.
 void checkComparable(const Image& a, const std::string& nameA, const Image& b, const std::string& nameB);
 
 Image toRgb(const Image& image);                         // grey is repeated, alpha dropped
 Image displayed(const Image& radiance, float exposure);  // T of every channel
 
-// RGB, twice: `radiance` is empty for a picture that is display-referred already (a PNG).
+// RGB in two forms. `radiance` is empty for an image that is already display-referred (a PNG).
 struct Picture {
   Image radiance, display;
 };
@@ -53,44 +53,44 @@ struct PerRegion {
   T fovea, periphery, whole;
 };
 
-// Mean over pixels and RGB of the square of the difference of T; NaN in a region without pixels. Throws as
-// checkComparable().
+// Mean over pixels and RGB of the squared difference of T; NaN for a region without pixels. Throws
+// as checkComparable() does.
 PerRegion<double> meanSquaredError(const Picture& a, const Picture& b, const Disc& fovea);
 
-// NaN: not known, as in a region without pixels.
+// NaN means unknown, as in a region without pixels.
 struct Measures {
   uint64_t pixels = 0;
-  double mse = kUnknown;   // of T, less noiseFloor where known
+  double mse = kUnknown;   // of T, minus noiseFloor if known
   double psnr = kUnknown;  // dB below 1; infinite where mse is not above 0
-  double relMse =
-      kUnknown;  // mean of (a - g)^2 / (g + 0.01)^2 of the radiance, less relMseNoiseFloor where known
-  double flip = kUnknown;        // mean of flip(); the reference's noise is in it
-  double noiseFloor = kUnknown;  // the reference's part of mse
+  // Mean of (a - g)^2 / (g + 0.01)^2 of the radiance, minus relMseNoiseFloor if known.
+  double relMse = kUnknown;
+  double flip = kUnknown;        // mean of flip(), including the reference's noise
+  double noiseFloor = kUnknown;  // the reference's share of mse
   double relMseNoiseFloor = kUnknown;
 };
 
-// All with the size of the reference, else Error(BadInput) as from checkComparable().
+// All images must have the size of the reference; otherwise throws Error(BadInput) as checkComparable() does.
 PerRegion<Measures> compare(const Picture& image, const Picture& reference,
                             const std::optional<Halves>& halves, const Disc& fovea, double pixelsPerDegree);
 
-// Means of T over pixels, RGB, and frames or pairs of consecutive frames (each frame with its own fovea, each
-// pair with that of its later frame; those in which the region has no pixels do not count).
+// Means of T over pixels, RGB, and frames or pairs of consecutive frames. Each frame has its own fovea, and each pair
+// that of its later frame; those in which the region has no pixels do not count.
 struct SequenceMeasures {
   uint64_t pairs = 0;
   double mse = kUnknown, noiseFloor = kUnknown;  // as in Measures
   double change = kUnknown;           // MSE' (Eq. 4) of the sequence: its own flicker and the scene's motion
-  double referenceChange = kUnknown;  // MSE' of the reference, less its noise: the scene's motion alone
-  double excess = kUnknown;  // mean [((a_t - a_(t-1)) - (g_t - g_(t-1)))^2], less the reference's noise
-  double excessNoiseFloor = kUnknown;  // the reference's part of excess and referenceChange
+  double referenceChange = kUnknown;  // MSE' of the reference minus its noise: the scene's motion alone
+  double excess = kUnknown;  // mean [((a_t - a_(t-1)) - (g_t - g_(t-1)))^2] minus the reference's noise
+  double excessNoiseFloor = kUnknown;  // the reference's share of excess and referenceChange
 };
 
-// Frame by frame; holds two frames of each sequence.
+// Compares two sequences frame by frame; holds two frames of each.
 class SequenceComparison {
  public:
-  // Either all frames have halves, or none. Throws Error(BadInput) otherwise, and as compare() does.
+  // Either all frames have halves or none of them. Throws Error(BadInput) otherwise, and as compare() does.
   void add(Picture image, Picture reference, std::optional<Halves> halves, const Disc& fovea);
   uint64_t frames() const { return frames_; }
-  // Throws Error(BadInput) after fewer than two frames.
+  // Throws Error(BadInput) if fewer than two frames were added.
   PerRegion<SequenceMeasures> result() const;
 
  private:

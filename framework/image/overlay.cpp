@@ -7,14 +7,14 @@
 namespace fovea::image {
 namespace {
 
-constexpr float kLine = 1.5f;  // px
+constexpr float kLine = 1.5f;  // pixels
 
-// How much of a line that passes a pixel's centre at `distance` covers the pixel.
+// The share of a pixel covered by a line that passes its centre at `distance`.
 float coverage(float distance, float width) {
   return std::clamp(0.5f * width + 0.5f - std::abs(distance), 0.0f, 1.0f);
 }
 
-// A white line on a wider black one is seen on any picture.
+// A white line on a wider black one is visible on any image.
 void blend(Image& picture, uint32_t x, uint32_t y, float white, float black) {
   for (uint32_t c = 0; c < std::min(picture.channels, 3u); ++c) {
     float& value = picture.at(x, y, c);

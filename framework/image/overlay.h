@@ -1,12 +1,12 @@
-// What the eye looks at, drawn onto a picture.
+// Draws the gaze onto an image.
 #pragma once
 
 #include "framework/image/metrics.h"
 
 namespace fovea::image {
 
-// The foveal circle and a cross where the eye looks, white on black, in the first three channels of a
-// display-referred picture.
+// Draws the foveal circle and a cross at the gaze, white on black, into the first three channels of
+// a display-referred image.
 void drawFovea(Image& picture, const Disc& fovea);
 
 }  // namespace fovea::image

@@ -26,7 +26,7 @@ codec::Pixels readPfm(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string kind;
   uint32_t width = 0, height = 0;
-  double scale = 0;  // negative: little-endian
+  double scale = 0;  // negative if little-endian
   stream >> kind >> width >> height >> scale;
   stream.get();
   if (!stream || (kind != "PF" && kind != "Pf")) throw std::runtime_error("it has no PFM header");

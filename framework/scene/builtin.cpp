@@ -12,7 +12,7 @@ struct Generator {
   Scene (*make)();
 };
 
-// Inside a function, since registrations run before main() and in no particular order.
+// Inside a function because registrations run before main() in an unspecified order.
 std::vector<Generator>& generators() {
   static std::vector<Generator> list;
   return list;

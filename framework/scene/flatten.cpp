@@ -1,4 +1,4 @@
-// World-space triangles of a scene: what every renderer, rasteriser and ray tracer of the project reads.
+// Makes the world-space triangles of a scene, which every rasteriser and ray tracer of the project reads.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,13 +14,12 @@
 namespace fovea::scene {
 namespace {
 
-// A few bytes of JSON can instance a mesh a million times; this many triangles are past what any device here
-// takes.
+// A few bytes of JSON can instance a mesh a million times. No device supports this many triangles.
 constexpr uint64_t kMaxTriangles = uint64_t(1) << 26;
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// A node moves when it or anything above it does; it is dynamic, too, when its shape changes.
+// A node moves if it or an ancestor does; it is also dynamic if its shape changes.
 std::vector<bool> dynamicNodes(const Scene& scene, const NodePoses& poses) {
   std::vector<bool> moves(scene.nodes.size()), dynamic(scene.nodes.size());
   for (uint32_t i = 0; i < scene.nodes.size(); ++i) {
@@ -129,7 +128,7 @@ class Flattener {
     }
   }
 
-  // What the frame has to tell of the object at hand.
+  // The data that a frame has for this object.
   void describe(uint32_t skin, size_t joints, size_t weights, std::shared_ptr<const Stencils> stencils) {
     if (!object_.dynamic) return;
     object_.deforms = true;
@@ -150,7 +149,7 @@ class Flattener {
     return known;
   }
 
-  // Loaders and generators get these right; what they get wrong must not reach past the end of anything.
+  // Loaders and generators should make these valid; if they do not, nothing may be read past the end of an array.
   void checkShape(const Node& node, const Mesh& mesh) const {
     if (!deforms(scene_, node)) return;
     const size_t joints = node.skin < scene_.skins.size() ? scene_.skins[node.skin].joints.size() : 0;
@@ -191,7 +190,8 @@ class Flattener {
     for (const Primitive& p : mesh.primitives) out_.uvs.insert(out_.uvs.end(), p.uvs.begin(), p.uvs.end());
   }
 
-  // The box of the object in its space or in the world, see Object; and all places that it comes to.
+  // Sets the box of the object, in its space or in the world (see Object), and adds all places that it reaches
+  // to the bounds.
   void includePath(uint32_t nodeIndex, Object& object) {
     if (object.vertexCount == 0) return;
     const Mover* mover = poses_.moverOf(nodeIndex);
@@ -235,8 +235,8 @@ class Flattener {
   NodePoses poses_;
   Geometry out_;
   Object object_;
-  bool coarse_ = false;                        // something is coarser for voxels and VPL maps
-  uint32_t jointCount_ = 0, weightCount_ = 0;  // of the objects so far
+  bool coarse_ = false;                        // whether something is coarser for voxels and VPL maps
+  uint32_t jointCount_ = 0, weightCount_ = 0;  // totals of the objects so far
   std::map<uint32_t, uint32_t> firstJoint_;    // of skins
   std::map<uint32_t, std::shared_ptr<const Stencils>> stencils_;  // of meshes with a cage that deforms
 };

@@ -11,7 +11,7 @@
 namespace fovea::scene {
 namespace {
 
-// Far enough to hold the whole scene from where the camera stands; nothing is clipped behind it.
+// Distance that encloses the whole scene as seen from the camera, so that nothing is clipped behind it.
 float farPlane(const Camera& camera, const Geometry& geometry) {
   if (camera.zFar > camera.zNear) return camera.zFar;
   float reach = 100.0f;
@@ -21,7 +21,7 @@ float farPlane(const Camera& camera, const Geometry& geometry) {
   return std::max(1.01f * reach, 10.0f * camera.zNear);
 }
 
-// One eye of a camera: `side` -1 left, 1 right, 0 the camera itself.
+// One eye of a camera. `side` is -1 for left, 1 for right and 0 for the camera itself.
 Camera eyeOf(Camera camera, float side, float ipd) {
   camera.position += 0.5f * side * ipd * (glm::normalize(camera.orientation) * glm::vec3(1, 0, 0));
   return camera;

@@ -1,4 +1,5 @@
-// What a light does at a point: the one definition on the CPU, the same as sampleLight in shaders/common/scene.glsl.
+// Evaluates a light at a point. This is the one definition on the CPU; sampleLight in shaders/common/scene.glsl
+// does the same.
 #pragma once
 
 #include <span>
@@ -8,22 +9,23 @@
 namespace fovea::scene {
 
 struct LightSample {
-  glm::vec3 irradiance{0};  // on a surface that faces the light, W/m^2; nothing in between
+  glm::vec3 irradiance{0};  // on an unoccluded surface facing the light, W/m^2
   glm::vec3 direction{0};   // unit, to the light
-  float distance = 0;       // m; directional: kFarAway
+  float distance = 0;       // m; kFarAway for a directional light
 };
 
 inline constexpr float kFarAway = 1e30f;
 
-// Spot: saturate((cos t - cos outer) / (cos inner - cos outer))^2. A range above 0 adds the window that
-// KHR_lights_punctual recommends, saturate(1 - (d / range)^4).
+// The falloff of a spot light is saturate((cos t - cos outer) / (cos inner - cos outer))^2. A range above 0 adds the
+// window that KHR_lights_punctual recommends, saturate(1 - (d / range)^4).
 LightSample sampleLight(const Light& light, glm::vec3 position);
 
-// Shadow-map layers: directional 1, spot 1, point 6; a light's layers follow those of the lights before it.
+// Number of layers in the shadow map: 1 for a directional or spot light, 6 for a point light. The layers of a light
+// follow those of the lights before it.
 uint32_t shadowLayers(const Light& light);
 uint32_t shadowLayers(std::span<const Light> lights);
 
-// Cosines of the cone, outer below inner also where a file gives equal angles.
+// Cosines of the half angles of the cone. The outer cosine is below the inner one even if a file gives equal angles.
 struct SpotCone {
   float cosInner = 1, cosOuter = 0;
   float scale() const { return 1.0f / (cosInner - cosOuter); }

@@ -26,7 +26,7 @@ uint32_t shifted(uint32_t index, size_t by) { return index == kNoIndex ? kNoInde
 
 bool isModelFile(const fs::path& file) { return file.extension() == ".gltf" || file.extension() == ".glb"; }
 
-// A model on its own: something to see it by.
+// Loads a model on its own, with a default camera and light if it has none.
 Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
   Scene scene = loadGltf(file, warnings);
   const Geometry geometry = flatten(scene);
@@ -102,7 +102,7 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
   const bool asFile = file.has_parent_path() || file.extension() == ".json" || isModelFile(file);
   std::error_code ec;
   if (!asFile) {
-    // A scene file of a built-in's name holds what moves in it, so it comes first.
+    // A scene file with the name of a built-in scene adds its motion, so it takes precedence.
     for (const fs::path& folder : sceneSearchPath())
       if (const fs::path found = folder / (nameOrFile + ".json"); fs::is_regular_file(found, ec))
         return loadFile(found, warnings);
@@ -125,7 +125,7 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
 glm::quat lookAlong(glm::vec3 direction, glm::vec3 up) {
   const glm::vec3 back = -glm::normalize(direction);
   glm::vec3 right = glm::cross(up, back);
-  // Looking along `up`: any roll will do, but always the same.
+  // When looking along `up`, any roll is valid, but it must always be the same.
   if (glm::length(right) < 1e-5f)
     right = glm::cross(std::abs(back.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0), back);
   right = glm::normalize(right);
@@ -189,7 +189,7 @@ void addDefaultCamera(Scene& scene, const Geometry& geometry) {
   if (!geometry.empty()) {
     const glm::vec3 centre = 0.5f * (geometry.boundsMin + geometry.boundsMax);
     const float radius = std::max(0.5f * glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
-    // Slightly from above and from the side: flat models are seen, too.
+    // Slightly from above and from the side, so that flat models are visible too.
     const glm::vec3 from = glm::normalize(glm::vec3(0.35f, 0.30f, 1.0f));
     const float distance = radius / std::sin(0.5f * c.verticalFov);
     c.position = centre + distance * from;

@@ -1,4 +1,4 @@
-// Where scenes are looked for, and loading a model alone.
+// Search paths for scenes, and loading of a model on its own.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,14 @@
 
 namespace fovea::scene {
 
-// Folders to look in for models that a scene file names: $FOVEA_SCENES (colon-separated), then ../shared/scenes beside the
-// source or working folder. Scene files by bare name: samples/scenes of the source or the installation.
+// Folders that are searched for the models that a scene file names: $FOVEA_SCENES (colon-separated), then
+// ../shared/scenes beside the source folder or the working folder.
 std::vector<std::filesystem::path> modelSearchPath();
+// Folders that are searched for scene files given by bare name: samples/scenes of the source or the installation.
 std::vector<std::filesystem::path> sceneSearchPath();
 
-// The model alone, without a default view or light. Guards against everything that a hostile file can do; gltf/check.h
-// says what that is.
+// Loads a glTF model on its own, without a default view or light. Guards against hostile files; gltf/check.h
+// gives the rules.
 Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings);
 
 }  // namespace fovea::scene

@@ -11,8 +11,8 @@
 namespace fovea::scene {
 namespace {
 
-// Streaming content hash. Every variable-length field is preceded by its length, so that neighbours cannot
-// trade bytes.
+// Streaming content hash. Every variable-length field is preceded by its length, so that bytes cannot move from one
+// field to its neighbour.
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
@@ -99,7 +99,7 @@ void hash(Hasher& h, const Primitive& p) {
   h.array(p.weights);
 }
 
-// At rest the primitives say all of it.
+// At rest, the primitives contain everything.
 void hash(Hasher& h, const SubdivisionCage& cage) {
   if (cage.targets.empty() && cage.joints.empty()) return;
   h.array(cage.positions);
@@ -108,7 +108,7 @@ void hash(Hasher& h, const SubdivisionCage& cage) {
   h.array(cage.weights);
 }
 
-// What deforms, and how.
+// Adds what deforms, and how.
 void hashAnimation(Hasher& h, const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     for (const Primitive& p : mesh.primitives) hash(h, p);
@@ -139,7 +139,7 @@ void hashAnimation(Hasher& h, const Scene& scene) {
   }
 }
 
-// Adds nothing for a scene that has none of it: such scenes keep the hash they had before scenes could move.
+// Adds nothing for a scene without motion, so that its hash does not depend on this function.
 void hashMotion(Hasher& h, const Scene& scene) {
   for (const Mover& m : scene.movers) {
     hashPath(h, m.node, m);

@@ -1,29 +1,30 @@
-// What can be asked of a scene on the CPU: its hash, its transforms, its triangles, its materials.
+// Queries of a scene on the CPU: its hash, transforms, triangles and materials.
 #pragma once
 
 #include "fovea/scene.h"
 
 namespace fovea::scene {
 
-// Of everything that a picture depends on (names do not count); loaders store it in Scene::hash.
+// Hash of everything on which a picture depends; names do not count. Loaders store it in Scene::hash.
 uint64_t contentHash(const Scene& scene);
 
 glm::mat4 localTransform(const Node& node);
 std::vector<glm::mat4> worldTransforms(const Scene& scene);
-// Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0.
-// The bounds hold the whole paths of movers and the whole of animations (framework/scene/motion/motion.h says how
-// finely they are looked at), so that they are the same in every frame. Throws Error(BadInput) past 65535
-// materials or objects.
+// Object 0 is all static geometry; every dynamic node with a mesh is one more object, placed as at time 0. The bounds
+// enclose the whole paths of movers and whole animations, so that they are the same in every frame
+// (framework/scene/motion/motion.h says how finely these are sampled). Throws Error(BadInput) if there are more than
+// 65535 materials or objects.
 Geometry flatten(const Scene& scene);
 
-// Bilinear LOD-0 look-up exactly as shaders/common/scene.glsl does it; linear RGBA. uv before the transform.
+// Bilinear look-up at LOD 0, exactly as in shaders/common/scene.glsl; linear RGBA. `uv` is given before the
+// transform of `use`.
 glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv);
 // Diffuse reflectance and alpha of a material at uv.
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv);
 glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv);
 
-// Numbers about a scene that sizes of a graph's resources may depend on: "scene.triangles", "scene.static_triangles",
-// "scene.vertices", "scene.lights" and "scene.shadow_layers", each at least 1.
+// Numbers about a scene on which the sizes of a graph's resources may depend: "scene.triangles",
+// "scene.static_triangles", "scene.vertices", "scene.lights" and "scene.shadow_layers", each at least 1.
 std::vector<std::pair<std::string, int64_t>> quantities(const Scene& scene, const Geometry& geometry);
 
 }  // namespace fovea::scene

@@ -1,5 +1,5 @@
-// A texture look-up in two steps, so that what many of them need of the memory can be asked for before it is
-// needed. Inline: the path tracer does millions a second.
+// A texture look-up in two steps, so that memory can be prefetched for many look-ups before it is needed. The
+// functions are inline because path tracing performs millions of look-ups a second.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace fovea::scene {
 
-// Where a look-up finds its four texels: columns left and right, rows upper and lower, and the weights of the
-// right and the lower ones. LOD 0, bilinear, texel centres at half-integers.
+// The four texels of a look-up: left and right column, upper and lower row, and the weights of the right column and
+// the lower row. LOD 0, bilinear, texel centres at half-integers.
 struct TexelSquare {
   uint32_t column[2] = {}, row[2] = {};
   float right = 0, lower = 0;
 };
 
-// |i| at most 1e9 + 1, size at most 2^29.
+// |i| must be at most 1e9 + 1 and size at most 2^29.
 inline uint32_t wrapTexel(int32_t i, int32_t size, Wrap wrap) {
   if (wrap == Wrap::Repeat && (size & (size - 1)) == 0) return uint32_t(i & (size - 1));
   if (i >= 0 && i < size) return uint32_t(i);
@@ -35,10 +35,10 @@ inline uint32_t wrapTexel(int32_t i, int32_t size, Wrap wrap) {
   return uint32_t(((i % size) + size) % size);
 }
 
-// width, height: of use's texture, at least 1.
+// width, height: size of the texture of `use`, each at least 1.
 inline TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse& use, glm::vec2 uv) {
-  // Coordinates past any texture's size times this are noise in a float; they must not overflow the integer
-  // conversion.
+  // Coordinates beyond these are far past the precision of a float; they must not overflow the conversion
+  // to an integer.
   const auto tame = [](float texels) {
     return std::isfinite(texels) ? std::min(std::max(texels, -1e9f), 1e9f) : 0.0f;
   };
@@ -56,11 +56,12 @@ inline TexelSquare texelSquare(uint32_t width, uint32_t height, const TextureUse
   return s;
 }
 
-// The four texels around a point and the weights of the right and the lower ones. Valid as long as the
-// texture.
+// The four texels around a point and the weights of the right column and the lower row. Valid for as long as
+// the texture exists.
 struct TextureTaps {
-  const uint8_t* texel[4] =
-      {};  // RGBA: upper left, upper right, lower left, lower right; null: no texture, white
+  // RGBA of the upper left, upper right, lower left and lower right texel; null if there is no texture, which
+  // reads as white.
+  const uint8_t* texel[4] = {};
   float right = 0, lower = 0;
   bool srgb = true;
   void prefetch() const {
@@ -71,7 +72,7 @@ struct TextureTaps {
 // sampleTexture(scene, use, uv) is sample(textureTaps(scene, use, uv)).
 TextureTaps textureTaps(const Scene& scene, const TextureUse& use, glm::vec2 uv);
 
-// IEC 61966-2-1, tabulated for the 256 stored values.
+// The sRGB decoding of IEC 61966-2-1, tabulated for the 256 stored values.
 const std::array<float, 256>& srgbTable();
 
 inline glm::vec4 sample(const TextureTaps& taps, const std::array<float, 256>& srgb) {

@@ -1,5 +1,5 @@
-// A graph over a scene on a device, ready to render frame after frame: what the program, the benchmarks, the test kit and
-// the facade share.
+// A graph over a scene on a device, ready to render frame after frame. The program, the benchmarks, the test kit and
+// the facade share it.
 #pragma once
 
 #include <functional>
@@ -16,17 +16,20 @@
 
 namespace fovea::session {
 
-// Looks for shaders where the data files lie. `name`: number or part of the name, "" for the best one.
+// Opens a device and lets it look for shaders in the data folders. `name` is a number or part of the name; "" selects
+// the best device.
 std::unique_ptr<gpu::Device> openDevice(const std::string& name, bool validation = false);
 
-// What a graph is bound to: the views of every frame, the device's limits (nullptr: unknown) and the scene's quantities.
+// The environment to which a graph is bound: the views of every frame, the device's limits (unknown if `device` is
+// nullptr) and the scene's quantities.
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
                                     const scene::Geometry& geometry, glm::uvec2 size);
 
-// The value of a parameter as the graph's passes have it; the last pass that has it decides.
+// The value of a parameter, or `otherwise` if no pass of the graph has it. If several passes have
+// it, the last one decides.
 double parameterOr(const graph::BoundGraph& graph, const char* name, double otherwise);
 
-// Texels of a colour or depth format as floats, one channel each. Throws Error(Internal) for integer formats.
+// Texels of a colour or depth format as an image of floats. Throws Error(Internal) for integer formats.
 image::Image toImage(const graph::OutputData& output);
 
 class GraphRun {
@@ -35,24 +38,24 @@ class GraphRun {
     glm::uvec2 size{0};
     uint32_t seed = 1;
     double frameRate = 42;
-    // Names of the graph outputs to read back.
+    // Chooses the graph outputs to read back.
     std::function<std::vector<std::string>(const graph::BoundGraph&)> readback;
     graph::HostProgress hostProgress;
-    uint32_t framesInFlight =
-        0;  // 0: one on a CPU device, where two would only take each other's cores; else two
+    // 0 selects one on a CPU device, where two would only compete for the same cores, and two otherwise.
+    uint32_t framesInFlight = 0;
   };
-  // Binds and compiles. Warnings go to `messages`; throws Error(BadInput) with every mistake. Device, scene
+  // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.
   GraphRun(gpu::Device& device, const graph::Description& description, const scene::Scene& scene,
            scene::Geometry& geometry, Options options, Diagnostics& messages);
-  // Allocates memory, uploads the scene, compiles shaders. Throws as graph::Executor does.
+  // Allocates memory, uploads the scene and compiles shaders. Throws as graph::Executor does.
   void prepare();
 
   const std::shared_ptr<const graph::Plan>& plan() const { return plan_; }
   const graph::BoundGraph& graph() const { return *plan_->graph; }
   const std::vector<std::string>& readback() const { return readback_; }
   scene::Frame frame(uint64_t index) const;
-  // After prepare(): moves the geometry where a pass reads it, then submits.
+  // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.
   void submit(const scene::Frame& frame, bool readOutputs);
   graph::Executor& executor() { return *executor_; }
   uint32_t inFlight() const { return inFlight_; }

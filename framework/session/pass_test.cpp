@@ -60,8 +60,8 @@ struct PassTest::Impl {
   std::map<std::string, InputData> inputs;
   std::function<void(PassTest&, scene::Frame&)> hook;
   scene::Scene scene;
-  scene::Geometry geometry;  // of the frame, for the tests
-  scene::Geometry rest;      // what passes on the device have to make do with: nothing in it moves
+  scene::Geometry geometry;  // at the time of the frame, for the tests
+  scene::Geometry rest;      // as uploaded to the device, at rest
   std::unique_ptr<session::GraphRun> graph;
   uint64_t frameIndex = 0;
   graph::FrameResult result;
@@ -170,7 +170,7 @@ PassTest& PassTest::imageBytes(const std::string& port, VkFormat format, uint32_
   input.desc.height = height;
   input.desc.volume = volume;
   (volume ? input.desc.depth : input.desc.layers) = layers;
-  // An array when the pass says so, or when there is more than one layer.
+  // The image is an array if the pass declares one or if there is more than one layer.
   input.desc.array = !volume && layers > 1;
   for (const auto& p : impl_->declaration->ports)
     for (const auto& m : p.members)

@@ -1,4 +1,4 @@
-// The facade fovea/graph.h over a device, a scene on it and an executor.
+// Implements the facade fovea/graph.h with a device, a scene on it and an executor.
 #include <algorithm>
 
 #include "fovea/graph.h"

@@ -15,10 +15,10 @@ namespace fovea::test {
 
 namespace {
 
-// Never destroyed by itself: at the end of a process the driver and the layers may be gone already.
+// Not destroyed automatically, because the driver and the layers may already be gone at the end of the process.
 gpu::Device* device = nullptr;
 std::atomic<bool> ending{false};
-std::vector<std::string> lastMessages;  // while the device is destroyed, which happens in one thread
+std::vector<std::string> lastMessages;  // of the destruction of the device, which happens in one thread
 
 gpu::Validation validationFromEnvironment() {
   const char* variable = std::getenv("FOVEA_TEST_VALIDATION");
@@ -37,7 +37,7 @@ gpu::DeviceOptions testDeviceOptions() {
   gpu::DeviceOptions options;
   options.validation = validationFromEnvironment();
   if (const char* name = std::getenv("FOVEA_TEST_DEVICE")) options.device = name;
-  // Under CTest each test is a process of its own: a warm shader cache saves most of its time.
+  // Under CTest each test is a process of its own, and a warm shader cache saves most of its time.
   options.cacheDirectory =
       std::filesystem::temp_directory_path() / ("fovea-tests-" + std::to_string(getuid()));
   return options;

@@ -8,17 +8,18 @@
 
 namespace fovea::test {
 
-// Made on first use, with validation layers: FOVEA_TEST_VALIDATION is off, on, sync (the default), gpu or best.
-// FOVEA_TEST_DEVICE chooses another device than the best one.
+// Created on first use with the validation that FOVEA_TEST_VALIDATION selects: off, on, sync (the default), gpu or
+// best. FOVEA_TEST_DEVICE selects a device other than the best one.
 gpu::Device& testDevice();
 
-// What testDevice() is made with, for tests that need a device of their own.
+// The options that testDevice() is created with, for tests that need a device of their own.
 gpu::DeviceOptions testDeviceOptions();
 
-// What the validation layers have objected to since this was last asked.
+// The validation messages since the last call.
 std::vector<std::string> takeValidationMessages();
 
-// Destroys the device at the end of a process, and returns what the layers object to meanwhile: objects left behind.
+// Destroys the device at the end of a process and returns the validation messages that this causes, e.g. about
+// objects that were never destroyed.
 std::vector<std::string> destroyTestDevice();
 
 }  // namespace fovea::test

@@ -1,5 +1,5 @@
-// The fovea on the image plane, on the CPU: the same formulas as shaders/common/fovea.glsl, where they are
-// explained.
+// The C++ version of shaders/common/fovea.glsl, which explains the formulas; both must be changed together. It
+// defines the fovea on the image plane, the weight of a pixel, and random pixels in the fovea.
 #pragma once
 
 #include <cmath>
@@ -16,39 +16,39 @@ struct Fovea {
   float radius = 0;     // r_f, pixels
 };
 
-// In image widths: of a fovea of `angle` (radians, from the line of sight) where that meets the picture of a
-// view (View::viewToClip).
+// Radius, in image widths, of a fovea of `angle` radians from the line of sight in a view with the
+// projection `viewToClip` (View::viewToClip).
 inline float foveaRadiusOfAngle(float angle, const glm::mat4& viewToClip) {
   return 0.5f * std::tan(angle) * viewToClip[0][0];
 }
 
-// gaze: normalised; foveaRadius: in image widths.
+// gaze: in normalised image coordinates; imageSize: in pixels; foveaRadius: in image widths.
 inline Fovea makeFovea(glm::vec2 gaze, glm::vec2 imageSize, float foveaRadius) {
   return {gaze * imageSize, foveaRadius * imageSize.x};
 }
 
-// 1 inside r_f, r_f / r outside.
+// Foveated weight of an image position: 1 inside r_f, r_f / r outside.
 inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
   const float r = glm::distance(position, fovea.centre);
   return r <= fovea.radius ? 1.0f : fovea.radius / r;
 }
 
-// Parameter `region`.
+// Values of the parameter `region`.
 inline constexpr uint32_t kRegionFovea = 0u, kRegionImage = 1u;
-inline constexpr uint32_t kRegionMixed = 2u;  // a share of the samples from the image
+inline constexpr uint32_t kRegionMixed = 2u;  // a share of the samples from the whole image
 
-// Parameter `image_share` as the shaders take it.
+// The parameter `image_share` in 64ths, as the shaders take it.
 inline uint32_t imageShare64ths(double share) { return uint32_t(std::lround(64 * share)); }
 
-// Numbers [0, kRegionDraws) of a random stream belong to regionSample.
+// regionSample() draws the numbers [0, kRegionDraws) of a random stream.
 inline constexpr uint32_t kRegionTries = 32u, kRegionDraws = 2u * kRegionTries + 2u;
 
 inline glm::vec2 streamPoint(uint32_t stream, uint32_t draw) {
   return {uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u))};
 }
 
-// A pixel: uniform over the disc's part inside the image, or over the whole image (also when the disc lies
-// outside).
+// A random pixel, uniform over the part of the disc inside the image, or over the whole image if `region` says so or
+// the disc lies outside the image.
 inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 imageSize, uint32_t stream) {
   const glm::vec2 low(0.0f), high(imageSize);
   const glm::vec2 off = glm::max(glm::max(-fovea.centre, fovea.centre - high), glm::vec2(0.0f));
@@ -68,8 +68,9 @@ inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 i
   return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
 }
 
-// Of the fixed points on screen that pass vpl-intensity looks from, number i of `points`:
-// shaders/vpl-intensity/points.comp. share64ths: of `mixed`, of the image.
+// Pixel of point i of the `points` fixed points on screen from which the density of VPLs is estimated; the same
+// points as those of the shader that does so. share64ths: share of the points taken from the whole image for
+// `kRegionMixed`, in 64ths.
 inline glm::ivec2 screenPoint(uint32_t region, uint32_t share64ths, uint32_t i, uint32_t points,
                               const Fovea& fovea, glm::ivec2 imageSize) {
   constexpr uint32_t kPointsStream = 0x77656967u;

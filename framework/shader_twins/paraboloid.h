@@ -1,5 +1,5 @@
-// Paraboloid maps on the CPU: the same functions as shaders/common/paraboloid.glsl, where the mapping is
-// explained.
+// The C++ version of shaders/common/paraboloid.glsl, which explains the mapping of paraboloid maps; both must
+// be changed together.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace fovea::scene {
 
-inline constexpr uint32_t kParaboloidEmpty = 0x7f800000u;  // the bits of +inf: nothing is hit
-inline constexpr uint32_t kAtlasTiles = 16;                // maps in a layer of the atlas in layout `tiled`
+inline constexpr uint32_t kParaboloidEmpty = 0x7f800000u;  // the bits of +inf, where nothing is hit
+inline constexpr uint32_t kAtlasTiles = 16;                // maps per layer of an atlas in the layout `tiled`
 
 // Columns: tangent, bitangent, normal (unit, right-handed).
 inline glm::mat3 orthonormalFrame(glm::vec3 n) {
@@ -21,10 +21,10 @@ inline glm::mat3 orthonormalFrame(glm::vec3 n) {
 inline glm::vec3 toLocal(const glm::mat3& frame, glm::vec3 v) { return v * frame; }
 inline glm::vec3 toWorld(const glm::mat3& frame, glm::vec3 v) { return frame * v; }
 
-// Local vector of length `len` > 0 with z > -len to the plane of the map: |p| <= 1 for the hemisphere.
+// Projects a local vector of length `len` > 0 with z > -len to the plane of the map; |p| <= 1 for the hemisphere.
 inline glm::vec2 paraboloidProject(glm::vec3 local, float len) { return glm::vec2(local) / (len + local.z); }
 
-// Point of the map's plane to the local unit direction.
+// Converts a point of the map's plane to the local unit direction.
 inline glm::vec3 paraboloidDirection(glm::vec2 p) {
   float q = glm::dot(p, p);
   return glm::vec3(2.0f * p, 1.0f - q) / (1.0f + q);
@@ -38,15 +38,15 @@ inline glm::ivec2 paraboloidTexel(glm::vec2 p, int size) {
   return glm::clamp(glm::ivec2(glm::floor(paraboloidUv(p) * float(size))), glm::ivec2(0),
                     glm::ivec2(size - 1));
 }
-// Local unit direction through a texel's centre; z <= 0: the texel is unused.
+// Local unit direction through the centre of a texel; a texel with z <= 0 is unused.
 inline glm::vec3 paraboloidTexelDirection(glm::ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
-// Width / height of the atlas is the number of maps in a layer, a power of two.
+// The width of the atlas divided by its height is the number of maps per layer, a power of two.
 struct AtlasLayout {
-  int size = 0;   // texels a map, per side
-  int shift = 0;  // log2 of the maps in a layer
+  int size = 0;   // texels per side of a map
+  int shift = 0;  // log2 of the number of maps per layer
 };
 inline AtlasLayout atlasLayout(int width, int height) {
   int shift = 0;

@@ -1,5 +1,5 @@
-// Rays through the voxels, on the CPU: the same formulas as shaders/common/voxel_trace.glsl, where they are
-// explained.
+// The C++ version of shaders/common/voxel_trace.glsl, which explains the method; both must be changed together. It
+// traces rays through the voxels up to the first surface met.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace fovea::scene {
 
-// The bundle "voxels" as arrays. index: R^3 words, x fastest; surface: two sides a voxel.
+// The bundle "voxels" as arrays. index: R^3 words, x fastest; surface: two sides per voxel.
 struct Voxels {
   VoxelGrid grid;
   std::span<const uint32_t> index;
@@ -23,7 +23,7 @@ struct Voxels {
   bool inside(glm::ivec3 cell) const {
     return std::min({cell.x, cell.y, cell.z}) >= 0 && std::max({cell.x, cell.y, cell.z}) < grid.resolution;
   }
-  // Number of the voxel plus 1; 0: empty, or outside the grid.
+  // Number of the voxel in a cell plus 1; 0 if the cell is empty or outside the grid.
   uint32_t at(glm::ivec3 cell) const {
     const size_t r = size_t(grid.resolution);
     return inside(cell) ? index[size_t(cell.x) + r * (size_t(cell.y) + r * size_t(cell.z))] : 0u;
@@ -31,14 +31,14 @@ struct Voxels {
 };
 
 struct VoxelHit {
-  uint32_t side = kNoSide;  // kNoSide: the ray leaves the grid
+  uint32_t side = kNoSide;  // kNoSide if the ray leaves the grid
   float distance = 0;       // along the ray, m
 };
 
 inline constexpr float kOwnSurface = 0.25f;  // cells
 
 inline constexpr float kBehindPlane = 0.1f;  // cells
-inline constexpr float kSideRadii = 1.5f;    // of a disc of the side's area
+inline constexpr float kSideRadii = 1.5f;    // radii of a disc of the side's area
 
 enum class Meeting { None, Passed, Met };
 
@@ -57,7 +57,9 @@ inline Meeting meetsSide(const Voxels& voxels, uint32_t side, glm::vec3 origin, 
   return met ? Meeting::Met : Meeting::Passed;
 }
 
-// First side along a ray; origin and direction (unit) in world space, normal, far: see the shader.
+// First side along a ray. origin, direction (unit) and normal are in world space; `normal` is that of the surface on
+// which the ray starts, on the side to which the ray goes. far: cells that the ray enters beyond this distance (m)
+// are ignored. The shader explains the method.
 inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 direction, glm::vec3 normal,
                             float far = 1e30f) {
   const VoxelGrid& grid = voxels.grid;
@@ -84,7 +86,7 @@ inline VoxelHit traceVoxels(const Voxels& voxels, glm::vec3 origin, glm::vec3 di
 
   glm::ivec3 cell =
       glm::clamp(glm::ivec3(glm::floor(p + t * direction)), glm::ivec3(0), glm::ivec3(grid.resolution - 1));
-  VoxelHit passed;  // beside the last side, see the shader
+  VoxelHit passed;  // the last side that the ray passed beside, see the shader
   for (int turn = 0; turn < 3 * grid.resolution + 3; ++turn) {
     const uint32_t voxel = voxels.at(cell);
     const glm::vec3 walls = (glm::vec3(cell) + ahead - p) * inverse + never;

@@ -1,4 +1,4 @@
-// Running mean over frames: many frames of N virtual lights stand for one of many more.
+// Running mean over frames, so that many frames of N virtual lights stand for one frame of many more.
 #include "fovea/pass.h"
 
 namespace fovea::passes {
@@ -11,15 +11,15 @@ class Accumulate : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("accumulate",
                       "running mean of an image over the frames since the last reset, in 32-bit floats");
-    d.input("value", image2D(), Usage::Sampled, "rgb: what to average, any float format");
+    d.input("value", image2D(), Usage::Sampled, "rgb: image to average, in any float format");
     d.output("mean", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, widthOf("value"), heightOf("value")),
              Usage::StorageRead | Usage::StorageWrite,
-             "rgb: the mean, in the unit of `value`; a: how many frames it covers (starts anew on a camera "
-             "cut or resize)")
+             "rgb: the mean, in the unit of `value`; a: number of frames averaged (restarts after a camera "
+             "cut or a resize)")
         .keep(Lifetime::View);
     d.parameter("alpha", real(0, 0, 1),
-                "least weight of the newest frame: 0 gives the true mean, more an exponential one that "
-                "follows changes");
+                "least weight of the newest frame: 0 gives the true mean, larger values give an exponential "
+                "mean that follows changes");
     d.counter("non_finite", "pixels left out of the mean because they hold a NaN or an infinity");
     return d;
   }

@@ -9,26 +9,27 @@ using namespace graph;
 class Bounce : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "bounce", "radiance of every voxel side after one more bounce: direct plus rho E / pi of six cones");
+    PassDeclaration d("bounce",
+                      "radiance of every voxel side after one more bounce: direct light plus rho E / pi, "
+                      "gathered with six cones");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
              member("info", buffer("VoxelInfo", 16), Usage::TexelRead)},
-            "surfaces in the voxels");
+            "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "radiance of every side that arrives at others");
+            "radiance of every side, which lights the other sides");
     d.input("mips", "voxel-mips",
             {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
-            "mips of that radiance");
+            "mip hierarchy of that radiance");
     d.input("direct", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "what the bounced light is added to: that of light-inject, also for the second bounce and later; "
-            "without it `radiance`, which is right for the first")
+            "direct radiance from light-inject, to which the bounced light is added, also for later bounces; "
+            "if not wired, `radiance` is used, which is correct for the first bounce only")
         .makeOptional();
     d.output("bounced", buffer("VoxelRadiance", 16, countOf("voxels.surface")), Usage::StorageWrite,
-             "rgb: direct + rho E / pi, W/(sr m^2); w: its luminance; 0 for empty sides, undefined past the "
-             "last voxel");
+             "rgb: direct + rho E / pi, W/(sr m^2); w: its luminance; 0 for empty sides, undefined beyond "
+             "the last voxel");
     return d;
   }
 

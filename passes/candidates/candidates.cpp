@@ -1,4 +1,5 @@
-// Where VPLs could be: one diffuse bounce from what is looked at (METHOD: candidates).
+// Candidate positions for VPLs: one diffuse bounce from the surfaces in the fovea (the paper's VPL generation;
+// passes/README.md, candidates).
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
@@ -19,36 +20,41 @@ std::vector<MemberSpec> seenSurfaces() {
 class Candidates : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("candidates", "voxels that one diffuse bounce from random pixels of the fovea meets");
+    PassDeclaration d("candidates", "voxels hit by one diffuse bounce from random pixels of the fovea");
     d.view();
     d.input("gbuffer", "gbuffer", seenSurfaces(), "surfaces seen by the eye");
     d.input("gbuffer2", "gbuffer", seenSurfaces(),
-            "surfaces seen by a second eye, view `second_view`: every other attempt starts there")
+            "surfaces seen by a second eye, in view `second_view`; every other attempt starts there")
         .makeOptional();
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "what bounces meet");
+            "voxels that the bounces hit");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "radiance of each voxel side; without it the candidates' luminance is 0")
+            "radiance of each voxel side; if not wired, the candidates' luminance is 0")
         .makeOptional();
     d.output("candidates", buffer("Candidate", sizeof(scene::Candidate), parameter("count")),
              Usage::StorageWrite,
-             "one an attempt; those that met nothing have no side and are zero otherwise");
-    d.parameter("count", integer(1000, 1, 65536), "attempts: one pixel and one ray each");
+             "one entry per attempt; an attempt that hit nothing has no side and is otherwise zero");
+    d.parameter("count", integer(1000, 1, 65536), "number of attempts, with one pixel and one ray each");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
-                "pixels to start from; mixed: a share from the whole image, the rest from the fovea");
-    d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: that share, in 64ths");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "of the disc around the gaze");
-    d.parameter("per_frame", flag(true), "new random numbers every frame; false: the same ones");
+                "pixels to start from; `mixed` takes a share of them from the whole image and the rest from "
+                "the fovea");
+    d.parameter("image_share", real(0.4, 0, 1),
+                "share of the whole image for region `mixed`, rounded to 64ths");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
+                "radius of the fovea, the disc around the gaze");
+    d.parameter("per_frame", flag(true),
+                "whether each frame uses new random numbers; if false, all frames use the same ones");
     d.parameter("second_view", text("right"),
-                "view of `gbuffer2`: where its eye gazes; a missing view: as the first eye");
-    d.counter("rays", "bounces traced");
-    d.counter("candidates", "attempts that found a voxel");
+                "view of `gbuffer2`, whose gaze is used; if the frame has no such view, the gaze of the "
+                "first eye is used");
+    d.counter("rays", "bounce rays traced");
+    d.counter("candidates", "attempts that hit a voxel");
     d.counter("escaped", "bounces that left the scene");
-    d.counter("background", "attempts whose pixel shows no surface");
-    d.counter("attempts", "as many as `count`");
+    d.counter("background", "attempts whose pixel shows the background");
+    d.counter("attempts", "attempts made, equal to `count`");
     return d;
   }
 

@@ -1,4 +1,4 @@
-// From irradiance to what the eye sees.
+// Final composition of the image: irradiance times reflectance, plus direct light.
 #include "fovea/pass.h"
 
 namespace fovea::passes {
@@ -10,7 +10,7 @@ class Compose : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("compose",
-                      "irradiance times the reflectance of what the eye sees, and direct light added",
+                      "irradiance times the reflectance of the visible surfaces, plus direct light",
                       PassKind::Graphics);
     const SizeExpr width = widthOf("gbuffer.albedo"), height = heightOf("gbuffer.albedo");
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
@@ -20,7 +20,7 @@ class Compose : public Pass {
     d.input("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: indirect irradiance / pi of each pixel, W/(sr m^2); background 0");
     d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: radiance to add the indirect light to")
+            "rgb: radiance to which the indirect light is added")
         .makeOptional();
     d.output("indirect", color, Usage::ColorAttachment,
              "rgb: indirect radiance rho E / pi towards the eye; background 0");

@@ -1,5 +1,5 @@
-// Deferred shading with VPLs: interleaved sampling and a geometry-aware filter on the irradiance (METHOD Eq.
-// 2).
+// Deferred shading with VPLs (Eq. 2 of the paper): interleaved sampling, then a geometry-aware
+// filter on the irradiance.
 #include <algorithm>
 #include <cmath>
 #include <glm/trigonometric.hpp>
@@ -15,12 +15,12 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTileWidth = 16,
-                   kTileHeight = 16;  // pixels that a work group works on (in shade.comp: of one subset)
-static_assert(kTileWidth * kTileHeight ==
-              256);  // as pass reproject counts the groups of the indirect dispatch
+// Pixels that a work group works on (in shade.comp, pixels of one subset). Pass reproject counts the groups of the
+// indirect dispatch in the same way.
+constexpr uint32_t kTileWidth = 16, kTileHeight = 16;
+static_assert(kTileWidth * kTileHeight == 256);
 
-// A subset with fewer VPLs than this is no estimate of anything; fewer subsets cost little then.
+// A smaller subset would be too poor an estimate, and using fewer subsets costs little when there are few VPLs.
 constexpr uint64_t kSmallestSubset = 4;
 
 uint32_t subsetsPerSide(int64_t wanted, uint64_t vplCount) {
@@ -33,7 +33,8 @@ class Deferred : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("deferred",
-                      "irradiance from all VPLs on what the eye sees, one subset a pixel, then filtered",
+                      "irradiance from all VPLs on the visible surfaces: each pixel uses one subset of the "
+                      "VPLs, and a filter combines the subsets",
                       PassKind::ComputeAndGraphics);
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
@@ -43,40 +44,42 @@ class Deferred : public Pass {
              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
-            "light sources; empty slots have no intensity");
+            "light sources; empty slots have zero intensity");
     d.input(
          "atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
-         "distances seen from each VPL (paraboloid maps, both layouts); without it nothing throws a shadow")
+         "distances seen from each VPL (paraboloid maps, both layouts); if not wired, VPLs cast no shadows")
         .makeOptional();
     d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: radiance to add the indirect light to")
+            "rgb: radiance to which the indirect light is added")
         .makeOptional();
     d.input("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: irradiance / pi of each pixel by what is near (pass near-field), to be filtered with that "
-            "of the VPLs")
+            "rgb: irradiance / pi of each pixel from nearby surfaces (pass near-field), filtered together "
+            "with that of the VPLs")
         .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-             "rgb: indirect irradiance / pi, filtered, W/(sr m^2): times the reflectance rho it is "
+             "rgb: filtered indirect irradiance / pi, W/(sr m^2); multiplied by the reflectance rho it gives "
              "`indirect`; background 0");
     d.output("indirect", color, Usage::ColorAttachment,
              "rgb: indirect radiance rho E / pi towards the eye; background 0");
     d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
-              "every pixel's estimate from its own subset");
+              "estimate of each pixel from its own subset");
     d.scratch(
         "edges", buffer("EdgeList", 16),
         Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect | Usage::TransferWrite,
-        "dispatch for `edge_pixels`, and 1 + their number");
+        "indirect dispatch for `edge_pixels`; w: 1 + number of those pixels");
     d.scratch("edge_pixels", buffer("uint", 4, width * height), Usage::StorageWrite | Usage::TexelRead,
-              "pixels whose window leaves their surface: x | y << 16");
+              "pixels whose filter window extends beyond their surface: x | y << 16");
     addParameters(d);
-    d.counter("incomplete", "pixels of whose surface less than half of the subsets has a sample nearby");
+    d.counter("incomplete",
+              "pixels for which fewer than half of the subsets have a sample on the same surface nearby");
     d.counter("vpls_per_pixel",
-              "VPLs that shade one pixel, on average: times `shaded_pixels` the number of pixel-VPL pairs");
+              "average number of VPLs that shade one pixel; multiplied by `shaded_pixels` it gives the "
+              "number of pixel-VPL pairs");
     d.counter("shaded_pixels",
-              "pixels that VPLs shade: all that show a surface, or those of the blocks of `shade`");
+              "pixels shaded with VPLs: all that show a surface, or only those in the blocks of `shade`");
     return d;
   }
 
@@ -110,7 +113,7 @@ class Deferred : public Pass {
     const VkExtent3D size = ctx.extent("partial");
     const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
     if (masked_)
-      ctx.copy("base", "irradiance");  // of the pixels outside the blocks
+      ctx.copy("base", "irradiance");  // for the pixels outside the blocks
     else
       ctx.fill("edges", 1);
     for (uint32_t page = 0; page < pages_.size(); ++page) {
@@ -146,36 +149,36 @@ class Deferred : public Pass {
  private:
   static void addMask(PassDeclaration& d) {
     d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::TransferRead,
-            "rgb: irradiance / pi where `shade` leaves pixels out, background 0 (of pass reproject); with "
-            "`shade` only")
+            "rgb: irradiance / pi of the pixels that `shade` leaves out (from pass reproject), background 0; "
+            "used with `shade` only")
         .makeOptional();
     d.input("shade", "shade-mask",
-            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead, "1: in a listed block"),
+            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead,
+                    "1 if the pixel is in a listed block"),
              member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead,
-                    "x | y << 16, in blocks of `interleave` pixels"),
+                    "x | y << 16 of each block, in blocks of `interleave` pixels"),
              member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect,
-                    "groups; w: blocks listed")},
-            "only these blocks of pixels are shaded; without it all are")
+                    "groups of the indirect dispatch; w: number of listed blocks")},
+            "blocks of pixels to shade; if not wired, all pixels are shaded")
         .makeOptional();
   }
 
   static void addParameters(PassDeclaration& d) {
-    d.parameter(
-        "kernel", choice("clamp", {"clamp", "disc"}),
-        "1 / d^2 near a VPL: `clamp` takes distances below clamp_distance for it (the paper), `disc` is "
-        "1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
-    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "for kernel `clamp`; 0: no clamp");
+    d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
+                "replacement of 1 / d^2 near a VPL: `clamp` uses at least clamp_distance for d (the paper), "
+                "`disc` uses 1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
+    d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"),
+                "least distance for the kernel `clamp`; 0 disables the clamp");
     d.parameter("interleave", integer(4, 1, 8),
-                "pixels of a block of n x n share the VPLs among them: 1, 2, 4 or 8; less when a subset "
-                "would have under 4");
-    d.parameter(
-        "shadow_bias", real(1, 0, 100),
-        "what a map's distance may fall short of the surface, in half texels of the map's footprint there");
+                "width n of a block: its n x n pixels divide the VPLs among them; 1, 2, 4 or 8, reduced if a "
+                "subset would hold fewer than 4 VPLs");
+    d.parameter("shadow_bias", real(1, 0, 100),
+                "tolerance of the shadow test, in half texels of the map's footprint at the surface");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
-                "normals that differ by more belong to different surfaces");
+                "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),
-                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that "
-                "belongs to its surface");
+                "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
+                "the pixel's distance from the eye");
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {
@@ -213,8 +216,8 @@ class Deferred : public Pass {
                     "wire the same VPLs to the atlas and to the shading");
       defines["TILED"] = std::to_string(int(perLayer > 1));
     }
-    // Kernels by the number of VPLs in a page, a constant in the shader: a full first page, full further
-    // ones, the rest.
+    // The number of VPLs in a page is a constant in the shader, so there is a kernel for each: for a full first page,
+    // for further full pages and for the rest.
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
       defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
       defines["ACCUMULATE"] = std::to_string(int(first > 0));

@@ -1,4 +1,4 @@
-// Light that reaches the eye straight from the lights after one diffuse reflection, plus what surfaces emit.
+// Direct lighting: light reflected once on its way from a light to the eye, plus the surfaces' own emission.
 #include <array>
 #include <string>
 #include <vector>
@@ -15,10 +15,9 @@ using namespace graph;
 class Direct : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "direct",
-        "emission plus light reflected once: rho / pi times the unoccluded irradiance of each light",
-        PassKind::Graphics);
+    PassDeclaration d("direct",
+                      "direct lighting: emission plus rho / pi times the unoccluded irradiance of each light",
+                      PassKind::Graphics);
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
@@ -29,16 +28,16 @@ class Direct : public Pass {
     d.input("maps", "shadow-maps",
             {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
              member("views", buffer("ShadowView", 112), Usage::Uniform)},
-            "what each light sees");
+            "shadow maps of the lights");
     d.output(
         "direct",
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
         Usage::ColorAttachment,
-        "rgb: radiance towards the eye, W/(sr m^2); background: the environment; a: 1, or 0 where the edge "
-        "of a shadow lies between texels of a map");
+        "rgb: radiance towards the eye, W/(sr m^2), in the background the environment; a: 0 where the edge "
+        "of a shadow lies between texels of a map, else 1");
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
-                "shadow edges: `none` one comparison (jagged), `bilinear` between four, `pcf` average of 3x3 "
-                "such (softer)");
+                "shadow filter: `none` makes one comparison (jagged edges), `bilinear` interpolates four, "
+                "`pcf` averages 3x3 bilinear ones (softer edges)");
     return d;
   }
 

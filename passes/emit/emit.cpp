@@ -1,4 +1,4 @@
-// VPLs by light tracing: Keller's instant radiosity, the baseline that foveated placement is compared with.
+// VPLs by light tracing (Keller, "Instant Radiosity", 1997): the baseline for foveated placement.
 #include <algorithm>
 
 #include "fovea/pass.h"
@@ -17,25 +17,25 @@ constexpr uint32_t kEmitStream = 0x656d6974u;  // keeps the random numbers of th
 class Emit : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("emit", "light paths from the lights into the scene; what they hit becomes VPLs",
-                      PassKind::Host);
+    PassDeclaration d("emit", "VPLs where light paths traced from the lights hit the scene", PassKind::Host);
     d.output("vpls", buffer("Vpl", sizeof(scene::Vpl), parameter("count")), Usage::HostWrite,
-             "VPLs that together carry the lights' reflected flux, in the order of a space-filling curve; "
-             "slots left over "
-             "(no light, or none that reaches the scene) have no intensity");
+             "VPLs that together carry the lights' reflected flux, ordered along a space-filling curve; "
+             "unused slots (no light, or none that reaches the scene) have zero intensity");
     d.parameter("count", integer(1000, 1, 65536), "VPLs to store");
     d.parameter("bounces", integer(2, 0, 64),
-                "VPLs along one light path: 2 is what a path tracer of depth 4 sees");
-    d.parameter("per_frame", flag(true), "new light paths every frame; false: the same ones (a fixed seed)");
-    d.parameter("emissive", flag(true),
-                "emissive triangles send out light, too, as VPLs on themselves and as paths");
-    d.parameter("neighbours", integer(8, 1, 64),
-                "how many VPLs around one the area it stands for is estimated from");
+                "most VPLs along one light path; 2 matches a path tracer of depth 4");
     d.parameter(
-        "averaged_frames", integer(1, 1, 65536),
-        "frames whose mean is the picture: VPLs stand for so much less area each (kernel `disc`), as if all "
-        "were in one frame");
-    d.counter("paths", "light paths traced that count");
+        "per_frame", flag(true),
+        "whether each frame traces new light paths; if false, a fixed seed gives the same ones every frame");
+    d.parameter(
+        "emissive", flag(true),
+        "whether emissive triangles are light sources too: they get VPLs of their own and start light paths");
+    d.parameter("neighbours", integer(8, 1, 64),
+                "number of neighbouring VPLs from which the area of a VPL is estimated");
+    d.parameter("averaged_frames", integer(1, 1, 65536),
+                "number of frames averaged into the final image; each VPL's area (kernel `disc`) is divided "
+                "by it, as if all VPLs were in one frame");
+    d.counter("paths", "light paths that contribute");
     d.counter("rays", "rays traced");
     d.counter("vpls", "slots filled");
     d.counter("escaped", "rays that left the scene");

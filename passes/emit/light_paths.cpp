@@ -14,11 +14,11 @@ namespace {
 
 using namespace scene;
 
-// Shading normals redistribute the light that arrives: a gathering renderer weighs it by cos_shading where the particle was
-// counted by cos_geometric (Veach 1997, section 5.3). Bounded, so that no VPL becomes a spike.
+// Shading normals redistribute the light that arrives: a gathering renderer weights it by cos_shading, but particles
+// are counted by cos_geometric (Veach 1997, section 5.3). The bound keeps single VPLs from becoming too bright.
 constexpr float kMaxNormalCorrection = 4.0f;
 
-// Paths tried per VPL wanted before giving up on a scene that its lights do not reach.
+// Paths tried per requested VPL before giving up on a scene that its lights do not reach.
 constexpr uint64_t kPathsPerVpl = 256;
 
 class PathTracer {
@@ -27,7 +27,7 @@ class PathTracer {
              const EmitSettings& settings)
       : frame_(frame), rays_(rays), lights_(lights), settings_(settings) {}
 
-  // The VPLs of path `index`, intensities not yet divided by the number of paths.
+  // Returns the VPLs of path `index`, their intensities not yet divided by the number of paths.
   const std::vector<Vpl>& trace(uint32_t index) {
     vpls_.clear();
     Emission e = lights_.sample(index, settings_.seed);
@@ -58,8 +58,8 @@ class PathTracer {
     if (v.intensity != glm::vec3(0)) vpls_.push_back(v);
   }
 
-  // Stores the VPL of a hit. Then Keller's termination: the path survives with the reflectivity of the surface, and so its
-  // flux does not shrink; true with the next ray if it does.
+  // Stores the VPL of a hit, then applies Keller's termination: the path survives with a probability equal to the
+  // surface's reflectivity, so its flux does not shrink. Returns true, and the next ray, if it survives.
   bool reflect(const RayHit& hit, uint32_t bounce, uint32_t index, glm::vec3& flux, Ray& ray) {
     const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
     const float side = glm::dot(s.geometricNormal, ray.direction) < 0 ? 1.0f : -1.0f;
@@ -89,7 +89,7 @@ class PathTracer {
   std::vector<Vpl> vpls_;
 };
 
-// Halves the brightest VPL until the list is full.
+// Splits the brightest VPL in two until the list is full.
 void fillBySplitting(std::vector<Vpl>& vpls, uint32_t count) {
   while (!vpls.empty() && vpls.size() < count) {
     const auto brightest = std::max_element(vpls.begin(), vpls.end(), [](const Vpl& a, const Vpl& b) {
@@ -100,7 +100,7 @@ void fillBySplitting(std::vector<Vpl>& vpls, uint32_t count) {
   }
 }
 
-uint32_t spreadBits(uint32_t x) {  // 10 bits to every third bit
+uint32_t spreadBits(uint32_t x) {  // spreads 10 bits to every third bit
   x = (x | (x << 16)) & 0x030000ffu;
   x = (x | (x << 8)) & 0x0300f00fu;
   x = (x | (x << 4)) & 0x030c30c3u;

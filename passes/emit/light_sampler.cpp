@@ -21,8 +21,8 @@ glm::vec3 sphereDirection(float u, float v) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-// The falloff saturate((c - co) / (ci - co))^2 as a density over the cosine c: constant inside the inner cone, whose share
-// of the mass is (1 - ci), then a square whose integral is (ci - co) / 3.
+// Treats the falloff saturate((c - co) / (ci - co))^2 as a density over the cosine c: constant inside the inner cone,
+// whose share of the mass is (1 - ci), then a square whose integral is (ci - co) / 3.
 float spotCosine(float cosInner, float cosOuter, float u) {
   const float inner = 1.0f - cosInner, edge = (cosInner - cosOuter) / 3.0f;
   const float x = u * (inner + edge);
@@ -77,7 +77,8 @@ void LightSampler::add(Source source) {
   sources_.push_back(source);
 }
 
-// The power of a textured triangle is estimated from a few points; it only steers the choice, the flux of a path is exact.
+// The power of a textured triangle is estimated from a few points. The estimate only affects how often the triangle
+// is chosen; the flux of a path is exact.
 void LightSampler::addEmissiveTriangles() {
   const Geometry& g = *frame_.geometry;
   constexpr float kPoints[4][2] = {{1 / 3.f, 1 / 3.f}, {0.15f, 0.7f}, {0.7f, 0.15f}, {0.15f, 0.15f}};
@@ -91,7 +92,7 @@ void LightSampler::addEmissiveTriangles() {
     glm::dvec3 radiance(0);
     for (const auto& p : kPoints)
       radiance += glm::dvec3(emission(*frame_.scene, m, surfaceAt(g, {t, 0, p[0], p[1]}).uv)) / 4.0;
-    // A dark estimate must not hide a bright spot between the points.
+    // This keeps a dark estimate from hiding a bright spot between the points.
     radiance = glm::max(radiance, 0.05 * glm::dvec3(m.emission));
     add({kNoIndex, t, radiance * area * glm::pi<double>() * (m.doubleSided ? 2.0 : 1.0), 0});
     hasSurfaces_ = true;
@@ -124,7 +125,7 @@ void LightSampler::sampleLight(const Light& light, const float u[4], Emission& e
     p[axis] += light.direction[axis] > 0 ? 0.0f : size[axis];
     p[(axis + 1) % 3] += u[1] * size[(axis + 1) % 3];
     p[(axis + 2) % 3] += u[2] * size[(axis + 2) % 3];
-    // From outside, so that a face of the scene that lies in the box's face is hit as well.
+    // Starts outside the box, so that scene geometry lying in the face of the box is hit as well.
     e.ray.origin = p - light.direction * (0.01f * glm::length(size));
     e.ray.direction = light.direction;
   }

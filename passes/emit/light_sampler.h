@@ -10,31 +10,33 @@
 
 namespace fovea::passes {
 
-// Start of one light path. Means of `flux` over the samples are the sources' power.
+// Start of one light path. The mean of `flux` over the samples is the power of the sources.
 struct Emission {
   scene::Ray ray;        // unit direction
-  glm::vec3 flux{0};     // W per channel that one path stands for if it were the only one
-  float range = 0;       // of the light, 0 unlimited: the window applies at the first hit
-  bool surface = false;  // begins on an emissive triangle, which is a VPL of its own
-  glm::vec3 normal{0};   // of that triangle, on the side that shines
+  glm::vec3 flux{0};     // W per channel, if this were the only path
+  float range = 0;       // range of the light, m, 0 if unlimited; its window applies at the first hit
+  bool surface = false;  // the path starts on an emissive triangle, which is also a VPL
+  glm::vec3 normal{0};   // normal of that triangle on the emitting side
 };
 
-// Sources are chosen in proportion to their power (mean of the channels). Directional lights send a parallel beam over the
-// silhouette of the scene's bounding box, so that nearly every ray meets it; spots are sampled by their falloff.
+// Chooses sources in proportion to their power (mean of the channels). A directional light sends a parallel beam
+// over the silhouette of the scene's bounding box, so that nearly every ray meets the box; spot lights are
+// sampled by their falloff.
 class LightSampler {
  public:
   LightSampler(const scene::Frame& frame, bool emissiveTriangles, float epsilon);
   bool empty() const { return sources_.empty(); }
   bool hasSurfaces() const { return hasSurfaces_; }
   glm::dvec3 power() const { return power_; }  // of all sources, W per channel
-  // Path `index`; uses the first two groups of four quasi-random dimensions (first: the source, second: a surface's direction).
+  // Start of path `index`. Uses the first two groups of four quasi-random dimensions: the first for the source, the
+  // second for the direction from a surface.
   Emission sample(uint32_t index, uint32_t seed) const;
 
  private:
   struct Source {
     uint32_t light = scene::kNoIndex, triangle = scene::kNoIndex;
     glm::dvec3 power{0};
-    double cumulative = 0;  // up to and with this source, of the mean of the channels
+    double cumulative = 0;  // sum up to and including this source, mean of the channels
   };
   void add(Source source);
   void addEmissiveTriangles();

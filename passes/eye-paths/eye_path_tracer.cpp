@@ -15,9 +15,9 @@ namespace {
 
 using namespace scene;
 
-constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // of the random numbers
-constexpr uint32_t kPointsAtOnce = 16;                                      // that a thread takes
-constexpr float kSamePlace = 1e-3f;                                         // of the distance to the eye
+constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // random streams
+constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
+constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
 const glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);
 
 class Tracer {
@@ -40,7 +40,7 @@ class Tracer {
   SurfaceTracer surfaces_;
 };
 
-// Whether the surface is still where a start was found, or the background: things move.
+// Whether the surface (or the background) is still where the start was found, as objects may have moved.
 bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
   if (start.there == 0) return true;
   const float reach = 4 * rays_.epsilon();
@@ -52,7 +52,7 @@ bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
   return bool(rays_.intersect(ray));
 }
 
-// Whether the eye still sees a start, and near `pixel`, where it is due.
+// Whether the eye still sees the start, and close to `pixel`, where it belongs.
 bool Tracer::belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const {
   if (settings_.stray == 0 || start.there == 0) return false;
   const glm::vec4 clip = view_.worldToClip * glm::vec4(start.position, 1);
@@ -103,7 +103,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   const Fovea fovea = makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0;
-  // All paths of one point after each other: its start is found once.
+  // Traces all paths of one point together, so that its start is found only once.
   const auto work = [&] {
     uint64_t count = 0;
     for (uint32_t first = next.fetch_add(kPointsAtOnce); first < points;

@@ -1,5 +1,4 @@
-// Where diffuse eye paths end after one bounce, and the light that they find there, by rays through the
-// triangles themselves.
+// Traces diffuse eye paths through the triangles: where each ends after one bounce, and the light found there.
 #pragma once
 
 #include <cstdint>
@@ -14,38 +13,39 @@
 namespace fovea::passes {
 
 struct EyePathSettings {
-  uint32_t region = scene::kRegionFovea;  // of the image that the paths start in
-  uint32_t imageShare64ths = 26;          // of region `mixed`, of the whole image
+  uint32_t region = scene::kRegionFovea;  // region of the image in which the paths start
+  uint32_t imageShare64ths = 26;          // share of the whole image for the region `mixed`
   float foveaRadius = 0.25f;              // image widths
-  uint32_t points = 1024;                 // screen points, the same in every frame: scene::screenPoint()
-  uint32_t bounces = 2;                   // reflections of light on its way to the point that the eye sees
-  uint32_t gathered = 2;                  // rays by which the second of them is found
-  uint32_t renewFrames = 1;               // in which all starts are looked for anew, a share in each
-  float stray = 0;           // image widths from where it is due: a start that is still seen there stays
-  uint32_t traceFrames = 1;  // in which all paths are traced anew, likewise
-  uint32_t turn = 0;         // of both
-  uint32_t threads = 0;      // 0: one a core; the result does not depend on it
+  uint32_t points = 1024;    // number of screen points, the same in every frame: scene::screenPoint()
+  uint32_t bounces = 2;      // reflections of light on its way to the visible point
+  uint32_t gathered = 2;     // rays that gather the second of these reflections
+  uint32_t renewFrames = 1;  // frames in which every start is renewed once, a share of them in each
+  float stray = 0;           // image widths; a start that is still seen this close to its place is kept
+  uint32_t traceFrames = 1;  // frames in which every path is traced anew once, a share in each frame
+  uint32_t turn = 0;         // which share has its turn, for both cycles
+  uint32_t threads = 0;      // 0 uses one per core; the result does not depend on it
 };
 
-// What a screen point shows; as the screen points of shaders/vpl-intensity/points.comp. All zeros: the background.
+// What a screen point shows, laid out as the screen points of shaders/vpl-intensity/points.comp. All zeros
+// stand for the background.
 struct EyePathStart {
   glm::vec3 position{0};  // world space, m
-  float there = 0;        // 1: a surface
-  glm::vec3 normal{0};    // for shading, unit, on the side of the eye
+  float there = 0;        // 1 if there is a surface
+  glm::vec3 normal{0};    // shading normal, unit, on the side of the eye
   float unused0 = 0;
-  glm::vec3 face{0};  // of the triangle, unit
+  glm::vec3 face{0};  // normal of the triangle, unit
   float unused1 = 0;
 };
 static_assert(sizeof(EyePathStart) == 48);
 
-// The same layout as in shaders/vpl-intensity/vpl_intensity.glsl. All zeros: the path ends nowhere.
+// The same layout as in shaders/vpl-intensity/vpl_intensity.glsl. All zeros mean that the path hits nothing.
 struct EyePathEnd {
   glm::vec3 position{0};  // world space, m
-  float kind = 0;         // 1: no direct light there, 2: some
-  glm::vec3 normal{0};    // unit, the side that the path came to
-  float luminance = 0;    // of `radiance`
-  glm::vec3 radiance{0};  // that leaves towards the point where the path started, W/(sr m^2)
-  float unit = 0;         // the same for all: of sums as whole numbers, W/(sr m^2), see sumUnit()
+  float kind = 0;         // 1 without direct light, 2 with direct light
+  glm::vec3 normal{0};    // unit, on the side from which the path came
+  float luminance = 0;    // luminance of `radiance`
+  glm::vec3 radiance{0};  // leaves towards the start of the path, W/(sr m^2)
+  float unit = 0;         // unit of sums as whole numbers, W/(sr m^2), the same for all ends; see sumUnit()
 };
 static_assert(sizeof(EyePathEnd) == 48);
 
@@ -54,17 +54,17 @@ struct EyePathStatistics {
 };
 
 struct EyePathLists {
-  std::span<EyePathStart> starts;  // `points` of them
+  std::span<EyePathStart> starts;  // one for each screen point
   std::span<EyePathEnd> ends;      // path i starts from screen point i % points
 };
 
-// Fills the lists. A start whose number is not `turn` modulo renewFrames stays where it is as long as there
-// is a surface; its paths stay, too, if its number is not `turn` modulo traceFrames.
+// Fills the lists. If the number of a start is not `turn` modulo renewFrames, the start is kept as long as there is a
+// surface; its paths are kept as well if its number is not `turn` modulo traceFrames.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);
 
-// The unit in which the light of all the ends sums up to 2^31 in the brightest channel.
+// Unit in which the light of all ends sums to 2^31 in the brightest channel.
 float sumUnit(std::span<const EyePathEnd> ends);
 
 }  // namespace fovea::passes

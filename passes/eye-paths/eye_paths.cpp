@@ -1,4 +1,4 @@
-// Eye paths through the triangles themselves: what the light that VPLs stand for is measured by.
+// Eye paths traced through the triangles; they measure the light that the VPLs stand for.
 #include "passes/eye-paths/eye_path_tracer.h"
 
 #include <algorithm>
@@ -16,42 +16,41 @@ using namespace graph;
 class EyePaths : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "eye-paths",
-        "diffuse paths from fixed points of the region on screen, one bounce each, and the light "
-        "that leaves the surfaces where they end",
-        PassKind::Host);
+    PassDeclaration d("eye-paths",
+                      "diffuse paths from fixed screen points of the region, one bounce each, and the light "
+                      "leaving the surfaces where they end",
+                      PassKind::Host);
     d.view();
     d.output(
         "paths", "eye-paths",
         {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), parameter("points")), Usage::HostWrite),
          member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), parameter("paths")), Usage::HostWrite)},
-        "what the screen points show; where their paths end, and the light there: those of one point lie "
-        "`points` apart");
+        "what the screen points show, where their paths end and the light found there; the paths of one "
+        "point are `points` entries apart");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
-                "where the eye paths start: as in pass candidates");
-    d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: starts from the whole image, in 64ths");
+                "region in which the eye paths start, as in pass candidates");
+    d.parameter("image_share", real(0.4, 0, 1),
+                "share of starts in the whole image for region `mixed`, rounded to 64ths");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("points", integer(1024, 1, 65536), "screen points: where pass vpl-intensity has as many");
-    d.parameter("paths", integer(8192, 64, 65536), "eye paths");
+    d.parameter("points", integer(1024, 1, 65536),
+                "number of screen points, the same as in pass vpl-intensity");
+    d.parameter("paths", integer(8192, 64, 65536), "number of eye paths");
     d.parameter("bounces", integer(2, 1, 64),
-                "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "
-                "depth 4 sees, 1 is direct light at the ends");
-    d.parameter("gathered", integer(2, 1, 256), "rays from each end by which the second of them is found");
-    d.parameter(
-        "renew_frames", integer(1, 1, 1000),
-        "in which all paths get new starts, a share of the points in each frame; the others start where "
-        "they did, so that a jump of the gaze comes in gradually");
-    d.parameter(
-        "stray", real(0, 0, 1, "image widths"),
-        "how far from where it is due a start may lie on screen: nearer ones that the eye still sees stay on "
-        "their surface when their turn to be renewed comes, with the light that they found");
-    d.parameter(
-        "trace_frames", integer(1, 1, 1000),
-        "in which all paths are traced anew, those of a share of the points in each frame; the others, "
-        "unless their start is a new one, keep the light that they found");
-    d.counter("rays", "rays traced, towards lights, too");
-    d.counter("ends", "paths that found a surface");
+                "reflections of the light before it reaches the visible surface: 1 is direct light at the "
+                "ends, 2 matches a path tracer of depth 4");
+    d.parameter("gathered", integer(2, 1, 256),
+                "rays from each end that gather the second of these reflections");
+    d.parameter("renew_frames", integer(1, 1, 1000),
+                "frames in which all paths get new starts, a share of the points in each frame; the others "
+                "keep theirs, so that the effect of a gaze jump comes in gradually");
+    d.parameter("stray", real(0, 0, 1, "image widths"),
+                "how far a start may be on screen from its place; a closer one that the eye still sees is "
+                "kept, with the light it found, when it is due for renewal");
+    d.parameter("trace_frames", integer(1, 1, 1000),
+                "frames in which all paths are traced anew, those of a share of the points in each frame; "
+                "the others keep the light they found unless their start is new");
+    d.counter("rays", "rays traced, including those towards lights");
+    d.counter("ends", "paths that hit a surface");
     return d;
   }
 
@@ -87,7 +86,7 @@ class EyePaths : public Pass {
   }
 
  private:
-  std::vector<EyePathStart> starts_;  // as they were handed on last
+  std::vector<EyePathStart> starts_;  // as last written to the output
   std::vector<EyePathEnd> ends_;
 };
 

@@ -1,4 +1,4 @@
-// What the eye sees: the nearest surface through the centre of every pixel.
+// G-buffer: the nearest surface through the centre of every pixel.
 #include <algorithm>
 
 #include "fovea/pass.h"
@@ -15,30 +15,33 @@ using namespace graph;
 class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("gbuffer", "surfaces seen through the pixel centres, LOD-0 bilinear textures",
-                      PassKind::Graphics);
+    PassDeclaration d(
+        "gbuffer",
+        "G-buffer of the surfaces visible through the pixel centres, with bilinear texturing at LOD 0",
+        PassKind::Graphics);
     d.view();
     d.output("gbuffer", "gbuffer",
              {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
-                     "xyz: world space, m; w: distance to the eye, m, 0: background"),
+                     "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
               member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-                     "xyz: shading normal, unit, on the eye's side of the face"),
+                     "xyz: unit shading normal, on the side of the face towards the eye"),
               member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
-                     "normal of the triangle itself on the eye's side, octahedral"),
+                     "geometric normal on the side towards the eye, octahedral encoding"),
               member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
                      "rgb: diffuse reflectance, base colour times (1 - metallic)"),
               member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-                     "rgb: emitted radiance, W/(sr m^2); background: the environment"),
+                     "rgb: emitted radiance, W/(sr m^2), in the background the environment"),
               member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
                      "material | object << 16; background 0xffffffff"),
               member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment,
                      "0: near plane, 1: far plane")},
-             "one surface a pixel");
+             "one surface per pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
-              "triangle of each pixel, 0xffffffff: none");
-    d.parameter("cull", choice("auto", {"auto", "none"}),
-                "back faces: `auto` hides those of single-sided materials, as glTF says, `none` shows all");
-    d.counter("triangles", "triangles of which parts may be in view, those drawn");
+              "triangle visible at each pixel, 0xffffffff if none");
+    d.parameter(
+        "cull", choice("auto", {"auto", "none"}),
+        "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
+    d.counter("triangles", "triangles drawn, which are those that may be in view");
     return d;
   }
 
@@ -89,9 +92,9 @@ class GBuffer : public Pass {
 
  private:
   Kernel draw_[3];
-  Kernel resolve_[2];  // where no emission is textured, as in most scenes, and with its textures
+  Kernel resolve_[2];  // one for scenes without emission textures, one for scenes with them
   bool emissionTextures_ = false;
-  const scene::GpuScene* gpu_ = nullptr;  // whose clusters these are
+  const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;
 };

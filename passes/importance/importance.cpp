@@ -1,4 +1,4 @@
-// How much of what the eye cares about a VPL can light (METHOD importance, step 2).
+// Foveated importance of VPLs: how much of what is near the gaze a VPL can light (passes/README.md, importance).
 #include <string>
 
 #include "fovea/error.h"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kGroupVpls = 16;  // VPLs a work group (estimate.comp)
+constexpr uint32_t kGroupVpls = 16;  // VPLs per work group (estimate.comp)
 
 class Importance : public Pass {
  public:
@@ -27,41 +27,40 @@ class Importance : public Pass {
 
 PassDeclaration Importance::declaration() {
   PassDeclaration d("importance",
-                    "foveated importance of VPLs: mean weight of what six directions over each see");
+                    "foveated importance of VPLs: the mean foveated weight of the surfaces in six directions "
+                    "from each VPL");
   d.input("voxels", "voxels",
           {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
            member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-          "grid that the VPLs look at");
-  d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "foveated weight of each side, in [0, 1]");
-  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
-          "VPLs that could be");
+          "voxel grid through which the rays or cones are traced");
+  d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
+          "foveated weight of each voxel side, in [0, 1]");
+  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead, "candidate VPLs");
   d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-          "VPLs of the frame before, at their places of this frame");
+          "VPLs of the previous frame, at their positions in this frame");
   d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-          "of each side; w: luminance; for `luminance`")
+          "radiance of each voxel side; w: luminance; needed for the parameter `luminance`")
       .makeOptional();
   d.input("mips", "voxel-mips",
           {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled),
            member("weight", image3D(VK_FORMAT_R16_SFLOAT, 1, 1, 1), Usage::Sampled)},
-          "opacity and weight, averaged; for method `cones`")
+          "mip hierarchy of opacity and weight; needed for method `cones`")
       .makeOptional();
   d.output("candidate_importance", buffer("float", 4, countOf("candidates")),
            Usage::StorageWrite | Usage::TransferWrite,
-           "I of each candidate, in [0, 1]; 0: an attempt that hit nothing");
+           "I of each candidate, in [0, 1]; 0 for an attempt that hit nothing");
   d.output("vpl_importance", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
-           "I of each VPL, in [0, 1]; 0: an empty slot");
-  d.parameter(
-      "method", choice("rays", {"rays", "cones"}),
-      "what a direction sees: `rays` the weight of the first side hit (the paper), `cones` the mean weight "
-      "in a cone around it");
-  d.parameter(
-      "luminance", flag(false),
-      "importance times min(1, exposure * luminance of the VPL's side): what it can show, not only to whom");
-  d.parameter(
-      "rate_candidates", flag(true),
-      "false: the importance of all candidates is 0, for a pass manage whose `placement` does not ask "
-      "for it; Eq. 1 then keeps new VPLs in their second frame");
+           "I of each VPL, in [0, 1]; 0 for an empty slot");
+  d.parameter("method", choice("rays", {"rays", "cones"}),
+              "weight in one direction: `rays` takes the weight of the first side hit (the paper), `cones` "
+              "the mean weight in a cone");
+  d.parameter("luminance", flag(false),
+              "multiplies the importance by min(1, exposure * luminance of the VPL's side), so that it also "
+              "reflects how bright the VPL is");
+  d.parameter("rate_candidates", flag(true),
+              "if false, the importance of all candidates is 0, for a pass manage whose `placement` does not "
+              "need it; Eq. 1 then keeps new VPLs in their second frame");
   d.counter("rays", "rays or cones traced");
   return d;
 }

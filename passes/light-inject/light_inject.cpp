@@ -1,6 +1,6 @@
-// Direct light on the voxels, from the lights' shadow maps (METHOD 2, light-inject). What never moves keeps
-// its radiance from frame to frame while the lights stay, except where the shadow of what moves may have come
-// or gone.
+// Direct light on the voxels, from the lights' shadow maps (passes/README.md, light-inject). Static surfaces keep
+// their radiance from frame to frame while the lights stay the same, except where the shadow of a moving object may
+// have appeared or gone.
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
@@ -32,42 +32,41 @@ class LightInject : public Pass {
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
              member("info", buffer("VoxelInfo", 16), Usage::Uniform)},
-            "surfaces in the voxels");
+            "voxelised surfaces");
     d.input("maps", "shadow-maps",
             {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
              member("views", buffer("ShadowView", 112), Usage::Uniform)},
-            "what each light sees; without it nothing throws a shadow")
+            "shadow maps of the lights; if not wired, nothing casts a shadow")
         .makeOptional();
     d.output("radiance", buffer("VoxelRadiance", 16, countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite,
-             "rgb: L = rho E / pi + emission, W/(sr m^2), w: its luminance; 0 for empty sides, undefined "
-             "past the last voxel")
+             "rgb: L = rho E / pi + emission, W/(sr m^2); w: its luminance; 0 for empty sides, undefined "
+             "beyond the last voxel")
         .keep(Lifetime::Scene);
     d.scratch(
         "covered",
         buffer("CoveredTexels", 16, environment("scene.shadow_layers") * SizeExpr(scene::MoverBoxes::kCount)),
-        Usage::StorageWrite | Usage::TexelRead, "what the moving things may cover of each map");
+        Usage::StorageWrite | Usage::TexelRead, "regions of each map that moving objects may cover");
     d.scratch("work", buffer("WorkList", 32),
               Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect,
-              "dispatch over the list and its length; dispatch over all sides");
+              "indirect dispatch over the list and the length of the list; indirect dispatch over all sides");
     d.scratch("listed", buffer("uint", 4, countOf("voxels.surface")), Usage::StorageWrite | Usage::TexelRead,
-              "sides to look up anew");
+              "sides to light again");
     d.output("changed", buffer("VoxelChanged", 4, countOf("voxels.surface")), Usage::StorageWrite,
-             "1: this side has another radiance than in the frame before, or is of something that moves; "
-             "undefined past the last voxel");
-    d.parameter("keep", flag(true),
-                "sides of what never moves keep their radiance while no light changes, but where the shadow "
-                "of something "
-                "that moves may have come or gone; without it all are looked up in every frame");
-    ParameterSpec taps = integer(6, 1, 64);
-    d.parameter("taps", taps,
-                "points of a side's surface at which light and shadow are looked up, always the same ones");
-    d.parameter("offset", real(0.25, 0, 2, "cells"),
-                "how far above the side's plane shadows are looked up: the plane cuts through what is curved "
-                "or has an edge");
+             "1 if the radiance of the side differs from that of the previous frame or the side belongs to a "
+             "moving object; undefined beyond the last voxel");
     d.parameter(
-        "filter", choice("bilinear", {"none", "bilinear", "pcf"}),
-        "a shadow look-up: `none` one comparison, `bilinear` between four, `pcf` average of 3x3 such");
+        "keep", flag(true),
+        "whether static sides keep their radiance while no light changes, except where the shadow of a "
+        "moving object may have appeared or gone; if false, all sides are lit again in every frame");
+    ParameterSpec taps = integer(6, 1, 64);
+    d.parameter("taps", taps, "number of fixed points on each side at which light and shadow are evaluated");
+    d.parameter("offset", real(0.25, 0, 2, "cells"),
+                "height above the side's plane at which shadows are evaluated, as the plane cuts through "
+                "curved surfaces and edges");
+    d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
+                "shadow filter: `none` makes one comparison, `bilinear` interpolates four, `pcf` averages "
+                "3x3 bilinear ones");
     return d;
   }
 
@@ -112,9 +111,9 @@ class LightInject : public Pass {
  private:
   Kernel covered_;
   std::array<Kernel, 3> select_, kernel_;  // for any number of lights, for one, and for one with one map
-  std::vector<scene::Light> lights_;       // of the frame before,
-  const scene::GpuScene* gpu_ = nullptr;   // its scene,
-  scene::MoverBoxes before_;               // and where what moves was
+  std::vector<scene::Light> lights_;       // lights of the previous frame
+  const scene::GpuScene* gpu_ = nullptr;   // scene of the previous frame
+  scene::MoverBoxes before_;               // bounds of the moving objects in the previous frame
 };
 
 FOVEA_PASS(LightInject);

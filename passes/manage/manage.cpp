@@ -1,6 +1,6 @@
-// The list of VPLs from frame to frame: which ones are reused (Eq. 1), which candidates come in (Algorithm
-// 2), and in which slots. A VPL keeps its slot for life. Every decision is made in integers and every order
-// is a stable sort, so the list is that of the serial algorithm to the bit (tests/passes/manage_reference.h).
+// The list of VPLs from frame to frame: which ones are reused (Eq. 1), which candidates are added (Algorithm 2), and
+// in which slots. A VPL keeps its slot for its whole life. Every decision is made in integers and every sort is
+// stable, so the list equals that of the serial algorithm bit for bit (tests/passes/manage_reference.h).
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,8 +16,8 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kMost = 65536;          // slots, and candidates: sums of importance stay below 2^57
-constexpr uint32_t kCells = 64 * 64 * 64;  // of the density grid, shaders/manage/memory.glsl
+constexpr uint32_t kMost = 65536;  // limit of slots and of candidates; keeps sums of importance below 2^57
+constexpr uint32_t kCells = 64 * 64 * 64;  // cells of the density grid, see shaders/manage/memory.glsl
 
 class Manage : public Pass {
  public:
@@ -27,7 +27,7 @@ class Manage : public Pass {
 
  private:
   Commands use(RecordContext& ctx, Kernel kernel);
-  bool none_ = false;  // reuse
+  bool none_ = false;  // whether `reuse` is `none`
   Kernel accept_, thin_, reuse_, order_, choose_, refill_, write_;
 };
 
@@ -37,71 +37,70 @@ void addScratch(PassDeclaration& d) {
                  more = max(slots, candidates);
   d.scratch("state", buffer("ManageState", 24), both | Usage::TransferWrite, "lengths of the lists");
   d.scratch("slot_records", buffer("SlotRecord", 16, slots), both,
-            "importance, flags, cell, key of each slot");
+            "importance, flags, cell and sort key of each slot");
   d.scratch("candidate_records", buffer("uvec2", 8, candidates), both,
             "importance and cell of each candidate");
-  d.scratch("sources", buffer("uint", 4, slots), both, "what each slot gets");
+  d.scratch("sources", buffer("uint", 4, slots), both, "source of the new content of each slot");
   d.scratch("lists", buffer("uvec2", 8, SizeExpr(2) * (slots + candidates + more)), both, "lists to sort");
-  d.scratch("attempts", buffer("uint", 4, more), both, "what Algorithm 2 tries to add, in order");
-  d.scratch("added", buffer("uint", 4, candidates), both, "candidates that are added, in order");
-  d.scratch("density", buffer("uint", 4, kCells), both | Usage::TransferWrite, "VPLs reused in each cell");
+  d.scratch("attempts", buffer("uint", 4, more), both, "entries that Algorithm 2 tries to add, in order");
+  d.scratch("added", buffer("uint", 4, candidates), both, "candidates added, in order");
+  d.scratch("density", buffer("uint", 4, kCells), both | Usage::TransferWrite,
+            "number of reused VPLs in each cell");
   d.scratch("segments", buffer("uint", 4, kCells), both, "first of the sorted attempts in each cell");
 }
 
 PassDeclaration Manage::declaration() {
-  PassDeclaration d("manage", "which VPLs stay, which candidates become VPLs, and in which slots");
+  PassDeclaration d("manage",
+                    "VPL management: which VPLs are kept, which candidates become VPLs, and in which slots");
   d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
-          "VPLs that could be; attempts that hit nothing are skipped");
+          "candidate VPLs; attempts that hit nothing are skipped");
   d.input("candidate_importance", buffer("float", 4), Usage::TexelRead, "I of each candidate, in [0, 1]");
   d.input("vpl_importance", buffer("float", 4), Usage::TexelRead,
-          "I of each slot's VPL in this frame, in [0, 1]");
+          "I of the VPL in each slot in this frame, in [0, 1]");
   d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-          "the list of the frame before, updated: as many slots as `count`");
+          "VPL list of the previous frame, updated for motion; it must have `count` slots");
   d.output("list", buffer("VplState", sizeof(scene::VplState), parameter("count")), Usage::StorageWrite,
-           "this frame's list. A VPL that stays keeps its slot and takes its new importance; a new one has "
-           "life 1 and, as its "
-           "importance before, its importance");
+           "VPL list of this frame; a VPL that is kept stays in its slot and takes its new importance, a new "
+           "one has life 1 and its importance also as its previous importance");
   addScratch(d);
 
-  // The list comes round through the pass that updates it, so its length is said here, not taken from the
-  // input.
-  d.parameter("count", integer(1000, 1, kMost), "slots: most VPLs there can be (N)");
-  d.parameter(
-      "reuse", choice("linear", {"linear", "cosine", "random", "none"}),
-      "VPLs that are reused for certain (Eq. 1), C the ratio of importance to the frame before. linear: with "
-      "probability "
-      "min(C, 1); cosine: 1 - cos(pi/2 min(C, 1)); random: as many as linear, any of them; none: the list is "
-      "the first candidates of this frame, as they come");
+  // The list returns through the pass that updates it, so its length is a parameter and is not taken from the input.
+  d.parameter("count", integer(1000, 1, kMost), "number of slots, the most VPLs in the list (N)");
+  d.parameter("reuse", choice("linear", {"linear", "cosine", "random", "none"}),
+              "which VPLs are reused without competing (Eq. 1), C being the ratio of the new importance to "
+              "the previous one; linear: with probability min(C, 1); cosine: with probability 1 - cos(pi/2 "
+              "min(C, 1)); random: as many as linear, chosen at random; none: the list is the first "
+              "candidates of this frame, in their order");
   d.parameter("keep", integer(0, 0, kMost),
-              "candidates left by thinning (K): each stays with probability min(1, K I / sum I); 0: as many "
-              "as `limit` (of `placement` `light`: as free slots)");
+              "candidates left after thinning (K), each kept with probability min(1, K I / sum I); 0 means "
+              "as many as `limit`, or for `placement` `light` as there are free slots");
+  d.parameter("placement", choice("importance", {"importance", "light"}),
+              "how candidates are chosen; importance: by Algorithm 2; light: as many as there are free "
+              "slots, in proportion to their direct light (systematic resampling), since eye paths already "
+              "find them in proportion to importance; `order` and thinning by importance then do not apply, "
+              "and VPLs that failed Eq. 1 are not reconsidered");
   d.parameter(
-      "placement", choice("importance", {"importance", "light"}),
-      "who comes in. importance: Algorithm 2; light: of the candidates as many as slots are free, in "
-      "proportion to their direct light (systematic resampling). Eye paths find them in proportion to "
-      "importance already; `order` and thinning by importance do not apply then, nor do VPLs that failed Eq. "
-      "1 come back");
-  d.parameter("light_floor", real(0.25, 0, 16, "means of the candidates' light"),
-              "of `placement` `light`: light that every candidate counts with besides its own, for what "
-              "further bounces bring to it");
+      "light_floor", real(0.25, 0, 16, "means of the candidates' light"),
+      "for `placement` `light`, light added to that of every candidate to account for further bounces");
   d.parameter("turnover", real(1, 0, 1, "slots' share"),
-              "most VPLs that go in a frame for failing Eq. 1 (rounded up): of more, the least important. "
-              "Those spared are tested against their former importance again");
+              "most VPLs deleted per frame for failing Eq. 1 (rounded up); if more fail, the least important "
+              "are deleted and the others are tested against their former importance again");
   d.parameter("order", choice("literal", {"literal", "fixed"}),
-              "Algorithm 2. literal: as printed; fixed: when more old VPLs failed Eq. 1 than there are "
-              "candidates, the best "
-              "of those that it never reaches are tried, too");
+              "variant of Algorithm 2; literal: as printed; fixed: when more old VPLs failed Eq. 1 than "
+              "there are candidates, the best of those that the loop never reaches are tried as well");
   d.parameter("limit", integer(0, 0, kMost),
-              "most VPLs in the list (N_MAX), at most the slots; 0: all slots");
+              "most VPLs in the list (N_MAX), no more than the slots; 0 means all slots");
   d.parameter("max_density", integer(0, 0, kMost),
-              "a cell with this many VPLs takes no more (D_MAX); 0: max(2, 3 N_MAX / cells that hold a VPL "
-              "or candidate)");
-  d.parameter("density_constant", real(1, 0.5, 1024),
-              "CONST in the weight I + 1 / (density + CONST), rounded to 1/64: less spreads the VPLs more");
-  d.parameter("cell", real(1.0 / 48, 1.0 / 64, 1, "scene diagonals"), "edge of a cell of the density grid");
+              "a cell that holds this many VPLs takes no more (D_MAX); 0 means max(2, 3 N_MAX / number of "
+              "cells that hold a VPL or candidate)");
+  d.parameter(
+      "density_constant", real(1, 0.5, 1024),
+      "CONST in the weight I + 1 / (density + CONST), rounded to 1/64; smaller values spread the VPLs more");
+  d.parameter("cell", real(1.0 / 48, 1.0 / 64, 1, "scene diagonals"),
+              "edge length of a cell of the density grid");
 
-  d.counter("kept", "old VPLs that stay");
-  d.counter("deleted", "old VPLs that go");
+  d.counter("kept", "old VPLs kept");
+  d.counter("deleted", "old VPLs deleted");
   d.counter("added", "candidates that become VPLs");
   d.counter("candidates", "candidates before thinning");
   d.counter("rejected", "old VPLs that failed the test of Eq. 1");
@@ -178,7 +177,7 @@ void Manage::record(RecordContext& ctx) {
   if (none_) {
     use(ctx, refill_).dispatch(1);
   } else {
-    use(ctx, reuse_).dispatch(1);  // together: neither needs the other, but for `light`
+    use(ctx, reuse_).dispatch(1);  // both may run together, except with `light`
     if (ctx.parameters().text("placement") == "light") ctx.barrier();
     use(ctx, thin_).dispatch(1);
     ctx.barrier();

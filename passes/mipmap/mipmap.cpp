@@ -1,4 +1,4 @@
-// Averages of light and foveated weight over ever larger cells, for cone tracing (METHOD 2, mipmap).
+// Mip hierarchy of light and foveated weight over ever larger cells, for cone tracing (passes/README.md, mipmap).
 #include <glm/glm.hpp>
 #include <string>
 
@@ -19,45 +19,44 @@ class Mipmap : public Pass {
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
-            "surfaces in the voxels");
+            "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");
     d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
-            "foveated weight of every voxel side; without it the weights are 0")
+            "foveated weight of every voxel side; if not wired, the weights are 0")
         .makeOptional();
     d.input("changed", buffer("VoxelChanged", 4), Usage::TexelRead,
-            "which sides' radiance is new in this frame (pass light-inject): cells without one stay as they "
-            "are. "
-            "Without it all are made anew")
+            "which sides have new radiance in this frame (pass light-inject); cells without such a side are "
+            "left unchanged; if not wired, all cells are recomputed")
         .makeOptional();
     const SizeExpr size = ceilDiv(widthOf("voxels.index"), 2);
     const SizeExpr width = size * (SizeExpr(1) + SizeExpr(5) * parameter("directional"));
     d.output("mips", "voxel-mips",
              {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, kAllMips),
                      Usage::StorageRead | Usage::StorageWrite,
-                     "rgb: radiance times a; a: surface area by that of a cell's face, over 1 where a cell "
-                     "holds several surfaces"),
+                     "rgb: radiance times a; a: surface area relative to the area of a cell's face, over 1 "
+                     "where a cell holds several surfaces"),
               member("weight", image3D(VK_FORMAT_R16_SFLOAT, width, size, size, kAllMips),
                      Usage::StorageRead | Usage::StorageWrite, "foveated weight times a of `color`")},
-             "level 0 has cells of 2x2x2 voxels; levels that are not half of the one before are 0 "
-             "(shaders/common/cone.glsl)")
-        .keep(Lifetime::Scene);  // so that cells which are and stay empty need no store
-    // A bit for each cell of the levels from 1: something below it changed.
+             "level 0 has cells of 2x2x2 voxels; levels that are not exactly half the size of the one before "
+             "are 0 (shaders/common/cone.glsl)")
+        .keep(Lifetime::Scene);  // so that cells that stay empty need not be stored
+    // One bit for each cell of level 1 and above: something below it changed.
     const SizeExpr half = ceilDiv(size, 2);
     d.scratch("dirty", buffer("uint", 4, ceilDiv(half * half * half, 16) + SizeExpr(kAllMips)),
-              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite, "cells to make anew");
+              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite, "cells to recompute");
     d.parameter("importance", choice("cones", {"rays", "cones"}),
-                "method of pass importance: for `rays` nothing reads the weights, and they are 0");
+                "method of pass importance; with `rays` nothing reads the weights, and they are 0");
     d.parameter("directional", flag(true),
-                "six volumes side by side, +x -x +y -y +z -z, each of what looks that way: a thin wall does "
-                "not show the light of its back");
+                "whether six volumes are stored side by side, +x -x +y -y +z -z, one for each facing "
+                "direction, so that a thin wall does not show the light of its back");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
     directional_ = ctx.parameters().flag("directional");
     weighted_ = ctx.has("weights") && ctx.parameters().text("importance") == "cones";
-    keeps_ = ctx.has("changed") && !weighted_;  // weights are others in every frame
+    keeps_ = ctx.has("changed") && !weighted_;  // the weights differ in every frame
     const Defines defines{{"DIRECTIONAL", directional_ ? "1" : "0"},
                           {"WEIGHTED", weighted_ ? "1" : "0"},
                           {"KEEPS", keeps_ ? "1" : "0"}};
@@ -93,7 +92,7 @@ class Mipmap : public Pass {
   }
 
  private:
-  static constexpr int64_t kAllMips = 32;  // more than any size has
+  static constexpr int64_t kAllMips = 32;  // more than any size needs
 
   void recordBase(RecordContext& ctx, uint32_t size) {
     Commands base = ctx.use(base_);
@@ -110,8 +109,8 @@ class Mipmap : public Pass {
   }
 
   bool directional_ = true, weighted_ = false, keeps_ = false;
-  scene::MoverBoxes before_;              // where what moves was in the frame before,
-  const scene::GpuScene* gpu_ = nullptr;  // and in which scene
+  scene::MoverBoxes before_;              // bounds of the moving objects in the previous frame
+  const scene::GpuScene* gpu_ = nullptr;  // scene of the previous frame
   Kernel base_, down_;
 };
 

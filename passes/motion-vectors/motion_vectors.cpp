@@ -1,4 +1,4 @@
-// Where what the eye sees was seen a frame ago, for everything that is kept from frame to frame.
+// Where each visible surface point was in the previous frame, for everything that is kept from frame to frame.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -13,7 +13,7 @@ class MotionVectors : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("motion-vectors",
-                      "for every pixel the pixel of the frame before that showed the same surface",
+                      "for every pixel, the pixel of the previous frame that showed the same surface",
                       PassKind::Graphics);
     d.view();
     const auto position = [] {
@@ -25,16 +25,16 @@ class MotionVectors : public Pass {
     d.input("gbuffer", "gbuffer",
             {position(), normal(), member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead)},
             "surfaces seen by the eye");
-    d.input("previous", "gbuffer", {position(), normal()}, "those of the frame before");
+    d.input("previous", "gbuffer", {position(), normal()}, "surfaces seen by the eye in the previous frame");
     d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
              Usage::ColorAttachment,
-             "x | y << 16: one of the four pixels around where the surface was, at random, as probably as it "
-             "is near; 0xffffffff: none of them showed it");
+             "x | y << 16: one of the four pixels around the previous position, chosen at random with "
+             "bilinear probabilities; 0xffffffff if none of them showed the surface");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
-                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that "
-                "belongs to its surface");
+                "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
+                "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
-                "normals that differ by more belong to different surfaces");
+                "least angle between normals of different surfaces");
     return d;
   }
 

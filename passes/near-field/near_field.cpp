@@ -1,4 +1,4 @@
-// The light of what is near, which VPLs shaded as discs leave out.
+// Light from nearby surfaces, which VPLs shaded as discs leave out.
 #include <algorithm>
 #include <bit>
 #include <glm/gtc/packing.hpp>
@@ -14,39 +14,37 @@ namespace {
 
 using namespace graph;
 
-constexpr double kLengthKept = 7 / 8.0;  // of the mean length of the rays, from frame to frame
+constexpr double kLengthKept = 7 / 8.0;  // share of the mean ray length kept from frame to frame
 
 class NearField : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "near-field",
-        "light of what is near to what the eye sees, in the part that VPLs shaded as discs take "
-        "from it: rays through the triangles, few a frame",
-        PassKind::Host);
+    PassDeclaration d("near-field",
+                      "light from nearby surfaces, in the part that VPLs shaded as discs take from it, found "
+                      "with a few rays per frame through the triangles",
+                      PassKind::Host);
     d.view();
     d.output("samples",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
              Usage::HostWrite,
-             "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2, or of each `spacing` x `spacing` "
-             "outside the fovea; a: which, and whether it shows a surface, for pass temporal-accumulation");
+             "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
+             "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
+             "surface, for pass temporal-accumulation");
     d.output("spread", buffer("VplSpread", 16, 1), Usage::HostWrite,
-             "x: area of the discs, m^2, which none may be smaller than: for pass vpl-intensity");
+             "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("spacing", integer(4, 2, 8), "pixels between rays outside the fovea: 2, 4 or 8");
-    d.parameter("vpls", integer(1000, 1, 1 << 20), "how many there are");
+    d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
+    d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
+    d.parameter("share", real(50, 0.01, 1e6),
+                "total area of all discs, in squares of the mean distance between visible surfaces and the "
+                "surfaces seen from them");
     d.parameter(
-        "share", real(50, 0.01, 1e6),
-        "area of all discs together, in squares of the mean distance between what the eye sees and what is "
-        "seen from there");
-    d.parameter("bounces", integer(2, 1, 64),
-                "reflections of the light before it reaches what the eye sees: 2 is what a path tracer of "
-                "depth 4 sees");
+        "bounces", integer(2, 1, 64),
+        "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
     d.parameter("first_samples", integer(16, 1, 1024),
-                "rays in place of one after a camera cut, when there is no "
-                "frame before to take more from");
-    d.counter("rays", "rays traced, towards lights, too");
-    d.counter("shaded", "rays from what the eye sees at whose ends light was looked for");
+                "rays per sample after a camera cut, when there is no history to build on");
+    d.counter("rays", "rays traced, including those towards lights");
+    d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
     return d;
   }
 
@@ -75,7 +73,7 @@ class NearField : public Pass {
         settings.area = float(area);
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
-      if (first) {  // the length first
+      if (first) {  // first the length alone
         length_ = 0;
         statistics = trace();
         length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
@@ -96,7 +94,7 @@ class NearField : public Pass {
   }
 
  private:
-  double length_ = 0;  // m, mean of the rays of the frames so far
+  double length_ = 0;  // m, mean ray length of the frames so far
   std::vector<glm::vec4> image_;
 };
 

@@ -18,7 +18,7 @@ namespace {
 using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u;
-constexpr float kSure = 4;  // times their part of the light: how probably rays go on
+constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
 
 class Tracer {
  public:
@@ -32,7 +32,7 @@ class Tracer {
         rows_((view.size.y + 1) / 2),
         fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)) {}
 
-  // All tiles of `spacing` pixels in one row of them.
+  // Traces all tiles of `spacing` pixels in one row.
   void traceTiles(uint32_t row, NearFieldStatistics& statistics) const {
     const uint32_t spacing = settings_.spacing, step = spacing / 2;
     for (uint32_t x = 0; x < view_.size.x; x += spacing) {
@@ -50,7 +50,7 @@ class Tracer {
   uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
 
  private:
-  // Mean over the turns whose pixel shows a surface.
+  // Returns the mean over the turns whose pixel shows a surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
     const glm::uvec2 block = corner / side;
     glm::vec3 sum(0);
@@ -67,7 +67,7 @@ class Tracer {
             float(sampleCode(side, samplePixel(settings_.turn, side, block), found > 0))};
   }
 
-  // Blocks next to each other, 4 x 4 of them, take turns in one sequence.
+  // Adjacent blocks, 4 x 4 of them, take turns in one sequence.
   glm::vec3 lightAt(const TracedSurface& v, glm::uvec2 block, uint32_t turn,
                     NearFieldStatistics& statistics) const {
     const glm::uvec2 group = block / 4u, place = block % 4u;
@@ -75,7 +75,7 @@ class Tracer {
     const uint32_t stream = randomStream(settings_.seed, group.x, kNearStream, group.y);
     const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, 16 * turn + order));
     if (glm::dot(direction, v.face) <= 0) return glm::vec3(0);
-    // As far as it is worth it: beyond, a ray is as good as one that finds nothing.
+    // Rays are traced only as far as they contribute: beyond that, a hit is worth no more than a miss.
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
@@ -125,7 +125,7 @@ NearFieldStatistics traceNearField(const Frame& frame, const View& view, const R
     for (uint32_t row = next++; row < rows.size(); row = next++) tracer.traceTiles(row, rows[row]);
   };
   onThreads(std::min(threadCount(settings.threads), uint32_t(rows.size())), work);
-  NearFieldStatistics sum;  // in a fixed order
+  NearFieldStatistics sum;  // summed in a fixed order
   for (const NearFieldStatistics& row : rows) {
     sum.rays += row.rays;
     sum.shaded += row.shaded;

@@ -15,13 +15,14 @@ float areaOf(const Geometry& g, uint32_t triangle) {
                     glm::cross(g.positions[v[1]] - g.positions[v[0]], g.positions[v[2]] - g.positions[v[0]]));
 }
 
-// Mean over the channels and a few points: it only steers the choice, what a point shines is exact.
+// Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
+// a point is exact.
 double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& material) {
   constexpr float kPoints[4][2] = {{1 / 3.f, 1 / 3.f}, {0.15f, 0.7f}, {0.7f, 0.15f}, {0.15f, 0.15f}};
   glm::vec3 sum(0);
   for (const auto& p : kPoints)
     sum += 0.25f * emission(*frame.scene, material, surfaceAt(*frame.geometry, {triangle, 0, p[0], p[1]}).uv);
-  // A dark estimate must not hide a bright spot between the points.
+  // This keeps a dark estimate from hiding a bright spot between the points.
   sum = glm::max(sum, 0.05f * material.emission);
   return (double(sum.r) + sum.g + sum.b) / 3.0;
 }

@@ -1,5 +1,5 @@
-// Memory in huge pages, where the system has them: look-ups all over a hundred megabytes otherwise wait for
-// page tables more than for the data.
+// Memory in huge pages, where the system provides them. Random accesses over a hundred megabytes otherwise wait more
+// for page tables than for the data.
 #pragma once
 
 #include <sys/mman.h>
@@ -26,11 +26,11 @@ struct HugePageAllocator {
     void* memory = std::aligned_alloc(page, bytes);
     if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-    if (page == kPage) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost when it is refused
+    if (page == kPage) madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint, which may be refused
 #endif
     return static_cast<T*>(memory);
   }
-  // Leaves what resize() adds as it is: it is about to be written.
+  // Leaves the elements that resize() adds uninitialised, as they are written next.
   template <class U>
   void construct(U* at) {
     ::new (static_cast<void*>(at)) U;

@@ -17,10 +17,11 @@ using namespace scene;
 
 constexpr float kInversePi = glm::one_over_pi<float>();
 
-// Shadow rays end just before what they ask for.
+// Shadow rays end just short of the point they are aimed at.
 constexpr float kShadowEnd = 0.9999f;
 
-// (cos, sin) of (2 t - 1) pi, t in [0, 1], to 1e-6: polynomials for half the angle (Chebyshev fits), doubled.
+// Returns (cos, sin) of (2 t - 1) pi for t in [0, 1], to within 1e-6: polynomials for half the
+// angle (Chebyshev fits), doubled.
 glm::vec2 onCircle(float t) {
   const float y = 2.0f * t - 1.0f, z = y * y;
   const float sine =
@@ -40,8 +41,8 @@ glm::vec3 reflectanceOf(const Material& material, glm::vec4 texture) {
   return glm::vec3(material.baseColor) * glm::vec3(texture) * (1.0f - material.metallic);
 }
 
-// Distance along a ray, in lengths of its direction, to where clip-space depth is 0 (near plane) or w (far
-// plane).
+// Restricts a ray to the part between clip-space depth 0 (near plane) and w (far plane); distances are in
+// lengths of its direction.
 Ray clipped(const View& view, glm::vec3 direction) {
   Ray ray;
   ray.origin = view.eye;
@@ -64,21 +65,21 @@ std::array<float, 2> PathSampler::pair(uint32_t k) const {
   return sobolPair(index, k, stream);
 }
 
-// One path under way.
+// One path being traced.
 struct PathIntegrator::Path {
-  PathVertex vertex;  // its reflectance is in the throughput
+  PathVertex vertex;  // its reflectance is included in the throughput
   glm::vec3 light{0}, throughput{0};
-  glm::vec3 direction{0};  // of the ray from the vertex
+  glm::vec3 direction{0};  // direction of the ray from the vertex
   RayHit hit;
-  glm::vec2 uv{0};  // of the vertex
+  glm::vec2 uv{0};  // texture coordinates of the vertex
   uint32_t material = 0;
   TextureTaps texture;
 };
 
 struct PathIntegrator::Wave {
   std::array<Path, kMaxPaths> paths;
-  std::span<const PathSampler> random;   // of each of them
-  std::array<uint8_t, kMaxPaths> alive;  // the numbers of those that go on, `count` of them
+  std::span<const PathSampler> random;   // random numbers of each path
+  std::array<uint8_t, kMaxPaths> alive;  // numbers of the `count` paths that continue
   size_t count = 0;
 };
 
@@ -103,8 +104,8 @@ PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, glm::vec3 direction) co
   v.normal = side * s.shadingNormal;
   v.face = side * s.geometricNormal;
   v.position = s.position;
-  // Off the surface and back along the ray, where there is nothing: also where two walls meet, whose seam a
-  // step away from one of them would not leave.
+  // Moves off the surface and back along the ray, where space is known to be empty. Where two walls meet, a step away
+  // from one of them alone would stay in the seam.
   v.origin = s.position + (v.face - direction) * rays_.epsilon();
   return v;
 }
@@ -152,8 +153,8 @@ glm::vec3 PathIntegrator::allLights(const PathVertex& v, uint64_t& rays) const {
   return sum;
 }
 
-// One of the lights, in proportion to what it would do if nothing were in between; the random number is
-// stretched over the outcome of each decision, so that one is enough.
+// Samples one light in proportion to its unoccluded contribution. The random number is rescaled after each decision,
+// so one number is enough.
 glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& random, uint32_t k,
                                    uint64_t& rays) const {
   glm::vec3 chosen(0);
@@ -179,9 +180,9 @@ glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& rando
   return chosen * (sum / chosenWeight);
 }
 
-// Both ways to an emissive triangle, a point chosen on it and a bounce that happens to hit it, are weighted
-// by the balance heuristic (Veach and Guibas 1995): neither has spikes, where emitters touch other surfaces
-// or where they are small.
+// Both ways to reach an emissive triangle, a point chosen on it and a bounce that happens to hit it, are weighted
+// by the balance heuristic (Veach and Guibas 1995), so neither causes bright spots where emitters touch other
+// surfaces or are small.
 glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
   const EmitterPoint p = emitters_.sample(v.origin, choice, u1, u2);
@@ -199,10 +200,9 @@ glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float 
   return p.radiance * (cosine * kInversePi / (density + cosine * kInversePi));
 }
 
-// Light that arrives at the vertex, as far as it is asked for directly; then the ray to the next one. `edges`
-// join the vertex to the eye; the light that it reflects has come along one more at least. Random numbers of
-// a vertex: two for the direction, one for the light, one unused; two for the point on an emitter, one for
-// which.
+// Adds the light found directly at the vertex, then chooses the ray to the next one. `edges` join the vertex to the
+// eye; the light that it reflects has come along at least one more. Random numbers of a vertex: two for the
+// direction, one for the light, one unused, two for the point on an emitter and one for the choice of emitter.
 bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const {
   const PathVertex& v = path.vertex;
   const uint32_t k = 8 * edges;
@@ -220,8 +220,8 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   return true;
 }
 
-// What was hit, and the vertex there, all but what its texture says. `edges` join the eye to the vertex
-// before.
+// Handles the hit and fills the vertex there, except for what its texture provides. `edges` join the eye
+// to the previous vertex.
 bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
   const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
   if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
@@ -245,8 +245,8 @@ bool PathIntegrator::reflect(Path& path) const {
   return path.throughput != glm::vec3(0);
 }
 
-// All of them along one edge. Each path looks at what it hit while the next one's ray is under way, and at
-// the texels there while the one after that is.
+// Advances all paths along one edge. Each path looks up its hit while the ray of the next one is being traced, and
+// its texels while the one after that is.
 void PathIntegrator::bounce(Wave& wave, uint32_t edges, uint64_t& rays) const {
   const bool last = lastByLight(edges + 1);
   constexpr uint32_t kNone = kMaxPaths;
@@ -275,14 +275,14 @@ void PathIntegrator::bounce(Wave& wave, uint32_t edges, uint64_t& rays) const {
   wave.count = kept;
 }
 
-// The last reflection of paths that no emitter can add to: many of these surfaces lie in shadow, and their
-// textures need not be asked for.
+// Last reflection of paths to which no emitter can add. Many of these surfaces lie in shadow, and their textures
+// need not be read.
 void PathIntegrator::reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const {
   const auto add = [&](Path& path, glm::vec3 irradiance) {
     reflect(path);
     path.light += path.throughput * kInversePi * irradiance;
   };
-  Path* lit = nullptr;  // the latest
+  Path* lit = nullptr;  // the most recent lit path
   glm::vec3 litBy(0);
   for (size_t n = 0; n < wave.count; ++n) {
     const uint32_t i = wave.alive[n];
@@ -307,7 +307,7 @@ void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampl
     wave.paths[i].throughput = first.reflectance;
     wave.alive[i] = uint8_t(i);
   }
-  // Light from an emitter comes along two edges at least, all other along three.
+  // Light from an emitter comes along at least two edges, all other light along at least three.
   const uint32_t edgesAtLeast = emitters_.empty() ? 3 : 2;
   for (uint32_t edges = 1; depth_ >= edgesAtLeast && edges < depth_ && wave.count > 0; ++edges) {
     if (lastByLight(edges)) {

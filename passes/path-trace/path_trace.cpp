@@ -1,4 +1,4 @@
-// Ground truth: what all other methods approximate.
+// Ground truth, which all other methods approximate.
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
@@ -12,35 +12,40 @@ using namespace graph;
 class PathTrace : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("path-trace",
-                      "light along all diffuse paths of at most `depth` edges, unbiased (ground truth)",
-                      PassKind::Host);
+    PassDeclaration d(
+        "path-trace",
+        "path tracer: light along all diffuse paths of at most `depth` edges, unbiased (ground truth)",
+        PassKind::Host);
     d.view();
     const ResourceSpec color = image2D(VK_FORMAT_R32G32B32A32_SFLOAT);
     d.output("radiance", color, Usage::HostWrite, "rgb: `direct` plus `indirect`, W/(sr m^2)");
     d.output("direct", color, Usage::HostWrite,
-             "rgb: emission plus light of the scene's lights reflected once, as pass direct; background: the "
-             "environment, "
-             "which lights nothing");
+             "rgb: emission plus light from the scene's lights reflected once, as in pass direct; in the "
+             "background the environment, which illuminates nothing");
     d.output("indirect", color, Usage::HostWrite,
-             "rgb: all other light; that of emissive triangles is here, as VPLs carry it");
+             "rgb: all other light; light from emissive triangles is included here, as VPLs carry it");
     d.output("variance", color, Usage::HostWrite, "rgb: estimated variance of the mean `radiance`");
     d.output("half_a", color, Usage::HostWrite, "rgb: radiance from one half of the samples");
-    d.output("half_b", color, Usage::HostWrite, "rgb: radiance from the other half; the two are independent");
-    d.parameter("depth", integer(4, 1, 64),
-                "edges of the longest path: 1 emission, 2 direct light, each more one indirect bounce");
-    d.parameter("spp", integer(2000, 2, 1 << 24), "samples a pixel");
+    d.output("half_b", color, Usage::HostWrite,
+             "rgb: radiance from the other half of the samples, independent of `half_a`");
     d.parameter(
-        "sampling", choice("low-discrepancy", {"low-discrepancy", "independent"}),
-        "`low-discrepancy`: Owen-scrambled Sobol' points, for pictures; `independent`: for statistics");
+        "depth", integer(4, 1, 64),
+        "edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce");
+    d.parameter("spp", integer(2000, 2, 1 << 24), "samples per pixel");
+    d.parameter("sampling", choice("low-discrepancy", {"low-discrepancy", "independent"}),
+                "random numbers: `low-discrepancy` uses Owen-scrambled Sobol' points, for images; "
+                "`independent` is for statistics");
     d.parameter("filter", choice("centre", {"centre", "box"}),
-                "rays through the pixel's centre, as pass gbuffer, or through all of its area");
-    d.parameter("per_frame", flag(true),
-                "new random numbers every frame; false: the same ones (noise that stands still)");
-    d.parameter("threads", integer(0, 0, 1024), "0: one a core; the picture does not depend on it");
+                "pixel filter: `centre` sends rays through the pixel's centre, as pass gbuffer does, `box` "
+                "through its whole area");
+    d.parameter(
+        "per_frame", flag(true),
+        "whether each frame uses new random numbers; if false, all frames use the same ones (static noise)");
+    d.parameter("threads", integer(0, 0, 1024),
+                "number of threads, 0 for one per core; the image does not depend on it");
     d.counter("paths", "paths traced");
     d.counter("rays", "rays traced");
-    d.counter("samples", "samples a pixel: `spp`, less when the run was stopped");
+    d.counter("samples", "samples per pixel: `spp`, or fewer if the run was stopped");
     return d;
   }
 

@@ -17,17 +17,17 @@ using namespace scene;
 
 constexpr uint32_t kPathTraceStream = 0x70617468u;  // keeps the random numbers of this pass apart from others
 constexpr uint32_t kScrambles = 16;
-constexpr uint32_t kLongestRound = 64;  // samples a pixel
+constexpr uint32_t kLongestRound = 64;  // samples per pixel
 constexpr std::chrono::milliseconds kReportEvery{100};
 
-// What the samples of all pixels add up to.
+// Sums over the samples of all pixels.
 struct Film {
   std::vector<glm::dvec3> direct, indirect;  // sums
-  // Sums of what varies (radiance less its part that is the same in all samples), one a pixel and slot: the
-  // scrambles, or with independent sampling the two halves.
+  // Sums of the varying part (radiance less the part that is the same in all samples), one per pixel and slot. Slots
+  // are the scrambles or, with independent sampling, the two halves.
   std::vector<glm::vec3> slots;
-  std::vector<glm::dvec3> squares;   // independent sampling: sums of the squares of what varies
-  std::vector<uint32_t> rowSamples;  // so far, of each pixel of the row
+  std::vector<glm::dvec3> squares;   // independent sampling: sums of the squares of the varying part
+  std::vector<uint32_t> rowSamples;  // samples so far of each pixel of the row
 };
 
 class Tracer {
@@ -56,7 +56,7 @@ class Tracer {
   Film film_;
   std::atomic<uint32_t> nextRow_ = 0;
   std::atomic<bool> stop_ = false;
-  bool mayStop_ = false;  // every pixel has samples
+  bool mayStop_ = false;  // set once every pixel has samples
   std::atomic<uint64_t> paths_ = 0, rays_ = 0;
   std::chrono::steady_clock::time_point lastReport_ = std::chrono::steady_clock::now();
 };
@@ -130,7 +130,8 @@ void Tracer::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, ui
   const glm::vec2 corner(x, y);
   EyePoint eye;
   if (!settings_.box) eye = integrator_.look(corner + 0.5f, rays);
-  const uint32_t atOnce = settings_.box ? 1 : uint32_t(PathIntegrator::kMaxPaths);  // paths from one point
+  const uint32_t atOnce =
+      settings_.box ? 1 : uint32_t(PathIntegrator::kMaxPaths);  // paths per visible point at a time
   std::array<PathSampler, PathIntegrator::kMaxPaths> random;
   std::array<glm::vec3, PathIntegrator::kMaxPaths> indirect;
   for (uint32_t s = begin; s < end;) {
@@ -159,7 +160,7 @@ void Tracer::addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 ind
   if (settings_.independent) film_.squares[pixel] += glm::dvec3(varying) * glm::dvec3(varying);
 }
 
-// Of the mean over all samples.
+// Variance of the mean over all samples.
 glm::dvec3 Tracer::variance(size_t pixel, uint32_t samples) const {
   const glm::vec3* slots = &film_.slots[pixel * slotCount_];
   glm::dvec3 mean(0);

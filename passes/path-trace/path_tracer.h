@@ -12,38 +12,38 @@
 namespace fovea::passes {
 
 struct PathTraceSettings {
-  uint32_t depth =
-      4;  // edges of the longest path: 1 emission, 2 direct light, each further one an indirect bounce
-  uint32_t samples = 2000;  // a pixel, at least 2
+  // Edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce.
+  uint32_t depth = 4;
+  uint32_t samples = 2000;  // per pixel, at least 2
   uint32_t seed = 0;
-  uint32_t threads = 0;      // 0: one a core
-  bool independent = false;  // independent random numbers; else Owen-scrambled Sobol' points
-  bool box = false;          // rays through the whole pixel; else through its centre
-  // Called now and then on the thread that called, with the share that is done; false: stop soon, with fewer
-  // samples.
+  uint32_t threads = 0;      // 0 uses one per core
+  bool independent = false;  // independent random numbers; if false, Owen-scrambled Sobol' points
+  bool box = false;          // rays through the whole pixel; if false, through its centre
+  // Called from time to time on the calling thread, with the share of the work that is done. Returning false stops
+  // the run soon, with fewer samples.
   std::function<bool(double)> progress;
 };
 
-// rgb, a: 1; rows from the top; each of view.size pixels, or empty.
+// rgb with a = 1; rows from the top. Each image has view.size pixels or is empty.
 struct PathTraceImages {
   std::span<glm::vec4> radiance;  // direct + indirect, W/(sr m^2)
-  std::span<glm::vec4>
-      direct;  // emission plus light of the scene's lights reflected once; background: the environment
-  std::span<glm::vec4> indirect;      // all else; light of emissive triangles is here, as VPLs carry it
+  // Emission plus light from the scene's lights reflected once; in the background the environment.
+  std::span<glm::vec4> direct;
+  std::span<glm::vec4> indirect;      // all other light; that of emissive triangles is here, as VPLs carry it
   std::span<glm::vec4> variance;      // estimated variance of the mean `radiance`
-  std::span<glm::vec4> halfA, halfB;  // radiance from either half of the samples, independent of each other
+  std::span<glm::vec4> halfA, halfB;  // radiance from each half of the samples; the halves are independent
 };
 
 struct PathTraceStatistics {
   uint64_t paths = 0, rays = 0;
-  double samples = 0;  // a pixel, mean
+  double samples = 0;  // per pixel, mean
 };
 
-// The same bits whatever the number of threads. Samples of a pixel belong to up to 16 independent scrambles
-// in turn (sampling is low-discrepancy within each), and the variance is that between them; with independent
-// sampling it is that between the samples. A sample is in half A or B as its scramble, or its own number, is
-// even or odd. Samples are taken in rounds over the whole picture, so that a run that is stopped early leaves
-// a picture with fewer samples, at least 2 a pixel.
+// The result is identical bit for bit whatever the number of threads. The samples of a pixel belong in turn to up to
+// 16 independent scrambles (sampling is low-discrepancy within each), and the variance is that between the scrambles;
+// with independent sampling it is that between the samples. A sample is in half A or B if its scramble, or its own
+// number, is even or odd. Samples are taken in rounds over the whole image, so that a run stopped early leaves an
+// image with fewer samples, at least 2 per pixel.
 PathTraceStatistics tracePaths(const scene::Frame& frame, const scene::View& view,
                                const scene::RayScene& rays, const PathTraceSettings& settings,
                                const PathTraceImages& images);

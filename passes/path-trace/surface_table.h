@@ -1,5 +1,5 @@
-// What rays hit, laid out for millions of look-ups in no order: of a triangle one cache line, of a texture's
-// four texels rarely more than one, all in few pages.
+// Surface data for ray hits, laid out for millions of random accesses: one cache line per triangle, rarely more than
+// one for the four texels of a texture, and all in few pages.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ class SurfaceTable {
  public:
   explicit SurfaceTable(const scene::Frame& frame);
 
-  // Says that at() will be asked for this triangle soon.
+  // Prefetches a triangle for which at() will be called soon.
   void prefetch(uint32_t triangle) const { __builtin_prefetch(&triangles_[triangle]); }
 
-  // As scene::surfaceAt(), but normals of vertices have 16 bits a component, and the place is that on the
-  // ray. The object is left out.
+  // Like scene::surfaceAt(), but vertex normals have 16 bits per component, the position is the point on the ray, and
+  // the object is left out.
   scene::SurfaceHit at(const scene::Ray& ray, const scene::RayHit& hit) const;
   bool doubleSided(uint32_t material) const { return looks_[material].doubleSided; }
 
-  // Where reflectance() will look for that of `material` at `uv`; asks for the memory.
+  // Finds where reflectance() will read for `material` at `uv`, and prefetches that memory.
   void find(uint32_t material, glm::vec2 uv, scene::TextureTaps& taps) const;
   glm::vec3 reflectance(uint32_t material, const scene::TextureTaps& taps) const {
     return looks_[material].factor * glm::vec3(scene::sample(taps, srgb_));
@@ -34,13 +34,14 @@ class SurfaceTable {
  private:
   struct alignas(64) Triangle {
     glm::vec3 face{0};      // unit
-    int16_t normals[3][3];  // of the vertices, 32767: 1; zeros where the geometry has none
+    int16_t normals[3][3];  // normals of the vertices, 32767 stands for 1; zeros where the geometry has none
     glm::vec2 uvs[3];
     uint32_t material = 0;
   };
-  // A texture in squares: of 32 texels, which fill one page, and of 4, one cache line.
+  // A texture in tiles: squares of 32 x 32 texels, which fill one page, of squares of 4 x 4, which
+  // fill one cache line.
   struct Blocks {
-    uint32_t width = 0, height = 0;  // 0: none
+    uint32_t width = 0, height = 0;  // 0 if there is no texture
     uint32_t perRow = 0;
     bool srgb = true;
     size_t first = 0;  // byte
@@ -51,7 +52,7 @@ class SurfaceTable {
     }
   };
   struct Look {
-    glm::vec3 factor{0};  // of the texture's colour
+    glm::vec3 factor{0};  // factor on the texture's colour
     bool doubleSided = false;
     scene::TextureUse use;
     Blocks blocks;
@@ -61,7 +62,7 @@ class SurfaceTable {
 
   HugeVector<Triangle> triangles_;
   HugeVector<uint8_t> texels_;
-  std::vector<Look> looks_;  // of each material
+  std::vector<Look> looks_;  // one for each material
   const std::array<float, 256>& srgb_ = scene::srgbTable();
 };
 
@@ -74,7 +75,7 @@ inline scene::SurfaceHit SurfaceTable::at(const scene::Ray& ray, const scene::Ra
   const auto normal = [&](int i) { return glm::vec3(t.normals[i][0], t.normals[i][1], t.normals[i][2]); };
   const glm::vec3 m = normal(0) * w + normal(1) * hit.u + normal(2) * hit.v;
   if (const float square = glm::dot(m, m); square > 1e-12f) s.shadingNormal = m / std::sqrt(square);
-  // Models exist whose normals point against their winding; the winding decides.
+  // Some models have normals that point against their winding; the winding decides.
   if (glm::dot(s.shadingNormal, s.geometricNormal) < 0) s.shadingNormal = -s.shadingNormal;
   s.uv = t.uvs[0] * w + t.uvs[1] * hit.u + t.uvs[2] * hit.v;
   s.material = t.material;

@@ -1,4 +1,5 @@
-// Radiosity of the VPLs: direct light plus one bounce gathered with cones (METHOD 2, radiance, Eq. 3).
+// Radiosity of the VPLs: direct light plus one bounce gathered with cones (Eq. 3 of the paper; passes/README.md,
+// radiance).
 #include "fovea/error.h"
 #include "fovea/pass.h"
 
@@ -11,25 +12,26 @@ class Radiance : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
-        "radiance", "radiosity of every VPL: direct light and what six cones gather from the voxels (Eq. 3)");
-    d.input("vpls", buffer("VplState", 80), Usage::TexelRead, "VPLs; empty slots have no life");
+        "radiance",
+        "radiosity of every VPL: direct light plus light gathered from the voxels with six cones (Eq. 3)");
+    d.input("vpls", buffer("VplState", 80), Usage::TexelRead, "VPLs; empty slots have life 0");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
-            "surfaces in the voxels");
+            "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");
     d.input("mips", "voxel-mips",
             {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
-            "mips of that radiance; for terms `direct` not needed")
+            "mip hierarchy of that radiance; not needed for terms `direct`")
         .makeOptional();
-    d.output(
-        "radiosity", buffer("VplRadiosity", 16, countOf("vpls")), Usage::StorageWrite,
-        "rgb: B_l, W/m^2, what the surface sends out, emission included; w: its luminance; empty slots 0");
+    d.output("radiosity", buffer("VplRadiosity", 16, countOf("vpls")), Usage::StorageWrite,
+             "rgb: B_l, W/m^2, the light that leaves the surface, including emission; w: its luminance; 0 "
+             "for empty slots");
     d.parameter("terms", choice("both", {"both", "direct", "cones"}),
-                "`direct`: light that comes from the lights straight, `cones`: by way of another surface "
-                "(the second bounce)");
+                "light to include: `direct` only light that comes straight from the lights, `cones` only "
+                "light by way of another surface (the second bounce)");
     return d;
   }
 

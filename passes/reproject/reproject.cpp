@@ -1,5 +1,5 @@
-// The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that
-// the second eye sees, and the blocks of pixels that have no source and are shaded anew (METHOD, reproject).
+// The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that the
+// second eye sees, and the blocks of pixels that have no source and must be shaded (passes/README.md, reproject).
 #include <cmath>
 #include <glm/glm.hpp>
 #include <string>
@@ -13,16 +13,16 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kTile = 16;  // pixels a side that a work group of fill.comp works on: whole blocks of any
-                                // size allowed
-constexpr uint32_t kRowWidth = 64, kRows = 4;  // pixels that one of warp.comp works on
+// Width in pixels of the tile that a work group of fill.comp works on; it holds whole blocks of any allowed size.
+constexpr uint32_t kTile = 16;
+constexpr uint32_t kRowWidth = 64, kRows = 4;  // pixels that a work group of warp.comp works on
 
 class Reproject : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
         "reproject",
-        "the first eye's irradiance as the second eye sees it, and the blocks of pixels left to shade");
+        "irradiance of the first eye warped to the second eye, and the blocks of pixels left to shade");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     const SizeExpr tiles = ceilDiv(width, kTile) * ceilDiv(height, kTile);
     d.input("gbuffer", "gbuffer",
@@ -35,39 +35,39 @@ class Reproject : public Pass {
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the first eye");
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: what is warped, of the first eye: `irradiance` of pass deferred");
-    d.output(
-        "irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height),
-        Usage::StorageRead | Usage::StorageWrite,
-        "rgb: the source's, warped; a: 1 where it is known, 0.5 where it is that of pixels nearby, 0 where "
-        "there is neither, and in the background");
+            "rgb: irradiance of the first eye to warp, the output `irradiance` of pass deferred");
+    d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height),
+             Usage::StorageRead | Usage::StorageWrite,
+             "rgb: warped irradiance; a: 1 where it has a source, 0.5 where it was filled from nearby "
+             "pixels, 0 where there is neither and in the background");
     const SizeExpr blocks =
         ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
     d.output(
         "shade", "shade-mask",
         {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height),
                 Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-                "1: the pixel is in a block to shade"),
+                "1 if the pixel is in a block to shade"),
          member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
                 "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
          member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
-                "groups of an indirect dispatch, a column for 256 blocks and a row for a pixel of a block; "
-                "w: blocks")},
-        "what the second eye has to shade");
+                "groups of an indirect dispatch, with a column for 256 blocks and a row for each pixel of a "
+                "block; w: number of blocks")},
+        "pixels that must be shaded for the second eye");
     d.scratch("tile_blocks", buffer("uint", 4, tiles),
               Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-              "blocks to shade in each tile of 16 x 16 pixels, then in those before it");
+              "number of blocks to shade in each tile of 16 x 16 pixels, later in all tiles before it");
     d.scratch("open_tiles", buffer("TileDispatch", 16),
               Usage::StorageRead | Usage::StorageWrite | Usage::Indirect | Usage::TransferWrite,
-              "dispatch for `open_list`, a group more than it has tiles");
+              "indirect dispatch for `open_list`, with one more group than it has tiles");
     d.scratch("open_list", buffer("uint", 4, tiles), Usage::StorageRead | Usage::StorageWrite,
-              "tiles with a pixel without a source, in any order");
+              "tiles that contain a pixel without a source, in any order");
     addParameters(d);
     d.counter("pixels", "pixels that show a surface");
-    d.counter("new_pixels", "of these, pixels without a source");
-    d.counter("filled_pixels", "of these, pixels that take the light of their surface nearby");
-    d.counter("shaded_pixels",
-              "pixels with a surface in blocks that hold one with neither a source nor such light");
+    d.counter("new_pixels", "pixels of these without a source");
+    d.counter("filled_pixels", "pixels of these that take the light of their surface nearby");
+    d.counter(
+        "shaded_pixels",
+        "pixels with a surface in blocks that contain a pixel with neither a source nor light from nearby");
     return d;
   }
 
@@ -110,22 +110,22 @@ class Reproject : public Pass {
 
  private:
   static void addParameters(PassDeclaration& d) {
-    d.parameter("source_view", text("left"), "view that the source was rendered through");
+    d.parameter("source_view", text("left"), "view in which the source was rendered");
     d.parameter("interleave", integer(4, 1, 8),
-                "pixels without a source make the whole block of n x n pixels be shaded: 1, 2, 4 or 8, as "
-                "for the shading");
-    d.parameter("fill", integer(0, 0, 4),
-                "a pixel without a source takes the light of pixels of its surface at most so many pixels "
-                "away, in its "
-                "tile of 16 x 16 pixels, that have one; 0: none, it is shaded");
+                "width n of a block, as for the shading: a pixel without a source causes its whole block of "
+                "n x n pixels to be shaded; 1, 2, 4 or 8");
+    d.parameter(
+        "fill", integer(0, 0, 4),
+        "radius in pixels within which a pixel without a source takes the light of pixels on its surface "
+        "that have one, inside its tile of 16 x 16 pixels; 0 disables this, so the pixel is shaded");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
-                "distance of a source from the tangent plane of a pixel, in parts of the pixel's distance to "
-                "the eye, that "
-                "belongs to its surface");
+                "largest distance of a source from a pixel's tangent plane that counts as the same surface, "
+                "relative to the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
-                "normals that differ by more belong to different surfaces");
+                "least angle between normals of different surfaces");
     d.parameter("least_weight", real(0.1, 1e-3, 1),
-                "of the bilinear weights of the four texels around, what must lie on the pixel's surface");
+                "least sum of the bilinear weights of those of the four surrounding texels that lie on the "
+                "pixel's surface");
   }
 
   static const scene::View& sourceView(RecordContext& ctx) {

@@ -1,16 +1,16 @@
-// Paraboloid shadow maps of all VPLs: an r32ui image array, one map a slot, every texel the distance from the
-// VPL to the nearest surface along the texel's direction. A compute rasteriser in two passes over batches of
-// VPLs: cull.comp lists the (VPL, triangle) pairs that may cover a texel's centre, small.comp and large.comp
-// test the texels against the planes through the VPL and the triangle's edges, which is exact where
-// rasterising straight edges between projected vertices is not (edges are arcs), and keep the smallest
-// distance with an integer atomic, whose result no order can change.
+// Paraboloid shadow maps of all VPLs: an r32ui image array with one map per slot, in which every texel holds the
+// distance from the VPL to the nearest surface along the texel's direction. A compute rasteriser runs in two passes
+// over batches of VPLs. cull.comp lists the (VPL, triangle) pairs that may cover a texel's centre; small.comp and
+// large.comp test the texels against the planes through the VPL and the triangle's edges. The test is exact, unlike
+// rasterising straight edges between projected vertices, as edges are arcs. An integer atomic keeps the smallest
+// distance, so the result does not depend on the order.
 //
-// Where a VPL stands still and something moves in front of it, the map of what never moves can be kept
-// (parameter `static_maps`): it is copied and only what moves is drawn over it.
+// Where a VPL stands still and something moves in front of it, the map of static geometry can be kept (parameter
+// `static_maps`): it is copied, and only moving geometry is drawn over it.
 //
-// The technique `simplified` runs the same rasteriser over a coarser mesh: the hardware rasteriser would be
-// bound by its front end (one layer of the image a VPL, the whole mesh each) and would bend the edges of just
-// the triangles that simplification makes large.
+// The technique `simplified` runs the same rasteriser over a coarser mesh. The hardware rasteriser would be limited
+// by its front end (one image layer per VPL, with the whole mesh each) and would distort the edges of exactly those
+// triangles that simplification makes large.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -33,15 +33,15 @@ using namespace graph;
 
 constexpr uint32_t kBatch = 16;                  // VPLs that share one reading of the triangles
 constexpr uint32_t kViewBytes = 64;              // VplView in shaders/shadow-atlas/step.glsl
-constexpr uint32_t kListBytes = 16;              // WorkList, likewise
+constexpr uint32_t kListBytes = 16;              // WorkList in step.glsl
 constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
 constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
-constexpr uint32_t kCullGroup = 128;             // triangles a work group of cull.comp
-constexpr uint32_t kGroupsPerRow = 4096;         // likewise
-constexpr uint32_t kMovers = 4;                  // spheres around what may have changed a map (changed.comp)
-constexpr uint32_t kDrawnBytes = 32 + 20 * kMovers;  // DrawnMap, likewise
-constexpr uint32_t kSliceTexels =
-    1 << 18;  // 4,096 blocks of about 10 turns each: below the 65,535 turns of a loop
+constexpr uint32_t kCullGroup = 128;             // triangles per work group of cull.comp
+constexpr uint32_t kGroupsPerRow = 4096;         // the same in the shaders
+constexpr uint32_t kMovers = 4;  // spheres around objects that may have changed a map (changed.comp)
+constexpr uint32_t kDrawnBytes = 32 + 20 * kMovers;  // DrawnMap in step.glsl
+// 4,096 blocks of about 10 turns each, which stays below the limit of 65,535 turns of a loop.
+constexpr uint32_t kSliceTexels = 1 << 18;
 
 class ShadowAtlas : public Pass {
  public:
@@ -51,8 +51,8 @@ class ShadowAtlas : public Pass {
 
  private:
   struct Kernels {
-    Kernel cull, small, large, maskedSmall,
-        maskedLarge;  // the masked ones only with the parameter `alpha_mask`
+    // The masked kernels exist only with the parameter `alpha_mask`.
+    Kernel cull, small, large, maskedSmall, maskedLarge;
   };
   struct Range {  // triangles of one step
     const Kernels* kernels;
@@ -60,8 +60,8 @@ class ShadowAtlas : public Pass {
     float planeEpsilon;  // m
   };
   struct Ranges {
-    std::vector<Range> all;      // for the maps that are drawn from nothing
-    std::vector<Range> overlay;  // over what never moves, for every map
+    std::vector<Range> all;      // for maps that are drawn from scratch
+    std::vector<Range> overlay;  // over static geometry, for every map
   };
   static Kernels makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps);
   Ranges ranges(RecordContext& ctx);
@@ -71,8 +71,8 @@ class ShadowAtlas : public Pass {
 
   Kernel changed_, choose_, clear_, setup_, compose_;
   bool hasState_ = false, staticMaps_ = false, simplify_ = false, uploaded_ = false;
-  Kernels exact_, still_,
-      simplified_;  // `still_`: of exact_, what never moves, where that has maps of its own
+  // `still_` is the part of exact_ for static geometry, where that has maps of its own.
+  Kernels exact_, still_, simplified_;
   uint32_t simplifiedTriangles_ = 0;
   float simplifiedError_ = 0;
   gpu::Buffer staging_;  // holds the simplified mesh until its copy has run
@@ -81,9 +81,10 @@ class ShadowAtlas : public Pass {
 PassDeclaration ShadowAtlas::declaration() {
   PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
   d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::StorageRead,
-          "lights; a slot whose intensity is 0 keeps an empty map");
+          "VPLs; a slot with zero intensity keeps an empty map");
   d.input("state", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
-          "which of them are new and how important each is; without it every map is drawn every frame")
+          "state of the VPLs, which says which are new and how important each is; if not wired, every map is "
+          "drawn in every frame")
       .makeOptional();
   // `layout` counts as its index: 0 layers, 1 tiled.
   const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
@@ -91,36 +92,37 @@ PassDeclaration ShadowAtlas::declaration() {
            image2DArray(VK_FORMAT_R32_UINT, parameter("size") * tiles, parameter("size"),
                         ceilDiv(countOf("vpls"), tiles)),
            Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-           "bits of the distance in m, as float, to the nearest surface in the direction of the texel's "
-           "centre; inf: none "
-           "(shaders/common/paraboloid.glsl)")
+           "bits of a float: distance in m to the nearest surface in the direction of the texel's centre, "
+           "infinity if there is none (shaders/common/paraboloid.glsl)")
       .keep(Lifetime::View);
   const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
   d.scratch("refreshed", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
             "frame in which each map was drawn")
       .keep(Lifetime::View);
   d.scratch("chosen", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
-            "what happens to each slot in this frame");
+            "what is done with each slot in this frame");
   d.scratch("drawn", buffer("DrawnMap", kDrawnBytes, countOf("vpls")),
-            Usage::StorageRead | Usage::StorageWrite, "what each map was drawn with")
+            Usage::StorageRead | Usage::StorageWrite, "positions and poses with which each map was drawn")
       .keep(Lifetime::View);
   d.scratch("changes", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
-            "what would be different in each map if it were drawn again");
-  // None where nothing moves.
+            "what would change in each map if it were drawn again");
+  // There are none if nothing moves.
   const SizeExpr keeps =
       parameter("static_maps") * min(1, max(0, triangles - environment("scene.static_triangles")));
   d.scratch("static_maps",
             image2DArray(VK_FORMAT_R32_UINT, max(1, parameter("size") * tiles * keeps),
                          max(1, parameter("size") * keeps), max(1, ceilDiv(countOf("vpls"), tiles) * keeps)),
-            Usage::StorageRead | Usage::StorageWrite, "as the atlas, of what never moves")
+            Usage::StorageRead | Usage::StorageWrite, "the same as the atlas, with static geometry only")
       .keep(Lifetime::View);
   d.scratch("batch", buffer("VplView", kViewBytes, (batches + 1) * kBatch),
             Usage::StorageWrite | Usage::Uniform, "VPLs whose maps are drawn, packed");
   d.scratch("steps",
             buffer("AtlasStep", kStepBytes, (batches + 1) * (ceilDiv(triangles, kRangeTriangles) + 2)),
-            Usage::StorageRead | Usage::StorageWrite | Usage::Indirect, "dispatches and lengths of lists");
+            Usage::StorageRead | Usage::StorageWrite | Usage::Indirect,
+            "indirect dispatches and lengths of the lists");
   d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
-            Usage::StorageRead | Usage::StorageWrite, "pairs to rasterise; as long as every pair of a step");
+            Usage::StorageRead | Usage::StorageWrite,
+            "pairs to rasterise, with room for every pair of a step");
   d.scratch("simplified", buffer("SimplifiedTriangle", 48, max(1, triangles * parameter("technique"))),
             Usage::TexelRead | Usage::TransferWrite, "simplified mesh")
       .keep(Lifetime::Scene);
@@ -133,39 +135,36 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("simplify_ratio", real(0.1, 0, 1),
               "share of the opaque static triangles that `simplified` keeps");
   d.parameter("layout", choice("layers", {"layers", "tiled"}),
-              "layers: a layer of the image for each map; tiled: 16 maps a layer, for more VPLs than the "
+              "layers: one layer of the image for each map; tiled: 16 maps per layer, for more VPLs than the "
               "device has layers");
-  d.parameter("alpha_mask", flag(true), "holes of alpha-masked materials let light through");
+  d.parameter("alpha_mask", flag(true), "whether holes of alpha-masked materials let light through");
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
-              "a triangle whose plane passes a VPL closer than this is the surface the VPL lies on and "
+              "a triangle whose plane is closer to a VPL than this is taken for the VPL's own surface and "
               "blocks nothing");
-  d.parameter(
-      "refresh", choice("top", {"all", "top", "split", "stale"}),
-      "maps of kept VPLs that are drawn again (needs `state`): `all`; `top` the most important ones (the "
-      "paper); `split` half of the same number for those and half for the longest unchanged, first where "
-      "something moves; `stale` of those that would change, by importance times the frames since they were "
-      "drawn");
-  d.parameter(
-      "refresh_share", real(0.05, 0, 1),
-      "how many of the kept VPLs' maps all but `all` draw again; those among them that would not change "
-      "are left as they are");
-  d.parameter(
-      "static_maps", flag(false),
-      "keeps a map of what never moves for each VPL, as much memory again: where the VPL stands still, "
-      "its map is drawn again by drawing what moves over that (needs `state`)");
-  d.parameter(
-      "mover_slack", real(0, 0, 100, "frames"),
-      "what moves is drawn farther from the VPL by its way in so many frames, at most by a quarter of the "
-      "distance, so that it throws no shadow on itself from maps that are some frames old; 0: where it is");
+  d.parameter("refresh", choice("top", {"all", "top", "split", "stale"}),
+              "which maps of kept VPLs are drawn again (needs `state`): `all`; `top` the most important ones "
+              "(the paper); `split` half of the same number for those and half for the longest unchanged, "
+              "first where something moves; `stale` those that would change, by importance times the frames "
+              "since they were drawn");
+  d.parameter("refresh_share", real(0.05, 0, 1),
+              "share of the kept VPLs whose maps are drawn again in a frame, unless `refresh` is `all`; maps "
+              "among them that would not change are left as they are");
+  d.parameter("static_maps", flag(false),
+              "whether a map of static geometry is kept for each VPL, which takes as much memory again; "
+              "while the VPL stands still, only moving geometry is drawn over that map (needs `state`)");
+  d.parameter("mover_slack", real(0, 0, 100, "frames"),
+              "moving geometry is drawn farther from the VPL by the way it moves in this many frames, at "
+              "most a quarter of the distance, so that it casts no shadow on itself from maps that are some "
+              "frames old; 0 draws it in place");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");
   d.counter("masked_pairs", "pairs of a VPL and a triangle with an alpha mask");
-  d.counter("new_maps", "maps drawn because there was none of that VPL");
+  d.counter("new_maps", "maps drawn because the VPL had none");
   d.counter("refreshed_maps", "maps drawn again");
   d.counter("texels", "texels of the maps drawn");
-  d.counter("unchanged_maps", "maps that were due, but see nothing else than when they were drawn");
-  d.counter("overlaid_maps", "maps drawn again over what never moves");
+  d.counter("unchanged_maps", "maps that were due but would not have changed");
+  d.counter("overlaid_maps", "maps drawn again over the kept map of static geometry");
   return d;
 }
 
@@ -189,7 +188,7 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   simplify_ = ctx.parameters().text("technique") == "simplified";
   const std::string& refresh = ctx.parameters().text("refresh");
   hasState_ = ctx.has("state") && refresh != "all";
-  // The maps are as small as can be where nothing moves.
+  // The maps have the least possible size if nothing moves.
   const VkExtent3D still = ctx.extent("static_maps"), all = ctx.extent("atlas");
   staticMaps_ = hasState_ && still.width == all.width && still.height == all.height;
   const Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
@@ -208,7 +207,7 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   if (simplify_) simplified_ = makeKernels(ctx, true, staticMaps_);
 }
 
-// Once a scene: the copy is part of the first frame's commands.
+// Runs once per scene; the copy is part of the first frame's commands.
 void ShadowAtlas::simplifyScene(RecordContext& ctx) {
   const scene::SimplifiedMesh mesh = scene::simplify(*ctx.frame().scene, *ctx.frame().geometry,
                                                      float(ctx.parameters().real("simplify_ratio")));
@@ -278,7 +277,7 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
   ctx.barrier();
 }
 
-// A sphere around everything that moves; radius below 0: nothing does.
+// A sphere around everything that moves; its radius is negative if nothing does.
 glm::vec4 moversOf(const scene::Frame& frame) {
   const scene::Bounds box = scene::moverBoxes(frame).all();
   return box.low.x > box.high.x

@@ -1,5 +1,5 @@
-// One depth map a light (six for a point light), as layers of one image. What never moves is drawn once, and
-// again when a light changes; what moves is drawn over a copy of that.
+// One depth map per light (six for a point light), as layers of one image. Static geometry is drawn once, and again
+// when a light changes; moving geometry is drawn over a copy of that.
 #include <algorithm>
 #include <vector>
 
@@ -20,24 +20,25 @@ constexpr uint32_t kViewBytes = 112;                    // struct ShadowView in 
 class ShadowMap : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("shadow-map",
-                      "depth maps of all lights: directional and spot one layer each, point six",
-                      PassKind::ComputeAndGraphics);
+    PassDeclaration d(
+        "shadow-map",
+        "shadow maps of all lights, with one layer for a directional or spot light and six for a point light",
+        PassKind::ComputeAndGraphics);
     d.output(
          "maps", "shadow-maps",
          {member("depth",
                  image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
                               environment("scene.shadow_layers")),
                  Usage::DepthAttachment | Usage::TransferWrite,
-                 "1: nearest to the light, 0: nothing hit; layers in the order of the lights"),
+                 "depth, 1 nearest to the light, 0 where nothing is hit; layers in the order of the lights"),
           member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
-                 "projection of each layer, shaders/common/shadow.glsl; those past the layers hold nothing")},
-         "what each light sees")
+                 "projection of each layer (shaders/common/shadow.glsl); unused entries are undefined")},
+         "shadow maps of the lights")
         .keep(Lifetime::Scene);
     d.scratch("still",
               image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
                            environment("scene.shadow_layers")),
-              Usage::DepthAttachment | Usage::TransferRead, "depth of what never moves")
+              Usage::DepthAttachment | Usage::TransferRead, "depth of static geometry")
         .keep(Lifetime::Scene);
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
@@ -73,7 +74,7 @@ class ShadowMap : public Pass {
   }
 
  private:
-  // Whether what never moves has been drawn as these lights see it.
+  // Whether static geometry has been drawn for these lights.
   bool isDrawn(const scene::Frame& frame) const {
     return gpu_ == frame.gpu &&
            std::equal(lights_.begin(), lights_.end(), frame.lights.begin(), frame.lights.end(),
@@ -92,7 +93,7 @@ class ShadowMap : public Pass {
                    VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
   }
 
-  // Triangles [first, end) into all layers.
+  // Draws triangles [first, end) into all layers.
   void draw(RecordContext& ctx, const char* target, Attachment::Load load, uint32_t first,
             uint32_t end) const {
     const Attachment depth{target, load, {.depthStencil = {0.0f, 0}}};
@@ -117,8 +118,8 @@ class ShadowMap : public Pass {
     commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * (end - first), 3 * first, layers);
   }
 
-  std::vector<scene::Light> lights_;      // that `still` is drawn for,
-  const scene::GpuScene* gpu_ = nullptr;  // and of which scene
+  std::vector<scene::Light> lights_;      // lights for which `still` is drawn
+  const scene::GpuScene* gpu_ = nullptr;  // scene of which `still` is drawn
   Kernel views_, draw_[2];
 };
 

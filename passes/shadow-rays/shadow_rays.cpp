@@ -1,4 +1,4 @@
-// Sharp edges of shadows: where shadow maps cannot tell, rays do.
+// Sharp shadow edges: rays decide where shadow maps cannot.
 #include <algorithm>
 #include <atomic>
 #include <glm/gtc/packing.hpp>
@@ -19,15 +19,14 @@ using namespace graph;
 class ShadowRays : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "shadow-rays",
-        "direct light by rays through the triangles, at the pixels for which shadow maps cannot "
-        "tell: the edges of shadows, which maps widen and move in steps of their texels",
-        PassKind::Host);
+    PassDeclaration d("shadow-rays",
+                      "direct light by rays through the triangles, at the edges of shadows, which shadow "
+                      "maps widen and shift in steps of their texels",
+                      PassKind::Host);
     d.view();
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
-            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where it is in doubt, which becomes 1");
-    d.counter("pixels", "that were in doubt");
+            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1");
+    d.counter("pixels", "pixels that were in doubt");
     d.counter("rays", "rays traced, from the eye and towards lights");
     return d;
   }
@@ -57,7 +56,7 @@ class ShadowRays : public Pass {
           if (v.there) {
             const glm::vec3 radiance = surfaces.direct(v, surfaces.reflectance(v), count);
             pixel = glm::packHalf4x16(glm::vec4(glm::min(radiance, 65504.0f), 1));
-          } else {  // between two triangles, for rays; as the maps have it
+          } else {  // the ray falls between two triangles, so the map's result stays
             pixel = (pixel & 0xffffffffffffu) | kSure << 48;
           }
         }

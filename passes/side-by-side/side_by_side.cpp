@@ -1,4 +1,4 @@
-// Both eyes in one picture, the left one on the left, for viewers and for looking at (parallel view).
+// Both eyes in one image, the left one on the left, for viewers and for parallel viewing.
 #include "fovea/pass.h"
 
 namespace fovea::passes {
@@ -9,13 +9,13 @@ using namespace graph;
 class SideBySide : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("side-by-side", "two pictures beside each other in one");
+    PassDeclaration d("side-by-side", "two images side by side in one");
     d.input("left", image2D(VK_FORMAT_R8G8B8A8_UNORM), Usage::Sampled, "left half");
     d.input("right", image2D(VK_FORMAT_R8G8B8A8_UNORM), Usage::Sampled, "right half");
     d.output("image",
              image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("left") + widthOf("right"),
                      max(heightOf("left"), heightOf("right"))),
-             Usage::StorageWrite, "both, from the top; black below the lower one");
+             Usage::StorageWrite, "both images, aligned at the top; black below the shorter one");
     return d;
   }
   void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("side-by-side/side_by_side.comp"); }

@@ -1,5 +1,5 @@
-// Few samples a frame become many over the frames: they stay on the surfaces where they were taken. Of an
-// image with a sample for every pixel it is what changes from frame to frame that becomes less.
+// Accumulates few samples per frame over many frames; samples stay on the surfaces on which they were taken. For an
+// image with a sample at every pixel, this reduces flicker.
 #include <bit>
 #include <cmath>
 #include <glm/trigonometric.hpp>
@@ -14,39 +14,36 @@ using namespace graph;
 class TemporalAccumulation : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "temporal-accumulation",
-        "running mean, at every pixel, of samples that few pixels, or all, get in a frame; it follows "
-        "the surfaces and starts anew where one comes into view",
-        PassKind::Graphics);
+    PassDeclaration d("temporal-accumulation",
+                      "running mean at every pixel of samples that some or all pixels get in a frame; it "
+                      "follows the surfaces and restarts where one comes into view",
+                      PassKind::Graphics);
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
             "surfaces seen by the eye");
     d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
-            "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff: none (pass "
+            "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff if there is none (pass "
             "motion-vectors)");
-    d.input(
-        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-        "rgb: of one pixel of a block; a: which, as pass near-field says it; a power of two times smaller "
-        "than `mean`. Or rgb of every pixel, a 1, as large as `mean`");
+    d.input("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, smaller than "
+            "`mean` by a power of two; or for every pixel: rgb, a: 1, as large as `mean`");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "`mean` of the frame before");
+            "`mean` of the previous frame");
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
-             "rgb: mean of the samples, in their unit; a: how many");
+             "rgb: mean of the samples, in their unit; a: number of samples in it");
     d.parameter(
         "frames", real(16, 1, 1000),
-        "that the mean goes back: each sample has at least the weight of one of so many; for larger blocks "
-        "than others, which change all at once, of as many more as they are wide");
+        "length of the mean: each sample has at least the weight of one in this many; for blocks larger than "
+        "a texel of `samples`, which change all at once, as many times more as they are wider");
     d.parameter("first_samples", integer(16, 1, 1024),
-                "what a sample counts as after a camera cut: as in pass near-field");
+                "weight of a sample after a camera cut, as in pass near-field");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
-                "distance from the tangent plane of a pixel, in parts of its distance to the eye, that "
-                "belongs to its "
-                "surface");
+                "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
+                "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
-                "normals that differ by more belong to different surfaces");
+                "least angle between normals of different surfaces");
     return d;
   }
 

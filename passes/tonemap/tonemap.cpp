@@ -1,4 +1,4 @@
-// The display transform of METHOD section 4: T(x) = sRGB(clamp01(exposure * x)).
+// The display transform with which images are compared: T(x) = sRGB(clamp01(exposure * x)).
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
@@ -10,18 +10,19 @@ using namespace graph;
 class Tonemap : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("tonemap",
-                      "linear radiance to a display-referred picture with the exact sRGB transfer function",
-                      PassKind::Graphics);
+    PassDeclaration d(
+        "tonemap",
+        "display transform from linear radiance to an sRGB image, with the exact transfer function",
+        PassKind::Graphics);
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
     d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")),
              Usage::ColorAttachment, "rgb: sRGB-encoded, a: 1");
     d.parameter("exposure", real(0, 0, 1e9),
-                "factor from radiance to display intensity; 0: the scene's own exposure");
+                "factor from radiance to display intensity; 0 uses the scene's own exposure");
     d.parameter("operator", choice("clamp", {"clamp", "reinhard"}),
-                "curve before encoding: `clamp` cuts at 1 (what every measure uses), `reinhard` is x / (1 + "
+                "curve before encoding: `clamp` clamps to 1 (used by every measure), `reinhard` is x / (1 + "
                 "luminance)");
-    d.counter("non_finite", "pixels with a NaN (shown black) or an infinity in the radiance");
+    d.counter("non_finite", "pixels whose radiance holds a NaN (shown black) or an infinity");
     return d;
   }
 

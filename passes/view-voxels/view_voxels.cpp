@@ -18,15 +18,17 @@ class ViewVoxels : public Pass {
              member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
             "surface voxels");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead, "of each side; for show `radiance`")
+    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+            "radiance of each side, for show `radiance`")
         .makeOptional();
-    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead, "of each side; for show `weight`")
+    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
+            "foveated weight of each side, for show `weight`")
         .makeOptional();
     d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
-             "rgb: for the pass `tonemap` at the scene's exposure; a: 1");
-    d.parameter(
-        "show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
-        "reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or normal (0.5 + 0.5 n)");
+             "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
+    d.parameter("show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
+                "quantity to show: reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or "
+                "normal (0.5 + 0.5 n)");
     return d;
   }
 

@@ -1,4 +1,4 @@
-// Debug view: where the VPLs are, and what is known of them.
+// Debug view: the VPLs and one of their properties.
 #include <algorithm>
 
 #include "fovea/error.h"
@@ -10,35 +10,39 @@ namespace {
 
 using namespace graph;
 
-constexpr uint64_t kMostSlots = 1 << 16;  // the number of a slot is half of a pixel's key
+constexpr uint64_t kMostSlots = 1 << 16;  // the slot number takes half of a pixel's key
 
 class ViewVpls : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
         "view-vpls",
-        "debug view: every VPL that the eye sees, as a disc coloured by importance, age or luminance");
+        "debug view: every VPL visible to the eye, as a disc coloured by importance, age or luminance");
     d.view();
     d.input("state", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
             "VPLs; empty slots are not drawn");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
-            "the same slots; for show `luminance`")
+            "the same VPLs as light sources, for show `luminance`")
         .makeOptional();
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled)},
-            "surfaces that hide VPLs; without it all are drawn")
+            "surfaces that hide VPLs; if not wired, all VPLs are drawn")
         .makeOptional();
-    d.input("picture", image2D(), Usage::Sampled, "rgb: radiance to draw over; black without it")
+    d.input("picture", image2D(), Usage::Sampled,
+            "rgb: radiance over which the VPLs are drawn; black if not wired")
         .makeOptional();
     d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,
-             "rgb: for the pass `tonemap` at the scene's exposure; a: 1");
+             "rgb: colours for pass `tonemap` at the scene's exposure; a: 1");
     d.scratch("keys", buffer("uint", 4, viewWidth() * viewHeight()),
-              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite, "nearest VPL of each pixel");
+              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
+              "key of the nearest VPL at each pixel");
     d.parameter("show", choice("importance", {"importance", "age", "luminance"}),
-                "what colours stand for, from violet (0) to yellow: importance, frames shown, or luminance "
-                "of the intensity");
-    d.parameter("range", real(0, 0, 1e9), "value of the last colour; 0: importance 1, 60 frames, 1 W/sr");
-    d.parameter("radius", real(3, 0.5, 64, "px"), "of a disc");
+                "property shown by the colours, from violet (0) to yellow: importance, age in frames, or "
+                "luminance of the intensity");
+    d.parameter(
+        "range", real(0, 0, 1e9),
+        "value shown as the last colour; 0 uses 1 for importance, 60 frames for age, 1 W/sr for luminance");
+    d.parameter("radius", real(3, 0.5, 64, "px"), "radius of a disc");
     return d;
   }
 

@@ -1,8 +1,8 @@
-// Surface voxels of the scene. Triangles are clipped to the cells that a conservative test says they overlap;
-// area, position, normal, reflectance and emission add up in fixed point, so that no order of atomics shows.
-// Cells are marked first and numbered by a prefix sum, since sums for every cell of the grid would not fit.
-// Static triangles are voxelised once; those of dynamic objects every frame, as voxels of their own that hide
-// the static voxel of their cell (METHOD: overlaid, not averaged).
+// Surface voxels of the scene. Triangles are clipped to the cells that they overlap by a conservative test. Area,
+// position, normal, reflectance and emission are summed in fixed point, so the order of the atomics has no effect.
+// Cells are first marked and then numbered by a prefix sum, since sums for every cell of the grid would not fit.
+// Static triangles are voxelised once; those of dynamic objects in every frame, into voxels of their own that hide
+// the static voxel of their cell, so the two are never averaged.
 #include <algorithm>
 
 #include "fovea/pass.h"
@@ -21,9 +21,9 @@ constexpr uint32_t kScanBlock = 256;
 constexpr uint32_t kStateBytes = 80;
 constexpr uint64_t kChunkGroupsOffset = 0, kPhaseOffset = 16, kPhaseBytes = 32;
 
-// Sides of this many voxels fill the 128 MiB that a storage buffer is sure to take.
+// The sides of this many voxels fill the 128 MiB that a storage buffer is guaranteed to hold.
 constexpr int64_t kMostVoxels = 1 << 20;
-constexpr int64_t kBatch = 1 << 19;  // voxels whose sums fit: 224 bytes each
+constexpr int64_t kBatch = 1 << 19;  // voxels whose sums fit, at 224 bytes each
 
 enum Phase : uint32_t { Static = 0, Dynamic = 1 };
 
@@ -49,51 +49,52 @@ class Voxelize : public Pass {
   Visit mark_, accumulate_;
   Kernel chunkBlocks_, chunkTops_, chunkOffsets_, markBlocks_, markTops_, assign_, clear_, resolve_, restore_,
       count_;
-  bool voxelized_ = false;  // the static scene
+  bool voxelized_ = false;  // whether the static scene has been voxelised
 };
 
 PassDeclaration Voxelize::declaration() {
-  PassDeclaration d("voxelize",
-                    "surface voxels of the scene: averages of both sides of every cell that holds surface");
+  PassDeclaration d(
+      "voxelize",
+      "surface voxels of the scene, with averages for both sides of every cell that contains surface");
   const SizeExpr r = parameter("resolution");
   const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
   d.output("voxels", "voxels",
            {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
-                   "0 empty, else 1 + number of the cell's voxel"),
+                   "0 if the cell is empty, else 1 + number of its voxel"),
             member("occupied", image3D(VK_FORMAT_R32_UINT, ceilDiv(r, 4), ceilDiv(r, 4), ceilDiv(r, 2)),
                    Usage::StorageRead | Usage::StorageWrite,
-                   "a bit for each cell of a brick of 4 x 4 x 2: it holds a voxel"),
+                   "one bit for each cell of a brick of 4 x 4 x 2 cells: it holds a voxel"),
             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
-                   "two sides a voxel, see shaders/common/voxel.glsl; area 0: an empty side"),
+                   "two sides per voxel, see shaders/common/voxel.glsl; a side with area 0 is empty"),
             member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
                    Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")},
            "voxels of static surfaces, then those of dynamic objects")
       .keep(Lifetime::Scene);
   const SizeExpr words = ceilDiv(r * r * r, 32), triangles = environment("scene.triangles");
   const Usage both = Usage::StorageRead | Usage::StorageWrite;
-  d.scratch("marks", buffer("uint", 4, words), both | Usage::TransferWrite, "a bit a cell: holds surface")
+  d.scratch("marks", buffer("uint", 4, words), both | Usage::TransferWrite,
+            "one bit per cell: it contains surface")
       .keep(Lifetime::Scene);
   d.scratch("cells", buffer("VoxelCell", 8, room), both,
-            "of each voxel: its linear cell index, and the index that it hides")
+            "linear cell index of each voxel, and the index entry that it hides")
       .keep(Lifetime::Scene);
   d.scratch("state", buffer("VoxelizeState", kStateBytes), both | Usage::Indirect,
-            "numbers of both phases, and dispatches")
+            "counts of both phases, and indirect dispatches")
       .keep(Lifetime::Scene);
   d.scratch("chunks", buffer("uint", 4, triangles), both,
-            "of each triangle: chunks, then those of the triangles before it");
+            "chunks of each triangle, later of all triangles before it");
   d.scratch("blocks", buffer("uint", 4, max(ceilDiv(words, kScanBlock), ceilDiv(triangles, kScanBlock))),
-            both, "prefix sum of the sums of blocks");
+            both, "prefix sums over blocks");
   d.scratch("sums", buffer("uint", 4, min(room, kBatch) * (2 * kSumWords)), both,
             "sums of both sides of a batch of voxels");
 
   d.parameter("resolution", integer(128, 8, 512), "cells along the longest axis of the scene's bounds");
   d.parameter("capacity", integer(16, 1, 512),
-              "voxels that find room, in squares of the resolution, 1,048,576 at most; the others are "
-              "counted as overflow and "
-              "left out, the last ones in linear order first");
+              "most voxels, in squares of the resolution, but at most 1,048,576; further ones are counted as "
+              "overflow and left out, the last ones in linear order first");
   d.counter("voxels", "voxels in the list");
-  d.counter("static_voxels", "of static surfaces");
-  d.counter("overflow", "cells with surface that found no room");
+  d.counter("static_voxels", "voxels of static surfaces");
+  d.counter("overflow", "cells with surface for which there was no room");
   return d;
 }
 
@@ -116,7 +117,7 @@ void Voxelize::prepare(PrepareContext& ctx) {
 
 uint32_t blocksOf(uint32_t count, uint32_t size) { return (count + size - 1) / size; }
 
-// More groups than fit a row go into several; shaders use groupIndex().
+// Groups that do not fit into one row are split into several; shaders use groupIndex().
 void dispatchGroups(Commands commands, uint32_t groups) {
   if (groups > 0) commands.dispatch(std::min(groups, kRow), blocksOf(groups, kRow));
 }

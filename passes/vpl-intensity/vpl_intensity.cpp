@@ -1,5 +1,5 @@
-// How much light a VPL stands for: its radiosity times a piece of surface A_l (METHOD section 2, weights).
-// Each strategy is a way to fill the scratch buffer `areas`; the rest is shared.
+// How much light a VPL stands for: its radiosity times a piece of surface A_l (passes/README.md, vpl-intensity). Each
+// strategy is a way to fill the scratch buffer `areas`; the rest is shared.
 #include <algorithm>
 #include <string>
 
@@ -15,14 +15,14 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kGroup = 64;           // threads of a work group, everywhere but in bricks.comp
-constexpr uint32_t kSharedPaths = 8;      // of an invocation of share.comp: its PATHS
-constexpr uint32_t kTallyGroups = 256;    // of tally.comp, which strides over whatever there is
-constexpr uint32_t kEscapePoints = 1024;  // screen points that the share of escaping paths is taken from
+constexpr uint32_t kGroup = 64;           // threads per work group, except in bricks.comp
+constexpr uint32_t kSharedPaths = 8;      // paths per invocation of share.comp, its PATHS
+constexpr uint32_t kTallyGroups = 256;    // work groups of tally.comp, which strides over all elements
+constexpr uint32_t kEscapePoints = 1024;  // screen points from which the share of escaping paths is estimated
 constexpr uint32_t kScreenPoint = 48;     // bytes: position, normal, face
 constexpr uint32_t kBrick = 4;            // cells; shaders/vpl-intensity/vpl_intensity.glsl
-constexpr uint32_t kMostCompeting =
-    16384;  // VPLs that bricks.comp loops over, twice: below the 65,535 turns of a loop
+// VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 turns of a loop.
+constexpr uint32_t kMostCompeting = 16384;
 
 uint32_t groups(uint64_t threads, uint32_t size = kGroup) { return uint32_t((threads + size - 1) / size); }
 
@@ -39,20 +39,20 @@ class Weights : public Pass {
 
   std::string strategy_;
   uint32_t vplCount_ = 0, sideCapacity_ = 0, bricks_ = 0;
-  bool traced_ = false;  // the paths come from pass eye-paths
+  bool traced_ = false;  // whether the paths come from pass eye-paths
   Kernel tally_, finish_;
-  Kernel points_, escapes_, density_, median_, pdf_,
-      constant_;                         // `pdf`; `constant` after it; not all: `importance-area`
+  // For `pdf`, and constant_ after it for `constant`; `importance-area` uses only some of them.
+  Kernel points_, escapes_, density_, median_, pdf_, constant_;
   Kernel paths_, seen_, share_, discs_;  // `importance-area`
   Kernel brick_, nearest_, sum_;         // `area`
 };
 
 PassDeclaration Weights::declaration() {
   PassDeclaration d("vpl-intensity",
-                    "the area A_l that each VPL stands for, and with it its intensity B_l A_l / pi");
+                    "intensity of every VPL, B_l A_l / pi, from the area A_l for which it stands");
   d.view();
   d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-          "VPLs of this frame, a slot each");
+          "VPLs of this frame, one per slot");
   d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead,
           "rgb: B_l, W/m^2; w: its luminance; slots as in `vpls`");
   d.input("voxels", "voxels",
@@ -60,88 +60,83 @@ PassDeclaration Weights::declaration() {
            member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead),
            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::Uniform)},
-          "surfaces that VPLs stand for");
+          "voxelised surfaces, for which the VPLs stand");
   d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-          "of each voxel side; w: luminance, above 0 it is lit");
+          "radiance of each voxel side; w: luminance, above 0 if the side is lit");
   d.input("gbuffer", "gbuffer",
           {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
            member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
            member("face", image2D(), Usage::Sampled)},
-          "surfaces seen by the eye, from which eye paths start");
+          "surfaces seen by the eye, from which the eye paths start");
   d.input("placed", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
-          "the VPLs as they were to `atlas`: where they shine from");
+          "VPLs with which `atlas` was drawn, which gives their positions");
   d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
-          "their shadow maps: for `importance-area` what is seen from where");
+          "shadow maps of the VPLs, by which `importance-area` decides visibility");
   d.input("traced", "eye-paths",
           {member("starts", buffer("ScreenPoint", kScreenPoint), Usage::TexelRead),
            member("ends", buffer("EyePathEnd", 48), Usage::TexelRead)},
-          "of pass eye-paths, with as many points: what `importance-area` shares out in place of paths "
-          "through the "
-          "voxels from points of its own and of the VPLs' own light")
+          "paths of pass eye-paths, with the same number of points; `importance-area` then assigns these, "
+          "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
-  d.input(
-       "spread", buffer("VplSpread", 16), Usage::TexelRead,
-       "x: area, m^2: the picture gets the light of what is near from pass near-field, as much as discs of "
-       "this area leave out, and no disc of `importance-area` is smaller; with `traced` and kernel `disc`")
+  d.input("spread", buffer("VplSpread", 16), Usage::TexelRead,
+          "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
+          "discs of this area leave out; needs `traced` and kernel `disc`")
       .makeOptional();
   d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
-           "VPLs to shade with, in their slots; an empty slot is all zeros");
+           "VPLs for shading, in their slots; an empty slot is all zeros");
   addScratch(d);
-  d.parameter("strategy", choice("pdf", {"constant", "pdf", "area", "importance-area"}),
-              "A_l: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N p), p "
-              "the density of eye paths from the region; `area` the surface nearest to the VPL (Voronoi); "
-              "`importance-area` n / (M p), n of M eye paths ending nearest to the VPL, with the light found "
-              "there: however the VPLs were chosen, the region gets the light that its eye paths find");
-  d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
-              "where the eye paths start: as in pass candidates");
-  d.parameter("image_share", real(0.4, 0, 1), "of region `mixed`: starts from the whole image, in 64ths");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter(
-      "points", integer(2048, 64, 4096),
-      "screen points that a density is averaged over (all but `area`); but for `importance-area`, rays "
-      "go to 64 of them");
+      "strategy", choice("pdf", {"constant", "pdf", "area", "importance-area"}),
+      "how A_l is found: `constant` the same for all VPLs, set on the first frame (the paper); `pdf` 1 / (N "
+      "p) with the density p of eye paths from the region; `area` the surface nearest to the VPL (Voronoi); "
+      "`importance-area` n / (M p) for n of M eye paths that end nearest to the VPL, with the light found "
+      "there, so that the region receives the light its eye paths find however the VPLs were chosen");
+  d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
+              "region in which the eye paths start, as in pass candidates");
+  d.parameter("image_share", real(0.4, 0, 1),
+              "share of starts in the whole image for region `mixed`, rounded to 64ths");
+  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
+  d.parameter("points", integer(2048, 64, 4096),
+              "screen points over which a density is averaged (all strategies but `area`); rays are traced "
+              "to 64 of them, except for `importance-area`");
   d.parameter(
       "area_cap", real(4, 1, 1e6),
-      "the most that A_l can be, in medians of 1 / (N p) (all but `area`; `importance-area` gives the paths "
-      "that would need more to other VPLs); also what a VPL stands for that the region does not see");
+      "largest A_l, in medians of 1 / (N p) (all strategies but `area`; `importance-area` assigns paths that "
+      "would need more to other VPLs); also the area of VPLs that the region does not see");
   d.parameter("paths", integer(8192, 64, 65536),
-              "eye paths that `importance-area` gives to the VPLs nearest to their ends (M)");
-  d.parameter(
-      "fade_frames", integer(0, 0, 1000),
-      "in which the share that `importance-area` gives to a new VPL grows from nothing to its own; its "
-      "neighbours give it up as slowly, so that nothing pops");
-  d.parameter(
-      "kernel", choice("disc", {"disc", "clamp"}),
-      "what `importance-area` takes the VPLs to be shaded with, as in pass deferred: with `clamp` the "
-      "region's mean gets the light back that the clamp takes");
-  d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "of the kernel `clamp`");
+              "eye paths that `importance-area` assigns to the VPLs nearest to their ends (M)");
+  d.parameter("fade_frames", integer(0, 0, 1000),
+              "frames over which the share that `importance-area` assigns to a new VPL grows from nothing to "
+              "its own, while its neighbours give it up gradually to avoid popping");
+  d.parameter("kernel", choice("disc", {"disc", "clamp"}),
+              "kernel with which `importance-area` expects the VPLs to be shaded, as in pass deferred; with "
+              "`clamp` the mean over the region regains the light that the clamp removes");
+  d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "clamp distance of the kernel `clamp`");
   d.parameter("sides", choice("lit", {"lit", "all"}),
-              "surface that `area` gives away: `lit` the sides with direct light, among the VPLs on such "
-              "sides; `all` every "
-              "side, among all VPLs");
+              "surface that `area` assigns: `lit` the sides with direct light, among the VPLs on such sides; "
+              "`all` every side, among all VPLs");
   d.parameter("normal_weight", real(0.5, 0, 100),
-              "how far apart for `area` and `importance-area` turned normals put surfaces: d^2 + lambda (1 - "
-              "n.n'), lambda in "
-              "squared mean free paths "
-              "of the scene");
+              "weight of normals in the distance d^2 + lambda (1 - n.n') of `area` and `importance-area`; "
+              "lambda is in squared mean free paths of the scene");
   d.counter("alive", "slots that hold a VPL");
   d.counter("unseen", "VPLs that no screen point sees (`pdf`)");
-  d.counter("capped", "VPLs that are seen, but so little that the cap holds for them");
-  d.counter("given_sides", "sides that were given to a VPL (`area`)");
+  d.counter("capped", "VPLs that are seen so little that the cap applies");
+  d.counter("given_sides", "sides assigned to a VPL (`area`)");
   return d;
 }
 
 void Weights::addScratch(PassDeclaration& d) {
   const Usage readWrite = Usage::StorageRead | Usage::StorageWrite;
   d.scratch("totals", buffer("WeightTotals", 16), readWrite | Usage::TransferWrite,
-            "counts, and surface of the scene");
-  d.scratch("areas", buffer("float", 4, countOf("vpls")), readWrite, "A_l, m^2: what a strategy computes");
+            "counts, and surface area of the scene");
+  d.scratch("areas", buffer("float", 4, countOf("vpls")), readWrite, "A_l, m^2, as computed by the strategy");
   d.scratch("screen", buffer("ScreenPoint", kScreenPoint, parameter("points")),
-            Usage::StorageWrite | Usage::TexelRead, "position, normal, face of what the screen points see");
+            Usage::StorageWrite | Usage::TexelRead,
+            "position, shading normal and geometric normal of the surface at each screen point");
   d.scratch("densities", buffer("float", 4, countOf("vpls")), Usage::StorageWrite | Usage::TexelRead,
             "p_A, 1/m^2");
   d.scratch("kept", buffer("WeightsKept", 8), readWrite,
-            "total area of `constant`, m^2, 0: not known yet; last median of the densities, 1/m^2")
+            "total area of `constant`, m^2, 0 if not known yet; latest median of the densities, 1/m^2")
       .keep(Lifetime::View);
   // A choice counts as its index: 0 constant, 1 pdf, 2 area, 3 importance-area.
   const SizeExpr owning = min(max(parameter("strategy") - 1, 0), 1),
@@ -149,25 +144,26 @@ void Weights::addScratch(PassDeclaration& d) {
                  side = ceilDiv(widthOf("voxels.index"), kBrick);
   const SizeExpr bricks = side * side * side;
   d.scratch("sites", buffer("VplSite", 32, max(1, countOf("vpls") * owning)), readWrite | Usage::TexelRead,
-            "position, normal of the VPLs that compete for surface");
+            "position and normal of the VPLs that compete for surface");
   d.scratch("ends", buffer("PathEnd", 32, max(1, parameter("paths") * shared)),
             Usage::StorageWrite | Usage::TexelRead, "where the eye paths end");
   d.scratch("seen",
             buffer("uint", 4, max(1, countOf("vpls") * shared * ceilDiv(parameter("points"), 2048) * 64)),
-            Usage::StorageWrite | Usage::TexelRead, "a bit for each screen point that sees a VPL");
-  d.scratch(
-      "seen_from", buffer("float", 4, max(1, countOf("vpls") * shared)),
-      Usage::StorageWrite | Usage::TexelRead,
-      "screen points that a density is an average of: squared sum of their terms by the sum of squares");
+            Usage::StorageWrite | Usage::TexelRead, "one bit for each screen point that sees a VPL");
+  d.scratch("seen_from", buffer("float", 4, max(1, countOf("vpls") * shared)),
+            Usage::StorageWrite | Usage::TexelRead,
+            "effective number of screen points in a density: squared sum of their terms divided by the sum "
+            "of squares");
   d.scratch("gains", buffer("float", 4, max(1, countOf("vpls") * shared)), readWrite,
-            "how much more a VPL shines for its disc");
+            "factor by which a VPL must be brighter to make up for its disc");
   d.scratch("bricks", buffer("uint", 4, bricks), readWrite | Usage::TexelRead | Usage::TransferWrite,
-            "1: holds surface (for `area`: to give away)");
+            "1 if the brick contains surface (for `area`: surface to assign)");
   d.scratch("masks", buffer("uint", 4, max(1, bricks * area * ceilDiv(countOf("vpls"), 32))),
-            Usage::StorageWrite | Usage::TexelRead, "a bit for each VPL that can be nearest in a brick");
+            Usage::StorageWrite | Usage::TexelRead,
+            "one bit for each VPL that can be the nearest in a brick");
   d.scratch("sums", buffer("Sum", 8, max(1, countOf("vpls") * (owning + shared))),
             readWrite | Usage::TransferWrite,
-            "surface, or paths and their light, given to each VPL, as whole numbers");
+            "surface, or paths and their light, assigned to each VPL, as whole numbers");
 }
 
 void Weights::prepare(PrepareContext& ctx) {
@@ -183,28 +179,29 @@ void Weights::prepare(PrepareContext& ctx) {
   const std::string lit = p.text("sides") == "lit" ? "1" : "0";
   if (area && vplCount_ > kMostCompeting)
     throw Error(ExitCode::BadInput,
-                "pass `weights`: strategy `area` takes at most " + std::to_string(kMostCompeting) +
+                "pass `vpl-intensity`: strategy `area` takes at most " + std::to_string(kMostCompeting) +
                     " VPLs, these are " + std::to_string(vplCount_),
-                "set weights.strategy to `pdf`, or use fewer VPLs");
+                "set vpl-intensity.strategy to `pdf`, or use fewer VPLs");
   const VkExtent3D maps = ctx.extent("atlas");
   const uint64_t mapCount = uint64_t(maps.width / std::max(maps.height, 1u)) * ctx.layers("atlas");
   if (mapCount < vplCount_)
     throw Error(ExitCode::BadInput,
-                "pass `weights`: the atlas holds " + std::to_string(mapCount) + " maps for " +
+                "pass `vpl-intensity`: the atlas holds " + std::to_string(mapCount) + " maps for " +
                     std::to_string(vplCount_) + " VPLs",
-                "wire the same VPLs to the atlas and to the weights");
+                "wire the same VPLs to the atlas and to this pass");
   if (traced_ && ctx.count("traced.starts") != uint64_t(p.integer("points")))
     throw Error(ExitCode::BadInput,
-                "pass `weights`: its paths start from " + std::to_string(ctx.count("traced.starts")) +
+                "pass `vpl-intensity`: its paths start from " + std::to_string(ctx.count("traced.starts")) +
                     " points, it has " + std::to_string(p.integer("points")),
-                "give weights.points and eye-paths.points the same number");
+                "give vpl-intensity.points and eye-paths.points the same number");
   tally_ = ctx.compute("vpl-intensity/tally.comp", {{"AREA", area ? "1" : "0"}, {"LIT_ONLY", lit}});
   const bool discs = shared == "1" && p.text("kernel") == "disc";
   const std::string near = ctx.has("spread") ? "1" : "0";
   if (ctx.has("spread") && !(traced_ && discs))
     throw Error(
         ExitCode::BadInput,
-        "pass `weights`: input `spread` says that other rays bring the light of what is near, but nothing "
+        "pass `vpl-intensity`: input `spread` says that other rays bring the light of what is near, but "
+        "nothing "
         "takes it from these VPLs' light",
         "wire `traced` and choose strategy `importance-area` and kernel `disc`, or leave out `spread` and "
         "pass near-field, as graphs/foveal_no_near_field.json does");

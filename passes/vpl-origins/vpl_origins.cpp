@@ -1,4 +1,5 @@
-// Where the VPLs shine from: what shadow-atlas needs of them before pass vpl-intensity can say how strong they are.
+// Positions of the VPLs as light sources, which pass shadow-atlas needs before pass vpl-intensity
+// can find their intensity.
 #include "fovea/pass.h"
 #include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
@@ -11,25 +12,27 @@ using namespace graph;
 class Place : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("vpl-origins", "VPLs at the places that they shine from, each as 1 m^2 of its surface");
-    d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead, "a slot each");
+    PassDeclaration d("vpl-origins",
+                      "VPLs at the positions from which they emit, each standing for 1 m^2 of its surface");
+    d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+            "VPLs of this frame, one per slot");
     d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead, "rgb: B_l, W/m^2; slots as in `vpls`");
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "the grid that the VPLs come from");
+            "voxel grid in which the VPLs were found");
     d.output("placed", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
-             "in their slots; an empty slot, and one with a value that is no number, is all zeros");
-    // At 0 a VPL lies inside whatever else its voxel averages and is shadowed by it; far out it sees round
-    // what should shadow it. Mean light of ir_v with one bounce against traced paths in Sponza, 128^3: 0.96
-    // at 0.1 cells, 1.00 at 0.15, 1.08 at 0.2, 1.17 at 0.25, 1.26 at 0.5; in the Cornell box 1.00 to 1.01
-    // whatever it is.
-    d.parameter("offset", real(0.15, 0, 10, "cells"),
-                "moves a VPL along its normal, out of the surface that its voxel averages");
+             "VPLs in their slots; an empty slot, or one with a value that is not finite, is all zeros");
+    // At 0 a VPL lies inside the other surfaces that its voxel averages and is shadowed by them; with a large offset
+    // it sees around surfaces that should shadow it. In Sponza with 128^3 voxels, the mean light of method ir_v with
+    // one bounce is, relative to traced paths, 0.96 at 0.1 cells, 1.00 at 0.15, 1.08 at 0.2, 1.17 at 0.25 and 1.26 at
+    // 0.5; in the Cornell box it is 1.00 to 1.01 at all offsets.
     d.parameter(
-        "least", real(0, 0, 1e6, "W/sr"),
-        "intensity that no VPL has less of: one of 0 gets no shadow map, which a VPL without light of "
-        "its own needs when pass vpl-intensity gives it some");
+        "offset", real(0.15, 0, 10, "cells"),
+        "distance by which a VPL is moved along its normal, out of the surface that its voxel averages");
+    d.parameter("least", real(0, 0, 1e6, "W/sr"),
+                "least intensity of a VPL; a VPL of intensity 0 gets no shadow map, but one without light of "
+                "its own needs a map when pass vpl-intensity assigns light to it");
     return d;
   }
 

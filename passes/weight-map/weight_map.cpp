@@ -1,4 +1,4 @@
-// How much the eye cares about each voxel side it sees (METHOD importance, step 1).
+// Foveated weight of each voxel side that the eye sees (passes/README.md, weight-map).
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "framework/shader_twins/voxel_grid.h"
@@ -8,8 +8,8 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kBlock = 4,
-                   kGroup = 8;  // pixels a thread and threads a work group, per side (scatter.comp)
+// Pixels per thread and threads per work group, along each axis (scatter.comp).
+constexpr uint32_t kBlock = 4, kGroup = 8;
 
 class WeightMap : public Pass {
  public:
@@ -23,18 +23,17 @@ class WeightMap : public Pass {
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "grid whose sides are weighted");
+            "voxel grid whose sides are weighted");
     d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-             "float a side: the largest foveated weight among the pixels that show it, 0: unseen");
-    d.parameter(
-        "region", choice("fovea", {"fovea", "image"}),
-        "what counts fully: the disc around the gaze, with weights that fall outside it, or the whole image");
+             "one float per side: the largest foveated weight among the pixels that show it, 0 if unseen");
+    d.parameter("region", choice("fovea", {"fovea", "image"}),
+                "region of full weight: the disc around the gaze, outside which weights fall off, or the "
+                "whole image");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
-                "radius r_f of the fovea: weight 1 inside, r_f / r at the distance r from the gaze");
+                "radius r_f of the fovea: the weight is 1 inside and r_f / r at distance r from the gaze");
     d.counter("visible", "sides with a weight above 0");
-    d.counter("unassigned",
-              "pixels that show a surface of which the grid has no side that faces the eye there");
+    d.counter("unassigned", "pixels that show a surface for which the grid has no side facing the eye");
     return d;
   }
 

@@ -45,7 +45,7 @@ scene::Lens parseLens(std::string_view text) {
   for (size_t from = 0; from <= text.size();) {
     const size_t comma = std::min(text.find(',', from), text.size());
     const auto angle = parseNumber<float>(text.substr(from, comma - from));
-    // Written so that NaN fails too.
+    // Written so that NaN also fails.
     angles.push_back(angle && *angle >= scene::kLeastLensAngle && *angle <= scene::kMostLensAngle
                          ? glm::radians(*angle)
                          : 0);

@@ -1,4 +1,4 @@
-// Options that several commands share, and what their texts mean.
+// Options that several commands share, and the parsing of their values.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -18,13 +18,13 @@ void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void addGraphOptions(CLI::App& command, GraphOptions& options);  // GRAPH, --set, --plugin
 void addCompareOptions(CLI::App& command,
                        CompareOptions& options);  // --gaze, --radius, --layer, --exposure, --json
-// For an option that may be given several times, each time with one value.
+// Adds an option that may be given several times, each time with one value.
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                      const std::string& doc);
-// Unlike CLI::Range it refuses NaN.
+// Unlike CLI::Range, refuses NaN.
 CLI::Validator numberBetween(double low, double high);
 
-// "55,45,50,52": degrees outwards, inwards, up, down. Throws Error(Usage).
+// Parses "55,45,50,52": degrees outwards, inwards, up, down. Throws Error(Usage).
 scene::Lens parseLens(std::string_view text);
 
 }  // namespace fovea::cli

@@ -1,4 +1,4 @@
-// fovea bench: the options of a suite of measurements, and of the passes of one graph.
+// The command `fovea bench`: options of a suite of measurements, and of measuring the passes of one graph.
 #include "benchmarks/runner/bench.h"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// fovea check: whether a graph is valid, and what plan comes out of it. It needs no device and no scene.
+// The command `fovea check`: whether a graph is valid, and the plan that results. It needs no device and no scene.
 #include <fmt/format.h>
 
 #include <memory>

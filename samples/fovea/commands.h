@@ -1,5 +1,5 @@
-// The commands of the program `fovea`: each adds its options to the command line and hands over what to do
-// when chosen.
+// The commands of the program `fovea`. Each function adds a command with its options to the command line; if the user
+// chooses the command, `action` is set to what runs it.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// fovea compare: how far a picture is from its reference.
+// The command `fovea compare`: how far a picture is from its reference.
 #include <fmt/format.h>
 
 #include <memory>

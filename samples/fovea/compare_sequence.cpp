@@ -1,4 +1,5 @@
-// fovea compare-sequence: how steady a sequence is, and how far its changes are from those of its reference.
+// The command `fovea compare-sequence`: how steady a sequence is, and how far its changes are from those
+// of its reference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ std::vector<std::string> filesIn(const fs::path& folder) {
   return names;
 }
 
-// "out_%04d.exr": every file with a number at its place.
+// Finds every file that matches a pattern such as "out_%04d.exr".
 Frames framesOfPattern(const std::string& pattern) {
   const fs::path path(pattern);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -63,7 +64,7 @@ Frames framesOfPattern(const std::string& pattern) {
   return frames;
 }
 
-// The one numbered sequence in a folder: of .exr where there are any, else of .pfm, else of .png.
+// The only numbered sequence in a folder: of .exr files if there are any, else of .pfm, else of .png.
 Frames framesInFolder(const std::string& folder) {
   for (const char* extension : {".exr", ".pfm", ".png"}) {
     Frames frames;
@@ -131,7 +132,7 @@ void print(const Options& options, const Frames& frames, const Compared& last,
   if (options.common.json) {
     Json json = {{"sequence", options.sequence}, {"reference", options.reference}};
     json.update(describe(last));
-    json.erase("gaze");  // moves
+    json.erase("gaze");  // the gaze moves
     json["frames"] = frames.size();
     json["first_frame"] = frames.begin()->first;
     for (const auto& [name, measures] : rows) json[name] = toJson(measures);

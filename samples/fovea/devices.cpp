@@ -1,4 +1,4 @@
-// fovea devices: what there is to render on.
+// The command `fovea devices`: lists the devices that can render.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The command-line program: render graphs, check them, list what there is.
+// The command-line program: renders and checks graphs, and lists passes, scenes and devices.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -42,7 +42,7 @@ std::string chosenCommand(const CLI::App& program) {
   return name;
 }
 
-// CLI11 would only say that a command is missing.
+// CLI11 alone would only report that a command is missing.
 void refuseUnknownCommand(const CLI::App& program, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands(nullptr)) names.push_back(command->get_name());

@@ -47,7 +47,7 @@ std::vector<std::string> pictureNames(const graph::BoundGraph& graph, Accept acc
   return names;
 }
 
-// Alpha of a graph's images means nothing to a viewer of the file.
+// The alpha of a graph's images has no meaning for a viewer of the file.
 image::Image withoutAlpha(const image::Image& image) {
   if (image.channels != 4) return image;
   image::Image rgb{image.width, image.height, 3, {}};

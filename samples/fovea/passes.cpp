@@ -1,4 +1,4 @@
-// fovea passes: every pass type, or all about one, from the passes' own declarations.
+// The command `fovea passes`: lists every pass type, or describes one, from the declarations of the passes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::string formatName(VkFormat format) {
   return format == VK_FORMAT_UNDEFINED ? "any float" : std::string(gpu::formatInfo(format).name);
 }
 
-// `sized`: outputs say how large they are; inputs take what is wired.
+// `sized`: whether to print sizes; outputs declare a size, while inputs take that of what is connected.
 std::string describe(const ResourceSpec& r, bool sized) {
   if (r.kind == ResourceKind::Buffer)
     return sized ? fmt::format("buffer of {} {}", r.count.print(), r.element) : "buffer of " + r.element;

@@ -1,4 +1,4 @@
-// fovea render: a graph over a scene, to pictures, times and traces.
+// The command `fovea render`: runs a graph over a scene and writes pictures, times and traces.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -26,8 +26,8 @@
 namespace fovea::cli {
 namespace {
 
-// A frame slower than this is read back at once, in case Ctrl-C makes it the last; after quicker ones another
-// is rendered.
+// A frame slower than this is read back at once, in case Ctrl-C makes it the last; after a faster one, another frame
+// is rendered for that.
 constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
@@ -89,9 +89,9 @@ class Render {
   std::unique_ptr<Timings> timings_;
   RunInfo info_;
   uint64_t finished_ = 0;
-  double lastWallMs_ = 2 * kSlowFrameMs;       // of the first frame nothing is known
+  double lastWallMs_ = 2 * kSlowFrameMs;       // nothing is known of the first frame
   std::optional<graph::FrameResult> picture_;  // the last frame that was read back
-  std::vector<std::string> files_;             // written beside the pictures
+  std::vector<std::string> files_;             // files written besides the pictures
 };
 
 Render::Render(const RenderOptions& options)
@@ -101,7 +101,7 @@ Render::Render(const RenderOptions& options)
   outputs_ = std::make_unique<OutputFiles>(options.outputs);
 }
 
-// Before anything slow: what cannot be written at the end need not be rendered.
+// Runs before anything slow, so that nothing is rendered that cannot be written.
 void Render::checkFiles() {
   const auto has = [](const std::string& file, std::string_view extension) {
     return std::filesystem::path(file).extension() == extension;
@@ -114,7 +114,7 @@ void Render::checkFiles() {
     if (!file.empty()) checkTextWritable(file);
 }
 
-// A run that is asked for nothing else makes a picture.
+// A run without any other output writes a picture.
 void Render::chooseOutputs() {
   if (!outputs_->empty() || !options_.timings.empty() || !options_.trace.empty()) return;
   outputs_ =
@@ -124,7 +124,7 @@ void Render::chooseOutputs() {
 
 void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
-  // Once without the scene, only to learn of the graph's mistakes before the scene is loaded.
+  // Binds once without the scene, to report the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
   const graph::BoundGraph bound =
       graph::bind(description_, session::sceneEnvironment(nullptr, {}, {}, size_), early);
@@ -147,7 +147,7 @@ void Render::loadInputs() {
   stopIfInterrupted();
 }
 
-// Passes know the radius in image widths: what the angle is in the first frame's picture of their view.
+// Passes take the radius in image widths, so the angle is converted for their view in the first frame.
 void Render::useFoveaAngle(const graph::BoundGraph& bound) {
   const scene::Frame first = scene::makeFrame(scene_, geometry_, size_, 0, 0);
   const float angle = glm::radians(float(options_.foveaDegrees));
@@ -211,7 +211,7 @@ scene::Frame Render::frame(uint64_t index) const {
   return f;
 }
 
-// Gaze of the eye whose picture `image` is.
+// Gaze of the eye that the picture `image` shows.
 void Render::showFovea() {
   if (!options_.showFovea) return;
   const graph::BoundGraph& graph = run_->graph();
@@ -248,7 +248,7 @@ image::Metadata Render::metadata(uint64_t index) const {
   data["fovea_radius"] =
       fmt::format("{}", float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
   const float exposure =
-      float(session::parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0: the scene's
+      float(session::parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0 means the scene's
   data["exposure"] = fmt::format("{}", exposure > 0 ? exposure : shown.exposure);
   if (!set.empty()) data["set"] = set;
   return data;

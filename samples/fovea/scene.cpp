@@ -1,4 +1,4 @@
-// fovea scene info: what a scene holds, as loaded. `scene export` is in scene_export.cpp.
+// The command `fovea scene info`: what a scene contains once loaded. `scene export` is in scene_export.cpp.
 #include <fmt/format.h>
 
 #include <memory>

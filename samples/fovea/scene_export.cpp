@@ -1,4 +1,4 @@
-// fovea scene export: a scene for other programs.
+// The command `fovea scene export`: writes a scene for other programs.
 #include <fmt/format.h>
 
 #include <memory>

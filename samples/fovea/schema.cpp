@@ -1,4 +1,4 @@
-// fovea schema: the JSON schema of graph files, for editors.
+// The command `fovea schema`: prints the JSON schema of graph files, for editors.
 #include <cstdio>
 #include <memory>
 

@@ -1,5 +1,5 @@
-// A trace of the run in Chrome's trace event format: opens in Perfetto (ui.perfetto.dev) and
-// chrome://tracing.
+// Writes a trace of the run in Chrome's trace event format, which Perfetto (ui.perfetto.dev)
+// and chrome://tracing open.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace fovea::cli {
 
-// Two tracks, GPU and CPU, with a slice per frame and, inside, a slice per pass; counters as counter tracks.
-// The executor reports durations, not starting points, so the slices of a frame stand one after the other
-// from the frame's start.
+// Makes two tracks, GPU and CPU, with one slice per frame that contains one slice per pass; counters become
+// counter tracks. The executor reports durations but no starting times, so the slices of a frame follow one
+// another from its start.
 std::string chromeTrace(const Timings& timings, const RunInfo& run);
 
 }  // namespace fovea::cli

@@ -1,5 +1,5 @@
-// mean_n = mean_(n-1) + (x_n - mean_(n-1)) / n. The count lives in alpha, which the graph zeroes on a reset together with
-// the mean, so that neither can outlive the other.
+// mean_n = mean_(n-1) + (x_n - mean_(n-1)) / n. The count is kept in alpha, which the graph zeroes on a reset
+// together with the mean, so the two always match.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -13,7 +13,8 @@ void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(p, imageSize(mean)))) return;
   vec3 x = texelFetch(value, p, 0).rgb;
-  // By bits: compilers may assume that floats are never NaN. One such value would stay in the mean for ever.
+  // Tests the bits, since compilers may assume that floats are never NaN. A single such value would stay in
+  // the mean for ever.
   if (any(equal(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u)))) {
     atomicAdd(counters.value[0], 1u);
     return;

@@ -1,29 +1,29 @@
-// Vertices of what moves, one an invocation: morph targets, then joints or the object's transform; the same sums in the
-// same order as scene::placeVertices (framework/scene/motion/deform.h). Points of cages go to a buffer of their own, from which
-// the stencils make vertices.
+// Vertices of moving geometry, one per invocation: morph targets, then joints or the object's transform, with the
+// same sums in the same order as scene::placeVertices (framework/scene/motion/deform.h). Points of subdivision cages
+// go to a buffer of their own, from which the stencils make vertices.
 #include "common/octahedral.glsl"
 
 layout(local_size_x = 64) in;
 
-// Two texels a vertex: xyz at rest, w: shape; xyz normal.
+// Two texels per vertex: xyz at rest, w: shape; xyz normal.
 uniform textureBuffer rest;
-// Two texels a shape (a primitive of an object, or its cage): first joint, first weight, morph targets, object; first
-// entry in the skin + 1 (0: no joints), first texel of the targets, first vertex, number of vertices (0: stencils make
-// them).
+// Two texels per shape (a primitive of an object, or its cage): first joint, first weight, number of morph targets,
+// object; first entry in the skin + 1 (0 if it has no joints), first texel of the targets, first vertex, number of
+// vertices (0 if stencils make them).
 uniform utextureBuffer shapes;
-uniform utextureBuffer skinJoints;   // four joints a vertex
+uniform utextureBuffer skinJoints;   // four joints per vertex
 uniform textureBuffer skinWeights;
-uniform textureBuffer targets;       // two texels a vertex and target: displacements of position, normal
-// From `firstPose`: objects (three rows to the world, then x: visible), from `firstJoint`: joints (three rows), from
-// `firstWeight`: weights, four a texel.
+uniform textureBuffer targets;       // two texels per vertex and target: displacements of position and normal
+// Objects from `firstPose` (three rows of the transform to the world, then x: visible), joints from `firstJoint`
+// (three rows), weights from `firstWeight`, four per texel.
 uniform textureBuffer poses;
 layout(std430) writeonly buffer Positions { vec4 positions[]; };
-layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
+layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which is left unchanged
 layout(std430) writeonly buffer Points { vec4 points[]; };
 
 layout(push_constant) uniform Constants {
   uint count;        // invocations: vertices, then points
-  uint vertices;     // of them
+  uint vertices;     // invocations that are vertices
   uint firstVertex;  // in `positions`
   uint firstPose, firstJoint, firstWeight;  // texels
 };
@@ -35,7 +35,7 @@ mat4x3 rowsAt(uint texel) {
 
 float weightAt(uint i) { return texelFetch(poses, int(firstWeight + i / 4u))[i % 4u]; }
 
-// Cofactors, as scene::placeVertices has them: normals also through flattened transforms.
+// Cofactors, as in scene::placeVertices, so that normals are also correct for transforms that flatten an object.
 mat3 normalMatrix(mat4x3 m) {
   mat3 a = mat3(m);
   return (determinant(a) < 0.0 ? -1.0 : 1.0) * mat3(cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1]));
@@ -72,7 +72,7 @@ void main() {
     position = toWorld * vec4(position, 1.0);
     normal = normalMatrix(toWorld) * normal;
     float size = length(normal);
-    normal = size > 0.0 && size < 1e38 ? normal / size : vec3(0.0, 1.0, 0.0);  // also for infinity and NaN
+    normal = size > 0.0 && size < 1e38 ? normal / size : vec3(0.0, 1.0, 0.0);  // also covers infinity and NaN
   }
   if (i < vertices) {
     positions[firstVertex + i] = vec4(position, 1.0);

@@ -14,10 +14,10 @@ uniform samplerBuffer direct;
 #endif
 layout(std430) writeonly buffer Bounced { vec4 bounced[]; };
 
-const uint kBounce = 0xb0u;  // of the random numbers
+const uint kBounce = 0xb0u;  // random stream
 
 void main() {
-  // Sides 0 first, then sides 1: see light-inject.
+  // Handles all sides 0 first and then all sides 1, as light-inject does.
   uint voxels = texelFetch(voxelsInfo, 0).x;
   uint id = gl_GlobalInvocationID.x;
   if (id >= 2u * voxels) return;

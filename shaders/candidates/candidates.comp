@@ -1,5 +1,5 @@
-// One attempt an invocation: a pixel of the region, the surface it shows, one diffuse bounce from there; the side of a
-// voxel that the bounce meets becomes a candidate. It need not be visible to the eye.
+// One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
+// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/diffuse_bounce.glsl"
@@ -36,7 +36,7 @@ layout(push_constant) uniform Push {
   uint count;
 };
 
-struct Seen {  // the surface that a pixel shows
+struct Seen {  // the surface shown by a pixel
   vec3 position, normal, face;
   bool background;
 };
@@ -85,7 +85,7 @@ void main() {
   candidate.reflectanceLuminance.w = texelFetch(radiance, int(hit.side)).w;
 #endif
   uint object = uint(side.object);
-  if (objectDeforms(object)) {  // on the surface, and it stays there
+  if (objectDeforms(object)) {  // its place on the surface does not change
     candidate.localPosition = vec4(attach(sideTriangle(hit.side), side.position), 0.0);
     candidate.positionSide.xyz = attachedPosition(candidate.localPosition.xyz);
   } else {

@@ -1,5 +1,5 @@
-// A whole fragment shader, for the passes that end in a picture: the irradiance of each pixel times its reflectance, and
-// direct light added where HAS_DIRECT is 1.
+// A complete fragment shader for the passes that end in an image: the irradiance of each pixel times its reflectance,
+// plus direct light if HAS_DIRECT is 1.
 
 layout(rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(rgba16f) uniform readonly image2D irradiance;  // background: 0

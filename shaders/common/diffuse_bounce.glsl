@@ -1,9 +1,9 @@
-// Where a diffuse surface sends an eye path. Needs common/paraboloid.glsl.
+// Direction in which a diffuse surface continues an eye path. Needs common/paraboloid.glsl.
 #ifndef FOVEA_DIFFUSE_BOUNCE_GLSL
 #define FOVEA_DIFFUSE_BOUNCE_GLSL
 
-// Cosine-weighted around `normal`. What would go below the surface itself (a shading normal leans) is mirrored up; as both
-// normals point to the eye's side, that also stays above the shading normal.
+// Cosine-weighted direction around `normal`. A direction below the surface itself (possible because the shading
+// normal is tilted) is mirrored up. As both normals point to the eye's side, it is then also above the shading plane.
 vec3 diffuseBounce(vec3 normal, vec3 face, vec2 u) {
   float r = sqrt(u.x), phi = 6.28318530717959 * u.y;
   vec3 d = normalize(toWorld(orthonormalFrame(normal), vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x))));

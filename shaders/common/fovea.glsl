@@ -1,4 +1,4 @@
-// The fovea on the image plane: its disc, the weight of a pixel, and pixels at random from it. The same formulas as
+// The fovea on the image plane: its disc, the weight of a pixel, and random pixels in it. The same formulas as
 // framework/shader_twins/fovea.h.
 //
 // Image positions are in pixels from the top left corner; the centre of pixel (x, y) is at (x + 0.5, y + 0.5).
@@ -17,20 +17,20 @@ Fovea makeFovea(vec2 gaze, vec2 imageSize, float foveaRadius) {
   return Fovea(gaze * imageSize, foveaRadius * imageSize.x);
 }
 
-// Weight of what an image position shows: 1 inside r_f, r_f / r outside (METHOD: importance, step 1). Continuous, and
-// never 0.
+// Foveated weight of an image position: 1 inside r_f, r_f / r outside (passes/README.md, weight-map). It is
+// continuous and never 0.
 float foveaWeight(Fovea fovea, vec2 position) {
   float r = distance(position, fovea.centre);
   return r <= fovea.radius ? 1.0 : fovea.radius / r;
 }
 
-// Parameter `region`.
+// Values of the parameter `region`.
 const uint kRegionFovea = 0u;
 const uint kRegionImage = 1u;
-const uint kRegionMixed = 2u;  // a share of the samples, evenly among the others, from the image: METHOD section 3
+const uint kRegionMixed = 2u;  // a share of the samples, evenly interspersed, from the whole image
 
-// Of sample i: kRegionFovea or kRegionImage, and how many samples before it are of the same. imageShare64ths: parameter
-// `image_share`.
+// Returns kRegionFovea or kRegionImage for sample i; `number` is the number of earlier samples in the same
+// region. imageShare64ths: parameter `image_share`.
 uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
   number = i;
   if (region != kRegionMixed) return region;
@@ -40,7 +40,7 @@ uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
   return image ? kRegionImage : kRegionFovea;
 }
 
-// Numbers [0, kRegionDraws) of a random stream belong to regionSample: at most two a try.
+// Numbers [0, kRegionDraws) of a random stream belong to regionSample, at most two per try.
 const uint kRegionTries = 32u;
 const uint kRegionDraws = 2u * kRegionTries + 2u;
 
@@ -48,14 +48,14 @@ vec2 streamPoint(uint stream, uint draw) {
   return vec2(uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u)));
 }
 
-// A pixel: uniform over the part of the disc that lies in the image (a pixel on its edge in proportion to the part of it
-// inside), or over the whole image. By rejection from the bounding box of that part, at least half of which is inside as it
-// is convex and touches the box's sides; when all tries fail (one in 2^32 at worst) or the fovea lies outside the image,
-// uniform over the image.
+// Returns a random pixel, uniform over the part of the disc that lies in the image (a pixel on its edge in proportion
+// to the part inside) or over the whole image. Works by rejection from the bounding box of that part, at least half
+// of which is inside, as the part is convex and touches the sides of the box. If all tries fail (one in 2^32 at
+// worst) or the fovea lies outside the image, the pixel is uniform over the image.
 ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
   vec2 low = vec2(0.0), high = vec2(imageSize);
-  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));  // from the centre to the image
-  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));  // of the disc where the image begins
+  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));  // offset from the centre to the image
+  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));  // extent of the disc at the image border
   bool disc = region == kRegionFovea && dot(off, off) < fovea.radius * fovea.radius;
   if (disc) {
     vec2 boxLow = max(low, fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);

@@ -1,5 +1,5 @@
-// Boxes around all that moves, in this frame and the last one: scene::MoverBoxes. Low > high: unused.
-// Define: MOVER_BOXES, scene::MoverBoxes::kCount.
+// Boxes around everything that moves, in this frame and the last one (scene::MoverBoxes). A box with low > high is
+// unused. Define: MOVER_BOXES, scene::MoverBoxes::kCount.
 #ifndef FOVEA_MOVERS_GLSL
 #define FOVEA_MOVERS_GLSL
 

@@ -1,4 +1,4 @@
-// Unit vectors as octahedra (Meyer et al. 2010): both components in [-1, 1].
+// Octahedral encoding of unit vectors (Meyer et al. 2010), with both components in [-1, 1].
 #ifndef FOVEA_OCTAHEDRAL_GLSL
 #define FOVEA_OCTAHEDRAL_GLSL
 

@@ -9,7 +9,7 @@
 
 const uint kParaboloidEmpty = 0x7f800000u;  // floatBitsToUint(+inf): nothing is hit
 
-// Columns: tangent, bitangent, normal (unit, right-handed). Branchless, no singularity: Duff et al.,
+// Columns: tangent, bitangent, normal (unit, right-handed). Branchless and without singularities: Duff et al.,
 // "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 mat3 orthonormalFrame(vec3 n) {
   float s = n.z >= 0.0 ? 1.0 : -1.0;
@@ -18,35 +18,35 @@ mat3 orthonormalFrame(vec3 n) {
   return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
-// World vector to the frame's coordinates and back.
+// Converts a world-space vector to the frame's coordinates and back.
 vec3 toLocal(mat3 frame, vec3 v) { return v * frame; }
 vec3 toWorld(mat3 frame, vec3 v) { return frame * v; }
 
-// Local vector (any length > 0, given as `len`; z > -len) to the plane of the map: |p| <= 1 for the
-// hemisphere.
+// Projects a local vector (any length > 0, given as `len`; z > -len) to the plane of the map; |p| <=
+// 1 for the hemisphere.
 vec2 paraboloidProject(vec3 local, float len) { return local.xy * (1.0 / (len + local.z)); }
 
-// Point of the map's plane to the local unit direction.
+// Converts a point of the map's plane to the local unit direction.
 vec3 paraboloidDirection(vec2 p) {
   float q = dot(p, p);
   return vec3(2.0 * p, 1.0 - q) / (1.0 + q);
 }
 
-// Plane of the map, uv in [0,1]^2, texels of a map with `size` texels a side.
+// Conversions between the plane of the map, uv in [0,1]^2 and texels of a map with `size` texels per side.
 vec2 paraboloidUv(vec2 p) { return 0.5 * p + 0.5; }
 vec2 paraboloidTexelCentre(ivec2 texel, int size) { return (2.0 * vec2(texel) + 1.0) / float(size) - 1.0; }
 ivec2 paraboloidTexel(vec2 p, int size) {
   return clamp(ivec2(floor(paraboloidUv(p) * float(size))), ivec2(0), ivec2(size - 1));
 }
-// Local unit direction through a texel's centre; z <= 0: the texel is unused.
+// Local unit direction through a texel's centre; if z <= 0, the texel is unused.
 vec3 paraboloidTexelDirection(ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
-// The atlas describes itself: `height` texels a map, width / height maps side by side in a layer (a power of
-// two; 1 in layout `layers`). Slot s is map s % perLayer of layer s / perLayer.
+// The layout follows from the size of the atlas: `height` texels per map, width / height maps side by side in a layer
+// (a power of two; 1 in layout `layers`). Slot s is map s % perLayer of layer s / perLayer.
 struct AtlasLayout {
-  int size;   // texels a map, per side
+  int size;   // texels per side of a map
   int shift;  // log2 of the maps in a layer
 };
 AtlasLayout atlasLayout(ivec3 imageSizes) {  // textureSize(atlas, 0) or imageSize(atlas)
@@ -56,7 +56,7 @@ ivec3 atlasTexel(uint slot, ivec2 texel, AtlasLayout layout_) {
   int map = int(slot) & ((1 << layout_.shift) - 1);
   return ivec3(texel.x + map * layout_.size, texel.y, int(slot) >> layout_.shift);
 }
-// Layout `layers` only: saves the arithmetic.
+// For layout `layers` only, where it saves the arithmetic.
 ivec3 atlasTexel(uint slot, ivec2 texel) { return ivec3(texel, int(slot)); }
 
 #endif

@@ -1,4 +1,4 @@
-// Random numbers as a hash of (seed, frame, pass, index); the same functions as framework/base/random.h.
+// Random numbers as a hash of (seed, frame, pass, index). The same functions as framework/base/random.h.
 #ifndef FOVEA_RANDOM_GLSL
 #define FOVEA_RANDOM_GLSL
 
@@ -14,7 +14,7 @@ uint randomStream(uint seed, uint frameIndex, uint pass, uint index) {
   return hashCombine(hashCombine(hashCombine(seed, frameIndex), pass), index);
 }
 
-// [0, 1) with 24 bits.
+// Uniform in [0, 1), with 24 bits.
 float uniformFloat(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }
 
 #endif

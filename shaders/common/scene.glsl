@@ -1,5 +1,5 @@
-// Descriptor set 1: frame, view, lights and the scene's world-space triangles. The same for every pass of a frame.
-// Kept in step with framework/scene/device/gpu_scene.cpp, which static_asserts the block sizes.
+// Descriptor set 1: frame, view, lights and the scene's world-space triangles, the same for every pass of a frame.
+// Must match framework/scene/device/gpu_scene.cpp, which static_asserts the block sizes.
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
@@ -19,8 +19,8 @@ layout(set = 1, binding = 0) uniform FrameBlock {
   vec4 boundsMin;        // world space, m
   vec4 boundsMax;
   vec4 environment;      // radiance where nothing is hit
-  uvec4 firstMoving;     // x: vertices below it never move; y: the first triangle that moves, of those that voxels and VPL
-                         // maps see (behind those of the picture where some are coarser, else among them)
+  uvec4 firstMoving;     // x: vertices below it never move; y: first moving triangle, of those used for voxels
+                         // and VPL maps
 } frame;
 
 layout(set = 1, binding = 1) uniform ViewBlock {
@@ -55,13 +55,13 @@ layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages
 
 layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
 
-layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, of vertices that may move
+layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, vertices that may move
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
 uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
-vec3 scenePreviousPosition(uint vertex) {  // in the frame before
+vec3 scenePreviousPosition(uint vertex) {  // in the previous frame
   if (vertex < frame.firstMoving.x) return scenePosition(vertex);
   return texelFetch(scenePrevious, int(vertex - frame.firstMoving.x)).xyz;
 }
@@ -72,10 +72,11 @@ uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 
 // ---- Objects -----------------------------------------------------------------------------------------------------
 
-// An object's own space is that of its mesh; what is known of a point in it (VplState.localPosition) stays true while the
-// object moves. Object 0 is all that never moves; its own space is the world's. The same as scene::ObjectTransform.
-// Texels of one object: rows of the transform to the world (0-2), of last frame's (3-5), of the inverse (6-8; zeros where
-// there is none), 9: x: visible, y: last frame; z: its vertices move one by one.
+// An object's own space is that of its mesh. The coordinates of a point in it (VplState.localPosition) stay
+// valid while the object moves. Object 0 holds everything that never moves; its own space is the world's. The
+// same as scene::ObjectTransform. Texels of one object: rows of the transform to the world (0-2), of last
+// frame's (3-5) and of the inverse (6-8; zeros if there is none); 9: x: visible, y: visible in the last frame,
+// z: its vertices move individually.
 const int kObjectTexels = 10;
 
 mat4x3 objectRows(uint object, int row) {
@@ -88,19 +89,21 @@ mat4x3 inverseObjectTransform(uint object) { return objectRows(object, 6); }
 bool objectVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
 bool objectWasVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
 
-// Vertices move one by one (morph targets, joints): a point of it keeps its place in a triangle instead.
+// The vertices of the object move individually (morph targets, joints), so a point keeps its place
+// in a triangle instead.
 bool objectDeforms(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).z > 0.5; }
 
 vec3 fromObject(uint object, vec3 position) { return objectTransform(object) * vec4(position, 1.0); }
 vec3 toObject(uint object, vec3 position) { return inverseObjectTransform(object) * vec4(position, 1.0); }
-// Unit normals, also through a scale that differs between the axes.
+// Unit normals, also for non-uniform scales.
 vec3 normalFromObject(uint object, vec3 n) { return normalize(transpose(mat3(inverseObjectTransform(object))) * n); }
 vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objectTransform(object))) * n); }
 
 // ---- Points of surfaces that deform -------------------------------------------------------------------------------
 
-// A point keeps its place in a triangle, of those that voxels see: its number past frame.firstMoving.y (exact as a float
-// below 2^24) and the weights of its second and third vertex. A direction keeps its components along the triangle's own axes.
+// A point keeps its place in a triangle of those used for voxels: the triangle's number past frame.firstMoving.y
+// (exact as a float below 2^24) and the weights of its second and third vertex. A direction keeps its components
+// along the triangle's axes.
 
 // The point of the triangle that is nearest to `position` (Ericson 2005, 5.1.5).
 vec3 attach(uint triangle, vec3 position) {
@@ -110,7 +113,7 @@ vec3 attach(uint triangle, vec3 position) {
   float area = bb * cc - bc * bc;
   float v = area > 0.0 ? (cc * d1 - bc * d2) / area : 0.0, w = area > 0.0 ? (bb * d2 - bc * d1) / area : 0.0;
   if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) return vec3(triangle, v, w);
-  // On the edge that is nearest.
+  // The nearest point is on the nearest edge.
   float onB = clamp(d1 / max(bb, 1e-30), 0.0, 1.0), onC = clamp(d2 / max(cc, 1e-30), 0.0, 1.0);
   vec3 bp = ap - ab, edge = ac - ab;
   float onEdge = clamp(dot(edge, bp) / max(dot(edge, edge), 1e-30), 0.0, 1.0);
@@ -126,7 +129,7 @@ vec3 attachedPosition(vec3 place) {
   return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
 }
 
-// Columns: along the first edge, across it in the plane, the normal; unit.
+// Unit columns: along the first edge, across it in the plane, and the normal.
 mat3 triangleAxes(uint triangle) {
   uvec4 t = sceneTriangle(frame.firstMoving.y + triangle);
   vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);
@@ -173,7 +176,8 @@ Material loadMaterial(uint material) {
   return Material(color.rgb, color.a, emission.rgb, emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
-// By division of floats, twice because the first quotient may be rounded: a CPU device divides integers one lane at a time.
+// Divides floats, and twice because the first quotient may be rounded. A CPU device divides integers one
+// lane at a time.
 int wrapTexel(int i, int size, uint wrap) {
   if (wrap == kWrapClamp) return clamp(i, 0, size - 1);
   int period = wrap == kWrapMirror ? 2 * size : size;
@@ -183,8 +187,9 @@ int wrapTexel(int i, int size, uint wrap) {
   return r < size ? r : period - 1 - r;
 }
 
-// Linear light of a colour of 8 bits, within 4e-7 of its value: a polynomial in the square root, fitted to the codes. The
-// decoders of sRGB image formats may err (lavapipe's by 1% in the dark), and a table costs a look-up a channel.
+// Linear light from an 8-bit sRGB colour, to within 4e-7: a polynomial in the square root, fitted to the
+// codes. The decoders of sRGB image formats may be inaccurate (lavapipe's by 1% in the dark), and a table
+// costs one look-up per channel.
 vec3 srgbToLinear(vec3 code) {
   vec3 s = sqrt(code);
   vec3 power = ((0.009480046 * s - 0.07493101) * s + 0.79743385) * s + 0.17218539;
@@ -197,8 +202,8 @@ vec4 sceneTexel(ivec3 p, bool linear) {
   return vec4(mix(srgbToLinear(texel.rgb), texel.rgb, bvec3(linear)), texel.a);
 }
 
-// Bilinear LOD 0, texels decoded before they are filtered; the same as scene::sampleTexture. `texel`: the first of the
-// three texels that describe the texture.
+// Bilinear filtering at LOD 0, with texels decoded before they are filtered; the same as scene::sampleTexture.
+// `texel` is the first of the three texels that describe the texture.
 vec4 sampleSceneTexture(int texel, vec2 uv) {
   vec4 place = texelFetch(sceneMaterials, texel);
   if (place.x < 0.0) return vec4(1.0);
@@ -228,7 +233,7 @@ vec4 materialReflectance(uint material, vec2 uv) {
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
-  // A loop of no turns is skipped where a branch is not, on a CPU device; few surfaces emit.
+  // A CPU device skips a loop of zero turns, but not a branch. Few surfaces emit.
   for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns) emission *= sampleSceneTexture(first + 5, uv).rgb;
   return emission;
 }
@@ -238,7 +243,7 @@ SurfacePoint surfaceAt(uint material, vec2 uv) {
   return SurfacePoint(color.rgb, color.a, materialEmission(material, uv));
 }
 
-// Whether the surface is there at uv (alpha MASK).
+// Whether the surface is present at uv (alpha MASK).
 bool alphaTest(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelFetch(sceneMaterials, first + 1).a;
@@ -249,7 +254,7 @@ bool alphaTest(uint material, vec2 uv) {
 // ---- Lights ------------------------------------------------------------------------------------------------------
 
 struct LightSample {
-  vec3 irradiance;  // on a surface that faces the light, W/m^2; nothing in between
+  vec3 irradiance;  // on a surface that faces the light, W/m^2, without occlusion
   vec3 direction;   // unit, to the light
   float distance;   // m; directional: kFarAway
 };

@@ -1,17 +1,17 @@
-// Shadow maps of the scene's lights: how a light sees the scene, and whether a point is lit.
-// Needs common/scene.glsl. The views are made by shadow-map/views.comp.
+// Shadow maps of the scene's lights: how a light sees the scene, and whether a point is lit. Needs common/scene.glsl.
+// The views are computed by shadow-map/views.comp.
 #ifndef FOVEA_SHADOW_GLSL
 #define FOVEA_SHADOW_GLSL
 
 const uint kMaxShadowLayers = 384u;  // 64 lights, six faces each
 
-// How one layer looks at the scene. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit):
-// with near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
+// Projection of one layer. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit). With
+// near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
 struct ShadowView {
   mat4 worldToClip;
   vec4 right;  // xyz: unit, image x axis in the world; w: width of a texel where clip.w = 1, m
   vec4 up;     // xyz: unit, image y axis; w: height of a texel where clip.w = 1, m
-  vec4 bias;   // tolerance of depth for rounding; x: absolute, y: relative; z: 1 / depth range or near distance, 1/m or m
+  vec4 bias;   // depth tolerance for rounding; x: absolute, y: relative; z: 1 / depth range or near distance, 1/m or m
 };
 
 // Face of the cube around a point light: +X -X +Y -Y +Z -Z.
@@ -22,30 +22,29 @@ uint shadowFace(vec3 fromLight) {
   return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
-// Shaders that look up shadows define SHADOW_BINDING, the first of three free bindings of set 0, and have an input port `maps`
-// of bundle `shadow-maps`. SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3 bilinear ones.
-// SHADOW_LAYER, if defined: the one layer there is. A CPU device loads what is found by an index lane by lane.
-#ifdef SHADOW_BINDING
+// Shaders that look up shadows define SHADOW_MAPS, and their passes have an input port `maps` of bundle `shadow-maps`. SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3
+// bilinear ones. SHADOW_LAYER, if defined, is the only layer there is. A CPU device loads indexed data lane by lane.
+#ifdef SHADOW_MAPS
 #ifndef SHADOW_FILTER
 #define SHADOW_FILTER 1
 #endif
 
-layout(binding = SHADOW_BINDING) uniform texture2DArray mapsDepth;
-layout(binding = SHADOW_BINDING + 1, std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
-layout(binding = SHADOW_BINDING + 2) uniform sampler nearestClamp;
+uniform texture2DArray mapsDepth;
+layout(std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+uniform sampler nearestClamp;
 
-const float kSteepest = 32.0;  // slope against the map up to which planes are followed: 88 degrees
+const float kSteepest = 32.0;  // slope against the map up to which planes are followed, 88 degrees
 
 struct ShadowReceiver {
   uint layer;
   vec2 size;    // of the map, texels
-  vec2 texel;   // where the receiver is
-  float depth;  // of its plane there,
-  vec2 slope;   // and how much more a texel further
+  vec2 texel;   // position of the receiver
+  float depth;  // depth of its plane there,
+  vec2 slope;   // and its change per texel
 };
 
-// Which of the four texels around `corner` (a whole number of texels) see the receiver's plane at their centres; in the
-// order of textureGather: (-, +) (+, +) (+, -) (-, -).
+// Which of the four texels around `corner` (a whole number of texels) see the receiver's plane at their centres, in
+// the order of textureGather: (-, +) (+, +) (+, -) (-, -).
 vec4 litTexels(ShadowReceiver r, vec2 corner) {
   vec4 nearest = textureGather(sampler2DArray(mapsDepth, nearestClamp), vec3(corner / r.size, r.layer));
   vec2 o = corner - r.texel;
@@ -53,13 +52,15 @@ vec4 litTexels(ShadowReceiver r, vec2 corner) {
   return vec4(lessThanEqual(nearest, plane));
 }
 
-// Share of the light that reaches `position` (world space), a point of a surface whose face has the unit normal `face` on
-// the side that is looked at. firstLayer: firstShadowLayer(light). A face turned away from the light gets nothing.
+// Share of the light that reaches `position` (world space), a point of a surface whose face has the
+// unit normal `face` on the visible side. firstLayer: firstShadowLayer(light). A face turned away from
+// the light receives nothing.
 //
-// A texel holds the depth at its centre, so it is compared with the depth of the receiver's plane at that centre, not at
-// the receiver: no acne however steep the light, and no offset that would take shadows off what throws them. Depth is
-// linear over a plane in both projections: with n = face in the axes of the map and t the texel's size, a texel more along
-// x changes it by   n.x t.x / (n.z range)   or   n.x t.x near / (n . (position - eye)).
+// A texel holds the depth at its centre, so it is compared with the depth of the receiver's plane at that centre,
+// not at the receiver. This avoids acne at any angle of the light, without an offset that would detach shadows
+// from their casters. Depth is linear over a plane in both projections: with n = face in the axes of the map and
+// t the texel's size, a step of one texel along x changes it by   n.x t.x / (n.z range)   or   n.x t.x near / (n
+// . (position - eye)).
 float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
   bool directional = uint(light.position.w) == kLightDirectional;
   vec3 fromLight = directional ? light.direction.xyz : position - light.position.xyz;
@@ -77,10 +78,10 @@ float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
   r.size = vec2(textureSize(mapsDepth, 0).xy);
   r.texel = (0.5 * clip.xy / clip.w + 0.5) * r.size;
   r.slope = bias.z * vec2(dot(face, right.xyz) * right.w, dot(face, up.xyz) * up.w) / facing;
-  // A plane seen from its edge would reach past whatever is in front of it within one texel.
+  // A plane seen edge-on would extend beyond everything in front of it within one texel.
   float steepest = kSteepest * bias.z * max(right.w, up.w) / clip.w;
   r.slope *= min(1.0, steepest / max(length(r.slope), 1e-30));
-  // A third of a texel's slope is for neighbours of the receiver's face that are tilted against it.
+  // The third of a texel's slope allows for neighbours of the receiver's face that are tilted against it.
   r.depth = clip.z / clip.w;
   r.depth += bias.x + bias.y * r.depth + 0.35 * (abs(r.slope.x) + abs(r.slope.y));
 #if SHADOW_FILTER == 0
@@ -104,6 +105,6 @@ float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
 #endif
 #endif
 }
-#endif  // SHADOW_BINDING
+#endif  // SHADOW_MAPS
 
 #endif

@@ -1,4 +1,5 @@
-// The voxel grid that VPLs are found in. The same formulas as framework/shader_twins/voxel_grid.h. Needs common/scene.glsl.
+// The voxel grid in which VPLs are found. The same formulas as framework/shader_twins/voxel_grid.h. Needs
+// common/scene.glsl.
 #ifndef FOVEA_VOXEL_GLSL
 #define FOVEA_VOXEL_GLSL
 
@@ -35,8 +36,8 @@ uint voxelSideOf(vec3 normal) {
 //   occupied r32ui, a texel for each brick of kBrickCells: a bit for each cell that holds a voxel, see occupiedBit()
 //   surface  kVoxelSideTexels vec4 a side; side = 2 * voxel + voxelSideOf(geometric normal)
 //   info     VoxelInfo
-// Voxels of static surfaces come first, ordered by linear cell index x + R (y + R z); those of dynamic objects follow in the
-// same order and hide the static voxel of their cell: the volume refers to the dynamic one.
+// Voxels of static surfaces come first, ordered by linear cell index x + R (y + R z). Those of dynamic objects follow
+// in the same order and hide the static voxel of their cell, as the volume refers to the dynamic one.
 const ivec3 kBrickCells = ivec3(4, 4, 2);
 ivec3 occupiedBrick(ivec3 cell) { return cell >> ivec3(2, 2, 1); }
 uint occupiedBit(ivec3 cell) { return 1u << (cell.x & 3 | (cell.y & 3) << 2 | (cell.z & 1) << 4); }
@@ -44,17 +45,17 @@ uint occupiedBit(ivec3 cell) { return 1u << (cell.x & 3 | (cell.y & 3) << 2 | (c
 const int kVoxelSideTexels = 4;
 struct VoxelSide {
   vec3 position;     // average over the side's surface, world space
-  float area;        // m^2 of surface, 0: an empty side
+  float area;        // m^2 of surface, 0 if the side is empty
   vec3 normal;       // average, unit
   float object;
-  vec3 reflectance;  // average; its fourth component: sideTriangle()
+  vec3 reflectance;  // average; the texel's fourth component is sideTriangle()
   vec3 emission;     // average, W/(sr m^2)
 };
 
 struct VoxelInfo {
   uint voxels;        // in the list
-  uint staticVoxels;  // the first of them
-  uint overflow;      // voxels that found no room
+  uint staticVoxels;  // number of the leading static ones
+  uint overflow;      // voxels for which there was no room
   uint resolution;    // R
 };
 

@@ -1,21 +1,21 @@
-// Rays through the voxels: the first surface that one meets. The same formulas as framework/shader_twins/voxel_trace.h.
-// Needs common/scene.glsl and an input port `voxels` (index and, for traceVoxels, occupied as Usage::StorageRead, surface as
-// Usage::TexelRead); its bindings number themselves.
+// Rays through the voxels, up to the first surface met. The same formulas as framework/shader_twins/voxel_trace.h.
+// Needs common/scene.glsl and an input port `voxels` (index and, for traceVoxels, occupied as Usage::StorageRead,
+// surface as Usage::TexelRead). Its bindings are assigned automatically.
 #ifndef FOVEA_VOXEL_TRACE_GLSL
 #define FOVEA_VOXEL_TRACE_GLSL
 
 #include "common/voxel.glsl"
 #include "common/vpl.glsl"
 
-// An image and not a texture: on lavapipe a load from a texture costs several times as much.
+// An image rather than a texture, because on lavapipe a load from a texture costs several times as much.
 layout(r32ui) uniform readonly uimage3D voxelsIndex;
 layout(r32ui) uniform readonly uimage3D voxelsOccupied;
 uniform samplerBuffer voxelsSurface;
 
-// The grid of the bundle that is wired.
+// The grid of the connected bundle.
 VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }
 
-// Number of the voxel in a cell plus 1; 0: empty, or outside the grid.
+// Number of the voxel in a cell plus 1; 0 if the cell is empty or outside the grid.
 uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? imageLoad(voxelsIndex, cell).r : 0u; }
 
 VoxelSide loadSide(uint side) {
@@ -25,30 +25,32 @@ VoxelSide loadSide(uint side) {
                    texelFetch(voxelsSurface, first + 2).rgb, texelFetch(voxelsSurface, first + 3).rgb);
 }
 
-// Of a side of an object that deforms: the triangle, past the static ones, of which the largest piece lies in it.
+// For a side of an object that deforms: the triangle (counted from the first non-static one) with the
+// largest piece in it.
 uint sideTriangle(uint side) { return uint(texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 2).w); }
 
 struct VoxelHit {
-  uint side;       // kNoSide: the ray leaves the grid
-  float distance;  // along the ray, m: where it meets the side's plane, kept within the voxel
+  uint side;       // kNoSide if the ray leaves the grid
+  float distance;  // along the ray to the side's plane, kept within the voxel, m
 };
 
-// Smallest distance of a hit from the plane the ray starts on, in cells. Voxels of the own surface reach out of its plane
-// by rounding only (the average position of a plane lies on it), curved ones by a little.
+// Smallest distance of a hit from the plane on which the ray starts, in cells. Voxels of the same surface protrude
+// from its plane by rounding only (the average position of a plane lies on it), curved ones by a little.
 const float kOwnSurface = 0.25;
 
-// A voxel's surface is a piece of the plane through the side's average position: a ray that only passes through the cell
-// beside it has not met it. It has when it leaves the cell behind the plane (or all but, in cells), no farther from the
-// position than these radii of a disc of the side's area. Of diffuse bounces in Sponza (128^3 voxels) 82% end within 1.5
-// cells of where a ray through the triangles ends, in the Cornell box 99%; when any side that faces them stops them 59%
-// and 95%.
+// A voxel's surface is a piece of the plane through the side's average position, so a ray that passes through the
+// cell beside it has not hit it. It is hit if the ray leaves the cell behind the plane (or almost, in cells) and no
+// farther from the position than this many radii of a disc of the side's area. Of diffuse bounces in Sponza (128^3
+// voxels) 82% end within 1.5 cells of where a ray through the triangles ends, in the Cornell box 99%; if any side
+// that faces the ray stopped it, 59% and 95% would.
 const float kBehindPlane = 0.1;
 const float kSideRadii = 1.5;
 
 const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
 
-// Does the ray meet this side before it leaves the cell at distance `exit`, or only pass beside it? Only its front, and only
-// where it is not what the ray starts from. facing: cosine, negative towards the ray; distance: to the plane, m.
+// Whether the ray hits this side before it leaves the cell at distance `exit`, or only passes beside it. Only the
+// front of a side counts, and only if it is not the surface on which the ray starts. facing: cosine, negative towards
+// the ray; distance: to the plane, m.
 uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 normal, float exit, out float facing,
                out float distance) {
   int first = int(side) * kVoxelSideTexels;
@@ -66,36 +68,38 @@ uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 norm
              : kPassed;
 }
 
-// Where a walk along one axis stands once it has passed all walls before the distance t (also those at t, with `also`), rounding
-// put right: `at` is that or a neighbour, next and before are the distances of the walls ahead of it and behind it.
+// Cell of a walk along one axis after it has passed all walls before the distance t (also those at t, with `also`),
+// corrected for rounding: `at` is that cell or a neighbour, next and before are the distances of the walls ahead of
+// it and behind it.
 int settle(int at, int from, int stride, float next, float before, float t, bool also) {
   bool more = also ? next <= t : next < t, less = at != from && (also ? before > t : before >= t);
   return at + (more ? stride : less ? -stride : 0);
 }
 
-// First side along a ray. direction: unit; normal: of the surface the ray starts on, unit, pointing to where the ray goes
-// (a ray that starts on no surface: the direction itself). A side is hit that faces the ray, is met within its cell and lies
-// in front of the start's tangent plane: that skips the own surface and the back of an own thin wall. If both sides of a
-// voxel qualify, it is the one that faces the ray more; a voxel without such a side is passed. A ray that leaves the grid
-// hits the last side that it only passed, if any: a slit between the planes of neighbours is no hole in a wall.
+// First side along a ray. direction: unit; normal: of the surface on which the ray starts, unit, on the side to which
+// the ray goes (for a ray that starts on no surface, the direction itself). A side is hit if it faces the ray, is met
+// within its cell and lies in front of the start's tangent plane; the last condition skips the ray's own surface and
+// the back of a thin wall. If both sides of a voxel qualify, the one that faces the ray more is hit; a voxel without
+// such a side is passed. A ray that leaves the grid hits the last side that it merely passed, if any, since a slit
+// between the planes of neighbours is no hole in a wall.
 //
-// The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray
-// Tracing", Eurographics 1987); the distances to the walls follow from the cell's whole numbers, so no error adds up, and
-// a direction component of 0 never comes to a wall. Through an empty brick it goes in one step, to the very cell that it
-// would come to step by step: what it reads there is 1/32 of the index volume, which does not fit a CPU's nearer caches.
-// At most 3R + 3 turns; anything that is not a number hits nothing.
-// far: cells that the ray enters beyond this distance (m) are not looked at.
+// The walk goes from cell to cell through the nearest wall (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
+// Ray Tracing", Eurographics 1987). The distances to the walls follow from the cell's integer coordinates, so no
+// error accumulates, and a zero direction component never reaches a wall. An empty brick is crossed in one step, to
+// the same cell that single steps would reach; the brick bits are 1/32 of the index volume, which does not fit into a
+// CPU's nearer caches. The walk takes at most 3R + 3 turns. A ray with a NaN hits nothing. far: cells that the ray
+// enters beyond this distance (m) are ignored.
 VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, float far) {
   VoxelHit miss = VoxelHit(kNoSide, 0.0), passed = miss;
   vec3 p = (origin - grid.origin) / grid.cell;  // in cells, as are all distances below
   float size = float(grid.resolution);
-  // Not a number, and too far away for a float to know a cell: false in every comparison.
+  // Rejects NaN, for which every comparison is false, and positions too far away for a float to resolve a cell.
   if (!(dot(abs(p), vec3(1.0)) < 1e6 && dot(direction, direction) > 0.5 && dot(direction, direction) < 2.0)) return miss;
 
-  bvec3 moves = greaterThan(abs(direction), vec3(1e-7));  // slower crosses no cell of any grid
+  bvec3 moves = greaterThan(abs(direction), vec3(1e-7));  // a smaller component crosses no cell of any grid
   vec3 inverse = mix(vec3(0.0), 1.0 / direction, moves);
   vec3 never = mix(vec3(1e30), vec3(0.0), moves);
-  // Where the ray is inside the grid.
+  // Interval in which the ray is inside the grid.
   bvec3 outside = bvec3(uvec3(lessThan(p, vec3(0.0))) | uvec3(greaterThan(p, vec3(size))));
   if (any(outside) && any(bvec3(uvec3(outside) & uvec3(not(moves))))) return miss;
   vec3 wallA = -p * inverse, wallB = (size - p) * inverse;
@@ -109,16 +113,16 @@ VoxelHit traceVoxels(VoxelGrid grid, vec3 origin, vec3 direction, vec3 normal, f
   uint brick = imageLoad(voxelsOccupied, occupiedBrick(cell)).r;
   bool inside = true, full = (brick & occupiedBit(cell)) != 0u;
   for (int turn = 0; inside;) {
-    // Through what is empty in a loop of its own: a CPU device runs whatever a loop holds for all rays of a group in
-    // every turn, and most cells are empty.
+    // Empty space is crossed in a loop of its own: a CPU device executes everything in a loop for all rays of a group
+    // in every turn, and most cells are empty.
     for (; !full && inside; ++turn) {
       ivec3 low = brick == 0u ? cell & ~(kBrickCells - 1) : cell;
       ivec3 wide = min(brick == 0u ? kBrickCells : ivec3(1), grid.resolution - low);
-      vec3 wall = vec3(low) + ahead * vec3(wide);  // where the ray leaves what is empty
+      vec3 wall = vec3(low) + ahead * vec3(wide);  // where the ray leaves the empty space
       vec3 walls = (wall - p) * inverse + never;
       t = min(min(walls.x, walls.y), walls.z);
       bool throughX = walls.x == t, throughY = !throughX && walls.y == t;
-      // Along the other axes: as far as walls lie before this one, of equal ones first those of x, then of y.
+      // Along the other axes, passes the walls that lie before this one; of equal ones first those of x, then of y.
       ivec3 last = mix(cell, low + max(stride, 0) * (wide - 1), moves);
       ivec3 at = clamp(ivec3(floor(p + t * direction)), min(cell, last), max(cell, last));
       vec3 next = (vec3(at) + ahead - p) * inverse + never, before = (vec3(at - stride) + ahead - p) * inverse + never;

@@ -2,11 +2,11 @@
 #ifndef FOVEA_VPL_GLSL
 #define FOVEA_VPL_GLSL
 
-// 48 bytes; 1024 of them fill a page of a uniform buffer (the fast way to read what every invocation reads).
-// The list index of a VPL is its slot: its layer in the shadow atlas and, modulo the number of interleave subsets, the
-// subset that shades with it.
+// 48 bytes; 1024 of them fill a page of a uniform buffer (the fast way to read data that every invocation reads). The
+// list index of a VPL is its slot, which determines its map in the shadow atlas and, modulo the number of interleave
+// subsets, the subset that it shades in.
 struct Vpl {
-  vec4 positionArea;   // xyz: world space, m; w: surface area it stands for, m^2 (the disc kernel's size)
+  vec4 positionArea;   // xyz: world space, m; w: surface area it stands for, m^2 (size of the kernel `disc`)
   vec4 normal;         // xyz: unit, the side it shines to; w: unused
   vec4 intensity;      // rgb: radiant intensity along the normal, W/sr = reflected flux / pi; all 0: an empty slot
 };
@@ -15,26 +15,26 @@ bool isLit(Vpl v) { return any(notEqual(v.intensity.rgb, vec3(0.0))); }
 
 const uint kVplPage = 1024u;
 
-// What is known of a VPL that is kept from frame to frame. One entry a slot, a slot for life. 80 bytes; all zeros: an empty
-// slot.
+// State of a VPL that is kept from frame to frame, one entry per slot; a VPL keeps its slot for life. 80 bytes; an
+// empty slot is all zeros.
 struct VplState {
   vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame, in [0, 1]
-  vec4 normalLife;          // xyz: unit, world space; w: frames it has been shown in, this one included: 0 empty, 1 new
+  vec4 normalLife;          // xyz: unit, world space; w: frames shown, including this one: 0 empty, 1 new
   vec4 reflectanceSide;     // rgb: reflectance; w: voxel side of this frame (bits of a uint)
-  vec4 localPosition;       // xyz: in the space of its object, so that it follows; w: object. On an object that deforms
-                            // its place in a triangle (attach() in common/scene.glsl)
-  vec4 localNormal;         // xyz: unit, in the space of its object (that deforms: along the triangle's axes), as found;
-                            // w: importance of the frame before (Eq. 1)
+  vec4 localPosition;       // xyz: in the space of its object; w: object. On an object that deforms, the place
+                            // in a triangle (attach() in common/scene.glsl)
+  vec4 localNormal;         // xyz: unit, in the space of its object (on one that deforms, along the axes of the
+                            // triangle), as found; w: importance of the previous frame (Eq. 1)
 };
 
 const uint kNoSide = 0xffffffffu;
 
-// A VPL that could be. 64 bytes.
+// A candidate VPL. 64 bytes.
 struct Candidate {
-  vec4 positionSide;          // xyz: world space; w: voxel side (bits of a uint), kNoSide: an attempt that hit nothing
+  vec4 positionSide;          // xyz: world space; w: voxel side (bits of a uint), kNoSide if the attempt hit nothing
   vec4 normalObject;          // xyz: unit, world space; w: object
   vec4 reflectanceLuminance;  // rgb: reflectance; w: luminance of the side's radiance, W/(sr m^2)
-  vec4 localPosition;         // xyz: as VplState has it; w: unused
+  vec4 localPosition;         // xyz: as in VplState; w: unused
 };
 
 #endif

@@ -1,17 +1,17 @@
-// The listed blocks of BLOCK x BLOCK pixels, a row of the dispatch for a pixel of a block and a column for 256 blocks. Bindings
-// 8 and 9. Shading takes the same pixel of 256 blocks in a work group, so that all its invocations want the same subset of
-// VPLs; filtering takes pixels below each other, whose windows overlap.
+// The listed blocks of BLOCK x BLOCK pixels, with a row of the dispatch for each pixel of a block and a column for
+// 256 blocks. Uses bindings 8 and 9. Shading takes the same pixel of 256 blocks in a work group, so that all its
+// invocations use the same subset of VPLs; filtering takes vertically adjacent pixels, whose windows overlap.
 #ifndef FOVEA_DEFERRED_BLOCKS_GLSL
 #define FOVEA_DEFERRED_BLOCKS_GLSL
 
 uniform usamplerBuffer shadeBlocks;
 uniform usamplerBuffer shadeDispatch;
 
-const uint kListedPixels = 4u;  // of an invocation; work groups have 64
+const uint kListedPixels = 4u;  // pixels per invocation; work groups have 64 invocations
 
 uvec2 placeInBlock() { return uvec2(gl_WorkGroupID.y % BLOCK, gl_WorkGroupID.y / BLOCK); }
 
-// A pixel of the item-th block; past the end of the list: `size`, which is outside the image.
+// A pixel of the item-th block; past the end of the list it is `size`, which is outside the image.
 ivec2 inListedBlock(uint item, uvec2 place, ivec2 size) {
   if (item >= texelFetch(shadeDispatch, 0).w) return size;
   uint block = texelFetch(shadeBlocks, int(item)).x;
@@ -23,8 +23,8 @@ ivec2 listedPixel(int k, ivec2 size) {
   return inListedBlock((gl_WorkGroupID.x * kListedPixels + k) * 64u + gl_LocalInvocationIndex, placeInBlock(), size);
 }
 
-const int kListedColumn = min(BLOCK, int(kListedPixels));       // pixels below each other, of one block
-const int kListedColumns = int(kListedPixels) / kListedColumn;  // of an invocation
+const int kListedColumn = min(BLOCK, int(kListedPixels));       // vertically adjacent pixels, of one block
+const int kListedColumns = int(kListedPixels) / kListedColumn;  // columns per invocation
 
 // The first pixel of the k-th column of this invocation.
 ivec2 listedColumn(int k, ivec2 size) {

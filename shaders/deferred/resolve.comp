@@ -1,28 +1,30 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-// From subsets to all VPLs: the geometry-aware filter of interleaved sampling, on the irradiance only.
-// Defines: INTERLEAVE, MASKED, EDGES.
+// Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
+// irradiance only. Defines: INTERLEAVE, MASKED, EDGES.
 //
-// Pixels whose window does not hold all subsets are listed, and done by EDGES: few, and next to each other in its work groups.
-// With MASKED most windows leave the blocks; EDGES does all pixels of the blocks then, without a list.
+// Pixels whose window does not hold all subsets are listed and processed by the EDGES variant, which packs these few
+// pixels into its work groups. With MASKED most windows extend beyond the blocks, so EDGES processes all pixels of
+// the blocks without a list.
 //
-// Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once; where all of it lies on the surface of the pixel, the
-// mean over it is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
-// subset without a sample. Samples of that subset are then looked for on the surface in a window four times as wide; what
-// is still missing there is replaced by the mean of the subsets that were found, so that edges neither darken nor show a
-// pattern. Where less than half was found (leaves, chains) other surfaces nearby that face the same way are taken as well.
+// Any window of INTERLEAVE x INTERLEAVE pixels holds each subset once. If all of it lies on the surface of the pixel,
+// its mean is the light of all VPLs, with nothing lost. A pixel of the window that lies on another surface leaves its
+// subset without a sample. Samples of that subset are then searched on the surface in a window four times as wide;
+// those still missing are replaced by the mean of the subsets found, so that edges neither darken nor show a pattern.
+// Where fewer than half are found (leaves, chains), other surfaces nearby that face the same way are used as well.
 //
-// MASKED: only listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here, the other pixels have their irradiance
-// already, the base. Of a pixel's window, what lies outside the blocks has no sample; what it would add is known better,
-// though: the base there. The pixels of the window inside are then represented by the mean over all subsets (those that the
-// window lacks from the pixel's block, the base for what is not there either), the ones outside by their base: towards its
-// rim a shaded patch passes into its surroundings, without the noise that a part of the subsets would bring.
+// MASKED: only the listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here; the other pixels already
+// have their irradiance, the base. The part of a pixel's window outside the blocks has no samples, but the base there
+// is more accurate anyway. The pixels of the window inside are represented by the mean over all subsets (those
+// missing in the window are taken from the pixel's block, or from the base if missing there too), the pixels outside
+// by their base. Towards its border a shaded patch thus blends into its surroundings, without the noise of an
+// incomplete set of subsets.
 #include "common/same_surface.glsl"
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
-// Pixels below each other that an invocation filters together, as their windows overlap.
+// Vertically adjacent pixels that an invocation filters together, as their windows overlap.
 #if !EDGES
 const int kPixels = 4;
 #elif MASKED
@@ -39,7 +41,8 @@ layout(local_size_x = 64) in;
 layout(local_size_x = 16, local_size_y = 4) in;
 #endif
 
-// Images and not textures: on lavapipe a load from a texture costs several times as much, and loads are most of the work.
+// Images rather than textures, because on lavapipe a load from a texture costs several times as much, and loads are
+// most of the work.
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rgba16f) uniform readonly image2D partial;
@@ -60,7 +63,7 @@ layout(r8) uniform readonly image2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {
-  float filterPlane;  // distance from the tangent plane that still counts as the surface, in parts of the distance to the eye
+  float filterPlane;  // tolerance from the tangent plane, relative to the distance from the eye
   float filterCos;    // least cosine between normals
 };
 
@@ -84,7 +87,7 @@ bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least)
   return sameSurface(c.position, c.normal, c.normal, position, normal, plane, least);
 }
 
-// Where a subset is in `missing`; numbered from the pixel.
+// Bit of a subset in `missing`, numbered from the pixel.
 uvec2 subsetBit(ivec2 d) {
   int subset = (d.y + INTERLEAVE) % INTERLEAVE * INTERLEAVE + (d.x + INTERLEAVE) % INTERLEAVE;
   return subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
@@ -141,7 +144,7 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
 }
 
 #if EDGES
-// Adds a sample, nearer pixels with more weight; a: weight.
+// Adds a sample, weighting nearer pixels more; a: weight.
 void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
@@ -151,7 +154,7 @@ void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float pla
   sum += vec4(imageLoad(partial, q).rgb * w, w);
 }
 
-// Takes a subset off the mask.
+// Removes one subset from the mask and returns it.
 int nextSubset(inout uvec2 left, out uvec2 bit) {
   int subset = left.x != 0u ? findLSB(left.x) : 32 + findLSB(left.y);
   bit = subset < 32 ? uvec2(1u << subset, 0u) : uvec2(0u, 1u << (subset - 32));
@@ -166,10 +169,10 @@ void take(inout Centre c, vec4 sum, uvec2 bit) {
   c.missing &= ~bit;
 }
 
-// Where the sample of a subset is in the window.
+// Position of a subset's sample in the window.
 ivec2 placeInWindow(ivec2 offset) { return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2))); }
 
-// The sample of a subset on the other side of the pixel, where an edge has left the surface.
+// The sample of a subset on the other side of the pixel, used where an edge leaves the surface.
 vec4 lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
   ivec2 inside = placeInWindow(offset), across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
   vec4 sum = vec4(0.0);
@@ -179,8 +182,9 @@ vec4 lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float 
   return sum;
 }
 
-// From anywhere in the wide window, but for where it was looked for before: of its 4 x 4 samples the four in the middle are the
-// one in the window and those on the other side. window: look in the window, too, where it was missing by other bounds.
+// A sample from anywhere in the wide window, except where it was searched before: of its 4 x 4 samples the
+// middle four are the one in the window and those on the other side. window: search the window again if it was
+// missing under other bounds.
 vec4 lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least, bool window) {
   ivec2 first = offset - 2 * INTERLEAVE;
   vec4 sum = vec4(0.0);
@@ -192,9 +196,10 @@ vec4 lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float l
   return sum;
 }
 
-// Looks for the missing subsets of the `wanted` pixels; those found leave the mask. Some pixels miss many and most miss few or
-// none, so that a subgroup shares them out: each lane looks for one subset of one of its pixels, and hands what it finds to the
-// lane of that pixel. On a CPU device all lanes would wait for the pixel that misses most.
+// Searches the missing subsets of the `wanted` pixels; those found are removed from the mask. Some pixels miss many
+// subsets and most miss few or none, so a subgroup distributes them: each lane searches one subset of one of its
+// pixels and passes the result to the lane of that pixel. On a CPU device all lanes would otherwise wait for the
+// pixel that misses most.
 void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool wanted, bool across, bool window) {
   uvec2 left = wanted ? c.missing : uvec2(0u);
   uint mine = uint(bitCount(left.x) + bitCount(left.y)), end = subgroupInclusiveAdd(mine);
@@ -224,7 +229,7 @@ void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool 
 }
 
 #if MASKED
-// Samples of missing subsets from the pixel's own block, where each is. What is in the window, too, has been looked at.
+// Samples of missing subsets from the pixel's own block. Those that are also in the window have been tried already.
 void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
   ivec2 corner = p / BLOCK * BLOCK;
   for (int i = 0; i < BLOCK * BLOCK; ++i) {
@@ -232,7 +237,7 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
     bool inWindow = all(greaterThanEqual(d, ivec2(-INTERLEAVE / 2))) && all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
     uvec2 bit = subsetBit((d + BLOCK) % INTERLEAVE);
     bool wanted = c.outside.a > 0.0 && !inWindow && all(lessThan(q, size)) && (c.missing & bit) != uvec2(0u);
-    int turns = wanted ? 1 : 0;  // a loop of no turns is skipped where a branch is not, on a CPU device
+    int turns = wanted ? 1 : 0;  // on a CPU device a loop of zero turns is skipped, a branch is not
     for (int k = 0; k < turns; ++k) {
       if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) continue;
       c.sum += imageLoad(partial, q).rgb;
@@ -243,8 +248,8 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
 }
 #endif
 
-// The mean over the subsets from what the window held; whether less than half of them was found on the surface. All lanes
-// of a subgroup come here, those that have no pixel, too: not `wanted`.
+// The mean over the subsets, and whether fewer than half of them were found on the surface. All lanes of a subgroup
+// come here, including those without a pixel, which are not `wanted`.
 vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
   incomplete = false;
   if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
@@ -262,7 +267,8 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
   }
 #endif
   float plane = c.plane, least = filterCos;
-  bool searches = wanted, again = false;  // by wider bounds. A loop and not two calls: a second turn that no pixel wants is none
+  // `again` uses wider bounds. A loop rather than two calls, so that a second turn that no pixel needs is skipped.
+  bool searches = wanted, again = false;
   do {
     search(c, p, size, plane, least, searches, true, false);
     search(c, p, size, plane, least, searches, false, again);
@@ -320,7 +326,8 @@ void main() {
 #endif
 }
 #else
-// Filters kPixels pixels from `first` downwards and writes them, or lists them. Returns how many of the subgroup show a surface.
+// Filters kPixels pixels from `first` downwards and writes them, or lists them. Returns how many pixels of the
+// subgroup show a surface.
 uint resolve(ivec2 first, ivec2 size) {
   Centre centres[kPixels];
   for (int k = 0; k < kPixels; ++k) centres[k] = centreAt(first + ivec2(0, k), size);

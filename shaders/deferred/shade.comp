@@ -1,17 +1,19 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-// Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (METHOD Eq. 2 without rho):
+// Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (Eq. 2 of
+// the paper without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
-// Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1: not the first page;
-// NEAR_FIELD 0/1: with the light of pass near-field; MASKED 0/1: only the listed blocks of BLOCK x BLOCK pixels.
+// Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1, 1 for all
+// pages but the first; NEAR_FIELD 0/1, 1 to add the light of pass near-field; MASKED 0/1, 1 to shade only the listed
+// blocks of BLOCK x BLOCK pixels.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
 
-// An invocation shades kPixels pixels below each other: a VPL is handed to it once for all of them, and neighbours read the
-// same lines of a map.
+// An invocation shades kPixels vertically adjacent pixels: it receives a VPL once for all of them, and neighbours
+// read the same cache lines of a map.
 #if MASKED
 #include "deferred/blocks.glsl"
 const int kPixels = int(kListedPixels);
@@ -48,11 +50,11 @@ struct Receiver {
   vec3 position, normal, face, sum;
 };
 
-// What the receivers of a subgroup have in common. No pixels: low > high.
+// Bounds of the receivers of a subgroup. Without pixels, low > high.
 struct Block {
   vec3 centre, reach;        // box around their positions
   vec3 normal, normalReach;  // box around their normals
-  float plane;               // least distance along its own normal of a receiver from the centre, m
+  float plane;               // least distance of a receiver's plane from the centre along its normal, m
 };
 
 Block blockOf(Receiver receivers[kPixels], bool valid[kPixels]) {
@@ -74,7 +76,7 @@ Block blockOf(Receiver receivers[kPixels], bool valid[kPixels]) {
   return b;
 }
 
-// Whether a VPL may light any of them: bounds of both cosines' numerators. Coplanar ones are seen through rounding.
+// Whether a VPL may light any of them, by bounds of both cosines' numerators. Coplanar ones pass because of rounding.
 bool mayLight(Vpl vpl, Block b) {
   vec3 away = b.centre - vpl.positionArea.xyz;
   float along = dot(vpl.normal.xyz, away) + dot(abs(vpl.normal.xyz), b.reach);
@@ -83,7 +85,7 @@ bool mayLight(Vpl vpl, Block b) {
   return min(along, facing) > rounding && b.reach.x >= 0.0 && vpl.intensity.rgb != vec3(0.0);
 }
 
-// A VPL as all receivers of a subgroup want it.
+// A VPL in the form in which all receivers of a subgroup use it.
 struct Emitter {
   vec3 position, intensity;
   mat3 axes;   // its frame, see common/paraboloid.glsl
@@ -99,7 +101,7 @@ Emitter emitterOf(Vpl vpl) {
   return Emitter(vpl.positionArea.xyz, vpl.intensity.rgb, axes, vpl.positionArea.w);
 }
 
-// That of another lane.
+// The emitter of another lane.
 Emitter handOver(Emitter e, uint lane) {
   e.position = subgroupShuffle(e.position, lane);
   e.intensity = subgroupShuffle(e.intensity, lane);
@@ -119,8 +121,8 @@ Emitter handOver(Emitter e, uint lane) {
 uvec2 subsetOfGroup() { return placeInBlock() % INTERLEAVE; }
 ivec2 pixelAt(int k, ivec2 size) { return listedPixel(k, size); }
 #else
-// A work group covers every INTERLEAVE-th pixel of a block. The subset is the slowest of the three dimensions: all that is
-// shaded at a time reads the same few maps.
+// A work group covers every INTERLEAVE-th pixel of a block. The subset is the slowest of the three dimensions, so
+// everything that is shaded at a time reads the same few maps.
 uvec2 subsetOfGroup() { return uvec2(gl_WorkGroupID.z % INTERLEAVE, gl_WorkGroupID.z / INTERLEAVE); }
 ivec2 pixelAt(int k, ivec2 size) {
   uvec2 block = gl_WorkGroupID.xy * (gl_WorkGroupSize.xy * uvec2(1, kPixels));
@@ -129,7 +131,7 @@ ivec2 pixelAt(int k, ivec2 size) {
 }
 #endif
 
-// cos_s cos_l Vis / d^2, with one division. slot: of the VPL in the atlas.
+// cos_s cos_l Vis / d^2, with one division. slot: slot of the VPL in the atlas.
 float transfer(Receiver r, Emitter e, uint slot
 #if SHADOWED
                , AtlasLayout maps, float bias
@@ -145,11 +147,11 @@ float transfer(Receiver r, Emitter e, uint slot
   float denominator = d2 * (nearest * nearest);
 #endif
   float cosines = max(-dot(r.normal, toSurface), 0.0) * max(alongNormal, 0.0);
-  // |z| for z, which only those differ in that get nothing.
+  // Uses |z| for z; the two differ only for receivers that get no light.
   float ahead = d + abs(alongNormal), inverse = 1.0 / (ahead * denominator), result = cosines * (ahead * inverse);
 #if SHADOWED
   vec2 local = vec2(dot(e.axes[0], toSurface), dot(e.axes[1], toSurface));
-  // |p| <= 1. Who gets nothing looks at a texel that all such look at, which stays in the cache.
+  // |p| <= 1. Receivers without light all read the same texel, which stays in the cache.
   float half_ = 0.5 * float(maps.size);
   vec2 p = local * (denominator * inverse);
   ivec2 texel = cosines > 0.0 ? min(ivec2(p * half_ + half_), maps.size - 1) : ivec2(0);
@@ -186,8 +188,9 @@ void main() {
 #if SHADOWED
   AtlasLayout maps = atlasLayout(imageSize(atlas));
 #endif
-  // Each lane takes a VPL of its own, and those that may light something are handed to all lanes, one after the other. On a
-  // CPU, where every lane's load from a uniform buffer costs by itself, loading them in every lane costs as much as the rest.
+  // Each lane takes a VPL of its own, and those that may light something are passed to all lanes, one after another.
+  // On a CPU, where every lane's load from a uniform buffer has its own cost, loading them in every lane costs as
+  // much as everything else.
   uint lanes = subgroupBallotBitCount(subgroupBallot(true));
   uint subset = subset2.y * INTERLEAVE + subset2.x;
   for (uint first = 0u; first * kSubsets + subset < PAGE_VPLS; first += lanes) {
@@ -212,7 +215,7 @@ void main() {
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = pixelAt(k, size);
     if (any(greaterThanEqual(p, size))) continue;
-    // Units of `irradiance`: E / pi; a subset stands for all of them.
+    // In units of `irradiance`, E / pi; one subset stands for all of them.
     vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
 #if NEAR_FIELD && !ACCUMULATE
     sum += imageLoad(nearField, p).rgb;

@@ -1,14 +1,14 @@
-// L = emission + rho / pi * sum over the lights of E_l * visibility_l.
-// Defines: SHADOW_FILTER; ONE_LIGHT, there is one light, 2: with one map; 0: any number. What is known of a single light is found
-// at a constant place: a CPU device loads what is found by an index lane by lane.
+// L = emission + rho / pi * sum over the lights of E_l * visibility_l. Defines: SHADOW_FILTER; ONE_LIGHT, 1 if there
+// is one light, 2 if that has one map, 0 for any number of lights. A single light is read from a constant place,
+// because a CPU device loads indexed data lane by lane.
 #include "common/scene.glsl"
-#define SHADOW_BINDING 6
+#define SHADOW_MAPS 1
 #if ONE_LIGHT == 2
 #define SHADOW_LAYER 0u
 #endif
 #include "common/shadow.glsl"
 
-// Images and not textures: on lavapipe a load from a texture costs several times as much.
+// Images rather than textures, because on lavapipe a load from a texture costs several times as much.
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
@@ -16,7 +16,7 @@ layout(rgba16f) uniform readonly image2D gbufferAlbedo;
 layout(rgba16f) uniform readonly image2D gbufferEmission;
 layout(location = 0) out vec4 direct;
 
-// doubt: set where the map's texels disagree.
+// doubt: set where the texels of the map disagree.
 vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face, inout bool doubt) {
   LightSample e = sampleLight(light, position);
   float cosine = dot(normal, e.direction);

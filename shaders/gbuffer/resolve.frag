@@ -1,5 +1,6 @@
-// The surface of each pixel from the triangle it shows: the ray through the pixel's centre meets the triangle's plane, so
-// that positions carry none of the rasteriser's snapping and interpolation (visibility buffer, Burns and Hunt, JCGT 2013).
+// The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
+// the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
+// buffer, Burns and Hunt, JCGT 2013).
 #include "common/scene.glsl"
 
 uniform utexture2D seen;
@@ -13,15 +14,15 @@ layout(location = 5) out uint gbufferId;
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
 
-// Direction, not unit, of the ray through the centre of a pixel; also for off-axis projections.
+// Direction of the ray through the centre of a pixel, not normalised; also for off-axis projections.
 vec3 pixelRay(ivec2 p) {
   vec2 ndc = (2.0 * vec2(p) + 1.0) * view.size.zw - 1.0;
   vec2 d = (ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]);
   return vec3(d, -1.0) * mat3(view.worldToView);
 }
 
-// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997). The rasteriser
-// lets pixels in whose centre misses the triangle by a hair: they get the nearest point inside.
+// Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997). The
+// rasteriser accepts some pixels whose centre just misses the triangle; they get the nearest point inside.
 vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   vec3 p = cross(ray, edgeC);
   float determinant = dot(edgeB, p);
@@ -34,7 +35,7 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   uint index = texelFetch(seen, p, 0).r;
-  bool background = index == kNothing;  // worked out as if it were triangle 0: a CPU device runs both sides of a branch
+  bool background = index == kNothing;  // computed as if it were triangle 0: a CPU device runs both sides of a branch
   uvec4 triangle = sceneTriangle(background ? 0u : index);
   vec3 a = scenePosition(triangle.x), edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
   vec2 w = barycentrics(pixelRay(p), a, edgeB, edgeC);

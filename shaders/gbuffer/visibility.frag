@@ -1,4 +1,4 @@
-// Which triangle is seen; everything else about it is worked out once a pixel in resolve.frag.
+// The visible triangle; everything else is computed once per pixel in resolve.frag.
 #include "common/scene.glsl"
 
 #if TESTED

@@ -1,9 +1,9 @@
-// Importance of VPLs (METHOD importance step 2): with w_i the foveated weight of the first voxel side in direction i,
+// Importance of VPLs (passes/README.md, importance): with w_i the foveated weight of the first voxel
+// side in direction i,
 //   I = sum(w_i cos_i) / sum(cos_i),
-// or (CONES) the mean weight in a cone around it, from the mips.
-// The directions hang on the VPL's normal alone, so that I is steady from frame to frame: Eq. 1 compares it with the I of
-// the frame before, and noise would delete VPLs in a still picture.
-// Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1.
+// or (CONES) w_i the mean weight in a cone around it, from the mips. The directions depend on the VPL's normal alone,
+// so that I is stable from frame to frame: Eq. 1 compares it with the I of the previous frame, and noise would delete
+// VPLs in a still image. Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/hemisphere_rays.glsl"
@@ -13,7 +13,7 @@
 #include "common/cone.glsl"
 #endif
 
-// One invocation a direction, those of a VPL side by side: they set out from the same place.
+// One invocation per direction. Those of a VPL are adjacent, as they start from the same position.
 const int kVpls = 16;
 layout(local_size_x = kHemisphereRays, local_size_y = kVpls) in;
 
@@ -54,8 +54,9 @@ Source loadSource(uint i) {
 float sideWeight(uint side) { return side == kNoSide ? 0.0 : texelFetch(weights, int(side)).r; }
 
 #if CONES
-// The mean weight of what a cone of 60 degrees meets; where it leaves the scene nothing is seen. Its beginning, where the
-// mips cannot tell other surfaces from the own one, is a ray (see gatherHemisphere in common/cone.glsl).
+// The mean weight of the surfaces in a cone of 60 degrees; where the cone leaves the scene, the
+// weight is 0. Its beginning, where the mips cannot tell other surfaces from the VPL's own, is a ray
+// (see gatherHemisphere in common/cone.glsl).
 float weightSeen(Source source, vec3 direction, float cosine) {
   VoxelGrid grid = voxelsGrid();
   MipGrid mips = mipGrid(grid);

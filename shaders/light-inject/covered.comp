@@ -1,6 +1,5 @@
-// Which parts of each shadow map may be covered by what moves, one for each box around some of it: xy: least, zw: largest
-// position in [-1, 1]; and an empty list.
-// Defines: SHADOWED 0/1; MOVER_BOXES.
+// The part of each shadow map that moving objects may cover, one for each box around some of them, as positions in
+// [-1, 1] (xy: least, zw: largest). Also empties the list. Defines: SHADOWED 0/1; MOVER_BOXES.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "light-inject/patch.glsl"
@@ -21,8 +20,8 @@ layout(push_constant) uniform Constants {
 };
 
 const vec4 kNothing = vec4(1e30, 1e30, -1e30, -1e30);
-const float kFront = 1e-4;  // m: maps show nothing so near
-const float kOutside = 1.1;  // border 1, and some texels for what a rasteriser rounds
+const float kFront = 1e-4;  // m; maps show nothing nearer
+const float kOutside = 1.1;  // the border is 1, with a margin of some texels for rounding by the rasteriser
 
 void extend(vec4 clip, inout vec2 low, inout vec2 high) {
   vec2 at = clip.xy / max(clip.w, 0.5 * kFront);
@@ -52,8 +51,8 @@ void main() {
   for (int i = 0; i < 8; ++i)
     corners[i] = mapsViews.view[layer].worldToClip *
                  vec4(mix(boxLow, boxHigh, bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0)), 1.0);
-  // Of the part in front of the light, whose corners are the box's own and where its edges pass the plane; empty where all lies
-  // behind.
+  // Bounds of the part in front of the light, whose corners are the box's own and the points where its edges cross
+  // the plane; empty if everything lies behind.
   vec2 low = vec2(1e30), high = vec2(-1e30);
   for (int i = 0; i < 8; ++i) {
     if (corners[i].w > kFront) extend(corners[i], low, high);
@@ -62,7 +61,7 @@ void main() {
       if (from.w > kFront && to.w <= kFront) extend(mix(from, to, (from.w - kFront) / (from.w - to.w)), low, high);
     }
   }
-  // The map does not show what lies outside of it.
+  // Tests whether the bounds lie outside the map.
   bool outside = any(greaterThan(low, vec2(kOutside))) || any(lessThan(high, vec2(-kOutside)));
   covered.parts[part] = outside ? kNothing : vec4(low, high);
 #endif

@@ -1,10 +1,10 @@
-// Direct light on the voxels: L = rho E / pi + emission for every listed side, E averaged over several points of its surface.
-// Defines: SHADOWED 0/1; SHADOW_FILTER; ONE_LIGHT 0/1/2 as in direct.frag.
+// Direct light on the voxels: L = rho E / pi + emission for every listed side, with E averaged over several points of
+// its surface. Defines: SHADOWED 0/1; SHADOW_FILTER; ONE_LIGHT 0/1/2 as in direct.frag.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/voxel_trace.glsl"
 #if SHADOWED
-#define SHADOW_BINDING 8
+#define SHADOW_MAPS 1
 #if ONE_LIGHT == 2
 #define SHADOW_LAYER 0u
 #endif
@@ -25,10 +25,10 @@ layout(push_constant) uniform Constants {
   float offset;  // cells
 };
 
-const uint kLightInject = 0x11c7u;  // of the random numbers
+const uint kLightInject = 0x11c7u;  // random stream
 
-// Irradiance of a side by one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
-// Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop: what it takes to load it counts.
+// Irradiance of a side from one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop, as loading it is costly.
 vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cell) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < taps; ++i) {
@@ -38,7 +38,7 @@ vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cel
     float cosine = dot(side.normal, incoming.direction);
     if (cosine <= 0.0 || incoming.irradiance == vec3(0.0)) continue;
 #if SHADOWED
-    // The tangent plane cuts through the surface where that is curved or has an edge.
+    // The offset is needed because the tangent plane cuts through surfaces that are curved or have an edge.
     cosine *= lightVisibility(light, firstShadowLayer(light), position + side.normal * (offset * cell), side.normal);
 #endif
     sum += incoming.irradiance * cosine;
@@ -48,8 +48,7 @@ vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cel
 
 // rgb: outgoing radiance, a: its luminance.
 vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
-  // The points start anew for each cell; by the cell and not by the number of the voxel, which changes when
-  // something moves.
+  // The points depend on the cell and not on the number of the voxel, which changes when something moves.
   uvec3 cell = uvec3(max(worldToVoxel(grid, side.position), vec3(0.0)));
   uint bits = randomStream(kLightInject, cell.x, cell.y, 2u * cell.z + which);
   vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));

@@ -4,9 +4,10 @@
 
 const uint kSidesPerGroup = 64u;
 
-// Where a side's surface lies in its cell: two axes across, one along the largest component of the normal. As far from
-// the average position as the nearer wall of the cell allows in each axis, and no more than its area: exact for a surface
-// that fills the cell or a part that begins at a wall of the cell, as at the edges and corners of planes.
+// The extent of a side's surface in its cell: two axes across it, one along the largest component of the normal. It
+// reaches as far from the average position as the nearer wall of the cell in each axis, but covers no more than the
+// side's area. This is exact for a surface that fills the cell or a part that begins at a wall of the cell, as at the
+// edges and corners of planes.
 struct Patch {
   vec3 u, v;    // half axes in the tangent plane, m
 };

@@ -1,10 +1,10 @@
 #extension GL_KHR_shader_subgroup_ballot : require
-// Lists the sides whose radiance may be another one than in the last frame. Their order in the list does not matter: each
-// side's radiance is its own. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag; MOVER_BOXES.
+// Lists the sides whose radiance may differ from that of the last frame. Their order in the list does not matter,
+// since sides are independent. Defines: SHADOWED 0/1; ONE_LIGHT 0/1/2 as in direct.frag; MOVER_BOXES.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #if SHADOWED
-#define SHADOW_BINDING 8
+#define SHADOW_MAPS 1
 #include "common/shadow.glsl"
 #endif
 #include "common/movers.glsl"
@@ -24,20 +24,20 @@ layout(push_constant) uniform Constants {
 };
 
 #if SHADOWED
-uniform samplerBuffer covered;  // kMoverBoxes a layer, see covered.comp
+uniform samplerBuffer covered;  // kMoverBoxes per layer, see covered.comp
 
-const float kMarginTexels = 4.0;  // the reach of the widest filter, and what a rasteriser may round
+const float kMarginTexels = 4.0;  // reach of the widest filter, and a margin for rounding by the rasteriser
 
-// Whether the map `layer` may have changed where it is looked up from within a sphere. Bounds only: the texels of the sphere
-// against those of what moves.
+// Whether the map `layer` may have changed where it is read from within a sphere. Compares bounds only: the texels of
+// the sphere with those of moving objects.
 bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
   vec4 clip = mapsViews.view[layer].worldToClip * vec4(centre, 1.0);
-  // A step of 1 m moves a point by 2 / (texels * width of a texel) where w is 1, and in depth by its own distance.
+  // A step of 1 m moves a point by 2 / (texels * width of a texel) where w is 1, and by its own distance in depth.
   vec2 texels = vec2(textureSize(mapsDepth, 0).xy), at = clip.xy / clip.w;
   vec2 metre = 2.0 / (texels * vec2(mapsViews.view[layer].right.w, mapsViews.view[layer].up.w));
   vec2 reach = directional ? radius * metre : radius * (metre + abs(at)) / (clip.w - radius);
   reach += kMarginTexels * 2.0 / texels;
-  // Outside of the map its border counts.
+  // Outside of the map, its border is used.
   vec2 from = clamp(at - reach, -1.0, 1.0), to = clamp(at + reach, -1.0, 1.0);
   bool any_ = false, meets = false;
   for (uint box = 0u; box < kMoverBoxes; ++box) {
@@ -51,7 +51,7 @@ bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
   return meets || (any_ && !directional && clip.w <= 1.1 * radius);     // reaches to the light's plane
 }
 
-// Whether the light's shadow on a sphere may be another one than in the last frame.
+// Whether the light's shadow on a sphere may differ from that of the last frame.
 bool shadowMayChange(Light light, vec3 centre, float radius) {
   uint type = uint(light.position.w), layer = firstShadowLayer(light);
 #if ONE_LIGHT == 2
@@ -63,12 +63,12 @@ bool shadowMayChange(Light light, vec3 centre, float radius) {
 }
 #endif
 
-// `asked`: no loop of a CPU device turns for what is not.
+// If not `asked`, the loops take no turns, which a CPU device skips.
 bool mayDiffer(uint number, bool asked) {
 #if SHADOWED
   VoxelGrid grid = voxelsGrid();
   vec4 positionArea = texelFetch(voxelsSurface, int(number) * kVoxelSideTexels);
-  // No patch reaches farther: half a cell along each axis, 45 degrees steep at most.
+  // No patch extends farther: half a cell along each axis, at a slope of at most 45 degrees.
   float radius = (1.4143 + offset) * grid.cell;
   bool may = false;
   uint lightCount = moving == 0u || !asked || !(positionArea.w > 0.0) ? 0u : frame.lightCount;
@@ -88,7 +88,7 @@ void main() {
   bool inList = number < 2u * voxels;
   bool all_ = relightAll != 0u || number / 2u >= voxelsInfo.value.staticVoxels, may = mayDiffer(number, inList && !all_);
   bool anew = inList && (all_ || may);
-  if (inList && !anew) changed.sides[number] = 0u;  // else light_inject.comp tells
+  if (inList && !anew) changed.sides[number] = 0u;  // otherwise light_inject.comp sets it
   uvec4 ballot = subgroupBallot(anew);
   uint first = 0u;
   uint total = subgroupBallotBitCount(ballot);

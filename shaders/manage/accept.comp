@@ -1,4 +1,4 @@
-// One slot and one candidate an invocation: importance in fixed point, Eq. 1, cells of the density grid.
+// One slot and one candidate per invocation: importance in fixed point, Eq. 1, and cells of the density grid.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/vpl.glsl"
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 uniform usamplerBuffer candidates;
 uniform samplerBuffer candidateImportance;
 uniform samplerBuffer vplImportance;
-uniform samplerBuffer vpls;  // VplState: five texels a slot
+uniform samplerBuffer vpls;  // VplState: five texels per slot
 
 const uint kManageStream = 0x6d616e61u;  // keeps the random numbers of this pass apart from others
 
@@ -32,7 +32,7 @@ void testSlot(uint slot) {
   // `random` reuses as many as `linear` would.
   bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
   uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
-  if (reuse != kReuseRandom && mostRejected < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // spared last
+  if (reuse != kReuseRandom && mostRejected < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // failed last
   uint cell = cellOf(texelFetch(vpls, texel).xyz);
   slotRecords.list[slot] = SlotRecord(importance, kAlive | (accepted ? kAccepted : 0u), cell, key);
   occupy(cell);

@@ -1,16 +1,16 @@
-// Importance in fixed point and the test of Eq. 1, in integers alone: the same bits on every device, and in
-// tests/passes/manage_reference.h.
+// Importance in fixed point and the test of Eq. 1, in integers only, so that every device and
+// tests/passes/manage_reference.h give the same bits.
 #ifndef FOVEA_MANAGE_ACCEPTANCE_GLSL
 #define FOVEA_MANAGE_ACCEPTANCE_GLSL
 
 const uint kImportanceMax = 0xffffffu;
 
-// 24 bits: floor(2^24 I), at most 2^24 - 1; not a number counts as 0.
+// 24 bits: floor(2^24 I), at most 2^24 - 1; NaN counts as 0.
 uint quantiseImportance(float importance) {
   return importance > 0.0 ? min(uint(min(importance, 1.0) * 16777216.0), kImportanceMax) : 0u;
 }
 
-// Light in 24 bits: up to 64 times what a screen shows as white.
+// Light in 24 bits, up to 64 times what is displayed as white.
 uint quantiseLight(float luminance, float exposure) {
   precise float shown = luminance * exposure;
   return quantiseImportance(shown * 0.015625);
@@ -37,8 +37,8 @@ uint multiply24(uint a, uint b) {
   return high << 8 | low >> 24;
 }
 
-// 2^24 (1 - cos(pi/2 x)) for x in units of 2^-24, x < 1: the first six terms of the power series in x^2, each coefficient
-// (pi/2)^2k / (2k)! in units of 2^-24. Off by less than 3 of these units.
+// 2^24 (1 - cos(pi/2 x)) for x in units of 2^-24, x < 1: the first six terms of the power series in x^2, each
+// coefficient (pi/2)^2k / (2k)! in units of 2^-24. Off by less than 3 of these units.
 uint cosineProbability(uint x) {
   uint y = multiply24(x, x);
   uint p = 423u - multiply24(y, 8u);
@@ -49,8 +49,8 @@ uint cosineProbability(uint x) {
   return multiply24(y, p);
 }
 
-// Eq. 1: accept with probability p(min(C, 1)), C = I / I before. u: 24 random bits. Linear: u < C, multiplied out; before = 0
-// accepts when I > 0.
+// Eq. 1: accept with probability p(min(C, 1)), C = I / previous I. u: 24 random bits. The linear test u < C is
+// multiplied out; if the previous I is 0, it accepts when I > 0.
 bool acceptedLinear(uint importance, uint before, uint u) {
   uint high, low;
   umulExtended(u, before, high, low);

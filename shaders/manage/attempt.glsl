@@ -2,16 +2,16 @@
 #ifndef FOVEA_MANAGE_ATTEMPT_GLSL
 #define FOVEA_MANAGE_ATTEMPT_GLSL
 
-// W as a key of the list of candidates, and back: the largest first.
+// Converts W to a sort key of the candidate list and back, so that the largest comes first.
 uint descending(uint weight) { return 0xffffffu - weight; }
 
-// Part 1 makes one attempt for each pair (Lc[j], L'[j]); part 2 one for each candidate left, or, ordered `fixed`, for each
-// old VPL left, the best first.
+// Part 1 makes one attempt for each pair (Lc[j], L'[j]). Part 2 makes one for each remaining candidate or, with order
+// `fixed`, for each remaining old VPL, the best first.
 uint attemptCount() {
   return order == kOrderFixed ? max(state.candidateCount, state.oldCount) : state.candidateCount;
 }
 
-// Slot, or candidate | kFresh.
+// Returns a slot, or candidate | kFresh.
 uint attemptOf(uint number) {
   uint fresh = state.candidateCount, old = state.oldCount;
   if (number >= fresh) return lists.entries[oldList() + old - 1u - (number - fresh)].y;

@@ -1,8 +1,9 @@
-// One work group: Algorithm 2, and a slot for each VPL it adds.
+// One work group: Algorithm 2, and a slot for each VPL that it adds.
 //
-// The serial loop adds attempt a when its cell holds fewer than D_MAX and the list fewer than N_MAX. Until the list is full
-// a cell takes its first D_MAX - density attempts, so the first test depends only on the rank of a among the attempts in its
-// cell; the second then takes the first N_MAX - reused of those that passed. Both are what the loop does, to the bit.
+// The serial loop adds attempt a if its cell holds fewer than D_MAX VPLs and the list fewer than N_MAX. Until the
+// list is full, a cell takes its first D_MAX - density attempts, so the first test depends only on the rank of a
+// among the attempts in its cell; the second then takes the first N_MAX - reused of those that passed. Both together
+// equal the serial loop bit for bit.
 #include "common/vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"
@@ -12,7 +13,8 @@
 
 layout(local_size_x = GROUP) in;
 
-// D_MAX: the parameter, or three times the density of a list spread evenly over the cells where a VPL could be.
+// D_MAX: the parameter, or three times the density of a list spread evenly over the cells that hold a
+// VPL or a candidate.
 uint densityLimit() {
   if (maxDensity > 0u) return maxDensity;
   uint cells = max(state.occupied, 1u);
@@ -41,8 +43,8 @@ void refuseDense(uint count) {
   groupBarrier();
 }
 
-// Takes the first attempts that fit into the list: old VPLs stay in their slots, candidates go to `added`. Returns how many
-// candidates.
+// Takes the first attempts that fit into the list: old VPLs stay in their slots, candidates go to `added`. Returns
+// the number of candidates taken.
 uint takeAttempts(uint count, out uint kept) {
   Run run = runOf(count);
   uint passed = 0u, total;
@@ -79,7 +81,7 @@ uint takeAttempts(uint count, out uint kept) {
   return addedCount;
 }
 
-// New VPLs take the free slots in rising order.
+// Assigns the free slots to the new VPLs in rising order.
 void fillSlots(uint addedCount) {
   Run run = runOf(slots);
   uint unused = 0u, total;

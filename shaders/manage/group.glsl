@@ -1,5 +1,5 @@
-// One work group over a whole list: every invocation takes a run of neighbouring elements, so that the order of the list is
-// the order of the invocations. Needs GROUP, the size of the work group.
+// Processes a whole list with one work group. Every invocation takes a run of neighbouring elements, so that the
+// order of the list is the order of the invocations. Needs GROUP, the size of the work group.
 #ifndef FOVEA_MANAGE_GROUP_GLSL
 #define FOVEA_MANAGE_GROUP_GLSL
 
@@ -11,7 +11,7 @@ Run runOf(uint count) {
   return Run(begin, min(begin + length_, count));
 }
 
-// What the work group wrote is there for all of it.
+// Makes the writes of the work group visible to all of it.
 void groupBarrier() {
   memoryBarrierBuffer();
   memoryBarrierShared();

@@ -1,5 +1,4 @@
-// What the kernels of pass manage share: constants, memory of the pass, the density grid.
-// Needs common/vpl.glsl.
+// Shared by the kernels of pass manage: constants, buffers and the density grid. Needs common/vpl.glsl.
 #ifndef FOVEA_MANAGE_MEMORY_GLSL
 #define FOVEA_MANAGE_MEMORY_GLSL
 
@@ -9,9 +8,9 @@ layout(push_constant) uniform Constants {
   uint slots;            // N, entries of the list
   uint candidateCount;   // M, candidates and failed attempts
   uint listLimit;        // N_MAX <= slots
-  uint keepCount;        // K of the thinning; 0: the slots that are free (placement `light`)
-  uint mostRejected;     // VPLs that Eq. 1 takes away at most
-  uint lightFloor64ths;  // of the mean light
+  uint keepCount;        // K of the thinning; 0 means the number of free slots (placement `light`)
+  uint mostRejected;     // most VPLs deleted for failing Eq. 1
+  uint lightFloor64ths;  // in means of the candidates' light
   uint placement;        // parameters of these names
   uint densityConstant64ths;  // CONST
   uint reuse;
@@ -28,8 +27,8 @@ const uint kPlacementLight = 1u;
 layout(std430) buffer StateBlock {
   uint occupied;        // cells that hold a VPL or a candidate
   uint alive;           // VPLs at the start
-  uint accepted;        // of them: by Eq. 1
-  uint reused;          // of them: in the new list
+  uint accepted;        // number of those accepted by Eq. 1
+  uint reused;          // number of those in the new list
   uint oldCount;        // |L'|
   uint candidateCount;  // |Lc|
 } state;
@@ -38,34 +37,35 @@ struct SlotRecord {
   uint importance;  // 24 bits
   uint flags;
   uint cell;        // of the density grid
-  uint key;         // 24 bits: the order in which VPLs are reused, least first
+  uint key;         // 24 bits: VPLs with lower keys are reused first
 };
 const uint kAlive = 1u, kAccepted = 2u;
 layout(std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
 
-// x: importance, 24 bits, or direct light (placement `light`); kNoCandidate: an attempt that hit nothing; y: cell of the density grid.
+// x: importance, 24 bits, or direct light (placement `light`), kNoCandidate if the attempt hit nothing; y: cell
+// of the density grid.
 const uint kNoCandidate = 0xffffffffu;
 layout(std430) buffer CandidateRecordsBlock { uvec2 list[]; } candidateRecords;
 
-// What a slot gets: nothing, the VPL it has, or candidate `source - kFirstCandidate`.
+// Content of a slot: nothing, the VPL that it has, or candidate `source - kFirstCandidate`.
 const uint kEmpty = 0u, kKept = 1u, kFirstCandidate = 2u;
 layout(std430) coherent buffer SourcesBlock { uint list[]; } sources;
 
-// Lists of (key, index), each with as much room again behind it to sort into.
+// Lists of (key, index), each followed by the same amount of room to sort into.
 layout(std430) coherent buffer ListsBlock { uvec2 entries[]; } lists;
 uint candidateList() { return 0u; }                             // Lc: index of a candidate
 uint oldList() { return 2u * candidateCount; }                  // L': slot
 uint attemptList() { return 2u * (candidateCount + slots); }    // cell, number of the attempt
 
-// Attempts to add, in order: slot, or candidate | kFresh; | kRefused: its cell is full.
+// Attempts to add, in order: slot, or candidate | kFresh; with kRefused if the cell is full.
 const uint kFresh = 0x80000000u, kRefused = 0x40000000u;
 layout(std430) coherent buffer AttemptsBlock { uint list[]; } attempts;
 layout(std430) coherent buffer AddedBlock { uint list[]; } added;  // candidates, in the order of adding
 
-// Density grid, 64^3 cells that repeat in space: a hash without collisions inside the scene, whose longest edge is at most
-// as long as 64 cells, and a place for VPLs outside.
+// Density grid of 64^3 cells that repeats in space. This is a hash without collisions inside the scene, whose longest
+// edge is at most as long as 64 cells, and it has a place for VPLs outside.
 const uint kCellBits = 18u;
-const uint kOccupied = 0x80000000u;  // a VPL or a candidate is there; the bits below count the VPLs that are reused
+const uint kOccupied = 0x80000000u;  // there is a VPL or a candidate; the bits below count the reused VPLs
 layout(std430) buffer DensityBlock { uint cells[]; } density;
 layout(std430) coherent buffer SegmentsBlock { uint first[]; } segments;  // per cell, in the sorted attempts
 

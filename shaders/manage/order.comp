@@ -1,5 +1,5 @@
-// Two work groups: Lc descending and L' ascending by W = I + 1 / (density + CONST), the density being that of the VPLs
-// which are reused.
+// Two work groups: sort Lc descending and L' ascending by W = I + 1 / (density + CONST), with the density
+// of the reused VPLs.
 #include "common/vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"
@@ -26,5 +26,5 @@ void main() {
       lists.entries[first + i].x = descending(weightOf(candidateRecords.list[index].x, candidateRecords.list[index].y));
   }
   groupBarrier();
-  radixSort(first, old ? slots : candidateCount, count, 24u);  // an even number of rounds: back at `first`
+  radixSort(first, old ? slots : candidateCount, count, 24u);  // an even number of rounds, so the result is at `first`
 }

@@ -4,9 +4,9 @@
 #define FOVEA_MANAGE_RADIX_SORT_GLSL
 
 const uint kDigitBits = 6u, kDigits = 64u;
-shared uint digitCounts[kDigits * GROUP];  // digit by digit, in each the runs of the invocations
+shared uint digitCounts[kDigits * GROUP];  // digit by digit, for each the runs of the invocations
 
-// Turns the counts into the place of the first element of each digit and run.
+// Turns the counts into the position of the first element of each digit and run.
 void scanDigits() {
   uint row = gl_LocalInvocationIndex * GROUP, sum = 0u;
   for (uint i = row; i < row + GROUP; ++i) sum += digitCounts[i];
@@ -20,7 +20,7 @@ void scanDigits() {
 }
 
 // Sorts `count` entries that start at `first` by the lowest `bits` of their keys, ascending. Returns where the sorted
-// list starts: at `first`, or behind it at `first` + capacity. To be called by the whole work group.
+// list starts: at `first`, or at `first` + capacity. Must be called by the whole work group.
 uint radixSort(uint first, uint capacity, uint count, uint bits) {
   uint from = first, to = first + capacity, lane = gl_LocalInvocationIndex;
   Run run = runOf(count);

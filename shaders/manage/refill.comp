@@ -1,4 +1,4 @@
-// One work group, reuse `none`: all old VPLs go, the first candidates fill the slots.
+// One work group, reuse `none`: all old VPLs are deleted and the first candidates fill the slots.
 #include "common/vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"

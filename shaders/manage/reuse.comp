@@ -1,5 +1,5 @@
-// One work group: which VPLs are reused, and L', those that are not. Eq. 1 has decided, unless the list got shorter: then
-// the most important stay; and `random` takes any of the living.
+// One work group: which VPLs are reused, and L', those that are not. Eq. 1 has decided this unless the list got
+// shorter, in which case the most important stay; `random` takes any of the VPLs.
 #include "common/vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"

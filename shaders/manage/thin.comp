@@ -1,7 +1,7 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-// One work group: the candidates Lc, thinned by the inverse transform of the CDF of importance. K samples at equal distances
-// from a random start on [0, K sum I) meet a candidate with probability min(1, K I / sum I); one that several meet is taken
-// once (systematic, without replacement). Sums are whole numbers below 2^57.
+// One work group: the candidates Lc, thinned by the inverse transform of the CDF of importance. K samples at equal
+// distances from a random start on [0, K sum I) hit a candidate with probability min(1, K I / sum I); one that is hit
+// several times is taken once (systematic, without replacement). Sums are integers below 2^57.
 #include "common/random.glsl"
 #include "common/vpl.glsl"
 #define GROUP 64
@@ -12,9 +12,9 @@ layout(local_size_x = GROUP) in;
 
 const uint kThinStream = 0x7468696eu;  // keeps the random numbers of this kernel apart from others
 
-// Placement `light`: the same with light instead of importance, after reuse.comp, for the slots that are free. The candidates
-// lie as densely as eye paths end, in proportion to their importance; so I B / p leaves the light B, direct, plus a share
-// of the mean for what further bounces bring.
+// With placement `light`, the same with light instead of importance, after reuse.comp and for the free slots. The
+// density of the candidates is that of the ends of eye paths, in proportion to importance, so I B / p reduces to the
+// light B, which is the direct light plus a share of the mean for further bounces.
 shared uint64_t groupSums[GROUP];
 uint lightFloor = 0u;
 
@@ -23,7 +23,7 @@ uint importanceOf(uint i) {
   return importance == kNoCandidate ? 0u : importance + lightFloor;
 }
 
-// Sum of the importances before this invocation's run, and of all.
+// Sum of the importances before this invocation's run, and over all.
 uint64_t importanceBefore(Run run, out uint64_t total) {
   uint64_t sum = 0ul, before = 0ul;
   for (uint i = run.begin; i < run.end; ++i) sum += uint64_t(importanceOf(i));
@@ -44,7 +44,7 @@ void main() {
   uint samplesWanted = keepCount > 0u ? keepCount : listLimit - state.reused;
   if (placement == kPlacementLight && counters.candidates > 0u) {
     lightFloor = uint(total * uint64_t(lightFloor64ths) / (64ul * uint64_t(counters.candidates)));
-    if (total == 0ul) lightFloor = 1u;  // no light: all alike
+    if (total == 0ul) lightFloor = 1u;  // without light all count the same
     groupBarrier();
     before = importanceBefore(run, total);
   }
@@ -52,7 +52,7 @@ void main() {
   uint64_t spacing = max(total, 1ul);
 
   uint count = 0u, all;
-  uint64_t sum = before, samples = (samplesWanted * sum + start) / spacing;  // in front of the candidate
+  uint64_t sum = before, samples = (samplesWanted * sum + start) / spacing;  // before the candidate
   for (uint i = run.begin; i < run.end; ++i) {
     sum += uint64_t(importanceOf(i));
     uint64_t next = (samplesWanted * sum + start) / spacing;

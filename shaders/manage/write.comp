@@ -1,4 +1,4 @@
-// One slot an invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty.
+// One slot per invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "manage/memory.glsl"
@@ -9,11 +9,11 @@ uniform usamplerBuffer candidates;
 uniform usamplerBuffer candidateImportance;  // bits of floats, so that they pass unchanged
 uniform usamplerBuffer vplImportance;
 uniform usamplerBuffer vpls;
-layout(std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  // VplState: five a slot
+layout(std430) writeonly buffer ListBlock { uvec4 texels[]; } list;  // VplState: five per slot
 
 const uint kOne = 0x3f800000u;  // bits of 1.0
 
-// In the space of its object, the world's when that never moves.
+// Normal in the space of its object, which is the world's if the object never moves.
 uvec3 localNormal(uvec4 normalObject, uint place) {
   uint object = uint(uintBitsToFloat(normalObject.w));
   if (objectDeforms(object))
@@ -42,7 +42,7 @@ void main() {
   }
   for (uint t = 0u; t < 5u; ++t)
     list.texels[5u * slot + t] = source == kKept ? texelFetch(vpls, int(5u * slot + t)) : uvec4(0u);
-  // One that failed Eq. 1 and is spared is compared with the same importance in the next frame.
+  // A VPL that failed Eq. 1 and is spared is compared with the same importance in the next frame.
   bool spared = mostRejected < slots && (slotRecords.list[slot].flags & kAccepted) == 0u;
   if (source == kKept)
     list.texels[5u * slot].w = spared ? texelFetch(vpls, int(5u * slot + 4u)).w : texelFetch(vplImportance, int(slot)).r;

@@ -1,4 +1,4 @@
-// Level 0 of the mips: the 2x2x2 voxels of each cell, seen from six sides or from all at once.
+// Level 0 of the mips: the 2x2x2 voxels of each cell, seen from six sides or from all directions at once.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "mipmap/combine.glsl"
@@ -22,7 +22,7 @@ layout(push_constant) uniform Constants {
 };
 #endif
 
-// What a voxel shows towards a face: coverage is the side's projected area by that of the voxel's face.
+// What a voxel shows towards a face; coverage is the side's projected area relative to the voxel's face.
 Cell voxelTowards(uint voxel, int face, float faceArea) {
   Cell sum = kEmpty;
   if (voxel == 0u) return sum;
@@ -58,7 +58,8 @@ void main() {
   float faceArea = grid.cell * grid.cell;
   bool anew = true;
 #if KEEPS
-  // Voxels come and go where something moves; a voxel may lie a little outside of what it holds.
+  // Voxels appear and vanish where something moves; the margin is needed because a voxel may lie slightly outside
+  // of what it contains.
   vec3 low = voxelToWorld(grid, 2.0 * vec3(cell) - 1.0), high = voxelToWorld(grid, 2.0 * vec3(cell) + 3.0);
   anew = all_ != 0u;
   for (uint i = 0u; i < kMoverBoxes; ++i)
@@ -76,7 +77,7 @@ void main() {
       sum = add(sum, behind(voxelTowards(voxels[nearChild(face, column)], face, faceArea),
                             voxelTowards(voxels[farChild(face, column)], face, faceArea)));
     ivec3 texel = cell + ivec3(face * size, 0, 0);
-    // Most cells are empty and have been so. Storing is what costs (on lavapipe 10 times a look).
+    // Most cells are empty and stay so. Storing is the costly part (on lavapipe 10 times a load).
     if (sum.color.a <= 0.0 && imageLoad(mipsColor, texel).a <= 0.0) continue;
     imageStore(mipsColor, texel, stored(0.25 * sum.color));
 #if WEIGHTED

@@ -1,4 +1,4 @@
-// How eight children make a cell of the next level, in a fixed order of sums.
+// Combines eight children into a cell of the next level, in a fixed order of sums.
 #ifndef FOVEA_MIPMAP_COMBINE_GLSL
 #define FOVEA_MIPMAP_COMBINE_GLSL
 
@@ -10,8 +10,8 @@ const Cell kEmpty = Cell(vec4(0.0), 0.0);
 
 const int kFaces = DIRECTIONAL != 0 ? 6 : 1;
 
-// Children by bits x, y, z of their index. Face +x -x +y -y +z -z is seen from that side: of the column's two children, the
-// near one comes first. One volume for all directions has no near and far.
+// Children are numbered by bits x, y, z of their index. Face +x -x +y -y +z -z is seen from that side, so the near
+// one of the column's two children comes first. A single volume for all directions has no near and far.
 int axisOf(int face) { return face >> 1; }
 int columnChild(int face, int column, int along) {
   int axis = axisOf(face);
@@ -22,8 +22,8 @@ int farChild(int face, int column) { return columnChild(face, column, face & 1);
 
 Cell add(Cell a, Cell b) { return Cell(a.color + b.color, a.weight + b.weight); }
 
-// Of the far child shows what the near one leaves free, but parts of one slanted surface do not hide each other: coverage
-// adds up to 1 before any is hidden.
+// The far child shows through where the near one leaves space. Parts of one slanted surface do not hide each other,
+// so coverage adds up to 1 before anything is hidden.
 Cell behind(Cell near, Cell far) {
 #if DIRECTIONAL
   float share = clamp((1.0 - near.color.a) / max(far.color.a, 1e-6), 0.0, 1.0);

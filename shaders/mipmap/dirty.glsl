@@ -1,4 +1,4 @@
-// A bit for each cell of the levels from 1, level after level: something below it changed in this frame.
+// One bit for each cell of level 1 and above, level after level: something below it changed in this frame.
 #ifndef FOVEA_MIPMAP_DIRTY_GLSL
 #define FOVEA_MIPMAP_DIRTY_GLSL
 
@@ -9,7 +9,7 @@ bool isDirty(uint first, int size, ivec3 cell) {
   uint bit = dirtyBit(first, size, cell);
   return (dirty.bits[bit >> 5u] >> (bit & 31u) & 1u) != 0u;
 }
-// size: of the level in cells; where that is not half of the one below there is no such level.
+// size: of the level in cells; a level that is not half the size of the one below does not exist.
 void markDirty(uint first, int size, ivec3 cell) {
   uint bit = dirtyBit(first, size, cell);
   if (all(lessThan(cell, ivec3(size)))) atomicOr(dirty.bits[bit >> 5u], 1u << (bit & 31u));

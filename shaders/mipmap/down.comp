@@ -15,7 +15,7 @@ layout(r16f) uniform writeonly image3D targetWeight;
 #endif
 
 layout(push_constant) uniform Constants {
-  int size;       // cells a side of the target's face
+  int size;       // cells per side of the target's face
 #if KEEPS
   uint firstBit;  // of the target's level
 #endif
@@ -54,6 +54,6 @@ void main() {
   anew = isDirty(firstBit, size, cell);
   if (anew) markDirty(firstBit + uint(size * size * size), size / 2, cell / 2);
 #endif
-  // A loop of no turns is skipped where a branch is not, on a CPU device.
+  // A CPU device skips a loop of zero turns, but not a branch.
   for (int face = 0; face < (anew ? kFaces : 0); ++face) combine(cell, face);
 }

@@ -1,7 +1,7 @@
-// For every pixel the pixel of the frame before in which its surface was seen, if that was the same surface.
+// For every pixel, the pixel of the previous frame that showed the same surface, if there is one.
 //
-// Of the four texels around the place where it was one is taken at random, as probably as it is near: so that what moves by
-// parts of a pixel moves on average, at the price of one load.
+// One of the four texels around the previous position is chosen at random with bilinear probabilities, so that
+// sub-pixel motion is correct on average at the cost of one load.
 #include "common/random.glsl"
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
@@ -15,18 +15,18 @@ layout(location = 0) out uint origin;
 
 layout(push_constant) uniform Constants {
   uint frameIndex;
-  float planeTolerance;  // in parts of the distance to the eye
+  float planeTolerance;  // relative to the distance from the eye
   float leastCos;
 };
 
 const uint kNone = 0xffffffffu;
 const uint kJitterStream = 0x74656d70u;
-const float kSamePlace = 1e-3;  // pixels: stands still
+const float kSamePlace = 1e-3;  // pixels: does not move
 
-// Where the surface was in the frame before; of one that deforms, where it is.
+// Position of the surface in the previous frame; for one that deforms, its position now.
 vec3 positionBefore(vec3 position, uint id) {
   uint object = id >> 16;
-  for (int turn_ = 0; turn_ < int(object != 0u); ++turn_)  // as a loop, for a CPU device walks through a branch that no lane takes
+  for (int turn_ = 0; turn_ < int(object != 0u); ++turn_)  // a loop, as a CPU device runs unused branches
     if (!objectDeforms(object)) position = previousObjectTransform(object) * vec4(toObject(object, position), 1.0);
   return position;
 }

@@ -18,7 +18,7 @@ layout(push_constant) uniform Constants {
   int terms;  // 0 both, 1 direct, 2 cones
 };
 
-const uint kRadiance = 0x4adu;  // of the random numbers
+const uint kRadiance = 0x4adu;  // random stream
 const int kVplStateTexels = 5;
 
 void main() {
@@ -30,11 +30,11 @@ void main() {
   if (normalLife.w > 0.0) {
     vec4 reflectanceSide = texelFetch(vpls, first + 2);
     int side = int(floatBitsToUint(reflectanceSide.w));
-    // Reflected direct light and emission of the voxel are what light-inject has found already: rho E_direct = pi L.
+    // Reflected direct light and emission of the voxel are known from light-inject: rho E_direct = pi L.
     if (terms != 2 && side >= 0 && side < textureSize(radiance)) result += kPi * texelFetch(radiance, side).rgb;
 #if CONES
     if (terms != 1) {
-      // A slot keeps its cones while its VPL lives.
+      // A slot keeps its cones as long as its VPL lives.
       float turn = 2.0 * kPi * uniformFloat(randomStream(frame.seed, 0u, kRadiance, slot));
       result += reflectanceSide.rgb * gatherHemisphere(voxelsGrid(), texelFetch(vpls, first).xyz, normalLife.xyz, turn);
     }

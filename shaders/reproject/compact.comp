@@ -1,4 +1,5 @@
-// The list of blocks to shade: tile after tile, in each tile row after row. One tile an invocation. Defines: INTERLEAVE.
+// The list of blocks to shade: tile after tile, row after row in each tile. One tile per invocation. Defines:
+// INTERLEAVE.
 
 const uint kTile = 16u;
 

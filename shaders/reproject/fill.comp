@@ -1,15 +1,15 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
-// The listed tiles, those with pixels without a source. Such a pixel takes the light of pixels of its surface at most FILL
-// pixels away, in its tile, that have one: nearer than the interleaved samples that shading would gather. Where there are
-// none it makes its whole block be shaded. One tile a work group.
-// Defines: INTERLEAVE, pixels a side of a block; FILL, 0: no such pixels.
+// Processes the listed tiles, those with pixels without a source. Such a pixel takes the light of pixels on its
+// surface that have a source, at most FILL pixels away and in its tile; these are nearer than the interleaved samples
+// that shading would gather. If there are none, its whole block is shaded. One tile per work group. Defines:
+// INTERLEAVE, pixels per side of a block; FILL, 0 if no pixels are filled.
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
 
 const int kTile = 16, kBlocksPerSide = kTile / INTERLEAVE;
 const uint kThreads = 16u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
 
-layout(local_size_x = 16) in;  // few: on a CPU device each subgroup of a group with barriers costs
+layout(local_size_x = 16) in;  // few, as on a CPU device each subgroup of a group with barriers has a cost
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
@@ -21,12 +21,12 @@ layout(std430) readonly buffer OpenList { uint list[]; } openList;
 layout(std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
 
 layout(push_constant) uniform Constants {
-  float planeTolerance;  // in parts of the distance to the eye
+  float planeTolerance;  // relative to the distance from the eye
   float leastCos;
 };
 
 shared vec4 tile[kPixels];  // irradiance; a: 1 where it has a source
-shared uint open[kPixels];  // pixels of the tile without one
+shared uint open[kPixels];  // pixels of the tile without a source
 shared uint openCount, blocks;
 shared uint newInBlock[kBlocks];
 
@@ -37,7 +37,7 @@ uint blockOf(uint index) {
   return uint(block.y * kBlocksPerSide + block.x);
 }
 
-// Mean over the pixels of the surface around, nearer ones with more weight; a: 0 without one.
+// Mean over the surrounding pixels of the same surface, with nearer ones weighted more; a: 0 if there are none.
 vec4 fromNeighbours(ivec2 corner, ivec2 local) {
   vec4 sum = vec4(0.0);
   vec3 origin = vec3(0.0);
@@ -61,7 +61,7 @@ vec4 fromNeighbours(ivec2 corner, ivec2 local) {
 }
 
 void main() {
-  if (gl_WorkGroupID.x + 1u == gl_NumWorkGroups.x) return;  // one more than there are tiles
+  if (gl_WorkGroupID.x + 1u == gl_NumWorkGroups.x) return;  // there is one group more than tiles
   uint thread = gl_LocalInvocationIndex, listed = openList.list[gl_WorkGroupID.x];
   ivec2 size = imageSize(irradiance);
   uint columns = uint((size.x + kTile - 1) / kTile);

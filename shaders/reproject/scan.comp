@@ -1,8 +1,8 @@
-// The number of blocks to shade before each tile, and the indirect dispatch over all. One work group: tiles are few.
-// Defines: INTERLEAVE.
+// The number of blocks to shade before each tile, and the indirect dispatch over all of them. One work group, as
+// tiles are few. Defines: INTERLEAVE.
 
 const uint kThreads = 256u;
-const uint kBlocksPerGroup = 256u;  // of the shading: deferred/shade.comp
+const uint kBlocksPerGroup = 256u;  // blocks per work group of the shading, see deferred/shade.comp
 
 layout(local_size_x = 256) in;
 

@@ -1,18 +1,18 @@
 #extension GL_KHR_shader_subgroup_ballot : require
-// The irradiance of the first eye on what the second eye sees. The point of a pixel is projected into the source image; of
-// the four texels around it those count that show the same surface: near the tangent plane of the pixel, normals alike.
-// Bilinear between them. A pixel with too little of them has no source; the tiles that hold such a pixel are listed for
-// fill.comp.
+// Warps the irradiance of the first eye to the surfaces that the second eye sees. The point of a pixel is projected
+// into the source image. Of the four texels around it, those that show the same surface count (near the tangent plane
+// of the pixel, with similar normals), with bilinear weights. A pixel with too small a weight has no source; the
+// tiles that contain such pixels are listed for fill.comp.
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
 
 const int kTile = 16;
 const float kSameRow = 1e-3;  // texels
-const int kRows = 4;  // pixels of an invocation, below each other; all in one tile
+const int kRows = 4;  // vertically adjacent pixels per invocation, all in one tile
 
 layout(local_size_x = 64) in;
 
-// Images and not textures: on a CPU device a load from a texture costs several times as much.
+// Images rather than textures, because on a CPU device a load from a texture costs several times as much.
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
@@ -20,27 +20,27 @@ layout(rgba32f) uniform readonly image2D sourceGbufferPosition;
 layout(rgba16f) uniform readonly image2D sourceGbufferNormal;
 layout(rgba16f) uniform readonly image2D sourceIrradiance;
 layout(rgba16f) uniform writeonly image2D irradiance;
-layout(std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 when it is listed
-layout(std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups for fill.comp; x: 1 + tiles listed
+layout(std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 if it is listed
+layout(std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups of fill.comp; x: 1 + listed tiles
 layout(std430) writeonly buffer OpenList { uint list[]; } openList;
 layout(std430) buffer Counters { uint counters[]; };  // pixels, new, filled, shaded
 
 layout(push_constant) uniform Constants {
   mat4 sourceWorldToClip;
-  float planeTolerance;  // in parts of the distance to the eye
+  float planeTolerance;  // relative to the distance from the eye
   float leastCos;
   float leastWeight;
 };
 
-// rgb: irradiance, a: bilinear weight of the texels that show the surface; 0 0 0 0 outside the source image. Differences to
-// one of the texels are averaged, so that even light stays what it is to the last bit.
+// Returns rgb: irradiance, a: bilinear weight of the texels that show the surface; all zeros outside the source
+// image. Differences from one of the texels are averaged, so that uniform light is preserved to the last bit.
 vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
   vec4 clip = sourceWorldToClip * vec4(position.xyz, 1.0);
   if (clip.w <= 0.0) return vec4(0.0);
   ivec2 size = imageSize(sourceGbufferPosition);
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
   if (any(lessThanEqual(at, vec2(-1.0))) || any(greaterThanEqual(at, vec2(size)))) return vec4(0.0);
-  // Eyes beside each other see a point in the same row, up to rounding: then two texels are all.
+  // Eyes side by side see a point in the same row, up to rounding, in which case two texels are enough.
   bool sameRow = abs(at.y - round(at.y)) < kSameRow;
   at.y = sameRow ? round(at.y) : at.y;
   int texels = sameRow ? 2 : 4;
@@ -83,7 +83,7 @@ void main() {
     withoutSource += subgroupBallotBitCount(subgroupBallot(surface && !known));
     if (p == inside) imageStore(irradiance, p, known ? vec4(light.rgb, 1.0) : vec4(0.0));
   }
-  uint turns = open ? 1u : 0u;  // a loop of no turns is skipped where a branch is not, on a CPU device
+  uint turns = open ? 1u : 0u;  // on a CPU device a loop of zero turns is skipped, a branch is not
   for (uint i = 0u; i < turns; ++i) {
     uint tile = uint(first.y / kTile * ((size.x + kTile - 1) / kTile) + first.x / kTile);
     if (atomicOr(tileBlocks.count[tile], 1u) == 0u) openList.list[atomicAdd(openTiles.x, 1u) - 1u] = tile;

@@ -1,29 +1,29 @@
 #extension GL_KHR_shader_subgroup_vote : require
-// One work group a slot: would its map come out with other bits if it were drawn again? Not while the VPL stays where it
-// is, and each mover either keeps its pose or lies, then as now, behind what the map holds. Define: MOVERS.
+// One work group per slot: whether its map would change if it were drawn again. It would not if the VPL has not moved
+// and each mover either keeps its pose or lies, then as now, behind the surfaces in the map. Define: MOVERS.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
-// No more than a CPU device runs at a time: what all invocations of a slot read costs by the invocation.
+// No more than a CPU device runs at a time, as reads that all invocations of a slot make cost each of them.
 const int kRow = 8;
 layout(local_size_x = kRow) in;
 
 layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0: there is no map
+layout(std430) readonly buffer RefreshedBlock { uint frames[]; } refreshed;  // 0 if there is no map
 layout(std430) readonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
 layout(std430) writeonly buffer ChangesBlock { uint list[]; } changes;
 layout(r32ui) uniform readonly uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
-  vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects; below 0: unused
+  vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects, negative if unused
   uint poses[MOVERS];
   uint slots;
 };
 
 shared uint found;
 
-// Marks `found` where a surface within the sphere might be seen in the map. To be called by the whole group.
+// Sets `found` if a surface within the sphere might be visible in the map. Must be called by the whole group.
 void look(uint slot, Vpl v, vec4 sphere) {
   if (sphere.w < 0.0) return;
   vec3 to = sphere.xyz - v.positionArea.xyz;
@@ -33,8 +33,8 @@ void look(uint slot, Vpl v, vec4 sphere) {
   AtlasLayout layout_ = atlasLayout(imageSize(atlas));
   vec2 low = vec2(0.0), high = vec2(layout_.size - 1);
   if (away > reach) {
-    // The image of the cone around a sphere is a circle: its nearest and farthest point lie on the line through the
-    // centre of the map. Past 150 degrees from the normal it may be anything.
+    // The image of the cone around a sphere is a circle, whose nearest and farthest points lie on the line through
+    // the centre of the map. Beyond 150 degrees from the normal, the whole map is assumed.
     vec3 local = toLocal(orthonormalFrame(v.normal.xyz), to) / away;
     float angle = acos(clamp(local.z, -1.0, 1.0)), half_ = asin(reach / away);
     if (angle + half_ < 2.6) {
@@ -49,7 +49,7 @@ void look(uint slot, Vpl v, vec4 sphere) {
   ivec2 first = ivec2(low), last = ivec2(high);
   ivec3 corner = atlasTexel(slot, ivec2(0), layout_);
   float nearest = away - reach;
-  bool any_ = nearest <= 0.0;  // one is enough, and mostly it is not far to seek
+  bool any_ = nearest <= 0.0;  // one is enough, and usually found early
   for (int y = first.y; y <= last.y && !any_; ++y)
     for (int row = first.x; row <= last.x && !any_; row += kRow) {
       int x = row + int(gl_LocalInvocationIndex);

@@ -1,13 +1,13 @@
-// One work group: which slots get a new map this frame. New VPLs always do; of those kept from the frame before a budget
-// (METHOD section 2, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the VPLs every lit slot is drawn;
-// REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1.
+// One work group: which slots get a new map in this frame. New VPLs always do; of those kept from the previous frame,
+// as many as the budget allows (passes/README.md, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the
+// VPLs every lit slot is drawn; REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1.
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
 layout(local_size_x = 256) in;
 
 layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
-layout(std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0: no map
+layout(std430) buffer RefreshedBlock { uint frames[]; } refreshed;  // number of the frame + 1, 0 if there is no map
 layout(std430) buffer ChosenBlock { uint list[]; } chosen;
 layout(std430) buffer CountersBlock {
   uint maps, small, large, masked, fresh, refreshes, texels, unchanged, overlaid;
@@ -23,7 +23,7 @@ layout(push_constant) uniform Constants {
   uint size;
 #if HAS_STATE
   float refreshShare;
-  vec4 movers;  // xyz: centre, w: radius of a sphere around all moving objects; below 0: none
+  vec4 movers;  // xyz: centre, w: radius of a sphere around all moving objects, negative if there are none
 #endif
 };
 
@@ -34,9 +34,9 @@ shared uint histogram[256];
 shared uint threshold, takenAbove;
 
 const uint kByImportance = 0u, kByStaleness = 1u, kByUrgency = 2u;
-const float kLeastImportance = 0.05;  // so that maps nobody looks at come round, too
+const float kLeastImportance = 0.05;  // so that unimportant maps are refreshed too
 
-// Order among the maps that may be drawn again; 0: not one of them.
+// Priority among the maps that may be drawn again; 0 if it is not one of them.
 uint priority(uint slot, uint order) {
   if (chosen.list[slot] != kSlotKept) return 0u;
   float importance = max(state.list[slot].positionImportance.w, 0.0);
@@ -44,7 +44,7 @@ uint priority(uint slot, uint order) {
   uint age = min(frameNumber + 1u - refreshed.frames[slot], 0x3fffffffu);  // frames since it was drawn
   if (order == kByUrgency)
     return changes.list[slot] == kChangeNone ? 0u : floatBitsToUint((importance + kLeastImportance) * float(age));
-  // Four times as pressing where something moves in front of the VPL.
+  // Four times as urgent if something moves in front of the VPL.
   Vpl v = vpls.list[slot];
   bool sees = movers.w >= 0.0 && dot(v.normal.xyz, movers.xyz - v.positionArea.xyz) > -movers.w;
   return (sees ? 4u : 1u) * age;
@@ -62,7 +62,7 @@ void take(uint budget, uint order) {
     barrier();
     for (uint slot = i; slot < slots; slot += 256u) {
       uint key = priority(slot, order);
-      // All higher digits as in the threshold; the shift of 32 is undefined.
+      // All higher digits must equal those of the threshold; a shift by 32 is undefined.
       bool inPrefix = shift == 24 || key >> (shift + 8) == threshold >> (shift + 8);
       if (key != 0u && inPrefix) atomicAdd(histogram[key >> shift & 255u], 1u);
     }

@@ -1,5 +1,6 @@
-// Empties the maps that are about to be drawn or whose VPL has gone, and notes what they are drawn with: one work group a
-// slot. Defines: STATIC_MAPS 0/1: what never moves is drawn to a map of its own (compose.comp); HAS_STATE 0/1; MOVERS.
+// Clears the maps that are about to be drawn or whose VPL has gone, and records what they are drawn with.
+// One work group per slot. Defines: STATIC_MAPS 0/1: static geometry is drawn to a map of its own
+// (compose.comp); HAS_STATE 0/1; MOVERS.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"

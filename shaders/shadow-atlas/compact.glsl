@@ -4,7 +4,7 @@
 
 shared uint sums[256];
 
-// Number of set flags before this invocation's, and in all.
+// Number of flags set before this invocation's, and in total.
 uint compact(bool flag, out uint total) {
   uint i = gl_LocalInvocationIndex;
   sums[i] = flag ? 1u : 0u;

@@ -1,4 +1,4 @@
-// The maps that are drawn in this frame start as what is seen of all that never moves: one work group a slot.
+// Initialises the maps that are drawn in this frame from those of static geometry. One work group per slot.
 #include "common/paraboloid.glsl"
 #include "shadow-atlas/step.glsl"
 

@@ -1,6 +1,6 @@
 #extension GL_EXT_control_flow_attributes : require
-// First of two: finds the texels each triangle may cover in the maps of a batch of VPLs and lists the pairs
-// worth rasterising. One triangle an invocation, read once for the whole batch.
+// First of two steps: finds the texels that each triangle may cover in the maps of a batch of VPLs and lists the
+// pairs to rasterise. One triangle per invocation, read once for the whole batch.
 #include "common/paraboloid.glsl"
 #include "shadow-atlas/project.glsl"
 #include "shadow-atlas/step.glsl"
@@ -21,12 +21,12 @@ layout(push_constant) uniform Constants {
   uint alphaMask;
 };
 
-// Adds a pair to one of the four lists. One atomic whatever the list, since a CPU device runs every branch.
+// Adds a pair to one of the four lists. A single atomic serves all lists, since a CPU device runs every branch.
 void append(uint pair, uint large, uint masked) {
   uint list = kStepWords * step_ + kListWords * (1u + large + 2u * masked);  // step_'s WorkList
   uint entry = atomicAdd(steps.words[list + 3u], 1u);
   pairs.list[large != 0u ? largePlace(entry, capacity, masked != 0u) : smallPlace(entry, capacity, masked != 0u)] = pair;
-  // The indirect dispatch gets another group with a group's first entry.
+  // The first entry of each group adds a group to the indirect dispatch.
   uint perGroup = large != 0u ? kLargePerGroup : kSmallPerGroup, group = entry / perGroup;
   bool inFirstRow = group < kGroupsPerRow;
   if (entry % perGroup == 0u && (inFirstRow || group % kGroupsPerRow == 0u))
@@ -39,7 +39,7 @@ void main() {
   Triangle triangle = loadTriangle(index);
   uint masked = alphaMask != 0u && isMasked(index) ? 1u : 0u;
 
-  // Straight code over a batch unrolled: on a CPU device both sides of a branch run, and records at constant
+  // Branch-free code over an unrolled batch. On a CPU device both sides of a branch run, and records at constant
   // places of a uniform buffer are read once for all lanes.
   uint covered = 0u, large = 0u;
   [[unroll]] for (uint v = 0u; v < kBatch; ++v) {

@@ -1,5 +1,5 @@
-// Second of two: pairs of a VPL and a triangle that covers many texels, or is cut by the horizon. Eight
-// invocations a pair go through its box in blocks of 8x8 texels, a row at a time.
+// Second of two steps: pairs of a VPL and a triangle that covers many texels or is cut by the horizon. Eight
+// invocations per pair process its box in blocks of 8x8 texels, a row at a time.
 #include "shadow-atlas/pair.glsl"
 
 layout(local_size_x = 64) in;  // 8 * kLargePerGroup
@@ -8,7 +8,7 @@ layout(push_constant) uniform Constants {
   uint step_;
   uint capacity;
   int size;
-  uint slice, slices;  // of every pair's blocks: loops end after 65,535 turns in all on some devices
+  uint slice, slices;  // share of every pair's blocks; some devices limit loops to 65,535 turns in total
   float planeEpsilon;
 #ifdef MOVER_SLACK
   float moverSlack;  // frames
@@ -39,8 +39,8 @@ void main() {
   float perRow = 1.0 / float(width), toMap = 2.0 / float(size);
   int block = int(slice);
   do {
-    // The search for the next block in reach is a loop of its own: every device leaves out turns of a loop,
-    // not every one the sides of a branch.
+    // The search for the next block that may be hit is a loop of its own: every device skips turns of a loop, but not
+    // every one skips the sides of a branch.
     vec2 corner;
     bool reached;
     do {

@@ -1,4 +1,5 @@
-// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it. MOVER_SLACK: with push constant moverSlack.
+// One pair of a VPL and a triangle, as small.comp and large.comp rasterise it. MOVER_SLACK needs
+// the push constant moverSlack.
 #ifndef FOVEA_SHADOW_ATLAS_PAIR_GLSL
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 
@@ -27,7 +28,7 @@ layout(r32ui) uniform uimage2DArray atlas;
 struct Pair {
   TexelBox box;
   RayTest test;
-  ivec3 origin;  // of the VPL's map in the atlas
+  ivec3 origin;  // origin of the VPL's map in the atlas
   uint material;
   vec2 uvA, uvB, uvC;
 #ifdef MOVER_SLACK
@@ -36,12 +37,13 @@ struct Pair {
 };
 
 #ifdef MOVER_SLACK
-const float kMostSlack = 0.25;  // of a distance: what jumps still throws shadows
+const float kMostSlack = 0.25;  // relative to the distance, so that objects that jump still cast shadows
 
 float wayOf(uint vertex, vec3 position) { return distance(position, scenePreviousPosition(vertex)); }
 #endif
 
-// clipped: the triangle may be of any size. The way of its fastest corner since the frame before, times moverSlack, is the slack.
+// clipped: the triangle may have any size. The slack is the distance that its fastest corner has moved since the
+// previous frame, times moverSlack.
 Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
 #ifdef MOVER_SLACK
               , float moverSlack

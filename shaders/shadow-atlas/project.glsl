@@ -1,9 +1,8 @@
-// Where a triangle may lie in a paraboloid map, and what a texel sees of it. All points are in the VPL's
-// frame.
+// Bounds of a triangle in a paraboloid map, and the intersection seen by a texel. All points are in the VPL's frame.
 #ifndef FOVEA_SHADOW_ATLAS_PROJECT_GLSL
 #define FOVEA_SHADOW_ATLAS_PROJECT_GLSL
 
-// Inclusive range of the texels whose centres may see the triangle; empty when hi < lo.
+// Inclusive range of the texels whose centres may see the triangle; empty if hi < lo.
 struct TexelBox {
   vec2 lo, hi;
 };
@@ -18,10 +17,10 @@ TexelBox texelBox(vec2 lo, vec2 hi, float size) {
                   min(floor(half_ * (hi + kRounding) + (half_ - 0.5)), size - 1.0));
 }
 
-// An edge is seen as an arc of a circle of radius >= 1 (the image of a great circle). Over a chord of length
-// L <= 1 the shorter arc rises by at most 1 - sqrt(1 - L^2 / 4) <= 0.134 L^2. `tight` is false when a vertex
-// lies far below the horizon, at the VPL, or the triangle is so large that the shorter arc need not be the
-// edge: then use clippedBox().
+// An edge appears as an arc of a circle of radius >= 1 (the image of a great circle). Over a chord of length L
+// <= 1 the shorter arc rises by at most 1 - sqrt(1 - L^2 / 4) <= 0.134 L^2. `tight` is false if a vertex lies
+// far below the horizon or at the VPL, or if the triangle is so large that the edge need not be the shorter
+// arc; use clippedBox() then.
 TexelBox projectedBox(vec3 a, vec3 b, vec3 c, float size, out bool tight) {
   float la = length(a), lb = length(b), lc = length(c);
   vec2 pa = paraboloidProject(a, la), pb = paraboloidProject(b, lb), pc = paraboloidProject(c, lc);
@@ -32,7 +31,7 @@ TexelBox projectedBox(vec3 a, vec3 b, vec3 c, float size, out bool tight) {
   return texelBox(min(min(pa, pb), pc) - rise, max(max(pa, pb), pc) + rise, size);
 }
 
-// The arc between two points of the map, on the image of the great circle whose plane has normal e. It lies
+// Includes the arc between two points of the map, on the image of the great circle whose plane has normal e. It lies
 // in the rectangle over its chord as high as its rise, on the side away from the circle's centre e.xy / e.z.
 void includeArc(inout vec2 lo, inout vec2 hi, vec2 p, vec2 q, vec3 e) {
   vec2 chord = q - p;
@@ -41,7 +40,7 @@ void includeArc(inout vec2 lo, inout vec2 hi, vec2 p, vec2 q, vec3 e) {
   float rise = quarter / (sqrt(radius2) + sqrt(max(radius2 - quarter, 0.0)));
   vec2 across = vec2(-chord.y, chord.x) * (rise * inversesqrt(max(4.0 * quarter, 1e-20)));
   vec2 away = 0.5 * (p + q) * e.z - e.xy;
-  bool nearlyHalfCircle = quarter > 0.9 * radius2;  // which side is lost to rounding
+  bool nearlyHalfCircle = quarter > 0.9 * radius2;  // the side cannot be told because of rounding
   if (dot(across, away) * e.z < 0.0) across = -across;
   lo = min(lo, min(min(p, q), min(p, q) + across));
   hi = max(hi, max(max(p, q), max(p, q) + across));
@@ -51,7 +50,7 @@ void includeArc(inout vec2 lo, inout vec2 hi, vec2 p, vec2 q, vec3 e) {
   }
 }
 
-// End points of an edge clipped against the horizon plane z = 0, on the map. False: wholly below.
+// End points on the map of an edge clipped against the horizon plane z = 0. Returns false if it is entirely below.
 bool clippedEdge(vec3 a, vec3 b, out vec2 p, out vec2 q) {
   vec3 cut = a + (b - a) * (a.z / (a.z - b.z));
   vec2 rim = cut.xy / max(length(cut.xy), 1e-30);
@@ -60,7 +59,7 @@ bool clippedEdge(vec3 a, vec3 b, out vec2 p, out vec2 q) {
   return a.z > 0.0 || b.z > 0.0;
 }
 
-// The box of any triangle, cut at the horizon.
+// The box of any triangle, clipped at the horizon.
 TexelBox clippedBox(vec3 a, vec3 b, vec3 c, float size) {
   vec2 lo = vec2(2.0), hi = vec2(-2.0), p, q;
   vec2 rim[2] = vec2[2](vec2(0.0), vec2(0.0));  // where the triangle's edges leave and enter the hemisphere
@@ -83,13 +82,13 @@ struct RayTest {
   float farthest;
 };
 
-// a, b, c: in the VPL's frame. n, h: the triangle's plane n.x = h, n of any length, from world-space
-// differences, which rounding hurts least. A triangle whose plane passes the VPL closer than `epsilon` is the
-// surface the VPL lies on, or is seen edge-on: it blocks nothing.
+// a, b, c: in the VPL's frame. n, h: the triangle's plane n.x = h, with n of any length, from world-space
+// differences, which suffer least from rounding. A triangle whose plane is closer to the VPL than `epsilon` is the
+// surface on which the VPL lies, or is seen edge-on; it blocks nothing.
 RayTest rayTest(vec3 a, vec3 b, vec3 c, vec3 n, float h, float epsilon) {
   RayTest r;
-  // (b - a) x (b + a) = 2 a x b, without the cancellation; and exactly opposite for the neighbour across the
-  // edge, so that no ray slips through between two triangles.
+  // (b - a) x (b + a) = 2 a x b, without the cancellation. It is exactly opposite for the neighbour across the edge,
+  // so no ray slips through between two triangles.
   r.e0 = cross(b - a, b + a);
   r.e1 = cross(c - b, c + b);
   r.e2 = cross(a - c, a + c);
@@ -99,8 +98,8 @@ RayTest rayTest(vec3 a, vec3 b, vec3 c, vec3 n, float h, float epsilon) {
   return r;
 }
 
-// Distance to the triangle along the direction through a point of the map, or 0 where there is none.
-// `weights` are the barycentric weights of c, a and b, times a common factor.
+// Distance to the triangle along the direction through a point of the map, or 0 if it is missed. `weights` are the
+// barycentric weights of c, a and b, times a common factor.
 float hitDistance(RayTest r, vec2 p, out vec3 weights) {
   float q = dot(p, p);
   vec3 d = vec3(2.0 * p, 1.0 - q);  // length 1 + q
@@ -111,8 +110,8 @@ float hitDistance(RayTest r, vec2 p, out vec3 weights) {
   return hit ? min(t, r.farthest) : 0.0;
 }
 
-// False when no texel within `reach` of point p of the map, in x and in y, can see the triangle: over the
-// square an edge plane's value v + g.d - e.z |d|^2 keeps its sign.
+// Returns false if no texel within `reach` of point p of the map, in x and in y, can see the triangle: over the
+// square, an edge plane's value v + g.d - e.z |d|^2 keeps its sign.
 bool mayHit(RayTest r, vec2 p, float reach) {
   float q = dot(p, p);
   vec3 d = vec3(2.0 * p, 1.0 - q), value, bound;

@@ -1,5 +1,5 @@
-// One work group: packs the VPLs whose maps are to be drawn, in the order of their slots, into batches, and prepares the
-// steps' indirect dispatches. Those that need the moving triangles only follow in batches of their own.
+// One work group: packs the VPLs whose maps are to be drawn into batches, in the order of their slots, and prepares
+// the indirect dispatches of the steps. VPLs that need only the moving triangles follow in batches of their own.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
@@ -14,15 +14,16 @@ layout(std430) readonly buffer ChosenBlock { uint list[]; } chosen;
 layout(push_constant) uniform Constants {
   uint slots;
   uint batches;
-  uint ranges;         // steps a batch: one for each range of triangles
-  uint allRanges;      // the first of them: for the maps that are drawn from nothing
-  uint allGroups;      // of the largest of those
-  uint overlayGroups;  // of the largest of the others, which every map gets
+  uint ranges;         // steps per batch, one for each range of triangles
+  uint allRanges;      // the first of them, for maps that are drawn from scratch
+  uint allGroups;      // groups of the largest of those
+  uint overlayGroups;  // groups of the largest of the others, which every map gets
 };
 
 #include "shadow-atlas/compact.glsl"
 
-// Packs the slots with `overlaid` or without from place `count` on, the rest of the last batch empty. Returns the end.
+// Packs the slots with or without `overlaid` from place `count` on and leaves the rest of the last batch
+// empty. Returns the end.
 uint pack(bool overlaid, uint count) {
   uint i = gl_LocalInvocationIndex;
   for (uint base = 0u; base < slots; base += 256u) {

@@ -1,4 +1,4 @@
-// Second of two: pairs of a VPL and a triangle that covers few texels, one an invocation.
+// Second of two steps: pairs of a VPL and a triangle that covers few texels, one pair per invocation.
 #include "shadow-atlas/pair.glsl"
 
 layout(local_size_x = 64) in;  // kSmallPerGroup

@@ -1,4 +1,4 @@
-// Holes of alpha-masked materials let light through. Both sides of all others stop it, as they do in every renderer here.
+// Holes of alpha-masked materials let light through. All other surfaces block it on both sides.
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;

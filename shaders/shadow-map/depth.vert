@@ -1,5 +1,5 @@
 #extension GL_ARB_shader_viewport_layer_array : require
-// One instance a layer.
+// One instance per layer.
 #include "common/scene.glsl"
 #include "common/shadow.glsl"
 

@@ -1,4 +1,4 @@
-// How each light sees the scene: one invocation a light.
+// Projections of the lights' shadow maps, one invocation per light.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/shadow.glsl"
@@ -9,12 +9,12 @@ layout(std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
 
 layout(push_constant) uniform Constants { int size; };
 
-const float kGuard = 3.0;           // texels outside of what is asked for: a filter's reach
-const float kMaxSpotAngle = 1.483;  // 85 degrees: no plane sees a half space. What lies outside is not shadowed.
+const float kGuard = 3.0;           // margin in texels, for the reach of a filter
+const float kMaxSpotAngle = 1.483;  // 85 degrees, as a plane cannot show a half space; points outside are not shadowed
 
 float guarded() { return float(size) / max(float(size) - 2.0 * kGuard, 1.0); }
 
-// Rows to a matrix.
+// Builds a matrix from its rows.
 mat4 fromRows(vec4 x, vec4 y, vec4 z, vec4 w) { return transpose(mat4(x, y, z, w)); }
 
 // Perspective from `eye` along axes[2]; depth = near / distance along the axis.
@@ -29,7 +29,7 @@ ShadowView perspective(vec3 eye, mat3 axes, float tanHalf, float near) {
   return v;
 }
 
-// Orthographic around the whole scene, so that everything that may throw a shadow is in.
+// Orthographic around the whole scene, so that everything that may cast a shadow is inside.
 ShadowView orthographic(mat3 axes) {
   vec3 lo = vec3(3e38), hi = vec3(-3e38);
   for (int i = 0; i < 8; ++i) {
@@ -50,8 +50,8 @@ ShadowView orthographic(mat3 axes) {
   return v;
 }
 
-// Axes around a direction that the box of the scene fits into most tightly: the least rectangle around a convex outline
-// has a side along one of its edges, and those of a box run along the axes of the world.
+// Axes around a direction for the tightest fit of the scene's box: the smallest rectangle around a convex outline has
+// a side along one of its edges, and the edges of a box run along the axes of the world.
 mat3 tightAxes(vec3 direction) {
   vec3 extent = frame.boundsMax.xyz - frame.boundsMin.xyz;
   mat3 best = orthonormalFrame(direction);
@@ -59,7 +59,7 @@ mat3 tightAxes(vec3 direction) {
   for (int i = 0; i < 3; ++i) {
     vec3 edge = vec3(equal(ivec3(i), ivec3(0, 1, 2)));
     vec3 right = edge - direction * dot(edge, direction);
-    if (dot(right, right) < 1e-6) continue;  // seen from its end
+    if (dot(right, right) < 1e-6) continue;  // seen end-on
     right = normalize(right);
     vec3 up = cross(direction, right);
     float area = dot(abs(right), extent) * dot(abs(up), extent);
@@ -82,7 +82,7 @@ void main() {
   Light light = lights[index];
   uint layer = firstShadowLayer(light);
   uint type = uint(light.position.w);
-  // Near enough to the light to lose nothing that could matter; costs no precision (depth is reversed).
+  // Close enough to the light to lose nothing relevant; as depth is reversed, this costs no precision.
   float near = 1e-4 * max(distance(frame.boundsMin.xyz, frame.boundsMax.xyz), 1e-3);
   if (type == kLightDirectional) {
     mapsViews.view[layer] = orthographic(tightAxes(light.direction.xyz));

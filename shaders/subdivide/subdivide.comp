@@ -4,18 +4,18 @@
 
 layout(local_size_x = 64) in;
 
-uniform utextureBuffer ranges;   // of each vertex: first entry, count
+uniform utextureBuffer ranges;   // first entry and count of each vertex
 uniform utextureBuffer entries;  // bits of the weights: position, tangent a, tangent b; point
 uniform textureBuffer points;    // xyz
 layout(std430) writeonly buffer Positions { vec4 positions[]; };
-layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which stays
+layout(std430) buffer Attributes { vec4 attributes[]; };  // xy: octahedral normal, zw: uv, which is left unchanged
 
 layout(push_constant) uniform Constants {
   uint firstRange;
   uint count;
   uint firstPoint;
   uint firstVertex;
-  float side;  // -1: the points are mirrored, and a x b points inwards
+  float side;  // -1 if the points are mirrored, so that a x b points inwards
 };
 
 void main() {
@@ -33,7 +33,7 @@ void main() {
   }
   vec3 normal = side * cross(a, b);
   float size = length(normal);
-  // Also for infinity and NaN.
+  // Also covers infinity and NaN.
   normal = size > 0.0 && size < 1e38 ? normal / size : vec3(0.0, 1.0, 0.0);
   positions[firstVertex + vertex] = vec4(position, 1.0);
   attributes[firstVertex + vertex].xy = octEncode(normal);

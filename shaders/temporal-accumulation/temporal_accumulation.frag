@@ -1,9 +1,9 @@
-// Running mean, at every pixel, of samples that few pixels, or all, get in a frame. A pixel takes over the mean of the frame
-// before from where its surface was then, and its own sample, or that of its block if that was taken on its surface.
-// Defines: BLOCKS 0/1: a texel of `samples` stands for several pixels.
+// Running mean at every pixel of samples that some or all pixels get in a frame. A pixel takes over the previous
+// frame's mean from where its surface was then, and adds its own sample, or that of its block if it was taken on the
+// same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels.
 #include "common/same_surface.glsl"
 
-// Images and not textures: those cost several times as much on a CPU device.
+// Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D origin;
@@ -13,9 +13,9 @@ layout(location = 0) out vec4 mean;
 
 layout(push_constant) uniform Constants {
   float weight;          // of a sample
-  float frames;          // that the mean goes back
+  float frames;          // length of the mean
 #if BLOCKS
-  float planeTolerance;  // in parts of the distance to the eye
+  float planeTolerance;  // relative to the distance from the eye
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
 #endif
@@ -23,7 +23,7 @@ layout(push_constant) uniform Constants {
 
 const uint kNone = 0xffffffffu;
 
-// rgb: mean, a: frames in it, 0: none.
+// rgb: mean, a: number of frames in it, 0 if there is none.
 vec4 fromHistory(ivec2 p) {
   uint from = imageLoad(origin, p).r;
   return from == kNone ? vec4(0.0) : imageLoad(history, ivec2(from & 0xffffu, from >> 16));
@@ -32,12 +32,12 @@ vec4 fromHistory(ivec2 p) {
 #if BLOCKS
 struct Sample {
   vec3 value;
-  int side;    // of the block it is for
-  bool found;  // there is one
-  bool own;    // of the pixel's surface
+  int side;    // width of its block
+  bool found;  // whether there is a sample
+  bool own;    // whether it lies on the pixel's surface
 };
 
-// As sampleCode() in passes/near-field. No divisions: a CPU device makes them one by one.
+// Decodes sampleCode() of passes/near-field. It avoids divisions, which a CPU device executes one lane at a time.
 Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   ivec2 inside = clamp(p, ivec2(0), size - 1);
   vec4 value = imageLoad(samples, inside >> shift);
@@ -51,7 +51,7 @@ Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
 
 float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
-// Sum of samples, their number, and the brightest of them.
+// Sum of samples, their number, and the brightest one.
 struct Around {
   vec4 sum;
   vec3 brightest;
@@ -62,15 +62,15 @@ void add(inout Around around, Sample s, bool wanted) {
   if (wanted && luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
 }
 
-// Of single rays without the brightest, if there are others: one that meets something sunlit would be a spark. Samples that are
-// means of several rays lose light that way, and need it less.
+// Mean of single rays without the brightest, if there are others: one that hits something sunlit would be a firefly.
+// Samples that are means of several rays would lose light that way, and need it less.
 vec3 robustMean(Around around) {
   bool dropped = weight < 2.0 && around.sum.a > 1.0;
   return dropped ? (around.sum.rgb - around.brightest) / (around.sum.a - 1.0) : around.sum.rgb / max(around.sum.a, 1.0);
 }
 
-// Where there is no mean yet: that of the samples of the pixel's surface in the blocks around; of other surfaces if there are
-// none, but it counts for nothing.
+// Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks.
+// If there are none, samples of other surfaces are used, but with no weight.
 vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side) {
   Around own = Around(vec4(0.0), vec3(0.0)), all = own;
   for (int i = 0; i < 9; ++i) {
@@ -88,11 +88,11 @@ void main() {
   bool surface = position.w > 0.0;
   vec4 old = fromHistory(p);
   Sample s = sampleAt(p, position, normal, size);
-  // Larger blocks change all at once: less each time.
+  // All pixels of a larger block change at once, so they change less each time.
   float most = frames * float(max(s.side >> shift, 1));
   float count = s.own ? min(old.a + weight, most) : old.a;
   vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(weight / count, 1.0)), count) : old;
-  int without = surface && !(old.a > 0.0) ? 1 : 0;  // a loop of no turns is skipped where a branch is not, on a CPU device
+  int without = surface && !(old.a > 0.0) ? 1 : 0;  // a CPU device skips a loop of zero turns, but not a branch
   for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side);
   mean = surface ? result : vec4(0.0);
 }

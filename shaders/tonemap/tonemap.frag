@@ -1,4 +1,4 @@
-// T(x) = sRGB(clamp01(exposure * x)), METHOD section 4; the transfer function of IEC 61966-2-1.
+// T(x) = sRGB(clamp01(exposure * x)), with the transfer function of IEC 61966-2-1.
 
 uniform texture2D radiance;
 layout(location = 0) out vec4 image;
@@ -10,7 +10,7 @@ vec3 srgb(vec3 x) { return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * 
 
 void main() {
   vec3 x = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
-  // By bits: compilers may assume that floats are never NaN.
+  // Tests the bits, since compilers may assume that floats are never NaN.
   bvec3 special = equal(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u));
   if (any(special)) {
     atomicAdd(counters.value[0], 1u);

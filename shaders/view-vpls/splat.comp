@@ -1,4 +1,4 @@
-// A work group a slot: the disc of its VPL into the pixels' keys, where the nearest one stays.
+// One work group per slot: draws the disc of its VPL into the pixels' keys, where the nearest one stays.
 #include "common/scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -27,18 +27,20 @@ void main() {
   if (!(all(greaterThanEqual(centre, vec2(0.0))) && all(lessThan(centre, vec2(size))))) return;
   float distance = length(position - view.eye.xyz);
 #ifdef DEPTH_TEST
-  // In front of what the eye sees at its centre, or on it: voxels stand for a cell of surface.
+  // Draws the VPL if it is in front of the surface seen at its centre, or on it; the tolerance allows
+  // for a voxel's size.
   vec4 seen = texelFetch(gbufferPosition, ivec2(centre), 0);
   if (seen.w > 0.0 && distance > 1.03 * length(seen.xyz - view.eye.xyz)) return;
 #endif
-  // The upper bits of a positive float order as the float does; of VPLs that agree in them the lower slot is on top.
+  // The upper bits of a positive float order as the float does. Of VPLs with the same upper bits, the lower
+  // slot is on top.
   uint key = (floatBitsToUint(distance) >> 15) << 16 | slot;
   ivec2 lo = max(ivec2(centre - radius), ivec2(0)), hi = min(ivec2(centre + radius), size - 1);
   int width = hi.x - lo.x + 1, pixels = width * (hi.y - lo.y + 1);
   for (int i = int(gl_LocalInvocationIndex); i < pixels; i += 64) {
     ivec2 p = lo + ivec2(i % width, i / width);
     vec2 d = vec2(p) + 0.5 - centre;
-    // The pixel under the centre counts always, so that no VPL in sight goes unseen.
+    // The pixel under the centre always counts, so that no visible VPL is missed.
     if (dot(d, d) <= radius * radius || p == ivec2(centre)) atomicMin(keys.pixel[p.y * size.x + p.x], key);
   }
 }

@@ -1,4 +1,4 @@
-// Keys of pixels to colours, over the picture.
+// Turns the keys of the pixels into colours, over the picture.
 #include "common/scene.glsl"
 #include "common/colour_map.glsl"
 
@@ -14,7 +14,7 @@ uniform texture2D picture;
 layout(std430) readonly buffer KeysBlock { uint pixel[]; } keys;
 layout(rgba16f) uniform writeonly image2D image;
 
-layout(push_constant) uniform Constants { float scale; };  // 1 / what is shown as the last colour
+layout(push_constant) uniform Constants { float scale; };  // 1 / value shown as the last colour
 
 float valueOf(int slot) {
 #if defined(LUMINANCE)

@@ -1,5 +1,5 @@
-// Third of the prefix sum over marked cells: gives each its voxel, in linear order. A voxel of a dynamic object remembers
-// what it hides.
+// Third step of the prefix sum over marked cells: gives each its voxel, in linear order. A voxel of a dynamic object
+// remembers the voxel that it hides.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/scan.glsl"

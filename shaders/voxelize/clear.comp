@@ -1,4 +1,4 @@
-// Zero sums for a batch of voxels; an invocation a side.
+// Zeroes the sums of a batch of voxels; one invocation per side.
 #include "voxelize/state.glsl"
 
 layout(local_size_x = 64) in;

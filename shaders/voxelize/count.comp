@@ -1,4 +1,4 @@
-// The numbers of the list, as counters: also in frames that voxelise nothing.
+// The sizes of the list, as counters, also in frames that voxelise nothing.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 

@@ -1,5 +1,6 @@
 #extension GL_EXT_control_flow_attributes : require
-// Triangles of many columns, a work group a chunk of them: load is balanced, and no invocation loops for long.
+// Triangles of many columns, one work group per chunk of columns. The load is balanced, and no
+// invocation loops for long.
 #include "voxelize/visit.glsl"
 
 layout(local_size_x = 64) in;

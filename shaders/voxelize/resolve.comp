@@ -1,4 +1,4 @@
-// Sums to averages; an invocation a side.
+// Turns sums into averages; one invocation per side.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/state.glsl"
@@ -35,7 +35,7 @@ void main() {
   uvec3 cell = uvec3(linear % resolution, linear / resolution % resolution, linear / (resolution * resolution));
   vec3 position = voxelToWorld(grid, vec3(cell) + sums3At(word + 2u) * inverse);
   vec3 normal = sums3At(word + 8u) * inverse - 1.0;
-  // Normals of one side can cancel, if three or more meet: any direction to that side will do.
+  // The normals of one side can cancel if three or more meet; any direction on that side will do.
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
   float object = float(0xffffu - (sums.words[word + 26u] & 0xffffu));

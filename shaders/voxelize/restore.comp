@@ -1,4 +1,4 @@
-// Takes last frame's voxels of dynamic objects back: what they hid shows again, and their cells lose their marks.
+// Removes last frame's voxels of dynamic objects: the voxels they hid reappear, and their cells lose their marks.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/state.glsl"

@@ -1,9 +1,9 @@
-// Sums over work groups of 256 values: of the triangles' chunks, or with MARKS of the cells marked in words of 32.
+// Sums over work groups of 256 values: of the triangles' chunks or, with MARKS, of the marked cells in words of 32.
 #include "voxelize/state.glsl"
 
 shared uint partial[256];
 
-// Sum of the values before this invocation's, and of all.
+// Sum of the values before this invocation's, and of all values.
 uint exclusiveSum(uint value, out uint total) {
   uint i = gl_LocalInvocationIndex;
   partial[i] = value;

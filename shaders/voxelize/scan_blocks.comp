@@ -1,4 +1,4 @@
-// First of a prefix sum: the sum of each block of 256 values.
+// First step of a prefix sum: the sum of each block of 256 values.
 #include "voxelize/state.glsl"
 
 layout(local_size_x = 256) in;

@@ -1,4 +1,5 @@
-// Third of the prefix sum over chunks: in place of each triangle's number of chunks, that of all triangles before it.
+// Third step of the prefix sum over chunks: replaces each triangle's number of chunks by that of
+// all triangles before it.
 #include "voxelize/scan.glsl"
 
 layout(local_size_x = 256) in;

@@ -1,4 +1,5 @@
-// Second of a prefix sum, one work group: the sums before each block. The total sizes the dispatches that follow.
+// Second step of a prefix sum, one work group: the sums before each block. The total sizes the dispatches that
+// follow.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/scan.glsl"
@@ -16,7 +17,7 @@ layout(push_constant) uniform Constants {
 #ifdef MARKS
   uint resolution;
   uint phase;
-  uint room;  // of the list, both phases
+  uint room;  // room in the list, for both phases
 #endif
 };
 

@@ -1,5 +1,5 @@
 #extension GL_EXT_control_flow_attributes : require
-// Triangles of few columns, one an invocation. Counts the chunks of the others.
+// Triangles of few columns, one per invocation. Counts the chunks of the others.
 #include "voxelize/visit.glsl"
 
 layout(local_size_x = 64) in;

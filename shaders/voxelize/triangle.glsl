@@ -1,16 +1,17 @@
-// A triangle against the cells of the grid: which it overlaps, and the piece of it that lies in one. Needs common/scene.glsl
-// and common/voxel.glsl. tests/support/voxels.cpp has the same operations in the same order, hence `precise`.
+// A triangle against the cells of the grid: which ones it overlaps, and the piece of it in each. Needs
+// common/scene.glsl and common/voxel.glsl. tests/support/voxels.cpp has the same operations in the
+// same order, hence `precise`.
 #ifndef FOVEA_VOXELIZE_TRIANGLE_GLSL
 #define FOVEA_VOXELIZE_TRIANGLE_GLSL
 
-// In units of cells, the axes turned so that z is the one of the largest component of the normal: a column of cells along z
-// then meets the triangle in at most four.
+// In units of cells, with the axes permuted so that z is that of the largest component of the normal. A column of
+// cells along z then meets the triangle in at most four cells.
 struct CellTriangle {
   vec3 a, b, c, n;
-  vec3 normal;      // unit, axes not turned
-  float areaScale;  // area per doubled area seen along z
-  int axis;         // that z is
-  ivec3 lo, hi;     // cells of its box; none when a hi is below its lo
+  vec3 normal;      // unit, axes not permuted
+  float areaScale;  // area per doubled area as seen along z
+  int axis;         // the axis that z stands for
+  ivec3 lo, hi;     // cells of its box; empty if a hi is below its lo
   vec2 slope;       // of z over x and y
 };
 
@@ -20,8 +21,8 @@ vec3 turnBack(vec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx :
 CellTriangle loadCellTriangle(VoxelGrid grid, uvec4 indices) {
   vec3 A = scenePosition(indices.x), B = scenePosition(indices.y), C = scenePosition(indices.z);
   precise float inverse = 1.0 / grid.cell;
-  // Edges from the positions as given: differences of coordinates that were rounded to the grid's would ruin the areas of
-  // small triangles.
+  // Edges come from the original positions: differences of coordinates rounded to the grid's precision would ruin the
+  // areas of small triangles.
   precise vec3 e1 = (B - A) * inverse;
   precise vec3 e2 = (C - A) * inverse;
   precise vec3 a = (A - grid.origin) * inverse;
@@ -45,7 +46,7 @@ CellTriangle loadCellTriangle(VoxelGrid grid, uvec4 indices) {
   precise vec2 slope = t.n.xy * perZ;
   t.slope = slope;
   vec3 least = floor(min(min(a, b), c)), most = max(max(a, b), c);
-  vec3 last = max(least, ceil(most) - 1.0);  // half-open: what lies on a border belongs to the upper cell
+  vec3 last = max(least, ceil(most) - 1.0);  // half-open: a point on a border belongs to the upper cell
   float r = float(grid.resolution);
   t.lo = ivec3(turnAxes(min(max(least, vec3(0.0)), vec3(r)), t.axis));
   t.hi = ivec3(turnAxes(max(min(last, vec3(r - 1.0)), vec3(-1.0)), t.axis));
@@ -66,7 +67,7 @@ ivec2 columnAt(CellTriangle t, uint i) {
   return t.lo.xy + ivec2(i % width, i / width);
 }
 
-// Where the plane passes through a column, a little widened: x first cell, y last one.
+// Range of cells in which the plane passes through a column, slightly widened; x: first cell, y: last one.
 ivec2 columnRange(CellTriangle t, ivec2 column) {
   float z = t.a.z + dot(t.slope, vec2(column) - t.a.xy);
   float least = z + min(t.slope.x, 0.0) + min(t.slope.y, 0.0), most = z + max(t.slope.x, 0.0) + max(t.slope.y, 0.0);
@@ -89,8 +90,9 @@ bool projectionMeetsCell(vec2 a, vec2 b, vec2 c, float n) {
   return edgeMeetsCell(a, b, side) && edgeMeetsCell(b, c, side) && edgeMeetsCell(c, a, side);
 }
 
-// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001, as 2D edge tests
-// as in Schwarz and Seidel 2010); the box's own axes are the loop's. With slack: what it lets through is clipped.
+// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001, as 2D
+// edge tests as in Schwarz and Seidel 2010); the box's own axes are handled by the loop. The test has slack, since
+// the triangle is clipped afterwards.
 bool overlapsCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   vec3 n = t.n;
   precise float d = (n.x * a.x + n.y * a.y) + n.z * a.z;
@@ -112,14 +114,15 @@ bool edgeHoldsCell(vec2 p, vec2 q, float side) {
 
 struct Piece {
   float area;     // in cell faces
-  vec3 centre;    // its centroid in the cell, axes turned
+  vec3 centre;    // its centroid in the cell, axes permuted
 };
 
-// Sutherland-Hodgman. Loops are kept as loops: unrolled, their indirect accesses take a CPU device half a minute to compile.
+// Sutherland-Hodgman clipping. The loops must not be unrolled: a CPU device would take half a minute to
+// compile their indirect accesses.
 vec3 polygons[18];  // two of up to nine corners
 
-// What lies at or above 0 (or at or below 1) along x, of the polygon at `from` into the one at `to`, the axes turned on after
-// `upper`.
+// Clips the polygon at `from` to the part at or above 0 (or, with `upper`, at or below 1) along x, and writes it to
+// `to`; after `upper` the axes are rotated by one.
 int clipPolygon(int from, int to, int size, bool upper) {
   int kept = 0;
   precise vec3 p = polygons[from];
@@ -151,12 +154,13 @@ Piece clipToCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   polygons[2] = c;
   int size = 3, from = 0;
   vec3 least = min(min(a, b), c), most = max(max(a, b), c);
-  bool inside = all(greaterThanEqual(least, vec3(0.0))) && all(lessThanEqual(most, vec3(1.0)));  // clipping changes nothing
+  // If the triangle is inside the cell, clipping changes nothing.
+  bool inside = all(greaterThanEqual(least, vec3(0.0))) && all(lessThanEqual(most, vec3(1.0)));
   [[dont_unroll]] for (int plane = inside ? 6 : 0; plane < 6; ++plane) {
     size = clipPolygon(from, 9 - from, size, plane % 2 != 0);
     from = 9 - from;
   }
-  // Weights of the fan's triangles are as seen along z; none is negative, so the centroid stays inside.
+  // The weights of the fan's triangles are areas as seen along z; none is negative, so the centroid stays inside.
   vec3 first = polygons[0];
   precise float sum = 0.0;
   precise vec3 moment = vec3(0.0);
@@ -174,7 +178,8 @@ Piece clipToCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   return Piece(area, centre);
 }
 
-// The piece of a triangle that goes through all four of the cell's edges along z: most of a large triangle. False: it does not.
+// The piece of a triangle that crosses all four of the cell's edges along z, as most pieces of a large triangle do.
+// Returns false if it does not.
 bool crossesCell(CellTriangle t, vec3 a, vec3 b, vec3 c, out Piece piece) {
   float side = t.n.z < 0.0 ? -1.0 : 1.0;
   precise float z = (a.z - t.slope.x * a.x) - t.slope.y * a.y;  // at the corner
@@ -187,7 +192,8 @@ bool crossesCell(CellTriangle t, vec3 a, vec3 b, vec3 c, out Piece piece) {
          edgeHoldsCell(c.xy, a.xy, side);
 }
 
-// Texture coordinates at point p of the cell whose own coordinates of the first vertex are a; both with turned axes.
+// Texture coordinates at point p of the cell in which the first vertex has the coordinates a; both with permuted
+// axes.
 vec2 cellUv(CellTriangle t, uvec4 indices, vec3 a, vec3 p) {
   precise vec3 e1 = t.b - t.a;
   precise vec3 e2 = t.c - t.a;

@@ -1,5 +1,5 @@
-// What happens in a cell that a triangle overlaps: without ACCUMULATE it is marked, with it the piece of the triangle is added
-// to the voxel's sums.
+// Handles a cell that a triangle overlaps: without ACCUMULATE it is marked, with it the piece of the triangle is
+// added to the voxel's sums.
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/state.glsl"
@@ -23,7 +23,7 @@ layout(push_constant) uniform Constants {
 #endif
 } constants;
 
-// Sums are whole numbers of 2^-32, of 64 bits in two words (not every device has atomics of 64 bits).
+// Sums are 64-bit multiples of 2^-32 in two words (not every device has 64-bit atomics).
 float fixedPoint(float x) {
   precise float y = floor(x * 4294967296.0 + 0.5);
   return y;
@@ -49,7 +49,7 @@ void addTo(uint word, precise vec3 x) {
 }
 
 // Words of a side: area, position, normal + 1, reflectance, emission (each weighted by the area), object, triangle.
-// `triangle`: past the static ones; kTriangleBits all set: not of an object that deforms.
+// `triangle` counts from the first non-static one; all kTriangleBits are set if the object does not deform.
 void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint object, uint triangle) {
   uint word = side * kSumWords;
   precise vec3 position = piece.area * piece.centre;
@@ -61,9 +61,9 @@ void addPiece(uint side, Piece piece, vec3 normal, SurfacePoint surface, uint ob
   addTo(word + 8u, biased);
   addTo(word + 14u, reflectance);
   if (emission != vec3(0.0)) addTo(word + 20u, emission);
-  // The object of the largest piece; of several such the smallest number.
+  // The object of the largest piece; of several such pieces, the smallest number.
   atomicMax(sums.words[word + 26u], uint(min(piece.area * 32768.0, 65535.0)) << 16 | (0xffffu - object));
-  // Likewise, coarser.
+  // The same for the triangle, with coarser areas.
   const uint kNone = (1u << kTriangleBits) - 1u;
   if (triangle < kNone) atomicMax(sums.words[word + 27u], uint(min(piece.area * 512.0, 1023.0)) << kTriangleBits | (kNone - triangle));
 }
@@ -78,10 +78,10 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   uvec3 cell = uvec3(turnBack(place, t.axis));
 #ifndef ACCUMULATE
   uint linear = cell.x + constants.resolution * (cell.y + constants.resolution * cell.z), bit = 1u << (linear % 32u);
-  if ((marks.words[linear / 32u] & bit) != 0u) return;  // that another may just be setting it costs only time
+  if ((marks.words[linear / 32u] & bit) != 0u) return;  // a race with another invocation that sets it only costs time
 #else
   uint voxel = imageLoad(voxelsIndex, ivec3(cell)).r - 1u - state.value.phases[constants.phase].first - constants.base;
-  // Not of this batch: too large, or below 0 and wrapped around.
+  // Not in this batch: too large, or below 0 and wrapped around.
   if (voxel >= constants.batch) return;
 #endif
   Piece piece;

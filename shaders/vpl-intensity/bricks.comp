@@ -1,5 +1,5 @@
-// Strategy `area`, first step: which VPLs can be nearest to a side of a brick? Those whose least possible distance is no
-// more than the smallest of the largest possible ones. One bit a VPL; one invocation a brick.
+// Strategy `area`, first step: which VPLs can be nearest to a side in a brick: those whose smallest possible distance
+// is no more than the least of the largest possible ones. One bit per VPL; one invocation per brick.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -21,7 +21,7 @@ void main() {
   if (any(greaterThanEqual(brick, brickGrid(grid)))) return;
   uint index = brickIndex(grid, brick), words = (vplCount + 31u) / 32u;
   if (bricks.list[index] == 0u) return;
-  // A little wider: average positions may lie outside their cell by rounding.
+  // Slightly wider, as average positions may lie outside their cell because of rounding.
   vec3 low = voxelToWorld(grid, vec3(brick * kBrick) - 0.01), high = voxelToWorld(grid, vec3((brick + 1) * kBrick) + 0.01);
   float nearest = 1e38;
   for (uint i = 0u; i < vplCount; ++i) {

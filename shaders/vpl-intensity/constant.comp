@@ -1,6 +1,6 @@
-// Strategy `constant`: all VPLs have the same area, a total that never changes divided among those alive. The total is set
-// on the first frame that has any flux, so that all VPLs together send out what those of the densities would
-// (pdf.comp has put them into `areas`): T = alive * sum B_l A_l / sum B_l, in luminance. One work group.
+// Strategy `constant`: all VPLs have the same area, a constant total divided by the number of VPLs alive. The total
+// is set on the first frame that has any flux, so that all VPLs together emit as much as with the areas of the
+// densities (which pdf.comp has put into `areas`): T = alive * sum B_l A_l / sum B_l, in luminance. One work group.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -10,7 +10,7 @@ uniform samplerBuffer vpls;
 uniform samplerBuffer radiosity;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer AreasBlock { float list[]; } areas;
-layout(std430) buffer KeptBlock { float total, median; } kept;  // total: m^2; 0: not yet
+layout(std430) buffer KeptBlock { float total, median; } kept;  // total: m^2, 0 if not yet known
 
 layout(push_constant) uniform Constants { uint vplCount; };
 

@@ -1,16 +1,15 @@
-// Strategies `pdf` and `constant`, first step: p_A, the density per area of surface with which eye paths that start anywhere
-// in the region land where the VPL is. One work group a VPL.
+// Strategies `pdf` and `constant`, first step: p_A, the density per surface area with which eye paths that start
+// anywhere in the region land at the VPL. One work group per VPL.
 //
-// p_A is the mean over the region's points s of   cos_s cos_l V / (pi d^2 + cell^2):   the marginal over s, not the density
-// from the one point that found the VPL. A VPL stands for the surface of a voxel: 1 / (pi d^2 + a) is the form factor of a
-// disc of area a, seen along its axis, over that area; so a point that happens to lie close by makes no spike. Points that
-// show the background start no path.
+// p_A is the mean over the region's points s of   cos_s cos_l V / (pi d^2 + cell^2):   the marginal over s, not the
+// density from the one point that found the VPL. A VPL stands for the surface of a voxel, and 1 / (pi d^2 + a) is the
+// form factor of a disc of area a, seen along its axis, divided by that area; so a point that happens to be close
+// causes no spike. Points that show the background start no path.
 //
-// Most of the sum comes from the few points that are close, so many points are needed, but not a ray for each: an
-// invocation sums its share without V and traces one ray, to a point drawn in proportion to the terms, the same one as long
-// as nothing moves. Its share times V of that point has the right mean.
-// V is by the voxels, as it was for the paths that found the VPLs.
-// Define: ONCE 0/1: not once the total of `constant` is known.
+// Most of the sum comes from the few close points, so many points are needed, but not a ray for each: an invocation
+// sums its share without V and traces one ray, to a point drawn in proportion to the terms, which stays the same as
+// long as nothing moves. Its share times V of that point has the correct mean. V is evaluated in the voxels, as for
+// the paths that found the VPLs. Define: ONCE 0/1, 1 to skip the work once the total of `constant` is known.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
@@ -34,7 +33,7 @@ shared float sums[64];
 
 const uint kDensityStream = 0x64656e73u;
 
-// Of a path from a screen point that nothing stops.
+// Density of a path from a screen point that nothing blocks.
 float landing(VoxelGrid grid, uint point, vec3 position, vec3 normal) {
   vec4 from = texelFetch(screen, int(3u * point));
   vec3 to = position - from.xyz;
@@ -70,7 +69,7 @@ void main() {
 #endif
   sums[lane] = wanted ? seenShare(voxelsGrid(), slot, lane, position, normalLife.xyz) : 0.0;
   barrier();
-  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
+  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree, so that the order is always the same
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }

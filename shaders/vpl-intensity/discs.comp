@@ -1,6 +1,7 @@
-// Strategy `importance-area` with the kernel `disc`, last step but one: the disc of a VPL's own area sends the region less
-// than one of a voxel would, wherever it is close. How much more the VPL has to shine for it. One work group a VPL.
-// NEAR 1: no disc is smaller than `spread`, for which pass near-field makes up: the paths were given without that light.
+// Strategy `importance-area` with the kernel `disc`, second to last step: the disc of a VPL's own area sends less
+// light to nearby points of the region than the disc of a voxel would. Finds how much brighter the VPL must be to
+// make up for that. One work group per VPL. NEAR 1: no disc is smaller than `spread`, for which pass near-field
+// compensates; the paths were assigned without that light.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 #include "vpl-intensity/landing.glsl"
@@ -43,7 +44,7 @@ void main() {
   }
   sums[lane] = sum;
   barrier();
-  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
+  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree, so that the order is always the same
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }

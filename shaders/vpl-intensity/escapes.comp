@@ -1,6 +1,6 @@
-// Strategies `pdf` and `constant`: the share of the eye paths that find a surface, from one diffuse bounce at each of the
-// first screen points, the same ones as long as nothing moves. Counting this frame's candidates instead would make a still
-// picture tremble.
+// Strategies `pdf` and `constant`: the share of the eye paths that hit a surface, from one diffuse bounce at each of
+// the first screen points, the same ones as long as nothing moves. Counting this frame's candidates instead would
+// make a still image flicker.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/paraboloid.glsl"
@@ -23,6 +23,6 @@ void main() {
   if (!(from.w > 0.0)) return;
   vec3 normal = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
   vec2 u = streamPoint(randomStream(0u, 0u, kEscapeStream, point), 0u);
-  vec3 direction = diffuseBounce(normal, face, u);  // as pass candidates
+  vec3 direction = diffuseBounce(normal, face, u);  // as in pass candidates
   if (traceVoxels(voxelsGrid(), from.xyz, direction, face).side != kNoSide) atomicAdd(totals.value.found, 1u);
 }

@@ -1,6 +1,6 @@
-// VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's place.
-// Defines: SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with what
-// discs.comp found; NEAR 0/1: no disc is smaller than pass near-field says.
+// VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's position. Defines:
+// SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with the factors
+// from discs.comp; NEAR 0/1: no disc is smaller than pass near-field specifies.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 #include "common/finite.glsl"
@@ -24,8 +24,8 @@ uniform samplerBuffer tracedEnds;
 uniform samplerBuffer densities;
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 
-// Intensity of a VPL of area `area` that shines as its paths do on average; one that the region does not see shines of its
-// own.
+// Intensity of a VPL of area `area` that emits as its paths do on average; one that the region does not see
+// emits its own light.
 vec3 intensityOf(uint slot, vec3 own, float area) {
   PathSum sum = sums.list[slot];
   vec3 light = vec3(sum.lightX, sum.lightY, sum.lightZ) * texelFetch(tracedEnds, 2).w * kPathUnits;
@@ -38,8 +38,8 @@ uniform samplerBuffer radiosity;
 uniform samplerBuffer radiance;
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 
-// Mean light of the paths given to a VPL over its own, all of it when there are none. Direct light is that at the ends of
-// the paths; for what comes by more bounces the VPL speaks for all of them.
+// Mean light of the paths assigned to a VPL relative to its own, or all of its own if there are none. Direct light is
+// that at the ends of the paths; for light from further bounces the VPL stands for all of them.
 float meanLight(uint slot, int side, float radiosity) {
   PathSum sum = sums.list[slot];
   float own = side >= 0 && side < textureSize(radiance) ? kPi * texelFetch(radiance, side).w : 0.0;
@@ -60,7 +60,7 @@ layout(push_constant) uniform Constants {
   uint vplCount;
 };
 
-const float kBrightest = 1e18;  // W/sr: far from any real light, and its products stay finite where it is shaded
+const float kBrightest = 1e18;  // W/sr: far above any real light, and products in the shading stay finite
 
 void main() {
   uint slot = gl_GlobalInvocationID.x;

@@ -1,12 +1,12 @@
-// The kernel of a density: how densely per area of surface, 1/m^2, eye paths from a screen point land on a VPL that nothing
-// hides. Needs common/scene.glsl.
+// The kernel of a density: how densely, per surface area in 1/m^2, eye paths from a screen point land on an
+// unoccluded VPL. Needs common/scene.glsl.
 #ifndef FOVEA_LANDING_GLSL
 #define FOVEA_LANDING_GLSL
 
 uniform samplerBuffer screen;  // see points.comp
 
-// cos_s cos_l / (pi d^2 + area): the form factor of a disc of that area, seen along its axis, over the area. nearest, m:
-// above 0 nothing counts as nearer instead, as for the kernel `clamp`.
+// cos_s cos_l / (pi d^2 + area): the form factor of a disc of that area, seen along its axis, divided by the area.
+// nearest, m: if above 0, smaller distances count as this one instead, as for the kernel `clamp`.
 float landing(vec3 to, vec3 up, vec3 normal, float area, float nearest) {
   float d2 = dot(to, to), cosines = max(dot(up, to), 0.0) * max(-dot(normal, to), 0.0);
   float solid = nearest > 0.0 ? kPi * max(d2, nearest * nearest) : kPi * d2 + area;

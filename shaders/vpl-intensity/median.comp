@@ -1,6 +1,6 @@
-// The median density of the VPLs that are seen: what "hardly seen at all" is measured by. One work group.
-// SHARED 1, strategy `importance-area`: marks the VPLs that are thinner than the median's areaCap-th part, see share.comp.
-// When no VPL is seen at all (the region shows the background) the median of the last frame that had one stands in.
+// The median density of the VPLs that are seen, the reference for "hardly seen at all". One work group. SHARED 1,
+// strategy `importance-area`: marks the VPLs with a density below median / areaCap, see share.comp. If no VPL is seen
+// at all (the region shows the background), the median of the last frame that had one is used.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -37,8 +37,8 @@ uint countSeen(float most) {
   return counts[0];
 }
 
-// The smallest density that at least half of the seen VPLs do not exceed, 0: none is seen. By bisection on the bits, which
-// are ordered as the numbers are.
+// The smallest density that at least half of the seen VPLs do not exceed, 0 if none is seen. Found by bisection on
+// the bits, which are ordered as the numbers are.
 float medianDensity() {
   uint infinity = 0x7f800000u, seen = countSeen(uintBitsToFloat(infinity - 1u)), low = 0u, high = infinity - 1u;
   if (seen == 0u) return 0.0;

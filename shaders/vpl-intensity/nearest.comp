@@ -1,5 +1,5 @@
-// Strategy `area`, second step: every side gives its area to the nearest VPL, by d^2 + lambda (1 - n.n') (METHOD
-// section 3); the lowest slot wins a tie. One invocation a side.
+// Strategy `area`, second step: every side gives its area to the nearest VPL, by d^2 + lambda (1 - n.n')
+// (passes/README.md, vpl-intensity); the lowest slot wins a tie. One invocation per side.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 

@@ -1,5 +1,5 @@
-// Strategy `importance-area`: eye paths from the fixed screen points, one diffuse bounce each, the same ones as long as
-// nothing moves. A point's paths follow each other as the R2 sequence (see points.comp) from a start of its own.
+// Strategy `importance-area`: eye paths from the fixed screen points, one diffuse bounce each, the same ones as long
+// as nothing moves. The paths of a point follow the R2 sequence (see points.comp) from a start of its own.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/paraboloid.glsl"
@@ -33,7 +33,7 @@ void main() {
     if (side != kNoSide) {
       int first = int(side) * kVoxelSideTexels;
       float light = texelFetch(radiance, int(side)).w;
-      light = light > 0.0 ? light : 0.0;  // nor not a number
+      light = light > 0.0 ? light : 0.0;  // excludes NaN
       position = vec4(texelFetch(voxelsSurface, first).xyz, siteKind(light));
       normal = vec4(texelFetch(voxelsSurface, first + 1).xyz, light);
     }

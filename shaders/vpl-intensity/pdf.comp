@@ -1,13 +1,13 @@
-// Strategy `pdf`: A_l = 1 / (N p_A(x_l)).
-// SHARED 1, strategy `importance-area`: n / (M p_A(x_l)) with n of M eye paths given to the VPL (share.comp).
+// Strategy `pdf`: A_l = 1 / (N p_A(x_l)). SHARED 1, strategy `importance-area`: n / (M p_A(x_l)) with n of M eye
+// paths assigned to the VPL (share.comp).
 //
 // N is the number of eye paths that the list stands for: the VPLs alive, plus the paths that escaped, in proportion.
 //
-// No density counts as less than the median's areaCap-th part. Without that bound the few VPLs that hardly any point sees,
-// and whose density is mostly error, would shine through everything; the contribution of a VPL to the region's mean,
-// B_l A_l p_l, is cut only below it (and in `importance-area` given to others, see share.comp). A VPL that no point sees (an
-// old one, out of the region) gets the largest area: it cannot change the region's mean, and a weight that jumped to 0 would
-// flicker where the rest of the image shows its light.
+// Densities are bounded below by median / areaCap. Without that bound the few VPLs that hardly any point sees, and
+// whose density is mostly error, would outshine everything else. The contribution of a VPL to the region's mean, B_l
+// A_l p_l, is reduced only below the bound (and in `importance-area` given to others, see share.comp). A VPL that no
+// point sees (an old one, outside the region) gets the largest area: it cannot change the region's mean, and a weight
+// that jumped to 0 would flicker where the rest of the image shows its light.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -25,7 +25,7 @@ layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } 
 
 layout(push_constant) uniform Constants {
   uint vplCount;
-  uint tried;  // as Totals::found, had none escaped
+  uint tried;  // value of Totals::found if no path escaped
   float areaCap;
 };
 

@@ -1,7 +1,7 @@
-// The fixed points of the region on screen from which densities are estimated: the R2 sequence (Roberts, "The Unreasonable
-// Effectiveness of Quasirandom Sequences", 2018) over the box of the region, by rejection as regionSample; the same in every
-// frame, so that only what changes in the scene changes the weights. TRACED 1: what pass eye-paths saw from such points, some
-// of it in earlier frames.
+// The fixed screen points of the region from which densities are estimated: the R2 sequence (Roberts, "The
+// Unreasonable Effectiveness of Quasirandom Sequences", 2018) over the box of the region, by rejection as in
+// regionSample. They are the same in every frame, so that only changes in the scene change the intensities. TRACED 1:
+// the surfaces that pass eye-paths saw from such points, some of them in earlier frames.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 
@@ -14,7 +14,8 @@ uniform texture2D gbufferPosition;
 uniform texture2D gbufferNormal;
 uniform texture2D gbufferFace;
 #endif
-layout(std430) writeonly buffer ScreenBlock { vec4 list[]; } screen;  // position, w: 1, 0 background; normal; face
+// Three texels per point: position, w: 1, or 0 in the background; normal; face.
+layout(std430) writeonly buffer ScreenBlock { vec4 list[]; } screen;
 
 #if TRACED
 layout(push_constant) uniform Constants { uint points; };
@@ -38,7 +39,7 @@ vec2 sequencePoint(uint i) {
   return vec2(uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u));
 }
 
-// Point i of the region takes points i, i + points, i + 2 points.. of the sequence until one lies inside.
+// Point i of the region takes points i, i + points, i + 2 points and so on of the sequence until one lies inside.
 ivec2 regionPoint(uint part, uint i, Fovea fovea, ivec2 size) {
   vec2 high = vec2(size);
   if (part == kRegionImage) return clamp(ivec2(high * sequencePoint(i)), ivec2(0), size - 1);

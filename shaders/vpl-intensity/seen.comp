@@ -1,10 +1,10 @@
-// Strategy `importance-area`, first step: p_l, what the region gets from a VPL per area and radiosity, and with it which VPLs
-// are seen at all. One work group a VPL.
+// Strategy `importance-area`, first step: p_l, the light that the region receives from a VPL per area and radiosity,
+// and with it which VPLs are seen at all. One work group per VPL.
 //
-// p_l is the mean over the region's points s of   cos_s cos_l V / (pi d^2 + cell^2);   discs.comp puts the disc of the VPL's
-// own area in place of a cell's once that is known. V is what pass deferred takes it to be, a look-up in the VPL's own shadow
-// map: by any other visibility (rays through voxels, say) VPLs would be made up for what they do not lose, or not for what
-// they do. Points that show the background count as dark.
+// p_l is the mean over the region's points s of   cos_s cos_l V / (pi d^2 + cell^2);   discs.comp later replaces the
+// disc of a cell by that of the VPL's own area. V is the visibility that pass deferred uses, a look-up in the VPL's
+// own shadow map: with any other visibility (such as rays through voxels), VPLs would be compensated for light that
+// they do not lose, or not for light that they do. Points that show the background count as dark.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
@@ -26,7 +26,7 @@ layout(std430) writeonly buffer SeenFromBlock { float list[]; } seenFrom;
 layout(push_constant) uniform Constants {
   uint vplCount;
   uint points;
-  float nearest;  // m; above 0: nothing counts as nearer, as for the kernel `clamp`
+  float nearest;  // m; if above 0, smaller distances count as this one, as for the kernel `clamp`
   uint fadeFrames;
 };
 
@@ -39,7 +39,7 @@ struct Map {
   AtlasLayout layout_;
 };
 
-// As pass deferred has it.
+// The same test as in pass deferred.
 bool sees(Map map, vec3 point, vec3 face) {
   vec3 local = toLocal(map.frame, point - map.position), tilt = toLocal(map.frame, face);
   float len = length(local);
@@ -73,12 +73,12 @@ void main() {
   bool inside = slot < vplCount;
   int first = int(min(slot, vplCount - 1u)) * kStateTexels;
   vec4 normalLife = texelFetch(vpls, first + 1);
-  // Also what pass vpl-origins has let go as no number.
+  // Also excludes VPLs that pass vpl-origins has emptied because of a value that is not finite.
   bool wanted = inside && normalLife.w > 0.0 && texelFetch(placed, int(3u * min(slot, vplCount - 1u))).w > 0.0;
   VoxelGrid grid = voxelsGrid();
   sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec2(0.0);
   barrier();
-  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree: the same order every time
+  for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree, so that the order is always the same
     if (lane < half_) sums[lane] += sums[lane + half_];
     barrier();
   }
@@ -88,7 +88,7 @@ void main() {
   seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
   int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
   float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
-  // A new VPL is put at a disadvantage, at first of the area that there would be to each, so that it grows from nothing.
+  // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
   float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
   sites.list[2u * slot] = vec4(texelFetch(vpls, first).xyz, handicap);

@@ -1,23 +1,23 @@
-// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), a lit one if the
-// end is lit.
+// Strategy `importance-area`: every eye path goes to the VPL nearest to its end, by d^2 + lambda (1 - n.n'), and to a
+// lit one if the end is lit.
 //
-// The light that the region gets by way of a piece of surface C is the integral of B p over C: what the eye paths that end
-// there find, summed and divided by their number M. A VPL with the flux F sends it F p_l. So F = (sum of B over its n
-// paths) / (M p_l) keeps that light, whatever picked the VPLs; p_l is the only thing that has to be estimated. It has to be
-// what the region gets from the VPL as that is shaded: with the VPL's own shadow map (seen.comp), with its own disc
-// (discs.comp) or, where that is asked for, with the clamp, whose light comes back to the region's mean.
+// The light that the region receives by way of a piece of surface C is the integral of B p over C: the light found by
+// the eye paths that end there, divided by the number M of paths. A VPL with the flux F sends it F p_l. So F = (sum
+// of B over its n paths) / (M p_l) preserves that light however the VPLs were chosen; only p_l has to be estimated.
+// It has to be what the region receives from the VPL as it is shaded: with the VPL's own shadow map (seen.comp), with
+// its own disc (discs.comp) or, if requested, with the clamp, whose lost light is then returned to the region's mean.
 //
-// A VPL that the region hardly sees (one in a crack, or within what its voxel averages) would have to shine without bounds to
-// bring it the light of its paths. With p_l below the least density it keeps only the part p_l / least of every path, and
-// likewise one whose p_l is the average of less than a few points (partKept()); the rest goes to the nearest VPL that is seen
-// well, so that no light is lost: a third of it in rooms full of small things.
+// A VPL that the region hardly sees (one in a crack, or inside the surfaces that its voxel averages) would have to be
+// arbitrarily bright to deliver the light of its paths. If p_l is below the least density, it keeps only the part p_l
+// / least of every path, and likewise if its p_l is the average of only a few points (partKept()). The rest goes to
+// the nearest VPL that is seen well, so that no light is lost; in rooms full of small things this is a third of it.
 //
-// TRACED 1: the paths are those of pass eye-paths, whose ends know all the light that leaves there, in colour: a VPL shines
-// with it in place of its own. So it can go to any VPL, and goes to the nearest of those that the path's start sees: given to
-// another, it would go to whoever does see that one: after a jump of the gaze, when no VPL is where the new paths end yet, that
-// is a flash on the far wall.
+// TRACED 1: the paths are those of pass eye-paths, whose ends hold all the light that leaves there, in colour, and a
+// VPL emits that in place of its own. A path can then go to any VPL, and goes to the nearest of those that its start
+// sees. Given to another, its light would reach whatever that VPL does see; after a jump of the gaze, when there is
+// no VPL yet where the new paths end, that would be a flash on a far wall.
 //
-// PATHS: of an invocation.
+// PATHS: paths per invocation.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -49,9 +49,10 @@ layout(push_constant) uniform Constants {
   float areaCap;
 };
 
-// Of all VPLs those of the highest rank come first, then the nearest.
-const uint kSeen = 2u;      // by the start of the path; of traced paths only: dark VPLs could not shine with what others give
-const uint kSameKind = 1u;  // lit as the end is
+// Of all VPLs, those of the highest rank come first, and then the nearest.
+const uint kSeen = 2u;      // seen by the start of the path; for traced paths only, as dark VPLs cannot emit the light
+                            // of others
+const uint kSameKind = 1u;  // lit, or not lit, as the end is
 
 const uint kPaths = uint(PATHS);
 
@@ -70,7 +71,7 @@ void give(uint vpl, uint path, float luminance, uint pathUnits) {
   vec4 radiance = endTexel(path, 2);
   if (!(radiance.w > 0.0)) return;
 #if NEAR
-  // What pass near-field brings of it comes from no VPL.
+  // The part of it that pass near-field supplies comes from no VPL.
   vec3 away = endTexel(path, 0).xyz - texelFetch(screen, int(3u * (path % points))).xyz;
   float d2 = dot(away, away);
   radiance.rgb *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
@@ -86,11 +87,11 @@ void give(uint vpl, uint path, float luminance, uint pathUnits) {
 
 struct Path {
   vec3 position, normal;
-  float kind;               // of its end, 0: it ends nowhere
-  uint bit;                 // of its start in a VPL's words of `seen`,
-  int word;                 // and which of the words
+  float kind;               // kind of its end, 0 if it hits nothing
+  uint bit;                 // bit of its start in a VPL's words of `seen`
+  int word;                 // the word that holds it
   float best, bestWhole;
-  uint owner, whole;        // first of all; of those that are seen well
+  uint owner, whole;        // nearest of all VPLs, and of those that are seen well
   uint rank, rankWhole;
 };
 
@@ -133,7 +134,7 @@ void finish(Path p, uint path) {
   give(p.whole, path, luminance, uint(kPathUnits) - units);
 }
 
-// An invocation takes several paths past each VPL: on a CPU device loading the VPL is most of the work.
+// An invocation compares several paths with each VPL, as on a CPU device loading the VPL is most of the work.
 void main() {
   float lambda = normalWeight(voxelsGrid(), normalShare, totals.value.areaLow, totals.value.areaHigh);
   uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x * kPaths + gl_LocalInvocationIndex;

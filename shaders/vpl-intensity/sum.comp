@@ -1,4 +1,4 @@
-// Strategy `area`, last step: sums of sides as areas.
+// Strategy `area`, last step: turns the sums of sides into areas.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 

@@ -1,6 +1,6 @@
-// Counts what the areas hang on: VPLs alive, surface of the voxels; marks the bricks that hold
-// sides (for `area`: to give away); and for `area` lists the VPLs that compete for them.
-// Defines: AREA 0/1: the strategy is `area`; LIT_ONLY 0/1: only lit sides count.
+// Computes the totals on which the areas depend, VPLs alive and surface of the voxels; marks the bricks that contain
+// sides (for `area`: sides to assign); and for `area` lists the VPLs that compete for them. Defines: AREA 0/1: the
+// strategy is `area`; LIT_ONLY 0/1: only lit sides count.
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 

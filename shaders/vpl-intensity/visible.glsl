@@ -1,18 +1,20 @@
-// Does a point of a surface see a VPL, by the voxels? Needs weights/weights.glsl; `bricks` holds the bricks with any surface.
+// Whether a point of a surface sees a VPL, tested in the voxels. Needs vpl-intensity/vpl_intensity.glsl; `bricks`
+// holds the bricks that contain any surface.
 #ifndef FOVEA_VISIBLE_GLSL
 #define FOVEA_VISIBLE_GLSL
 
 uniform usamplerBuffer bricks;
 
-// Sides block that face the ray and lie in front of the start's tangent plane (as traceVoxels has it), but not those near
-// the VPL, in cells, nor parts of the surface that the VPL lies on, that far off its tangent plane: a ray that comes in flat
-// meets the layer of its voxels long before its end. Against traced rays, weighted by the light they would carry, this loses 1%
-// in the Cornell box and gains none; in Sponza, 128^3 cells, it loses 16% and gains 11% (without the second exception: 21%, 9%).
+// Sides block the ray if they face it and lie in front of the start's tangent plane (as in traceVoxels), except for
+// those within this distance of the VPL, in cells, and parts of the VPL's own surface within this distance of its
+// tangent plane: a ray at a grazing angle meets the layer of its voxels long before its end. Against traced rays,
+// weighted by the light they would carry, this loses 1% in the Cornell box and gains none; in Sponza with 128^3 cells
+// it loses 16% and gains 11% (without the second exception 21% and 9%).
 const float kNearby = 1.5;
 const float kSamePlane = 1.0;
 
 struct Segment {
-  vec3 from, face, direction;  // face: normal of the start
+  vec3 from, face, direction;  // face: geometric normal at the start
   vec3 to, normal;             // the VPL
 };
 
@@ -28,7 +30,7 @@ bool blocks(VoxelGrid grid, Segment s, uint side) {
   return faces && !own && !near && !same;
 }
 
-// Walks from cell to cell, over empty bricks in one step.
+// Walks from cell to cell and crosses empty bricks in one step.
 bool seesVpl(VoxelGrid grid, vec3 from, vec3 face, vec3 to, vec3 normal) {
   float d = distance(from, to);
   Segment s = Segment(from, face, (to - from) / d, to, normal);
@@ -38,7 +40,7 @@ bool seesVpl(VoxelGrid grid, vec3 from, vec3 face, vec3 to, vec3 normal) {
   vec3 ahead = mix(vec3(1.0), vec3(greaterThan(s.direction, vec3(0.0))), moves);
   float t = 0.0, end = d / grid.cell - 1.0;
   for (int turn = 0; turn < 3 * grid.resolution + 3 && t < end; ++turn) {
-    ivec3 cell = ivec3(floor(p + (t + 1e-3) * s.direction));  // a little on, so that no wall holds the walk up
+    ivec3 cell = ivec3(floor(p + (t + 1e-3) * s.direction));  // slightly ahead, so that no wall stops it
     if (!insideGrid(grid, cell)) break;
     bool full = texelFetch(bricks, int(brickIndex(grid, cell / kBrick))).r != 0u;
     if (full) {

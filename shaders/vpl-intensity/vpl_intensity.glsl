@@ -1,14 +1,14 @@
-// What the kernels of pass vpl-intensity share. Needs common/scene.glsl; includes the voxels.
+// Shared by the kernels of pass vpl-intensity. Needs common/scene.glsl; includes the voxels.
 #ifndef FOVEA_WEIGHTS_GLSL
 #define FOVEA_WEIGHTS_GLSL
 
 #include "common/voxel_trace.glsl"
 
-// Sums over the scene and the lists. Areas as 64-bit whole numbers (low, high word) of 1 / kAreaUnits cell faces: whole
-// numbers add up to the same sum in any order.
+// Sums over the scene and the lists. Areas are 64-bit integers (low, high word) in units of 1 / kAreaUnits cell
+// faces, as integers add up to the same sum in any order.
 struct Totals {
   uint alive;              // slots that hold a VPL
-  uint found;              // eye paths that found a surface: see escapes.comp, share.comp
+  uint found;              // eye paths that hit a surface, see escapes.comp, share.comp
   uint areaLow, areaHigh;  // surface of all voxel sides
 };
 
@@ -22,24 +22,26 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
   return (float(high) * 4294967296.0 + float(low)) * (grid.cell * grid.cell / kAreaUnits);
 }
 
-// Adds to a 64-bit sum in a buffer: whoever wraps the low word carries.
+// Adds to a 64-bit sum in a buffer; the invocation whose addition wraps the low word carries.
 #define ADD_WIDE(LOW, HIGH, VALUE) { \
   uint before_ = atomicAdd(LOW, VALUE); \
   if (before_ + (VALUE) < before_) atomicAdd(HIGH, 1u); \
 }
 
-// VPLs and ends of eye paths on sides with direct light keep to themselves.
+// VPLs and ends of eye paths on sides with direct light are kept apart from the others.
 float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
 
-// Paths in fixed point, for they may be divided; and direct light at the end of a path in units of that of a VPL, with an end
-// to it.
+// Paths are counted in fixed point, as they may be divided. The direct light at the end of a path is relative to that
+// of a VPL, with an upper limit.
 const float kPathUnits = 1024.0, kMostLight = 16.0;
 
-// Texels of a PathEnd: position, w: kind (siteKind(), 0: the path ends nowhere); normal, w: luminance. An EyePathEnd, of a path
-// traced through the triangles (pass eye-paths), has a third one: radiance, w: the unit of its sums.
+// Texels of a PathEnd: position, w: kind (siteKind(), 0 if the path hits nothing); normal, w: luminance. An
+// EyePathEnd, of a path traced through the triangles (pass eye-paths), has a third one: radiance, w: the
+// unit of its sums.
 const int kEndTexels = 2, kTracedEndTexels = 3;
 
-// Paths that a VPL is given, in parts of a path; their light: in lightX as lightUnits(), of traced paths rgb in their unit.
+// Paths assigned to a VPL, in parts of a path, and their light: in lightX as lightUnits(), for traced paths
+// rgb in their unit.
 struct PathSum {
   uint paths;
   uint lightX, lightY, lightZ;
@@ -49,24 +51,24 @@ uint lightUnits(float light, float ofVpl, uint pathUnits) {
   return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * float(pathUnits) + 0.5);
 }
 
-// The fourth component of a VPL that paths may go to is how much farther away it counts, m^2; of one that the region hardly
-// sees this minus that; -1: it takes none.
+// The fourth component of a VPL that paths may go to is its handicap, added to its distance, m^2; for one that the
+// region hardly sees it is kThinSite minus the handicap; -1 means that it takes no paths.
 const float kThinSite = -2.0;
 
-// Which part of the paths that end nearest to it a VPL keeps, see share.comp. p: its density; least: that counts;
-// seenFrom: screen points that p is an average of.
+// The part that a VPL keeps of the paths that end nearest to it, see share.comp. p: its density; least: least density
+// that counts; seenFrom: number of screen points of which p is an average.
 const float kEnoughPoints = 4.0;
 
 float partKept(float p, float least, float seenFrom) { return min(min(p / max(least, 1e-30), seenFrom / kEnoughPoints), 1.0); }
 
-// Points that each of 64 invocations looks at, every 64th, and words of 32 bits that say which of them the VPL is seen from.
+// Each of 64 invocations looks at every 64th point, and words of 32 bits say from which of them the VPL is seen.
 uint laneWords(uint points) { return (points + 2047u) / 2048u; }
 
 // Texels of a VplState.
 const int kStateTexels = 5;
 
-// Cells along the edge of a brick. Rays step over empty bricks; the sides of a brick share one list of the VPLs that can be
-// nearest to any of them.
+// Cells along the edge of a brick. Rays cross empty bricks in one step; the sides in a brick share one list of the
+// VPLs that can be nearest to any of them.
 const int kBrick = 4;
 
 ivec3 brickGrid(VoxelGrid grid) { return ivec3((grid.resolution + kBrick - 1) / kBrick); }
@@ -80,8 +82,8 @@ uint brickIndex(VoxelGrid grid, ivec3 brick) {
   return uint(brick.x + n * (brick.y + n * brick.z));
 }
 
-// Weight of the normals in the distance between surfaces, m^2: `share` of the squared mean free path 4 V / S of the scene
-// (mean chord of a room of volume V and surface S), so that one number serves a cupboard and a cathedral.
+// Weight of the normals in the distance between surfaces, m^2: `share` of the squared mean free path 4 V / S of the
+// scene (the mean chord of a room of volume V and surface S), so that one value suits scenes of any size.
 float normalWeight(VoxelGrid grid, float share, uint areaLow, uint areaHigh) {
   vec3 extent = max(frame.boundsMax.xyz - frame.boundsMin.xyz, vec3(0.0));
   float path = 4.0 * extent.x * extent.y * extent.z / max(unitsToArea(grid, areaLow, areaHigh), 1e-12);

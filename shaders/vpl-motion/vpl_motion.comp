@@ -1,4 +1,5 @@
-// One slot an invocation: the VPL moves with its object and takes what the voxel it comes to says of the surface there.
+// One slot per invocation: the VPL moves with its object and takes over the surface data of the
+// voxel that it reaches.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 
@@ -9,11 +10,11 @@ layout(std430) writeonly buffer Vpls { VplState vpls[]; };
 layout(std430) buffer Counters { uint counters[]; };  // alive, deleted
 
 layout(push_constant) uniform Push {
-  float turnCos;  // of the largest angle between the VPL's own normal and its voxel's
+  float turnCos;  // cosine of the largest angle between the VPL's own normal and its voxel's
 };
 
-// Side of this frame's voxel at `position` that is the VPL's surface: of its object, and the one of the two that turned the
-// least; kNoSide: none, it came, went or turned.
+// Side of this frame's voxel at `position` that is the VPL's surface: it belongs to its object and is the one of the
+// two that turned less; kNoSide if there is none.
 uint sideAt(vec3 position, vec3 normal, float object) {
   VoxelGrid grid = voxelsGrid();
   vec3 p = worldToVoxel(grid, position);
@@ -47,7 +48,7 @@ void main() {
     uint side = sideAt(position, normal, vpl.localPosition.w);
     if (side != kNoSide) {
       VoxelSide surface = loadSide(side);
-      vpl.localNormal.w = vpl.positionImportance.w;  // I of the frame before; pass `importance` makes a new one
+      vpl.localNormal.w = vpl.positionImportance.w;  // I of the previous frame; pass `importance` computes the new one
       vpl.positionImportance.xyz = position;
       vpl.normalLife = vec4(surface.normal, vpl.normalLife.w + 1.0);
       vpl.reflectanceSide = vec4(surface.reflectance, uintBitsToFloat(side));

@@ -1,4 +1,4 @@
-// One slot an invocation: a VPL a little out of the surface that its voxel averages.
+// One slot per invocation: the VPL moved slightly out of the surface that its voxel averages.
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "common/finite.glsl"

@@ -1,20 +1,20 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
-// Every pixel gives its foveated weight to the voxel side that its surface point lies in; a side keeps the largest
-// (METHOD importance step 1). The largest does not depend on the order. Define: WHOLE_IMAGE 0/1.
+// Every pixel gives its foveated weight to the voxel side in which its surface point lies; a side keeps the largest
+// weight (passes/README.md, weight-map), so the result does not depend on the order. Define: WHOLE_IMAGE 0/1.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/voxel_trace.glsl"
 
-// An invocation looks at a block of pixels, row by row and back: neighbours mostly show the same side, so a run of them
-// costs one look-up of the side and one atomic. A run is a loop of its own: a CPU device runs all that a loop holds in
-// every turn.
+// An invocation processes a block of pixels row by row, alternating in direction. Neighbours mostly show the same
+// side, so a run of them costs one look-up of the side and one atomic. A run is a loop of its own, as a CPU device
+// executes everything in a loop in every turn.
 const int kBlock = 4;
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
-layout(std430) buffer Weights { uint weights[]; };    // bits of floats, none negative: they order alike
+layout(std430) buffer Weights { uint weights[]; };    // bits of non-negative floats, which are ordered as the floats
 layout(std430) buffer Counters { uint counters[]; };  // visible, unassigned
 
 #if !WHOLE_IMAGE
@@ -23,8 +23,8 @@ layout(push_constant) uniform Constants {
 };
 #endif
 
-// The side that a surface point lies in; where that is empty (on the border of a cell the rounding decides) the voxel's
-// other side if it faces the eye.
+// The side in which a surface point lies; if that is empty (rounding decides on the border of a cell), the voxel's
+// other side, provided that it faces the eye.
 uint seenSide(VoxelGrid grid, ivec3 cell, uint exact) {
   uint voxel = voxelAt(grid, cell);
   if (voxel == 0u) return kNoSide;
@@ -44,7 +44,7 @@ uint give(uint side, float weight) {
 
 struct Seen {
   ivec2 pixel;
-  bool surface;  // and not the background, nor outside the image
+  bool surface;  // neither background nor outside the image
   ivec3 cell;
   uint facing;
 };

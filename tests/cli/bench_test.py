@@ -1,4 +1,4 @@
-"""fovea bench from outside. Usage: bench_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+"""Tests `fovea bench` from outside. Usage: bench_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import csv
 import json
@@ -37,7 +37,7 @@ class Suites(CliTest):
             return {(r["scene"], r["graph"], r["measure"]): r for r in csv.DictReader(file)}
 
     def test_from_suite_to_report(self):
-        """Results, references that jobs share, tables beside the paper's numbers, a page that needs nothing else."""
+        """Checks results, references that jobs share, tables beside the paper's numbers, and a self-contained page."""
         self.suite(graphs=["ours", "ir_1000"], set={"vpl_count": 16, "map_size": 16, "shadow_map_size": 256}, sweeps=[{"name": "all"}])
         run = self.succeeds("bench", "tiny.json", "-o", "out")
         self.assertIn("[4/4] all-cornellbox_moving-ir_1000-s1", run.stdout)
@@ -65,7 +65,7 @@ class Suites(CliTest):
         self.assertNotIn("src='pictures", text)
         for word in ("Sponza", "Cornellbox"):
             self.assertEqual(word in text, word == "Cornellbox")
-        # Nothing is measured twice, and the errors are what `compare` says.
+        # Nothing is measured twice, and the errors agree with `compare`.
         again = self.succeeds("bench", "tiny.json", "-o", "out", "--resume")
         self.assertIn("4 of 4 jobs are done already", again.stdout)
         self.assertEqual(self.results(), results)
@@ -83,7 +83,7 @@ class Suites(CliTest):
             self.assertAlmostEqual(m[region]["direct_floor"], result["error"][region]["direct_floor"], delta=1e-9)
 
     def test_two_shards_at_once(self):
-        """Two processes share the folder and its references; together they have done what one does alone."""
+        """Two processes share the folder and its references; together they do what one does alone."""
         self.suite()
         shards = [subprocess.Popen(self.command("bench", "tiny.json", "-o", "out", "--shard", f"{i}/2"), cwd=self.folder,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for i in (1, 2)]
@@ -101,7 +101,7 @@ class Suites(CliTest):
         self.assertFalse([p for p in (self.folder / "out").rglob("*") if "claim" in p.name or "partial" in p.name])
 
     def test_goes_on_after_a_kill(self):
-        """What was finished stays, also when the process had no time to say good-bye and leaves a claim behind."""
+        """Finished results stay, also if the process is killed and leaves a claim behind."""
         self.suite(reference={"spp": 2000, "depth": 3})
         run = subprocess.Popen(self.command("bench", "tiny.json", "-o", "out"), cwd=self.folder, stdout=subprocess.PIPE, text=True)
         self.assertIn("[1/4]", run.stdout.readline())
@@ -135,12 +135,12 @@ class Suites(CliTest):
         self.assertEqual(list((self.folder / "out/references").iterdir()), [])
 
     def test_refuses_to_mix(self):
-        """Sizes, scenes, graphs and passes that are not the same any more."""
+        """Sizes, scenes, graphs and passes that have changed."""
         self.suite(measures=["time"])
         self.succeeds("bench", "tiny.json", "-o", "out", "-q")
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--size", "16x16", says=["size", "32", "16", "--replace"])
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--size", "16x16", "--report", says=["size"])
-        # Results of another device, and of a pass with other code, brought here from elsewhere.
+        # Results of another device and of a pass with other code, copied from elsewhere.
         name, result = next((n, r) for n, r in self.results().items() if "-direct-" in n)
         other = json.loads(json.dumps(result))
         other["made_with"]["device"] = "another"
@@ -161,7 +161,7 @@ class Suites(CliTest):
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", says=[stale.name, "no result"])
 
     def test_changed_shader(self):
-        """What depends on it is no longer comparable; what does not, is."""
+        """Results that depend on it are no longer comparable; the others are."""
         self.suite(measures=["time"])
         self.succeeds("bench", "tiny.json", "-o", "out", "-q")
         shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
@@ -177,7 +177,7 @@ class Suites(CliTest):
         self.assertIn("2 of 2 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", "--only", "direct", env=data).stdout)
 
     def test_what_a_result_is_made_with(self):
-        """The code of its passes, of the framework and of the measures, its plan; references: of the path tracer alone."""
+        """Results depend on their plan and on the code of their passes, the framework and the measures; references on the path tracer."""
         self.suite(scenes=["cornellbox"], size="16x16")
         self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "direct")
         (result,) = self.results().values()
@@ -186,7 +186,7 @@ class Suites(CliTest):
             self.assertRegex(made[part], "^[0-9a-f]{16}$")
         self.assertEqual(set(made["passes"]), {"gbuffer", "shadow-map", "direct", "tonemap"})
         self.assertEqual(set(made["reference"]), {"path-trace", "parameters of path-trace"})
-        # A shader that the path tracer does not use makes no new reference.
+        # A change of a shader that the path tracer does not use makes no new reference.
         references = sorted((self.folder / "out/references").iterdir())
         shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
         for name in ("tonemap/tonemap.frag", "gbuffer/resolve.frag", "animate/animate.comp"):
@@ -201,7 +201,7 @@ class Suites(CliTest):
         self.assertEqual(sorted((self.folder / "out/references").iterdir()), references)
 
     def test_only_keeps_the_other_rows(self):
-        """Tables hold what the folder holds, whichever jobs a run was about; what does not fit is left out, and that is said."""
+        """Tables show all results in the folder, whichever jobs a run had; results that do not fit are left out with a message."""
         self.suite(measures=["time"])
         self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "*-cornellbox-*")
         self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--only", "*_moving-direct*")
@@ -219,7 +219,7 @@ class Suites(CliTest):
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["framework", name])
 
     def test_shared_references(self):
-        """One cache for several suites, filled at any time; the jobs then make none."""
+        """Several suites share one cache, which may be filled at any time; the jobs then make no references."""
         self.suite(scenes=["cornellbox"])
         self.write("other.json", {**SUITE, "scenes": ["cornellbox"], "frames": 3, "measures": ["error"]})
         out = self.succeeds("bench", "tiny.json", "-o", "a", "--cache", "cache", "--references-only", "--shard", "1/2").stdout
@@ -231,7 +231,7 @@ class Suites(CliTest):
         self.assertEqual(len(made), 2)
         self.succeeds("bench", "tiny.json", "-o", "a", "--cache", "cache", "-q")
         self.assertEqual({p.name: p.stat().st_mtime_ns for p in (self.folder / "cache").iterdir()}, made)
-        # Another suite, elsewhere: its only new reference is that of its last frame.
+        # Another suite in another folder; its only new reference is that of its last frame.
         self.succeeds("bench", "other.json", "-o", "b", "-q", env={"FOVEA_BENCH_CACHE": str(self.folder / "cache")})
         self.assertEqual(len(list((self.folder / "cache").iterdir())), 3)
         self.assertFalse((self.folder / "b/references").exists())
@@ -239,7 +239,7 @@ class Suites(CliTest):
         self.fails(USAGE, "bench", "tiny.json", "-o", "a", "--references-only", says=["no job", "reference"])
 
     def test_match(self):
-        """Bisection: as many VPLs as it takes to be as good as another graph."""
+        """Bisection finds the number of VPLs at which a graph is as good as another one."""
         self.suite(scenes=["cornellbox"], measures=["error"], frames=1, reference={"spp": 32, "depth": 3}, sweeps=[
             {"name": "eq", "set": {"map_size": 16}, "graphs": [
                 {"graph": "ir_1000", "label": "wanted", "set": {"vpl_count": 6}},
@@ -254,7 +254,7 @@ class Suites(CliTest):
         self.assertEqual((float(row["mean"]), row["bound"]), (found["match"]["value"], ""))
 
     def test_match_out_of_range(self):
-        """What the range of a bisection does not hold is a bound, of the speed-up too, and is not set against the paper's number."""
+        """A result outside the range of a bisection is a bound, also for the speed-up, and is not compared with the paper's number."""
         matched = {"like": "ours", "measure": "error.whole.mse"}
         self.suite(scenes=["cornellbox"], paper="table2", measures=["error"], frames=1, reference={"spp": 32, "depth": 3}, sweeps=[
             {"name": "eq", "set": {"map_size": 16}, "speed_up": {"of": "ours", "over": ["ir_eq", "few"]}, "graphs": [
@@ -297,7 +297,7 @@ class Suites(CliTest):
         self.assertEqual(self.results(), {})
 
     def test_missing_scene(self):
-        """An optional scene is left out, and it is said, on the page, too."""
+        """An optional scene is left out with a message, also on the page."""
         self.suite(scenes=["cornellbox", "nowhere"], optional_scenes=["nowhere"], measures=["time"])
         run = self.succeeds("bench", "tiny.json", "-o", "out")
         self.assertIn("`nowhere` is left out", run.stderr)
@@ -314,7 +314,7 @@ class Suites(CliTest):
         self.fails(CANNOT_WRITE, "bench", "tiny.json", "-o", "out", says=["out"])
 
     def test_full_disk(self):
-        """Too small a disk is found before anything is rendered; one that fills up meanwhile is an error, not a broken result."""
+        """Too small a disk is reported before anything is rendered; one that fills up meanwhile is an error, not a broken result."""
         self.suite()
         disk = self.folder / "disk"
         disk.mkdir()
@@ -340,7 +340,7 @@ class Passes(CliTest):
         base = json.loads((self.folder / "base.json").read_text())
         self.assertEqual(len(base["repeats"]), 3)
         self.assertEqual(len(base["repeats"][0]["passes"]["gbuffer"]["gpu_ms"]), 3)
-        # The same is neither slower nor faster by a factor of 4; what is a hundred times as fast, or slow, is.
+        # The same result is neither slower nor faster by a factor of 4; one that is a hundred times as fast or slow is.
         self.assertNotIn("SLOWER", self.succeeds(*self.COMMON, "--baseline", "base.json", "--threshold", "300").stdout)
         for factor, code, word in ((0.01, SLOWER, "SLOWER"), (100, 0, "faster")):
             changed = json.loads(json.dumps(base))
@@ -355,7 +355,7 @@ class Passes(CliTest):
             self.assertIn(word, run.stdout)
 
     def test_against_another_build(self):
-        """The repeats of both take turns."""
+        """The repeats of both builds take turns."""
         run = self.call(*self.COMMON, "--baseline", PROGRAM, "--threshold", "400")
         self.assertEqual(run.returncode, 0, run.stderr + run.stdout)
         self.assertIn("99% interval", run.stdout)

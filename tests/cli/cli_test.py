@@ -1,4 +1,4 @@
-"""The command line, inputs and lists of the program: exit codes and messages. Usage: cli_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+"""Tests the command line, inputs and lists of the program: exit codes and messages. Usage: cli_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import base64
 import json
@@ -149,7 +149,7 @@ class Inputs(CliTest):
 
 
 class Devices(CliTest):
-    # The loader's old and new names of the same thing.
+    # The old and the new name of the same variable of the Vulkan loader.
     NONE = {"VK_DRIVER_FILES": "/dev/null", "VK_ICD_FILENAMES": "/dev/null"}
 
     def test_list(self):

@@ -1,4 +1,4 @@
-"""fovea compare and fovea compare-sequence from outside. Usage: compare_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+"""Tests `fovea compare` and `fovea compare-sequence` from outside. Usage: compare_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import json
 import math
@@ -19,7 +19,7 @@ def srgb(x):
 
 class CompareTest(CliTest):
     def pfm(self, name, value, size=SIZE):
-        """`value`: a number, or a function of x, y (from the top) and the channel."""
+        """`value` is a number or a function of x, y (from the top) and the channel."""
         pixel = value if callable(value) else lambda x, y, c: value
         (self.folder / name).parent.mkdir(exist_ok=True)
         values = [pixel(x, y, c) for y in reversed(range(size[1])) for x in range(size[0]) for c in range(3)]
@@ -33,7 +33,7 @@ class CompareTest(CliTest):
 class Compare(CompareTest):
     def test_numbers(self):
         self.pfm("g.pfm", 0.25)
-        # Wrong in one pixel of the fovea, which is the pixels at most 2 from (8, 4).
+        # One pixel of the fovea is wrong; the fovea is the pixels at most 2 from (8, 4).
         self.pfm("a.pfm", lambda x, y, c: 0.5 if (x, y) == (7, 3) else 0.25)
         m = self.json("compare", "a.pfm", "g.pfm", "--radius", "0.125", "--exposure", "2")
         self.assertEqual((m["exposure"], m["gaze"], m["size"]), (2, [0.5, 0.5], list(SIZE)))
@@ -47,7 +47,7 @@ class Compare(CompareTest):
         self.assertEqual((m["periphery"]["mse"], m["periphery"]["relmse"], m["periphery"]["psnr"]), (0, 0, None))
         self.assertGreater(m["fovea"]["flip"], m["periphery"]["flip"])
         self.assertIsNone(m["whole"]["noise_floor"])
-        # The fovea elsewhere, and nowhere.
+        # The fovea is elsewhere, and then empty.
         self.assertEqual(self.json("compare", "a.pfm", "g.pfm", "--radius", "0.1", "--gaze", "0,0")["fovea"]["mse"], 0)
         self.assertIsNone(self.json("compare", "a.pfm", "g.pfm", "--radius", "0")["fovea"]["mse"])
 

@@ -1,4 +1,4 @@
-"""`fovea scene export` from outside. Usage: export_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+"""Tests `fovea scene export` from outside. Usage: export_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import json
 import struct
@@ -25,7 +25,7 @@ class SceneExport(CliTest):
         self.succeeds(*arguments, "b.pfm", "--scene", file)
         a, b = ((self.folder / name).read_bytes()[-48 * 32 * 12:] for name in ("a.pfm", "b.pfm"))
         values = [struct.unpack(f"<{48 * 32 * 3}f", data) for data in (a, b)]
-        # Quaternions are written where the scene had directions: the last bits differ.
+        # Quaternions are written where the scene had directions, so the last bits differ.
         self.assertLess(sum(abs(x - y) for x, y in zip(*values)) / sum(values[0]), 1e-3)
 
     def test_mitsuba_files_are_there(self):

@@ -1,4 +1,4 @@
-"""What the tests of the command-line program share. Arguments of every test: PROGRAM SOURCE_DIR [CLASS...]"""
+"""Shared by the tests of the command-line program. Every test has the arguments PROGRAM SOURCE_DIR [CLASS...]"""
 
 import json
 import os
@@ -13,7 +13,7 @@ PROGRAM = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
 SOURCE = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
 
 USAGE, BAD_INPUT, NO_DEVICE, OUT_OF_MEMORY, CANNOT_WRITE, INTERRUPTED = 2, 3, 4, 5, 7, 130
-# Small and quick; what is tested here does not depend on the size of the work.
+# Small and quick settings; the tests do not depend on the amount of work.
 SMALL = ["--size", "48x32"]
 DIRECT = ["render", "direct", "--scene", "cornellbox", *SMALL]
 
@@ -36,7 +36,7 @@ class CliTest(unittest.TestCase):
         return run
 
     def fails(self, code, *arguments, says=(), **more):
-        """Exit code, one clear message that names things, and no file that was not there before."""
+        """Checks the exit code, that there is one clear message with the given names, and that no new file exists."""
         before = sorted(self.folder.iterdir())
         run = self.call(*arguments, **more)
         self.assertEqual(run.returncode, code, f"{arguments}: {run.stderr}")

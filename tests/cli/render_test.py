@@ -1,4 +1,4 @@
-"""What `fovea render` writes, and how it ends. Usage: render_test.py PROGRAM SOURCE_DIR [CLASS...]"""
+"""Tests what `fovea render` writes and how it ends. Usage: render_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import csv
 import json
@@ -35,7 +35,7 @@ class Files(CliTest):
         self.assertEqual(struct.unpack(">II", png[16:24]), (48, 32))
 
     def test_one_output(self):
-        """OUTPUT=FILE shows any output of the graph; an EXR of everything is not touched by it."""
+        """OUTPUT=FILE writes any output of the graph; it does not affect an EXR of everything."""
         self.succeeds("render", "ir_stereo", "--scene", "cornellbox", *SMALL, "--set", "vpl_count=8", "--set",
                       "map_size=16", "-o", "side_by_side=pair.png", "-o", "image_right=right.png", "-o", "all.exr",
                       "-o", "direct_right=one.exr")
@@ -64,7 +64,7 @@ class Files(CliTest):
                          ["a_001.png", "a_002.png", "a_003.png", "last.png"])
 
     def test_first_frame(self):
-        """A run may start where in the scene's time it likes."""
+        """A run may start at any time of the scene."""
         moving = ["render", "direct", "--scene", "cornellbox_moving", *SMALL]
         self.succeeds(*moving, "-o", "a_%03d.exr", "--frames", "12")
         self.succeeds(*moving, "-o", "b_%03d.exr", "--frames", "2", "--warmup", "1", "--first", "9")
@@ -104,7 +104,7 @@ class Files(CliTest):
         self.succeeds(*common, "-o", "a.exr", "--seed", "5")
         self.succeeds(*common, "-o", "b.exr", "--seed", "5")
         self.succeeds(*common, "-o", "c.exr", "--seed", "6")
-        # The pixels: the header carries the time of day.
+        # Compares the pixels only, because the header contains the time of day.
         text = subprocess.run(["iinfo", "--hash", "a.exr", "b.exr", "c.exr"], cwd=self.folder, capture_output=True,
                               text=True, check=True).stdout
         a, b, c = re.findall(r"SHA-1: (\w+)", text)
@@ -137,7 +137,7 @@ class Timings(CliTest):
         self.assertLessEqual(sum(p["gpu_ms"]["min"] for p in t["passes"]), t["frame"]["gpu_ms"]["p95"])
 
     def test_views(self):
-        """The cost of each eye; nothing of the kind where there is one view."""
+        """The timings give the cost of each eye, unless there is only one view."""
         self.succeeds("render", "ir_stereo", "--scene", "cornellbox", "--size", "48x32", "--set", "vpl_count=20",
                       "--set", "map_size=16", "--timings", "t.json")
         t = json.loads((self.folder / "t.json").read_text())
@@ -235,7 +235,7 @@ class Interrupt(CliTest):
         self.fail("no frame in 30 seconds")
 
     def test_second_one_ends_at_once(self):
-        # Frames of seconds, so that the second signal comes before the frame's end.
+        # Frames take seconds, so that the second signal arrives before the frame ends.
         process = self.start("render", "ir_1000", "--scene", "cornellbox", "--size", "1024x1024", "--frames", "1000",
                              "-o", "a_%04d.png")
         self.wait_for(process, "a_0000.png")

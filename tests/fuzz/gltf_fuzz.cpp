@@ -1,4 +1,4 @@
-// Any bytes as a model: a scene or an Error, never anything else.
+// libFuzzer entry: loading any bytes as a glTF model must give a scene or an Error and nothing else.
 #include <unistd.h>
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// A folder of its own, so that a uri finds nothing but the model itself.
+// The model lies in a folder of its own, so that a uri can find nothing but the model itself.
 const std::filesystem::path& modelFile() {
   static const std::filesystem::path file = [] {
     std::string folder = (std::filesystem::temp_directory_path() / "fovea-fuzz-XXXXXX").string();

@@ -1,5 +1,4 @@
-// Any text as a graph file: an Error with a message, or a plan that the checker finds sound. Never anything
-// else.
+// Any text read as a graph file must give either an Error with a message or a plan that the checker finds sound.
 #pragma once
 
 #include <cstdio>
@@ -22,7 +21,7 @@ inline const Registry& fuzzRegistry() {
   return *registry;
 }
 
-// True when the text is a graph; aborts on a defect.
+// Returns whether the text is a graph; aborts on a defect.
 inline bool fuzzGraph(std::string_view text) {
   Diagnostics messages;
   std::shared_ptr<const BoundGraph> graph;

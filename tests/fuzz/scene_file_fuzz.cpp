@@ -1,4 +1,4 @@
-// Any text as a scene file: a scene or an Error, never anything else.
+// libFuzzer entry: loading any text as a scene file must give a scene or an Error and nothing else.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
@@ -7,7 +7,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  // Real models that happen to lie on the machine would be loaded, which takes seconds and tests something else.
+  // Models that happen to be installed would be loaded, which takes seconds and tests something else.
   if (text.find(".gl") != std::string_view::npos) return -1;
   fovea::Diagnostics warnings;
   try {

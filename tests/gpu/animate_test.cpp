@@ -1,5 +1,5 @@
-// Vertices of a frame on the device against moveObjects(): rigid objects, morph targets, joints, cages; and
-// last frame's positions.
+// Compares the vertices that the device computes for a frame with moveObjects(): rigid objects, morph targets,
+// joints, control cages, and the positions of the previous frame.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using fovea::test::testDevice;
 using Path = AnimationChannel::Path;
 using Interpolation = AnimationChannel::Interpolation;
 
-// Runs `body` once per query: it reads vec4 q and writes vec4 r[3].
+// Runs `body` once per query; it reads vec4 q and writes vec4 r[3].
 std::vector<glm::vec4> runShader(GpuScene& scene, uint32_t slot, const std::vector<glm::vec4>& queries,
                                  const std::string& body) {
   gpu::Device& device = testDevice();
@@ -81,7 +81,7 @@ Vertices evaluate(GpuScene& gpu, const Frame& frame, uint32_t slot) {
           as<glm::vec4>(gpu::download(testDevice(), gpu.previous()))};
 }
 
-// A row of frames, with a jump: every vertex, its normal, and where it was a frame ago.
+// Checks every vertex, its normal and its previous position over a row of frames that contains a jump.
 void compare(const Scene& scene) {
   Geometry now = flatten(scene), before = now;
   const Geometry rest = now;
@@ -234,7 +234,7 @@ TEST(Animate, ModelsOfOthers) {
   if (found == 0) GTEST_SKIP() << "the shared test models are not here";
 }
 
-// What a frame says nothing about stays where it is at time 0.
+// What a frame does not mention stays where it is at time 0.
 TEST(Animate, WithoutPosesThingsRest) {
   const Scene s = handmade();
   const Geometry g = flatten(s);
@@ -244,10 +244,10 @@ TEST(Animate, WithoutPosesThingsRest) {
     ASSERT_LT(glm::distance(glm::vec3(v.positions[i]), g.positions[i]), 1e-5f) << i;
 }
 
-// ---- Points that keep their place in a triangle (common/scene.glsl)
+// ---- Points attached to a triangle (common/scene.glsl) ----------------------------------------------------
 
-// What attach() and its like give for points around the triangles past the static ones, of those that voxels
-// see: `coarse` has others than the picture.
+// Results of attach() and its relatives for points around the triangles that come after the static ones, among those
+// that voxels see. With `coarse`, these differ from the triangles of the picture.
 void attachAndCompare(bool coarse) {
   Scene s;
   test::addMaterial(s, glm::vec3(0.5f));

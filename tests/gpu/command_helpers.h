@@ -1,4 +1,4 @@
-// Small things that several GPU tests record.
+// Helpers for recording commands that several GPU tests share.
 #pragma once
 
 #include <cstring>
@@ -19,7 +19,7 @@ inline const gpu::ReflectedBinding& binding(const gpu::Pipeline& pipeline, const
   throw std::runtime_error("no binding " + name);
 }
 
-// A write to the binding of this name; the caller sets the resource.
+// A write to the binding of this name. The caller sets the resource.
 inline VkWriteDescriptorSet write(const gpu::Pipeline& pipeline, const std::string& name) {
   const gpu::ReflectedBinding& b = binding(pipeline, name);
   VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};

@@ -1,4 +1,4 @@
-// Compute pipelines: dispatch and read back; every kind of resource bound by its reflected number.
+// Tests compute pipelines: dispatch and readback, with every kind of resource bound by its reflected number.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +54,8 @@ TEST(Compute, RoundTrip) {
   for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(output[i], (i + 5) * 3) << i;
 }
 
-// Every kind of resource at once, found by name: what reflection says is what the driver accepts and reads.
+// Binds every kind of resource at once by name: the driver must accept what reflection reports and read
+// the same values.
 TEST(Compute, EveryKindOfResource) {
   gpu::Device& device = testDevice();
   const gpu::Pipeline pipeline(device,

@@ -1,4 +1,4 @@
-// Choosing a device, what is said when there is none, validation, caches.
+// Tests the choice of a device, the message when there is none, validation, and the caches.
 #include "framework/gpu/device.h"
 
 #include <gmock/gmock.h>
@@ -96,7 +96,7 @@ TEST(DeviceChoice, BestUsableOneIsTaken) {
   EXPECT_THAT(noDevice([&] { gpu::choose({}, ""); }), HasSubstr("mesa-vulkan-drivers"));
 }
 
-// In a process of its own, because the loader reads the variable once.
+// Runs in a process of its own, because the loader reads the variable only once.
 TEST(NoDeviceDeathTest, NoDriver) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto child = [] {
@@ -153,8 +153,7 @@ TEST(Check, ResultsMapToExitCodes) {
   EXPECT_EQ(code(VK_ERROR_UNKNOWN), ExitCode::Internal);
 }
 
-// ---- Validation
-// ------------------------------------------------------------------------------------------------
+// ---- Validation -------------------------------------------------------------------------------------------
 
 TEST(Validation, MistakesAreCaught) {
   gpu::DeviceOptions options = testDeviceOptions();
@@ -248,8 +247,7 @@ TEST(Validation, BestPracticesModeIsQuietForPlainWork) {
   EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
 }
 
-// ---- Caches
-// ----------------------------------------------------------------------------------------------------
+// ---- Caches -----------------------------------------------------------------------------------------------
 
 TEST(PipelineCache, SavedOnDestructionAndDamageIsIgnored) {
   gpu::DeviceOptions options = testDeviceOptions();

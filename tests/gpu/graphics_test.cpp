@@ -1,4 +1,4 @@
-// Graphics pipelines with dynamic rendering: coverage, winding, depth, blending, layers.
+// Tests graphics pipelines with dynamic rendering: coverage, winding, depth, blending and layers.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -16,7 +16,7 @@ using namespace test;  // NOLINT: helpers
 
 constexpr uint32_t kSize = 16;
 
-// Vertices are pulled; `z` is the depth of all.
+// The shader fetches the vertices itself; `z` is the depth of all of them.
 constexpr const char* kVertex = R"(
 #extension GL_ARB_shader_viewport_layer_array : enable
 uniform textureBuffer positions;
@@ -52,8 +52,7 @@ struct Constants {
 class Graphics : public testing::Test {
  protected:
   Graphics() {
-    // Two triangles that cover the left half of the target, counter-clockwise on the screen, whose y goes
-    // down.
+    // Two triangles that cover the left half of the target, counter-clockwise on the screen, whose y axis points down.
     const std::vector<float> corners{-1, -1, 0, 0, -1, 1, 0, 0, 0, -1, 0, 0,  //
                                      0,  -1, 0, 0, -1, 1, 0, 0, 0, 1,  0, 0};
     gpu::upload(device_, positions_, std::as_bytes(std::span(corners)));
@@ -94,7 +93,7 @@ class Graphics : public testing::Test {
                        pipeline.interface().pushConstantBytes, &constants);
   }
 
-  // Clears to 0 (depth to 1), records, and gives the colour target back.
+  // Clears the colour to 0 and the depth to 1, records, and returns the colour target.
   std::vector<float> render(gpu::Image& color, gpu::Image* depth,
                             const std::function<void(VkCommandBuffer)>& record) {
     device_.runOnce([&](VkCommandBuffer cmd) {
@@ -157,7 +156,7 @@ TEST_F(Graphics, TrianglesCoverTheirPixels) {
   EXPECT_NEAR(second, kSize * kSize / 4, kSize);  // one of the two halves of the half
 }
 
-// A triangle that goes counter-clockwise on the screen is a front face.
+// A triangle that is counter-clockwise on the screen is front-facing.
 TEST_F(Graphics, CounterClockwiseIsFront) {
   const auto covered = [&](VkCullModeFlags cull) {
     gpu::GraphicsPipelineDesc d = desc();

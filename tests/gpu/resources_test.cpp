@@ -1,4 +1,4 @@
-// Buffers, images, transfers, and what happens when memory runs out.
+// Tests buffers, images and transfers, and what happens when memory runs out.
 #include "framework/gpu/resources.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ std::vector<uint32_t> counting(size_t count, uint32_t first) {
   return v;
 }
 
-// More than one staging piece, at an offset, with bytes around that must stay.
+// The data needs more than one staging piece and starts at an offset; the bytes around it must not change.
 TEST(Transfer, LargeBufferInPieces) {
   gpu::Device& device = testDevice();
   const size_t count = (40u << 20) / 4 + 13;
@@ -126,7 +126,7 @@ TEST(Image, ViewsAreMadeOnce) {
   EXPECT_EQ(moved.name(), "views");
 }
 
-// Two resources share one allocation, as in the graph's heap; the memory stays the caller's.
+// Two resources share one allocation, as in the graph's heap. The caller keeps the ownership of the memory.
 TEST(Image, PlacedResources) {
   gpu::Device& device = testDevice();
   const gpu::ImageDesc imageDesc{.name = "placed image",
@@ -157,8 +157,7 @@ TEST(Image, PlacedResources) {
   EXPECT_EQ(device.allocatedBytes(), before);
 }
 
-// ---- Limits
-// ----------------------------------------------------------------------------------------------------
+// ---- Limits -----------------------------------------------------------------------------------------------
 
 template <class F>
 std::string errorOf(ExitCode code, F f) {
@@ -231,7 +230,7 @@ TEST(Limits, MemoryLimitOfTheUser) {
   EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
 }
 
-// Without a limit of the user's the heap's own size counts, though some drivers grant more.
+// Without a limit from the user, the size of the heap itself counts, though some drivers grant more.
 TEST(Limits, HeapSizeHoldsWithoutALimit) {
   gpu::Device& device = testDevice();
   const uint64_t heap = device.memoryLimit();

@@ -1,4 +1,4 @@
-// shaders/common/scene.glsl against its twins on the CPU: textures, materials, lights, geometry.
+// Compares shaders/common/scene.glsl with its CPU twins: textures, materials, lights and geometry.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -20,7 +20,7 @@ namespace {
 
 using test::testDevice;
 
-// Runs `body` once per query: it reads vec4 q and writes vec4 r[3].
+// Runs `body` once per query; it reads vec4 q and writes vec4 r[3].
 std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::vector<glm::vec4>& queries,
                                 const std::string& name, const std::string& body) {
   gpu::Device& device = testDevice();
@@ -82,7 +82,7 @@ Texture noiseTexture(uint32_t width, uint32_t height, bool srgb, uint32_t seed) 
   return t;
 }
 
-// Textures of every kind of size, one material for every wrap mode of each.
+// Textures of every kind of size, with one material for every wrap mode of each.
 Scene texturedScene() {
   Scene scene;
   const glm::uvec2 sizes[] = {{1, 1}, {2, 1}, {3, 5}, {64, 64}, {200, 17}, {1, 300}, {256, 128}, {33, 255}};
@@ -108,8 +108,8 @@ Scene texturedScene() {
   return scene;
 }
 
-// A coordinate of n texels has steps of n 2^-23, which the slope between two texels turns into an error of
-// the result.
+// A coordinate over n texels has steps of n 2^-23, which the slope between two texels turns into an error
+// of the result.
 double coordinateError(const Scene& scene, const TextureUse& use, glm::vec2 uv) {
   if (!use) return 0;
   const Texture& t = scene.textures[use.texture];

@@ -1,4 +1,4 @@
-// shaders/subdivide applied alone, against the CPU evaluator of the same tables.
+// Runs shaders/subdivide alone and compares it with the CPU evaluation of the same tables.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -45,7 +45,7 @@ Result apply(const Subdivider& subdivider, const std::vector<glm::vec4>& points,
           as<glm::vec4>(gpu::download(testDevice(), attributes))};
 }
 
-// The vertices of one surface equal those of the CPU.
+// The vertices of one surface must equal those that the CPU computes.
 void expectSurface(const Result& result, const Stencils& stencils, const std::vector<glm::vec3>& points,
                    uint32_t firstVertex, float side) {
   std::vector<glm::vec3> positions(stencils.vertexCount()), normals(stencils.vertexCount());
@@ -59,8 +59,7 @@ void expectSurface(const Result& result, const Stencils& stencils, const std::ve
   }
 }
 
-// Two tables, three surfaces (one mirrored, two of the same cage in different shapes), at offsets with gaps
-// between.
+// Two tables, three surfaces (one mirrored, two of the same cage in different shapes), at offsets with gaps between.
 TEST(Subdivide, EqualsTheCpuEvaluator) {
   for (uint32_t level = 1; level <= 3; ++level) {
     const SubdivisionCage all = everythingCage(level), ball = icosahedronCage(level);

@@ -1,4 +1,4 @@
-// Timestamps arrive frames later, with two frames in flight.
+// Tests timestamps, which arrive some frames later when two frames are in flight.
 #include <gtest/gtest.h>
 
 #include "fovea/error.h"
@@ -35,7 +35,8 @@ TEST(Timestamps, GrowAndAreKeptPerFrame) {
   ASSERT_EQ(one->size(), 5u);
   EXPECT_EQ(one->at(0), 0.0);
   for (size_t i = 1; i < one->size(); ++i) {
-    // Filling 64 MiB takes longer than 10 us and less than 10 s on anything: the unit is nanoseconds.
+    // Filling 64 MiB takes more than 10 us and less than 10 s on any device, so this checks that the
+    // unit is nanoseconds.
     EXPECT_GT(one->at(i) - one->at(i - 1), 1e4);
     EXPECT_LT(one->at(i) - one->at(i - 1), 1e10);
   }

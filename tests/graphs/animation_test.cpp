@@ -1,6 +1,6 @@
-// A second and a half of every built-in scene, 60 frames at 42 Hz: no message of the validation layers,
-// nothing that is not finite, and little change from frame to frame that traced paths do not show, be it all
-// the time or in a single frame, as something that pops.
+// Runs 60 frames at 42 Hz, almost a second and a half, of every built-in scene. The validation layers must stay
+// silent, all values must be finite, and the picture may change little from frame to frame beyond what traced paths
+// show, both on average and in any single frame, where popping would appear.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,10 +21,10 @@ constexpr uint64_t kFirst = 150;
 constexpr double kRate = 42;  // Hz
 constexpr uint32_t kSide = 48;
 
-// Excess of change, see blockExcess(), x 1e-3: the median and the most of all pairs of frames, and the most
-// of those in which the gaze jumps. For `ours` a third above what seeds 1 to 3 show, for `foveal` half above
-// what seed 1 does. With a fifth of the VPLs and a 450th of the pixels everything flickers more than in a
-// picture of full size; and `ours`, as the paper has it, replaces as many VPLs at once as the gaze asks for.
+// Bounds of the excess of change, see blockExcess(), x 1e-3: the median and the maximum over all pairs of frames, and
+// the maximum over the pairs in which the gaze jumps. They are a third above what seeds 1 to 3 show for `ours`, and
+// half above what seed 1 shows for `foveal`. With a fifth of the VPLs and a 450th of the pixels, everything flickers
+// more than in a picture of full size; and `ours`, as in the paper, replaces as many VPLs at once as the gaze asks for.
 struct Case {
   const char* scene;
   const char* graph;
@@ -63,14 +63,14 @@ image::Picture picture(const graph::FrameResult& frame, const char* output, floa
   return image::fromRadiance(radiance, exposure);
 }
 
-// What a graph shows in a frame, and what is traced there, as two pictures of half of the paths each too.
+// The picture that a graph shows in a frame and the traced one, which is also kept as two pictures of half of
+// the paths each.
 struct Shown {
   image::Picture graph, traced, halfA, halfB;
 };
 
-// By how much the change of a pair of frames differs from that of traced light (METHOD.md 4: the excess of
-// MSE'), of means over blocks, in which the noise of few paths falls away and what pops does not; and without
-// what is left of that noise.
+// Excess of change of a pair of frames over that of traced light (passes/README.md, Measures), computed on means over
+// blocks: these average the noise of few paths away and keep what pops. What is left of that noise is subtracted.
 double blockExcess(const Shown& now, const Shown& before) {
   constexpr uint32_t kBlock = 8, kBlocks = kSide / kBlock;
   struct Sums {
@@ -92,7 +92,7 @@ double blockExcess(const Shown& now, const Shown& before) {
   return squares / double(sums.size()) / std::pow(kBlock, 4);
 }
 
-// Whether the eye makes a saccade before frame i, in which it sees little (saccadic suppression); the VPLs
+// Whether the eye makes a saccade before frame i. It sees little during one (saccadic suppression), and the VPLs
 // follow it as fast as their turnover lets them.
 std::vector<bool> gazeJumps(const scene::Scene& s) {
   const scene::Geometry geometry = scene::flatten(s);
@@ -140,7 +140,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Animation, testing::ValuesIn(kCases), [](const 
   return std::string(info.param.scene) + "_" + info.param.graph;
 });
 
-// Most change of the mean over 8x8 pixels and of that over all, of any channel, displayed values from 0 to 1.
+// Largest change of any mean over 8x8 pixels and of the mean over all pixels, of any channel, in displayed values
+// from 0 to 1.
 struct Change {
   double block = 0, mean = 0;
 };
@@ -163,10 +164,10 @@ Change change(const image::Picture& now, const image::Picture& before) {
   return most;
 }
 
-// A scene that stands still looks the same wherever the eye looks: when the gaze jumps, the light that
-// `foveal` shows changes little from one frame to the next. A third above what is measured; with all paths
-// starting anew at once the mean changes by 0.026 and 0.019. VPLs that are let go vanish at once, so blocks
-// change by more.
+// A scene that stands still looks the same wherever the eye looks: when the gaze jumps, the light that `foveal`
+// shows changes little from one frame to the next. The bounds are a third above what is measured. If all paths
+// started anew at once, the mean would change by 0.026 and 0.019. VPLs that are removed vanish at once, so single
+// blocks change by more.
 struct Jump {
   const char* scene;
   double block, mean;

@@ -1,4 +1,4 @@
-// Instant radiosity against the path tracer: with ever more VPLs it becomes the same picture.
+// Compares instant radiosity with the path tracer: with more and more VPLs both give the same picture.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,8 @@ constexpr uint32_t kAtOnce = 1024;  // VPLs in a frame; more of them are the mea
 
 scene::Scene offAxisCornellBox() {
   scene::Scene s = scene::builtin("cornellbox");
-  // On the axis pixel centres fall exactly on the seams of the room, which the maps of the VPLs leave dark.
+  // The camera is off the axis, where pixel centres would fall exactly on the seams of the room, which the maps of
+  // the VPLs leave dark.
   s.cameras[0].position += glm::vec3(0.037f, 0.021f, 0);
   return s;
 }
@@ -30,7 +31,7 @@ struct Reference {
   Image indirect, variance;
 };
 
-// Mean of (a - g)^2 / (g + 0.01)^2 less what the reference's noise adds to it; and the ratio of the means.
+// Mean of (a - g)^2 / (g + 0.01)^2, less what the noise of the reference adds to it, and the ratio of the means.
 struct Difference {
   double relMse = 0, ratio = 0;
 };
@@ -63,12 +64,11 @@ struct Effort {
   }
 };
 
-// Pictures of `count` VPLs each; one with more than kAtOnce is the mean of frames whose discs are as small as
-// if all VPLs were in one.
+// Errors of pictures of `count` VPLs each. A picture with more than kAtOnce VPLs is the mean of frames whose discs
+// are as small as if all VPLs were in one frame.
 struct Measured {
   double relMse = 0;     // mean over the pictures
-  double remaining = 0;  // of the mean of all pictures, less what they still have of the noise: what more
-                         // pictures do not mend
+  double remaining = 0;  // of the mean of all pictures, less its noise: what more pictures do not reduce
   double ratio = 0;      // of the mean of all pictures
 };
 
@@ -114,15 +114,15 @@ double slopeOf(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / xx;
 }
 
-// One VPL bounce is what paths of depth 3 carry. Random light paths, disc kernel (no clamp), every VPL for
-// every pixel.
+// One VPL bounce corresponds to paths of depth 3. The VPLs come from random light paths, use the disc kernel (no
+// clamp), and each of them lights every pixel.
 //
-// Most of the error is not noise but light that the kernel takes away: near a VPL, within the radius of the
-// disc whose area, 1 / N of the lit surface, it stands for. Where two walls meet that is up to all that one
-// sends to the other, in a strip of the discs' radius: there the error falls as N^-1/2 only until the strip
-// is thinner than a pixel, and this is what the floor at 4096 consists of (with discs a hundredth as large a
-// fifth of it is left, in the few pixels on the very seams). VPLs that are spread over several frames need
-// discs as small as if they were in one: else the floor is that of the VPLs in one frame.
+// Most of the error is not noise but light that the kernel removes near a VPL, within the radius of the disc that it
+// stands for, whose area is 1 / N of the lit surface. Where two walls meet, this is up to all of the light that one
+// sends to the other, in a strip as wide as the discs' radius. There the error falls as N^-1/2 only until the strip
+// is thinner than a pixel, and this makes up the floor at 4096 VPLs (with discs a hundredth as large a fifth of it is
+// left, in the few pixels on the seams themselves). VPLs that are spread over several frames need discs as small as
+// if they were in one frame; otherwise the floor is that of the VPLs of one frame.
 void expectOneOverN(const Effort& effort) {
   const scene::Scene s = offAxisCornellBox();
   GraphRunOptions options;
@@ -143,7 +143,7 @@ void expectOneOverN(const Effort& effort) {
   }
   EXPECT_LT(y.back(), 0.0035);
   EXPECT_NEAR(last.ratio, 1, 0.02);
-  // Down to the floor: those that lie well above it as they are, and all of them less the floor.
+  // The decrease is tested down to the floor: errors well above it as they are, and all errors less the floor.
   const double floor = last.remaining;
   const size_t above = size_t(std::count_if(y.begin(), y.end(), [&](double e) { return e > 3 * floor; }));
   ASSERT_GE(above, 4u);
@@ -165,7 +165,7 @@ TEST(Convergence, RelativeErrorOfInstantRadiosityFallsAsOneOverTheVpls) {
   expectOneOverN({.samples = 4096, .mapSize = 128, .floorPictures = 2});
 }
 
-// With --gtest_also_run_disabled_tests; minutes. 1024 maps of 512 x 512 are 1 GiB.
+// Runs only with --gtest_also_run_disabled_tests and takes minutes. 1024 maps of 512 x 512 texels take 1 GiB.
 TEST(Convergence, DISABLED_TheSameWithLargeMapsAndAFloorOfSixteenPictures) {
   expectOneOverN({.samples = 16384, .mapSize = 512, .floorPictures = 16});
 }

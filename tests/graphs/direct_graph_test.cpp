@@ -1,4 +1,4 @@
-// Direct light of whole graphs against rays: every pixel's surface, lights and shadows by Embree.
+// Compares the direct light of whole graphs with rays: the surface, lights and shadows of every pixel by Embree.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,13 +92,14 @@ TEST(DirectGraph, CornellBoxEqualsRays) {
     ADD_FAILURE() << failurePictures(agreement.picture, agreement.rays, kSize.x, scene.exposure);
 }
 
-// What shadow maps leave in doubt is traced: next to nothing is left but thin things that fall between texels.
+// Rays decide what shadow maps leave in doubt. Hardly any errors are left, except for thin things that
+// fall between texels.
 TEST(DirectGraph, ShadowRaysSharpenTheRims) {
   for (const char* name : {"cornellbox", "balcony"}) {
     SCOPED_TRACE(name);
     const scene::Scene scene = scene::builtin(name);
     const Agreement maps = compare(scene, "foveal_no_shadow_rays"), rays = compare(scene, "foveal");
-    EXPECT_LT(rays.wrong, 0.006);  // of 0.004 and 0.10
+    EXPECT_LT(rays.wrong, 0.006);  // measured: 0.004, and 0.10 with the maps alone
     EXPECT_LT(rays.error, 0.5 * maps.error);
     EXPECT_NEAR(rays.energy, 1, 0.005);
     if (HasFailure()) ADD_FAILURE() << failurePictures(rays.picture, rays.rays, kSize.x, scene.exposure);

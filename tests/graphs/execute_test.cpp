@@ -1,5 +1,4 @@
-// The executor on a real device, through passes made for these tests: what the plan promises must come out as
-// values.
+// Runs the executor on a real device with passes made for these tests: what the plan promises must come out as values.
 #include "framework/graph/run/execute.h"
 
 #include <gtest/gtest.h>
@@ -100,7 +99,7 @@ class CountUp : public Pass {
 };
 FOVEA_PASS(CountUp);
 
-// Says which of its outputs anybody reads.
+// Writes which of its outputs have readers.
 class AskReaders : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -207,7 +206,7 @@ TEST(Execute, TimingsNameEveryLivePass) {
   EXPECT_GE(result.gpuMs * 1.001 + 1e-3, result.passes[0].gpuMs + result.passes[1].gpuMs);
 }
 
-// Neither what a host pass waits for nor that the device waits for it counts as more of its time.
+// Neither the time that a host pass waits nor the time that the device waits for it counts as time of the pass.
 TEST(Execute, HostPassesCountTheirOwnTimeOnce) {
   Runner runner(R"({"passes": {
     "fill": {"type": "test-fill"}, "first": {"type": "test-slow-host", "inputs": {"a": "fill"}},
@@ -228,8 +227,8 @@ TEST(Execute, HostPassesCountTheirOwnTimeOnce) {
   }
 }
 
-// Random graphs of mixing passes: every value is a hash of everything upstream, so a missing barrier, an overlap in
-// the heap or a wrong order shows as a wrong number. Aliasing must really happen for this to mean anything.
+// Random graphs of mixing passes: every value is a hash of everything upstream, so that a missing barrier, an overlap
+// in the heap or a wrong order shows as a wrong number. The test means something only if memory is really aliased.
 struct RandomGraph {
   std::string text;
   std::vector<uint32_t> values;  // per pass, updated per frame

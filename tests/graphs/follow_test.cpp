@@ -1,5 +1,5 @@
-// VPLs over the frames of a scene that moves: on a rigid box they keep their place in it, on a waving cloth
-// they keep their place in a triangle and so stay on the surface.
+// Follows VPLs over the frames of a moving scene: on a rigid box they keep their place in the box, and on a waving
+// cloth they keep their place in a triangle and so stay on the surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +33,7 @@ std::vector<uint32_t> net(uint32_t side, uint32_t step) {
   return indices;
 }
 
-// A cloth of 16 x 16 quads that waves, hanging before a wall; `coarse`: voxels and VPL maps see 4 x 4 of
-// them.
+// A cloth of 16 x 16 quads that waves in front of a wall. If `coarse`, voxels and VPL maps see 4 x 4 of them.
 void addCloth(scene::Scene& s, uint32_t material, bool coarse) {
   scene::Primitive p;
   p.material = material;
@@ -63,7 +62,7 @@ void addCloth(scene::Scene& s, uint32_t material, bool coarse) {
   s.animations = {a};
 }
 
-// A room without its front wall; the cloth at the left, a box that slides and turns at the right.
+// A room without its front wall, with the cloth on the left and a box that slides and turns on the right.
 scene::Scene waving(bool coarse = false) {
   scene::Scene s;
   s.materials.clear();
@@ -97,9 +96,9 @@ scene::Scene waving(bool coarse = false) {
   return s;
 }
 
-// `ours` with what it keeps of its VPLs as one more output.
+// `ours` with the state that it keeps of its VPLs as one more output.
 std::string graphWithState() {
-  static const graph::test::TempFolder folder;  // tests run beside each other: one for each
+  static const graph::test::TempFolder folder;  // tests run in parallel, so each has its own
   for (const auto& graphs : dataFolders("graphs")) {
     std::error_code ec;
     if (!std::filesystem::exists(graphs / "ours.json", ec)) continue;
@@ -186,7 +185,7 @@ TEST(Follow, VplsStayOnWhatMoves) { expectVplsToFollow(waving()); }
 
 TEST(Follow, VplsStayOnTheCoarserSurfaceThatVoxelsSee) { expectVplsToFollow(waving(true)); }
 
-// What light-inject keeps of the frame before is what it would make anew, also in the shadow of a cloth.
+// What light-inject keeps from the previous frame equals what it would compute anew, also in the shadow of a cloth.
 TEST(Follow, LightAroundAClothIsKeptOnlyWhereItStays) {
   GraphRunOptions options;
   options.size = {48, 48};

@@ -1,5 +1,5 @@
-// The foveated methods from end to end: energy against light tracing, history, repeatability, and input at
-// its limits.
+// Tests the foveated methods from end to end: energy against light tracing, history, repeatability, and input
+// at its limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ double counterOf(const graph::FrameResult& frame, const std::string& name) {
   return 0;
 }
 
-// Mean over the pixels inside (or outside) of the foveal disc of f(pixel).
+// Mean of f(pixel) over the pixels inside (or outside) the foveal disc.
 template <class F>
 double meanOver(glm::uvec2 size, glm::vec2 gaze, float radius, bool inside, F f) {
   double sum = 0, count = 0;
@@ -70,8 +70,7 @@ std::vector<std::string> foveatedGraphs() {
   return {"ours", "ours_r", "ours_cosine", "ours_unclamped", "ir_v"};
 }
 
-// ---- Frames
-// ------------------------------------------------------------------------------------------------------
+// ---- Frames -----------------------------------------------------------------------------------------------
 
 TEST(Foveated, StillSceneConvergesToAStillImage) {
   const scene::Scene s = scene::builtin("cornellbox");
@@ -108,8 +107,8 @@ TEST(Foveated, CameraCutForgetsTheList) {
   EXPECT_GT(counterOf(run.frames[5], "manage.kept"), 16);
 }
 
-// A graph is compiled for the sizes of its views, so another size is another plan with memory of its own:
-// nothing of the list, its maps or the first frame's content may come from what ran before.
+// A graph is compiled for the sizes of its views, so another size gives another plan with its own memory. Nothing of
+// the list, its maps or the first frame's content may come from what ran before.
 TEST(Foveated, ResizeForgetsTheList) {
   const scene::Scene s = scene::builtin("cornellbox");
   for (const char* graph : {"ours", "stereo"}) {
@@ -145,7 +144,7 @@ TEST(Foveated, GazeThatJumpsTakesTheListAlong) {
   EXPECT_GT(counterOf(run.frames[8], "manage.added"), 2);
 }
 
-// Every method and debug view over things that move, for the validation layers to watch.
+// Runs every method and debug view over a moving scene under the validation layers.
 TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
   Diagnostics messages;
   const scene::Scene s = scene::load("cornellbox_moving", messages);
@@ -171,8 +170,7 @@ TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
   EXPECT_GE(graphs, 15);
 }
 
-// ---- Input at its limits
-// -----------------------------------------------------------------------------------------
+// ---- Input at its limits ----------------------------------------------------------------------------------
 
 TEST(Foveated, DegenerateInput) {
   const scene::Scene box = scene::builtin("cornellbox");
@@ -226,8 +224,7 @@ TEST(Foveated, DegenerateInput) {
       }
 }
 
-// ---- Energy
-// ------------------------------------------------------------------------------------------------------
+// ---- Energy -----------------------------------------------------------------------------------------------
 
 struct EnergyScene {
   std::string name;
@@ -259,8 +256,8 @@ std::vector<float> indirectOf(const std::string& graph, const scene::Scene& s, S
 
 glm::vec2 gazeOf(const scene::Scene& s) { return s.gaze.empty() ? glm::vec2(0.5f) : s.gaze[0].position; }
 
-// One indirect bounce, found by eye paths over the whole image and weighed by their density, against traced
-// paths. Without a clamp to speak of, so that the kernel loses nothing.
+// Compares one indirect bounce, found by eye paths over the whole image and weighted by their density, with traced
+// paths. The clamp is set so that the kernel loses practically no light.
 TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   for (const EnergyScene& e : energyScenes()) {
     const auto traced = tracedIndirect(e.scene, kEnergySize, 1, 64);
@@ -275,12 +272,12 @@ TEST(Foveated, EyePathsWeighedByDensityCarryTheLightOfTracedPaths) {
   }
 }
 
-// What management does to the light, for each weight and number of VPLs: printed. `importance-area` has the
-// least bias in the fovea, for it does not care what picked the VPLs, and takes them as the picture shows
-// them, with their own maps and discs; hence the kernel `disc`, the one that the weights make up for. What is
-// left in Sponza are few points to estimate by what is hardly seen, and voxels that are coarse. A list picked
-// by importance is no sample of the eye paths, as `pdf` takes it to be, and `area` and `constant` give the
-// VPLs hidden sunlit walls.
+// Prints what the management of VPLs does to the light, for each weighting and number of VPLs. `importance-area` has
+// the least bias in the fovea, because it does not depend on how the VPLs were chosen and takes them as the picture
+// shows them, with their own maps and discs. This is why the kernel is `disc`, the one that the weighting compensates
+// for. The bias that is left in Sponza comes from having few points to estimate what is hardly seen, and from coarse
+// voxels. A list chosen by importance is not the sample of the eye paths that `pdf` takes it for, and `area` and
+// `constant` give the VPLs hidden sunlit walls.
 TEST(Foveated, BiasOfOursByWeight) {
   for (const EnergyScene& e : energyScenes()) {
     const bool large = e.name != "cornellbox";
@@ -315,8 +312,7 @@ TEST(Foveated, BiasOfOursByWeight) {
   }
 }
 
-// ---- Error in the fovea
-// ------------------------------------------------------------------------------------------
+// ---- Error in the fovea -----------------------------------------------------------------------------------
 
 struct FoveaError {
   double relative = 0;  // linear relMSE of the indirect light
@@ -346,13 +342,13 @@ FoveaError foveaError(const std::vector<float>& a, const std::vector<float>& ref
           })};
 }
 
-// Errors in the fovea (METHOD section 4) where a camera arrives after some frames, five times; reference:
-// traced paths, their noise taken off. Every pixel takes all VPLs: interleaved over 64 x 64 pixels the filter
-// across edges alone makes a relMSE of 0.05. The clamp at 1.5 m is most of the error, and nearly the same
-// every time. Both errors of ours are below those of ir_1000, as in the paper. With the disc kernel (the
-// ablation) light paths do better, as they lie where the light is and the Cornell box has no hidden rooms to
-// waste them in. Reuse by importance and at random cannot be told apart in five walks: the weights make good
-// what either has picked.
+// Errors in the fovea after a camera has arrived by a walk of some frames, over five walks. The reference is traced
+// paths, with their noise subtracted. Every pixel takes all VPLs, because with interleaving over 64 x 64 pixels the
+// filter across edges alone makes a relMSE of 0.05. The clamp at 1.5 m is most of the error and nearly the same every
+// time. Both errors of `ours` are below those of `ir_1000`, as in the paper. With the disc kernel (the ablation)
+// light paths do better, because they lie where the light is and the Cornell box has no hidden rooms to waste them
+// in. Reuse by importance and reuse at random cannot be told apart in five walks, because the weighting compensates
+// for how either has chosen.
 TEST(Foveated, FovealErrorByMethod) {
   const scene::Scene s = scene::builtin("cornellbox");
   const glm::vec2 gaze = gazeOf(s);
@@ -364,7 +360,7 @@ TEST(Foveated, FovealErrorByMethod) {
   for (const std::string kernel : {"clamp", "disc"})
     for (const std::string graph : {"ours", "ours_r", "ir_1000"}) {
       if (kernel == "disc" && graph == "ours_r") continue;
-      // One run; every walk of the camera begins with a cut, and with it a list of its own.
+      // All walks are one run; each begins with a camera cut and therefore with a new list.
       const uint32_t walks = 5, length = graph == "ir_1000" ? 1 : 3;
       float exposure = 1;
       GraphRunOptions options;

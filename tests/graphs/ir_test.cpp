@@ -1,4 +1,4 @@
-// Instant radiosity from end to end: a furnace with a closed form, and the Cornell box against traced paths.
+// Tests instant radiosity from end to end: a furnace with a closed form, and the Cornell box against traced paths.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std:
   return runGraph(graph, s, options);
 }
 
-// Inside a closed diffuse sphere every point sees every other with the same form factor: the light I / R^2
-// from its centre comes back as I / R^2 (rho + rho^2 + ...), evenly, whatever the VPLs.
+// Inside a closed diffuse sphere every point sees every other with the same form factor. The light I / R^2 from its
+// centre comes back evenly as I / R^2 (rho + rho^2 + ...), whatever the VPLs.
 TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
   constexpr float kRadius = 20, kRho = 0.5f;
   scene::Scene s;
@@ -88,12 +88,11 @@ Comparison compare(const std::vector<float>& image, const scene::Scene& s, uint3
   return result;
 }
 
-// 6 frames of 1000 VPLs without clamp: the mean brightness within 3%, and every region close to the traced
-// paths. (The disc kernel loses light where VPLs stand for large areas: 8% of it with 250 VPLs here, 2.5%
-// with 1000.)
+// With 6 frames of 1000 VPLs without a clamp, the mean brightness is within 3% and every region is close to the traced
+// paths. (The disc kernel loses light where VPLs stand for large areas: 8% of it with 250 VPLs here, 2.5% with 1000.)
 TEST(InstantRadiosity, AccumulatedFramesApproachTracedPaths) {
   scene::Scene s = scene::builtin("cornellbox");
-  // Off the axis: on it, pixel centres fall exactly on the seams of the room, where no ray can start.
+  // The camera is off the axis, where pixel centres would fall exactly on the seams of the room and no ray could start.
   s.cameras[0].position += glm::vec3(0.037f, 0.021f, 0);
   const GraphRun run = runIr(
       "ir_accumulated", s,
@@ -106,7 +105,7 @@ TEST(InstantRadiosity, AccumulatedFramesApproachTracedPaths) {
   if (HasFailure()) ADD_FAILURE() << failurePictures(indirect, c.reference, 48, s.exposure);
 }
 
-// The paper's clamp of 1.5 m loses light near the VPLs (METHOD section 3), and only loses.
+// The paper's clamp of 1.5 m removes light near the VPLs and never adds any.
 TEST(InstantRadiosity, ClampOnlyLosesLight) {
   const scene::Scene s = scene::builtin("cornellbox");
   const std::vector<std::string> set = {"vpl_count=250", "shadow_map_size=512"};

@@ -1,4 +1,4 @@
-// What is kept from frame to frame while only some things move is what would be made anew, to the bit.
+// What is kept from frame to frame while only some things move must equal, to the bit, what would be computed anew.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@
 namespace fovea::test {
 namespace {
 
-// A floor, a wall, and a box that slides and turns; a sun, a lamp and a bulb that stay.
+// A floor, a wall, a box that slides and turns, and a sun, a lamp and a bulb that do not move.
 scene::Scene movingScene() {
   scene::Scene s;
   s.name = "moving";
@@ -53,7 +53,7 @@ scene::Scene movingScene() {
 
 constexpr uint32_t kFrames = 10;
 
-// A box that is one object and moves; times of the keys in frames.
+// A box that is one moving object. The times of the keys are in frames.
 void addMover(scene::Scene& s, float half, std::vector<scene::MotionKey> keys) {
   const size_t node = s.nodes.size(), mesh = s.meshes.size();
   addBox(s, 1, glm::vec3(-half), glm::vec3(half));
@@ -66,8 +66,8 @@ void addMover(scene::Scene& s, float half, std::vector<scene::MotionKey> keys) {
   s.movers.push_back({uint32_t(node), true, scene::Repeat::Once, std::move(keys)});
 }
 
-// More things that move than have boxes of their own: one slides, one goes and comes back elsewhere; and of
-// those that share a box one waits and then rises, one turns, one comes late.
+// More moving things than can have boxes of their own. One slides, and one disappears and comes back elsewhere. Of
+// those that share a box, one waits and then rises, one turns, and one appears late.
 scene::Scene crowdedScene() {
   scene::Scene s = movingScene();
   s.movers.clear();
@@ -86,7 +86,7 @@ TEST(Kept, ShadowMapsOfWhatStands) {
   for (const uint32_t frames : {2u, 5u, 7u, 8u, kFrames}) {
     PassTest kept("shadow-map"), anew("shadow-map");
     for (PassTest* test : {&kept, &anew}) test->scene(movingScene()).param("size", 64);
-    // Lights that were elsewhere in the frame before let nothing be kept.
+    // If lights were elsewhere in the previous frame, nothing may be kept.
     anew.beforeFrame([&](PassTest&, scene::Frame& frame) {
       if (frame.index + 2 == frames) frame.lights[0].direction = {0, -1, 0};
     });
@@ -96,7 +96,7 @@ TEST(Kept, ShadowMapsOfWhatStands) {
   }
 }
 
-// Of every frame, the outputs of a graph with what is kept and with everything made anew.
+// Outputs of a graph in every frame, with what is kept and with everything computed anew.
 void expectSame(const char* graph, const scene::Scene& scene, const std::vector<std::string>& set) {
   GraphRunOptions options;
   options.size = {64, 64};
@@ -131,7 +131,7 @@ std::vector<T> valuesOf(const graph::FrameResult& frame, const char* output) {
   return values;
 }
 
-// tests/data/graphs/kept_light.json in every frame.
+// Runs tests/data/graphs/kept_light.json and returns the outputs of every frame.
 GraphRun runLight(const scene::Scene& scene, bool keep) {
   GraphRunOptions options;
   options.frames = kFrames;
@@ -141,8 +141,8 @@ GraphRun runLight(const scene::Scene& scene, bool keep) {
   return runGraph(FOVEA_TEST_DATA "/graphs/kept_light.json", scene, options);
 }
 
-// `changed` tells exactly which light of what never moves is another one than in the frame before, however
-// many sides were looked up, and makes no mip that it should not.
+// `changed` says exactly which light on static surfaces differs from the previous frame, however many sides were
+// looked up, and makes no mip that it should not.
 void expectExactChanges(const scene::Scene& scene) {
   using Bits = std::array<uint32_t, 4>;
   const GraphRun kept = runLight(scene, true), anew = runLight(scene, false);

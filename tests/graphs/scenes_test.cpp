@@ -1,6 +1,5 @@
-// The built-in scenes over their whole animation: every method makes pictures of them without a complaint of
-// the validation layers, what deforms is seen to move, VPLs stay on what moves, and the light that `ours`
-// carries is about that of traced paths.
+// Runs the built-in scenes over their whole animation: every method renders them without validation messages, deforming
+// objects are seen to move, VPLs stay on moving objects, and the light of `ours` is about that of traced paths.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,13 +25,13 @@ using scene::VplState;
 constexpr double kSeconds = 8;    // of every scene's animation
 constexpr double kRate = 42;      // Hz
 constexpr uint32_t kLooks = 5;    // spread over the whole of it
-constexpr uint32_t kInARow = 3;   // consecutive frames ..
-constexpr uint32_t kFirst = 150;  // .. from this one on
+constexpr uint32_t kInARow = 3;   // consecutive frames ...
+constexpr uint32_t kFirst = 150;  // ... starting with this one
 
 struct Animated {
   const char* name;
-  // Mean indirect light of `ours` / that of traced paths: 64 VPLs of one seed in coarse voxels, whose light
-  // is dimmer than what is seen of their surface. Measured 0.776, 0.681, 1.042, 0.862, 1.077.
+  // Mean indirect light of `ours` divided by that of traced paths, with 64 VPLs of one seed in coarse voxels, whose
+  // light is dimmer than what is seen of their surface. Measured: 0.776, 0.681, 1.042, 0.862, 1.077.
   double low, high;
 };
 const Animated kScenes[] = {{"cornellbox_moving", 0.7, 0.85},
@@ -50,7 +49,7 @@ const scene::Scene& sceneOf(const std::string& name) {
   return scenes.at(name);
 }
 
-// Frames `first`, first + 1, .. at so many a second.
+// Frames `first`, first + 1, ... at the given number per second.
 GraphRunOptions over(const scene::Scene& s, uint32_t frames, uint64_t first, double rate) {
   GraphRunOptions options;
   options.size = {64, 64};
@@ -67,7 +66,7 @@ GraphRunOptions over(const scene::Scene& s, uint32_t frames, uint64_t first, dou
 GraphRunOptions wholeAnimation(const scene::Scene& s) { return over(s, kLooks, 0, (kLooks - 1) / kSeconds); }
 GraphRunOptions consecutive(const scene::Scene& s) { return over(s, kInARow, kFirst, kRate); }
 
-// Few and small things where the shape of the graph is all that counts.
+// Small sizes and counts, for tests in which only the structure of the graph matters.
 std::vector<std::string> smallSettings(const std::string& graph) {
   std::vector<std::string> set = {"shadow_map_size=256"};
   if (graph == "direct") return set;
@@ -86,7 +85,7 @@ double mean(const std::vector<float>& rgba) {
   return 4 * sum / double(rgba.size());
 }
 
-// Finite, nowhere negative, not black, and another picture every time.
+// Pictures must be finite, nowhere negative, not black, and different every time.
 void expectPictures(const GraphRun& run, const std::string& output) {
   std::vector<float> before;
   for (const graph::FrameResult& frame : run.frames) {
@@ -127,7 +126,7 @@ class ScenesInMotion : public testing::TestWithParam<Animated> {
   const scene::Scene& scene() const { return sceneOf(GetParam().name); }
 };
 
-// By centimetres over the animation, but from one frame to the next by little.
+// Vertices move by centimetres over the animation, but only a little from one frame to the next.
 TEST_P(ScenesInMotion, SomethingDeforms) {
   const scene::Scene& s = scene();
   scene::Geometry g = scene::flatten(s);
@@ -161,7 +160,7 @@ TEST_P(ScenesInMotion, SomethingDeforms) {
   EXPECT_LT(jump, 0.1f) << "4 m/s";
 }
 
-// With the disc kernel: the clamp loses light in small rooms by design.
+// Uses the disc kernel, because the clamp loses light in small rooms by design.
 TEST_P(ScenesInMotion, LightIsThatOfTracedPaths) {
   GraphRunOptions options = wholeAnimation(scene());
   options.outputs = {"indirect"};
@@ -182,7 +181,7 @@ TEST_P(ScenesInMotion, LightIsThatOfTracedPaths) {
   EXPECT_LT(sums[1] / sums[0], GetParam().high);
 }
 
-// `ours` without pictures: what it keeps of its VPLs is all that is wanted.
+// `ours` without pictures: only the state that it keeps of its VPLs is wanted.
 std::string graphWithState() {
   const auto file = std::filesystem::path(testing::TempDir()) / "scenes_state.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/ours.json", "outputs": {
@@ -190,7 +189,7 @@ std::string graphWithState() {
   return file.string();
 }
 
-// A VPL that stays on the list stays in its place of the box, or of the triangle of a cloth.
+// A VPL that stays on the list keeps its place in the box or in the triangle of a cloth.
 TEST_P(ScenesInMotion, VplsFollow) {
   const scene::Scene& s = scene();
   scene::Geometry g = scene::flatten(s);

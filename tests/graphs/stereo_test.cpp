@@ -1,5 +1,5 @@
-// Both eyes from end to end: the right eye made from the left one's light against the right eye rendered on
-// its own.
+// Tests both eyes from end to end: the right eye made from the light of the left one, against the right eye rendered
+// on its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kSide = 256;
 
-// Pages of the same VPLs in every frame and run: light paths do not depend on the eye.
+// Pages with the same VPLs in every frame and run, since light paths do not depend on the eye.
 const std::vector<std::string> kSettings = {"vpl_count=320", "map_size=32", "shadow_map_size=512",
                                             "per_frame=false"};
 
@@ -28,7 +28,7 @@ GraphRun run(const std::string& graph, const scene::Scene& s, const std::string&
   options.frames = frames;
   options.set = kSettings;
   options.set.push_back("interleave=" + std::to_string(interleave));
-  // What the graph takes for its only view.
+  // The view that the graph takes for its only one.
   if (!view.empty())
     options.beforeFrame = [view](scene::Frame& frame) {
       const std::string name = frame.views[0].name;
@@ -53,7 +53,7 @@ struct Errors {
   double mean = 0, p95 = 0, bias = 0;  // of luminance, in parts of the picture's mean
 };
 
-// Over the pixels with mask != 0 (`in`) or == 0.
+// Mean over the pixels with mask != 0 (`in`) or mask == 0.
 Errors compare(const std::vector<float>& image, const std::vector<float>& want,
                const std::vector<float>& mask, bool in) {
   double brightness = 0;
@@ -78,14 +78,14 @@ Errors compare(const std::vector<float>& image, const std::vector<float>& want,
 
 class Interleave : public testing::TestWithParam<int> {};
 
-// Without interleaving only the warp itself is left: bilinear between pixels, shadows of VPLs a pixel off.
-// With it both pictures have their own noise from subsets.
+// Without interleaving only the error of the warp itself is left: it is bilinear between pixels, and shadows of VPLs
+// are a pixel off. With interleaving both pictures have their own noise from subsets.
 TEST_P(Interleave, RightEyeEqualsTheOneRenderedOnItsOwn) {
   const int n = GetParam();
   const scene::Scene s = scene::builtin("cornellbox");
   const GraphRun both = run("ir_stereo", s, "", n), own = run("ir_1000", s, "right", n),
                  left = run("ir_1000", s, "left", n);
-  // The first eye does not notice the second; direct light is never warped.
+  // The first eye does not depend on the second; direct light is never warped.
   EXPECT_EQ(both.outputs.at("radiance").bytes, left.outputs.at("radiance").bytes);
   EXPECT_EQ(both.outputs.at("direct_right").bytes, own.outputs.at("direct").bytes);
 
@@ -106,7 +106,7 @@ TEST_P(Interleave, RightEyeEqualsTheOneRenderedOnItsOwn) {
   EXPECT_LT(warped.mean, n == 1 ? 0.006 : 0.015);
   EXPECT_LT(warped.p95, n == 1 ? 0.02 : 0.05);
   EXPECT_LT(std::abs(warped.bias), 0.003);
-  EXPECT_LT(again.mean, n == 1 ? 1e-6 : 0.02);  // pixels of their own are what they would be anyway
+  EXPECT_LT(again.mean, n == 1 ? 1e-6 : 0.02);  // newly shaded pixels are the same in both
   EXPECT_LT(again.p95, n == 1 ? 1e-6 : 0.08);
   EXPECT_LT(std::abs(again.bias), 0.01);
 }
@@ -120,7 +120,7 @@ TEST(Stereo, RepeatsBitForBit) {
   EXPECT_EQ(a.outputs.at("mask").bytes, b.outputs.at("mask").bytes);
 }
 
-// The foveated method: the second eye against all of it shaded with the same VPLs.
+// The foveated method: the second eye against the same eye shaded completely with the same VPLs.
 TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/stereo.json",
@@ -144,8 +144,8 @@ TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
 
 class BuiltinStereo : public testing::TestWithParam<const char*> {};
 
-// Thin things, curtains, leaves and the border that only the second eye sees, beside the same eye shaded
-// whole with the same VPLs.
+// Thin things, curtains, leaves and the border that only the second eye sees, against the same eye shaded completely
+// with the same VPLs.
 TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "ir_stereo_whole.json";
   std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/ir_stereo.json",
@@ -179,8 +179,8 @@ TEST_P(BuiltinStereo, SecondEyeEqualsAllOfItShaded) {
 
 INSTANTIATE_TEST_SUITE_P(Stereo, BuiltinStereo, testing::Values("atrium", "room", "yard", "balcony"));
 
-// Each eye sees further outwards than inwards: what only the right one sees is a wide strip, and all of it is
-// what the eye rendered on its own has.
+// Each eye sees further outwards than inwards. A wide strip is seen only by the right eye, and in all of it the
+// result equals that of the right eye rendered on its own.
 TEST(Stereo, ThroughALens) {
   scene::Scene s = scene::builtin("cornellbox");
   s.lens = scene::Lens{0.5f, 0.35f, 0.4f, 0.4f};
@@ -199,7 +199,7 @@ TEST(Stereo, ThroughALens) {
   EXPECT_LT(again.mean, 1e-6);
 }
 
-// Nothing to see, nothing to warp, nothing to shade.
+// An empty scene leaves nothing to warp and nothing to shade.
 TEST(Stereo, EmptySceneIsBlack) {
   scene::Scene s;
   s.materials.emplace_back();

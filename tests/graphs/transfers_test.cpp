@@ -1,5 +1,4 @@
-// Commands that move data without a kernel: what they do, and what they say of passes that cannot ask for
-// them.
+// Tests the commands that move data without a kernel: what they do, and the messages for passes that may not use them.
 #include <gtest/gtest.h>
 
 #include "fovea/error.h"
@@ -11,7 +10,7 @@ namespace {
 
 using namespace test;  // NOLINT: helpers
 
-// Copies with what it declares for that, which may be wrong.
+// A pass that copies, with a declaration that may be wrong.
 class CopyImage : public Pass {
  public:
   static PassDeclaration declare(const char* type, Usage from, Usage to) {
@@ -43,8 +42,7 @@ struct CopyUnwritten : CopyImage {
 };
 FOVEA_PASS(CopyUnwritten);
 
-// Copies the output of test-fill into an image that differs from it in something else than its width or
-// height.
+// Copies the output of test-fill into an image that differs from it in something other than its width or height.
 class CopyUnlike : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -95,9 +93,9 @@ TEST(Transfers, CopiesWholeImages) {
   for (uint32_t i = 0; i < 3; ++i) expectAll(runner.frame(), "x", 7 + i);
 }
 
-// Each message names the pass, its ports, and what is wrong.
+// Each message names the pass, its ports and what is wrong.
 TEST(Transfers, WrongOnesAreNamed) {
-  constexpr ExitCode kPass = ExitCode::Internal, kGraph = ExitCode::BadInput;  // whose fault it is
+  constexpr ExitCode kPass = ExitCode::Internal, kGraph = ExitCode::BadInput;  // the pass at fault
   const struct {
     std::string graph;
     ExitCode code;

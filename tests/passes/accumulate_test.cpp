@@ -17,7 +17,7 @@ std::vector<float> noise(uint32_t frame) {
   return texels;
 }
 
-// Feeds noise(frame) to every frame; `cut` marks the frame at which the camera jumps (or never).
+// Feeds noise(frame) to every frame; the camera jumps at frame `cut` (or never).
 std::vector<float> accumulate(uint32_t frames, double alpha, uint64_t cut = ~0ull) {
   PassTest test("accumulate");
   test.param("alpha", alpha).viewSize(kWidth, kHeight);

@@ -59,7 +59,7 @@ TEST(Bounce, EqualsTheReference) {
   EXPECT_LT(off, compared / 50);
 }
 
-// All surfaces emit 1: with reflectance rho every bounce adds its power of rho.
+// All surfaces emit 1; with reflectance rho every bounce adds one more power of rho.
 TEST(Bounce, FurnaceIsAGeometricSeries) {
   const float rho = 0.5f;
   const VoxelScene s(room(glm::vec3(rho)), 32);

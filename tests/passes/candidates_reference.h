@@ -1,4 +1,4 @@
-// The pass `candidates` written plainly for the CPU, with the same random numbers, and what both are fed.
+// A plain CPU version of pass `candidates` that uses the same random numbers, and the input of both.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr uint32_t kCandidateStream = 0x63616e64u;
 // What the eye sees, as stored in the G-buffer.
 struct SeenPixel {
   glm::vec3 position{0};
-  float distance = 0;  // 0: background
+  float distance = 0;  // 0 in the background
   glm::vec3 normal{0, 1, 0}, face{0, 1, 0};
 };
 
@@ -35,7 +35,7 @@ struct SeenImage {
   const SeenPixel& at(glm::ivec2 p) const { return pixels[size_t(p.y * size.x + p.x)]; }
   SeenPixel& at(glm::ivec2 p) { return pixels[size_t(p.y * size.x + p.x)]; }
 
-  // Rounds what it holds as the formats do.
+  // Rounds the values as the formats do.
   void wire(PassTest& test, const std::string& port = "gbuffer") {
     std::vector<float> position;
     std::vector<uint16_t> normal;
@@ -81,7 +81,7 @@ struct CandidateReference {
     uint32_t side = scene::kNoSide;
   };
 
-  // nudge: turns the direction a little.
+  // nudge turns the direction slightly.
   Attempt attempt(uint32_t i, glm::vec3 nudge = glm::vec3(0)) const {
     const uint32_t stream = randomStream(seed, frame, kCandidateStream, i);
     const SeenPixel& p = image.at(scene::regionSample(region, fovea, image.size, stream));

@@ -1,5 +1,5 @@
-// Candidates: every one against the CPU with the same random numbers; pixels and bounces against their
-// distributions.
+// Compares every candidate with the CPU, which uses the same random numbers, and pixels and bounces
+// with their distributions.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,7 +24,7 @@ bool isEmpty(const Candidate& c) {
 
 float random(uint32_t what, uint32_t i) { return uniformFloat(randomStream(23, 0, what, i)); }
 
-// A room without its front wall and a box in it, each face of which may be an object of its own.
+// A room without its front wall and a box in it; each face of the box may be an object of its own.
 scene::Scene makeRoom(bool moving = false) {
   scene::Scene s;
   s.materials.clear();
@@ -49,7 +49,7 @@ scene::Scene makeRoom(bool moving = false) {
   return s;
 }
 
-// What a camera sees of a scene, by rays; normals lean by up to 50 degrees, as shading normals may.
+// A G-buffer of a camera's view, made with rays. Normals lean by up to 50 degrees, as shading normals may.
 SeenImage seen(const scene::Scene& s, const scene::Geometry& g, const scene::Camera& camera,
                glm::ivec2 size) {
   const scene::View view = scene::makeView(camera, glm::uvec2(size), g);
@@ -85,8 +85,7 @@ void expectCounters(const PassTest& test, const Counts& want, double count) {
   EXPECT_EQ(test.counter("background"), want.background);
 }
 
-// ---- Against the replay
-// ----------------------------------------------------------------------------------------------
+// ---- Against the replay -----------------------------------------------------------------------------------
 
 void expectReplay(const CandidateReference& reference, const PassTest& test,
                   const std::vector<glm::vec4>& radiance, Counts& counts) {
@@ -129,8 +128,8 @@ void expectReplay(const CandidateReference& reference, const PassTest& test,
   EXPECT_LE(rounded, int(list.size() / 500) + 1) << "bounces that rounding sent elsewhere";
 }
 
-// Rays through voxels against rays through the triangles: share of the bounces that end within two cells of
-// each other, or that both escape. Backs of single-sided triangles hide nothing from a voxel ray, so the rays
+// Share of the bounces for which a ray through voxels and a ray through the triangles end within two cells of each
+// other, or both escape. Backs of single-sided triangles hide nothing from a voxel ray, so the rays through triangles
 // pass them, too.
 double agreement(const CandidateReference& reference, const scene::Scene& s, const scene::Geometry& g,
                  uint32_t count) {
@@ -221,8 +220,7 @@ TEST(Candidates, PerFrameOrAlwaysTheSame) {
   }
 }
 
-// ---- The pixels: each starts in a chamber of its own, so that a candidate tells where it comes from
-// --------------------
+// ---- Pixels: each starts in a chamber of its own, so that a candidate tells where it comes from -----------
 
 constexpr glm::ivec2 kSize{24, 16};
 
@@ -231,7 +229,7 @@ struct Chambers {
   VoxelArrays voxels;
   SeenImage image{kSize};
 
-  // Pixel (x, y) lies on the floor of cell (2x + 1, 1, 2y + 1). All cells around are wall.
+  // Pixel (x, y) lies on the floor of cell (2x + 1, 1, 2y + 1). All cells around it are wall.
   Chambers() {
     scene.materials.emplace_back();
     scene.cameras.emplace_back();
@@ -285,7 +283,7 @@ std::vector<double> coverage(const scene::Fovea& fovea) {
   return part;
 }
 
-// Chi-square in standard deviations from its mean; what expects under 8 is thrown together.
+// Chi-square in standard deviations from its mean. Bins with an expected count under 8 are merged.
 double deviation(const std::vector<double>& part, const std::vector<double>& counted) {
   double sum = 0, draws = 0, chi2 = 0, rest = 0, restCounted = 0;
   for (size_t i = 0; i < part.size(); ++i) sum += part[i], draws += counted[i];
@@ -376,8 +374,7 @@ TEST(Candidates, TwoEyesTakeTurns) {
   }
 }
 
-// ---- The bounces: from one point into a hemisphere of voxels
-// -----------------------------------------------------------
+// ---- Bounces: from one point into a hemisphere of voxels --------------------------------------------------
 
 TEST(Candidates, BouncesAreCosineDistributed) {
   constexpr int kResolution = 96, kCount = 40000, kRings = 8, kSectors = 12;
@@ -428,8 +425,7 @@ TEST(Candidates, BouncesAreCosineDistributed) {
   EXPECT_LT(deviation(std::vector<double>(counted.size(), 1), counted), 5);
 }
 
-// ---- Little or nothing to work on
-// --------------------------------------------------------------------------------------
+// ---- Little or nothing to work on -------------------------------------------------------------------------
 
 TEST(Candidates, EmptyScene) {
   PassTest test("candidates");

@@ -1,4 +1,4 @@
-// Irradiance to radiance, pixel by pixel.
+// Tests the conversion of irradiance to radiance, pixel by pixel.
 #include <gtest/gtest.h>
 
 #include "tests/passes/deferred_reference.h"

@@ -1,5 +1,5 @@
-// Shading of listed blocks only, with known irradiance elsewhere: the same light as without a mask, no seams,
-// cost by blocks.
+// Tests the shading of listed blocks only, with known irradiance elsewhere: the light is the same as without a mask,
+// there are no seams, and the cost depends on the number of blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using scene::Vpl;
 
 float random(uint32_t what, uint32_t i) { return uniformFloat(randomStream(23, 0, what, i)); }
 
-// VPLs over a floor of +-2 m, each of its own strength.
+// VPLs over a floor of +-2 m, each with a different strength.
 std::vector<Vpl> randomVpls(uint32_t count) {
   std::vector<Vpl> list(count);
   for (uint32_t i = 0; i < count; ++i) {
@@ -51,7 +51,7 @@ GBuffer makePatches(int width, int height) {
   });
 }
 
-// The blocks of n x n pixels that `listed` names, as pass reproject hands them on.
+// The blocks of n x n pixels that `listed` names, in the form in which pass reproject writes them.
 struct Mask {
   int n;
   std::vector<uint8_t> pixels;
@@ -82,7 +82,7 @@ struct Mask {
   }
 };
 
-// As pass reproject makes it: 0 in the background.
+// In the form in which pass reproject writes it: 0 in the background.
 void wireBase(PassTest& test, const GBuffer& g, const std::vector<glm::vec3>& base) {
   std::vector<uint16_t> half;
   for (size_t i = 0; i < base.size(); ++i) {
@@ -108,8 +108,8 @@ std::vector<float> run(PassTest& test, const GBuffer& g, const std::vector<Vpl>&
   return test.floats("irradiance");
 }
 
-// Every block listed: bit for bit what the pass gives without a mask, whatever the base; several pages, an
-// odd size.
+// With every block listed, the result is bit for bit that of the pass without a mask, whatever the base; with several
+// pages and an odd size.
 TEST(DeferredMask, FullMaskEqualsNoMask) {
   const GBuffer g = makePatches(53, 41);
   const auto vpls = randomVpls(1100);
@@ -125,7 +125,7 @@ TEST(DeferredMask, FullMaskEqualsNoMask) {
   }
 }
 
-// Few VPLs make fewer subsets than a block has pixels.
+// With few VPLs there are fewer subsets than pixels in a block.
 TEST(DeferredMask, FewVplsShadeWholeBlocksToo) {
   const GBuffer g = makePatches(53, 41);
   const std::vector<glm::vec3> base(g.pixels.size(), glm::vec3(777));
@@ -137,7 +137,7 @@ TEST(DeferredMask, FewVplsShadeWholeBlocksToo) {
   }
 }
 
-// Inside a listed patch nothing is different; outside stands the base; the cost is that of the patch.
+// Inside a listed patch nothing differs, outside it the base stays, and the cost is that of the patch.
 TEST(DeferredMask, PatchEqualsNoMaskAndTheRestIsTheBase) {
   const GBuffer g = makeFloor(64, 48, 0.01f);
   const auto vpls = randomVpls(640);
@@ -176,8 +176,8 @@ TEST(DeferredMask, EmptyListTakesTheBaseEverywhere) {
   EXPECT_EQ(test.counter("shaded_pixels"), 0);
 }
 
-// Lone blocks, rows and patches of them on a wall with the right light around: nobody can tell where they
-// are, although each pixel of theirs saw only one VPL of sixteen.
+// Lone blocks, rows and patches of them on a wall with correct light around them: they must not be visible, although
+// each of their pixels saw only one VPL of sixteen.
 TEST(DeferredMask, ShadedBlocksHaveNoSeams) {
   const GBuffer g = makeFloor(96, 96, 0.005f);
   const auto vpls = randomVpls(320);
@@ -196,7 +196,7 @@ TEST(DeferredMask, ShadedBlocksHaveNoSeams) {
   EXPECT_LT(worst, 3 * worstPlain + 0.002);  // and the filter without a mask is not much better
 }
 
-// Everything at once, against the CPU: patches, maps of blocks at random, a base of noise.
+// Compares everything at once with the CPU: patches, maps of random blocks, and a base of noise.
 TEST(DeferredMask, RandomMasksEqualTheReference) {
   const GBuffer g = makePatches(50, 38);
   const auto vpls = randomVpls(300);

@@ -1,4 +1,4 @@
-// The deferred pass written plainly for the CPU, and G-buffers to feed both.
+// A plain CPU version of pass deferred, and G-buffers as input for both.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ inline glm::vec3 halfRound(glm::vec3 v) { return {halfRound(v.x), halfRound(v.y)
 
 struct SurfacePixel {
   glm::vec3 position{0};
-  float distance = 0;  // to the eye; 0: background
+  float distance = 0;  // to the eye; 0 in the background
   glm::vec3 normal{0, 1, 0};
   glm::vec3 albedo{0.5f};
 };
@@ -47,7 +47,7 @@ struct GBuffer {
     }
   }
 
-  // As the bundle at `port`; only the first `members` of position, normal, face, albedo.
+  // The bundle at `port`, with only the first `members` of position, normal, face and albedo.
   void wire(PassTest& test, const std::string& port = "gbuffer", int members = 4) const {
     std::vector<float> position;
     std::vector<uint16_t> normal, face, albedo;
@@ -77,7 +77,7 @@ struct DeferredReference {
   double filterPlane = 0.005, filterAngle = 25;
   const std::vector<uint32_t>* atlas = nullptr;  // `size` x `size` x VPLs, the bits of floats
   int size = 0;
-  const std::vector<uint8_t>* mask = nullptr;    // which pixels are shaded; all without it
+  const std::vector<uint8_t>* mask = nullptr;    // which pixels are shaded; all if null
   const std::vector<glm::vec3>* base = nullptr;  // irradiance / pi of the others
   int nearTies = 0;                              // shadow comparisons too close to call in single precision
 
@@ -98,7 +98,7 @@ struct DeferredReference {
     return sum;
   }
 
-  // The map's distance against that of the receiver's tangent plane along the texel's centre.
+  // Compares the map's distance with that of the receiver's tangent plane along the direction of the texel's centre.
   bool lit(const SurfacePixel& p, const scene::Vpl& v, size_t slot) {
     const glm::mat3 frame = scene::orthonormalFrame(v.normal);
     const glm::vec3 local = scene::toLocal(frame, p.position - v.position);
@@ -118,7 +118,7 @@ struct DeferredReference {
     return stored >= limit;
   }
 
-  // The filter: per subset, then over subsets.
+  // The filter, first per subset and then over subsets.
   std::vector<glm::dvec3> irradiance(const GBuffer& g, const std::vector<scene::Vpl>& vpls) {
     const int n = interleave;
     std::vector<glm::dvec3> partial(g.pixels.size()), result(g.pixels.size());
@@ -155,8 +155,8 @@ struct DeferredReference {
     }
     glm::dvec3 value(int qx, int qy) const { return partial[size_t(qy * g.width + qx)]; }
 
-    // A subset's sample from the other side of the pixel or else from the wide window, nearer ones weighing
-    // more; a: whether there is one.
+    // A subset's sample from the other side of the pixel, or else from the wide window, where nearer samples have
+    // more weight; a says whether there is one.
     glm::dvec4 wide(int ax, int ay, int n) const {
       glm::dvec4 s(0);
       const auto add = [&](int dx, int dy) {

@@ -1,4 +1,4 @@
-// Shading with VPLs: closed forms, shadows from made-up maps, the filter, and random G-buffers against the CPU.
+// Tests shading with VPLs: closed forms, shadows from made-up maps, the filter, and random G-buffers against the CPU.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ Vpl makeVpl(glm::vec3 position, glm::vec3 normal, glm::vec3 intensity, float are
   return v;
 }
 
-// A floor seen from above: pixel (x, y) at `step` metres spacing around the origin.
+// A floor seen from above: pixels (x, y) around the origin, `step` metres apart.
 GBuffer makeFloor(int width, int height, float step, float eyeDistance = 5) {
   return GBuffer(width, height, [&](int x, int y) {
     SurfacePixel p;
@@ -74,7 +74,7 @@ void expectImage(const std::vector<float>& image, const GBuffer& g, const std::v
   EXPECT_LE(wrong, allowed);
 }
 
-// ---- One VPL over a plane: E = I cos_s cos_l K(d) with cos = h / d -----------------------------------------------------
+// ---- One VPL over a plane: E = I cos_s cos_l K(d) with cos = h / d ----------------------------------------
 
 enum class Case { Clamped, Unclamped, Disc };
 
@@ -106,7 +106,7 @@ TEST_P(OneVpl, EqualsTheClosedForm) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, OneVpl, testing::Values(Case::Clamped, Case::Unclamped, Case::Disc));
 
-// The surface behind the VPL, and the one that faces away, get nothing.
+// The surface behind the VPL and the one that faces away from it get no light.
 TEST(Deferred, VplsShineToTheirSideOnly) {
   const GBuffer g = makeFloor(8, 8, 0.1f);
   for (const Vpl& v :
@@ -116,11 +116,11 @@ TEST(Deferred, VplsShineToTheirSideOnly) {
   }
 }
 
-// ---- Shadows from made-up maps -----------------------------------------------------------------------------------------
+// ---- Shadows from made-up maps ----------------------------------------------------------------------------
 
 constexpr int kMap = 64;
 
-// Distances along each texel's direction, as an exact rasteriser stores them.
+// Distances along each texel's direction, as an exact rasteriser would store them.
 std::vector<uint32_t> makeMap(const Vpl& v, const std::function<float(glm::vec3)>& distance) {
   std::vector<uint32_t> map(kMap * kMap, scene::kParaboloidEmpty);
   const glm::mat3 frame = scene::orthonormalFrame(v.normal);
@@ -207,7 +207,7 @@ TEST(Deferred, TiledAtlasEqualsLayers) {
   EXPECT_GT(sum, 0);
 }
 
-// ---- Interleaving and the filter ----------------------------------------------------------------------------------------
+// ---- Interleaving and the filter --------------------------------------------------------------------------
 
 // 1000 equal VPLs so far away that the wall is lit evenly: subsets of 62 and 63, and yet every pixel gets the same light.
 TEST(Deferred, FilterOnAFlatWallIsExact) {
@@ -225,7 +225,7 @@ TEST(Deferred, FilterOnAFlatWallIsExact) {
   }
 }
 
-// Different VPLs: only what the light changes across a block of pixels may differ.
+// With different VPLs, only variation of the light across a block of pixels may show as a difference.
 TEST(Deferred, FilterOnAFlatWallIsNearTheSumOfAllVpls) {
   const GBuffer g = makeFloor(64, 64, 0.01f);
   const auto vpls = randomVpls(500);
@@ -239,7 +239,8 @@ TEST(Deferred, FilterOnAFlatWallIsNearTheSumOfAllVpls) {
   }
 }
 
-// Two walls in a corner, and a rod two pixels wide in front: each is lit as if it were alone, without halo or pattern.
+// Two walls in a corner, and a rod two pixels wide in front of them: each is lit as if it were alone, without a halo
+// or a pattern.
 TEST(Deferred, EdgesKeepTheirOwnLight) {
   const GBuffer g(64, 64, [](int x, int y) {
     SurfacePixel p;
@@ -272,7 +273,7 @@ TEST(Deferred, EdgesKeepTheirOwnLight) {
     }
 }
 
-// ---- Numbers of VPLs ----------------------------------------------------------------------------------------------------
+// ---- Numbers of VPLs --------------------------------------------------------------------------------------
 
 class Counts : public testing::TestWithParam<uint32_t> {};
 
@@ -289,7 +290,7 @@ TEST_P(Counts, EqualTheReference) {
   expectImage(image, g, reference.irradiance(g, vpls), 5e-3);
 }
 
-// 1024 fill a page; 4096 are four of them.
+// 1024 VPLs fill one page, 4096 fill four.
 INSTANTIATE_TEST_SUITE_P(Pages, Counts, testing::Values(1, 2, 63, 1000, 1024, 1025, 4096));
 
 TEST(Deferred, EmptySlotsGiveNoLight) {
@@ -335,7 +336,7 @@ TEST(Deferred, BackgroundShowsTheDirectImageOnly) {
   EXPECT_EQ(test.counter("shaded_pixels"), double(surfaces));
 }
 
-// ---- Everything at once, against the CPU --------------------------------------------------------------------------------
+// ---- Everything at once, against the CPU ------------------------------------------------------------------
 
 // Bumpy patches at different depths with holes; random maps; both kernels; all interleave factors.
 TEST(Deferred, RandomGBuffersEqualTheReference) {
@@ -370,7 +371,8 @@ TEST(Deferred, RandomGBuffersEqualTheReference) {
     PassTest test("deferred");
     test.param("kernel", reference.disc ? "disc" : "clamp");
     const auto image = runShadowed(test, g, vpls, maps, n);
-    // A point on the edge between two texels of a map may fall into either: a few of 300 decisions a pixel.
+    // A point on the edge between two texels of a map may fall into either one; this affects a few of 300
+    // decisions per pixel.
     expectImage(image, g, reference.irradiance(g, vpls), 0.01, g.pixels.size() * 3 / 100);
   }
 }
@@ -394,7 +396,7 @@ TEST(Deferred, AnAtlasOfTooFewMapsIsRefused) {
   EXPECT_THROW(run(test, g, randomVpls(3), 1), Error);
 }
 
-// The light of pass near-field is filtered with that of the VPLs, and the reflectance comes afterwards.
+// The light of pass near-field is filtered together with that of the VPLs; the reflectance is applied afterwards.
 TEST(Deferred, NearLightJoinsThatOfTheVpls) {
   const GBuffer g = makeFloor(32, 32, 0.1f);
   const std::vector<Vpl> vpls = randomVpls(64);

@@ -69,7 +69,7 @@ scene::Light spot(glm::vec3 position, glm::vec3 direction) {
   return light;
 }
 
-// Irradiance of the plane y = 0 at p by the formulas of METHOD section 6 and KHR_lights_punctual.
+// Irradiance of the plane y = 0 at p by the formulas of KHR_lights_punctual (passes/README.md, direct).
 glm::dvec3 irradiance(const scene::Light& light, glm::dvec3 p) {
   const glm::dvec3 power = glm::dvec3(light.color) * double(light.intensity);
   if (light.type == scene::LightType::Directional) return power * std::max(-double(light.direction.y), 0.0);
@@ -113,7 +113,7 @@ uint32_t layerCount(const std::vector<scene::Light>& lights) {
   return std::max(layers, 1u);
 }
 
-// Nearest of sphere and plane along a ray; distance in lengths of the direction, < 0: nothing.
+// Nearest hit of sphere and plane along a ray; distance in lengths of the direction, negative if there is none.
 double nearest(glm::dvec3 origin, glm::dvec3 direction) {
   double best = -1;
   if (direction.y < 0 && origin.y > 0) best = -origin.y / direction.y;
@@ -127,7 +127,7 @@ double nearest(glm::dvec3 origin, glm::dvec3 direction) {
   return best;
 }
 
-// Depth of sphere and plane through every texel's centre, by rays.
+// Depth of sphere and plane through the centre of every texel, by rays.
 std::vector<float> shadowDepth(const std::vector<ShadowView>& views, uint32_t layers) {
   std::vector<float> depth;
   for (uint32_t layer = 0; layer < layers; ++layer) {
@@ -155,7 +155,7 @@ std::vector<float> shadowDepth(const std::vector<ShadowView>& views, uint32_t la
 struct Surface {
   glm::vec3 normal{0, 1, 0};
   glm::vec2 face{0, 1};  // octahedral (0, 1, 0)
-  float distance = 5;    // 0: background
+  float distance = 5;    // 0 in the background
 };
 
 // Direct radiance, RGBA, of the plane of receivers.
@@ -189,7 +189,7 @@ std::vector<float> shadeUnshadowed(const std::vector<scene::Light>& lights, cons
                std::vector<float>(size_t(kSize) * kSize * layerCount(lights), 0.0f), "pcf", surface);
 }
 
-// visibility(light, x, y) in [0, 1], or < 0: leave this pixel out. Returns how many pixels were compared.
+// visibility(light, x, y) is in [0, 1], or negative to leave this pixel out. Returns the number of pixels compared.
 int expectRadiance(const std::vector<float>& got, const std::vector<scene::Light>& lights,
                    const std::function<double(const scene::Light&, glm::dvec3)>& visibility) {
   int compared = 0;
@@ -246,15 +246,15 @@ TEST(Direct, BackgroundShowsTheEnvironment) {
   EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({0, -1, 0})}, background), {}, always), kWidth * kHeight);
 }
 
-// The interpolated normal leans over to the light, but the face itself is turned away.
+// The interpolated normal leans towards the light, but the face itself is turned away from it.
 TEST(Direct, FaceTurnedAwayIsDark) {
   Surface terminator;
   terminator.normal = glm::normalize(glm::vec3(0.9f, 0.5f, 0));
   EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({-1, 0.1f, 0})}, terminator), {}, always), kWidth * kHeight);
 }
 
-// Does the sphere stand between p and the light? -1: too close to the rim of its shadow for a map of this
-// resolution.
+// Whether the sphere stands between p and the light; -1 if p is too close to the rim of its shadow for a map
+// of this resolution.
 double sphereVisibility(const scene::Light& light, glm::dvec3 p) {
   const bool directional = light.type == scene::LightType::Directional;
   const glm::dvec3 to = directional ? -glm::dvec3(light.direction) : glm::dvec3(light.position) - p;
@@ -282,7 +282,7 @@ TEST(Direct, ShadowOfASphereEqualsRays) {
   const scene::Light light = sun({0.5f, -1, 0.2f});
   for (int i = 0; i < kWidth * kHeight; ++i)
     shadowed += sphereVisibility(light, glm::dvec3(receiver(i % kWidth, i / kWidth))) == 0;
-  EXPECT_GT(shadowed, 20);  // the test tests something
+  EXPECT_GT(shadowed, 20);  // the test is not vacuous
   expectShadows({light}, kWidth * kHeight / 2);
   expectShadows({point({0.3f, 2.5f, 0.2f})}, kWidth * kHeight / 2);
   expectShadows({spot({-0.8f, 2.2f, 0.5f}, {0.4f, -1, -0.3f})}, kWidth * kHeight / 2);
@@ -291,7 +291,7 @@ TEST(Direct, ShadowOfASphereEqualsRays) {
       kWidth * kHeight / 4);
 }
 
-// Light that just grazes the plane: its slope in the map is 1 to 11, any fixed bias would fail.
+// Light that just grazes the plane: its slope in the map is between 1 and 11, so any fixed bias would fail.
 TEST(Direct, NoAcneAtGrazingLight) {
   expectShadows({sun({1, -0.09f, 0.3f})}, kWidth * kHeight / 3);
   expectShadows({point({1.5f, 0.15f, 1.2f})}, kWidth * kHeight / 3);
@@ -314,7 +314,7 @@ TEST(Direct, FilterSoftensTheRim) {
   EXPECT_GT(between("pcf"), between("bilinear"));
 }
 
-// a is 0 just where the map's texels disagree: on the rim of the shadow, and nowhere else.
+// Alpha is 0 exactly where the map's texels disagree, which is the rim of the shadow.
 TEST(Direct, TellsWhatIsInDoubt) {
   const std::vector<scene::Light> lights = {sun({0.5f, -1, 0.2f})};
   const auto views = shadowViews(lights);

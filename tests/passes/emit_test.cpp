@@ -1,4 +1,4 @@
-// Light paths: energy against closed forms, distribution, determinism, and scenes that no light reaches.
+// Tests light paths: energy against closed forms, distribution, determinism, and scenes that no light reaches.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ std::vector<Vpl> emitted(PassTest& test, const scene::Scene& s) {
   return test.values<Vpl>("vpls");
 }
 
-// Reflected flux of all VPLs, W: Phi = pi I for a diffuse emitter.
+// Reflected flux of all VPLs in W: Phi = pi I for a diffuse emitter.
 glm::dvec3 totalFlux(const std::vector<Vpl>& vpls) {
   glm::dvec3 sum(0);
   for (const Vpl& v : vpls) sum += kPi * glm::dvec3(v.intensity);
@@ -51,9 +51,9 @@ int filled(const std::vector<Vpl>& vpls) {
   return n;
 }
 
-// ---- Energy --------------------------------------------------------------------------------------------------------
+// ---- Energy -----------------------------------------------------------------------------------------------
 
-// In a closed room of one reflectance every path deposits the same: no statistical error at all.
+// In a closed room of one reflectance every path deposits the same energy, without any statistical error.
 TEST(Emit, FirstBounceInAClosedRoomCarriesPowerTimesReflectance) {
   scene::Scene s = room({0.2f, 0.5f, 0.8f});
   s.lights = {pointLight({0.3f, -0.4f, 0.5f}, {10, 20, 30})};
@@ -84,8 +84,8 @@ TEST(Emit, WallsOfDifferentColourReflectTheirMean) {
   expectFlux(emitted(test, s), 4 * kPi * 5 * mean, 0.01);
 }
 
-// Furnace: with k bounces P (rho + rho^2 + ... + rho^k). In a grey room the termination by reflectivity makes all VPLs equal
-// (Keller); only the number of those of each bounce varies.
+// Furnace: with k bounces the flux is P (rho + rho^2 + ... + rho^k). In a grey room the termination by reflectivity
+// makes all VPLs equal (Keller); only the number of VPLs of each bounce varies.
 TEST(Emit, BouncesInAFurnaceFormAGeometricSeries) {
   for (const int bounces : {1, 2, 3, 8}) {
     const float rho = 0.6f;
@@ -97,14 +97,15 @@ TEST(Emit, BouncesInAFurnaceFormAGeometricSeries) {
     double series = 0;
     for (int k = 1; k <= bounces; ++k) series += std::pow(rho, k);
     expectFlux(vpls, glm::dvec3(4 * kPi * series), 0.02);
-    int odd = 0;  // those that a split made to fill the last slots
+    int odd = 0;  // VPLs made by a split to fill the last slots
     for (const Vpl& v : vpls) odd += std::abs(v.intensity.r / vpls[0].intensity.r - 1) > 1e-3f;
     EXPECT_LE(odd, 2 * bounces);
     EXPECT_EQ(filled(vpls), 4096);
   }
 }
 
-// Coloured walls: the flux of each bounce is the product of the channel's reflectances, though survival is by the brightest.
+// Coloured walls: the flux of each bounce is the product of the channel's reflectances, though survival depends on
+// the brightest channel.
 TEST(Emit, SurvivalByTheBrightestChannelKeepsAllChannelsRight) {
   const glm::dvec3 rho(0.8, 0.4, 0.1);
   scene::Scene s = room(glm::vec3(rho));
@@ -114,8 +115,9 @@ TEST(Emit, SurvivalByTheBrightestChannelKeepsAllChannelsRight) {
   expectFlux(emitted(test, s), 4 * kPi * (rho + rho * rho + rho * rho * rho), 0.02);
 }
 
-// The rule that stops when the list is full is unbiased: the mean over many short lists is that of single paths. Dividing
-// by the number of paths traced, the unfinished one included, would be off by more than ten standard errors here.
+// The rule that stops when the list is full is unbiased: the mean over many short lists is that of single
+// paths. Dividing by the number of paths traced, the unfinished one included, would be off by more than ten
+// standard errors here.
 TEST(Emit, StoppingWhenTheListIsFullIsUnbiased) {
   const double rho = 0.5;
   scene::Scene s = room(glm::vec3(float(rho)));
@@ -143,7 +145,7 @@ TEST(Emit, StoppingWhenTheListIsFullIsUnbiased) {
   }
 }
 
-// A beam over a floor with a shelf above it: what the shelf catches the floor lacks.
+// A beam over a floor with a shelf above it: the floor lacks what the shelf catches.
 TEST(Emit, SunDeliversItsIrradianceToWhatItHits) {
   const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -1, 0.2f));
   scene::Scene s;
@@ -201,7 +203,7 @@ TEST(Emit, EmissiveTrianglesAreVplsAndSendOutPaths) {
     test.param("count", 2048).param("bounces", 1);
     const auto vpls = emitted(test, s);
     const double sides = doubleSided ? 2 : 1;
-    // The back of the lamp may catch light again (it reflects nothing): only downward light is all reflected.
+    // The back of the lamp may catch light again but reflects none, so only the downward light is completely reflected.
     glm::dvec3 onLamp(0), onWalls(0);
     for (const Vpl& v : vpls)
       (std::abs(v.position.y - 1.9f) < 1e-3f ? onLamp : onWalls) += kPi * glm::dvec3(v.intensity);
@@ -228,9 +230,9 @@ TEST(Emit, LightsAreChosenByPower) {
   expectFlux(vpls, 4 * kPi * 0.5 * glm::dvec3(9, 3, 0), 5e-3);
 }
 
-// ---- Distribution and order ----------------------------------------------------------------------------------------
+// ---- Distribution and order -------------------------------------------------------------------------------
 
-// Share of a point light's rays through a centred square of half side a at height h: its solid angle over 4 pi.
+// Share of a point light's rays through a centred square of half side a at height h: its solid angle divided by 4 pi.
 TEST(Emit, PointLightIsUniformOverTheSphere) {
   scene::Scene s = room(glm::vec3(0.5f), 2);
   s.lights = {pointLight(glm::vec3(0), glm::vec3(1))};
@@ -246,8 +248,8 @@ TEST(Emit, PointLightIsUniformOverTheSphere) {
   }
 }
 
-// Uniformly lit floor: 1000 VPLs on 100 m^2 stand for 0.1 m^2 each. Along the rim, where the disc of the neighbours hangs
-// over the edge, the estimate is up to twice as large: here a fifth of the floor.
+// Uniformly lit floor: 1000 VPLs on 100 m^2 stand for 0.1 m^2 each. Along the rim, where the disc of the neighbours
+// extends over the edge, the estimate is up to twice as large; here this is a fifth of the floor.
 TEST(Emit, AreasAddUpToTheLitSurface) {
   scene::Scene s;
   addMaterial(s, glm::vec3(0.5f));
@@ -264,7 +266,7 @@ TEST(Emit, AreasAddUpToTheLitSurface) {
   }
   EXPECT_GT(sum, 95);
   EXPECT_LT(sum, 125);
-  // In the mean of four frames there are four times as many.
+  // The mean of four frames has four times as many VPLs.
   PassTest sharing("emit");
   sharing.param("count", 1000).param("bounces", 1).param("averaged_frames", 4);
   const auto shared = emitted(sharing, s);
@@ -339,7 +341,7 @@ TEST(Emit, LightPassesThroughMaskedHoles) {
   EXPECT_NEAR(below, 500, 10);
 }
 
-// ---- Determinism and the awkward cases -------------------------------------------------------------------------------
+// ---- Determinism and special cases ------------------------------------------------------------------------
 
 TEST(Emit, RepeatsForSeedAndFrame) {
   scene::Scene s = room(glm::vec3(0.5f));

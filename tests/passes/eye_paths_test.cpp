@@ -1,4 +1,4 @@
-// Eye paths through triangles: where they end and what they find there, against plain rays and closed forms.
+// Compares eye paths through triangles, where they end and what they find there, with plain rays and closed forms.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -63,8 +63,8 @@ TEST(EyePaths, StartFromTheScreenPointsOfPassWeights) {
     }
 }
 
-// Light that the ends find: their own surface's reflectance times the lights' irradiance over pi, where no
-// shadow falls.
+// Light that the ends find where no shadow falls: the reflectance of their own surface times the lights' irradiance,
+// divided by pi.
 TEST(EyePaths, EndsAreLitAsPlainRaysSay) {
   const Look look(litRoom(true));
   passes::EyePathSettings settings;
@@ -95,7 +95,7 @@ TEST(EyePaths, EndsAreLitAsPlainRaysSay) {
   EXPECT_GT(dark, 20);
 }
 
-// What the paths bring to the surfaces that the points see is their indirect light.
+// The light that the paths bring to the surfaces of the points is their indirect light.
 TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   const Look look(litRoom(true));
   const scene::View& view = look.frame.views[0];
@@ -117,7 +117,7 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.01 * want[c]) << "channel " << c;
 }
 
-// A closed room whose walls all shine: each bounce adds one more term of the series, exactly.
+// In a closed room whose walls all shine, each bounce adds exactly one more term of the series.
 TEST(EyePaths, Furnace) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
@@ -147,7 +147,7 @@ TEST(EyePaths, TheSameWhateverTheThreads) {
   EXPECT_EQ(look.statistics.ends, one.size());
 }
 
-// The unit holds the sum of all the light in 31 bits.
+// The unit of the sums is chosen so that the sum of all the light fits in 31 bits.
 TEST(EyePaths, SumsFitIntoTheirUnit) {
   const Look look(litRoom(false));
   const auto ends = look.trace({}, 4096);
@@ -159,8 +159,8 @@ TEST(EyePaths, SumsFitIntoTheirUnit) {
   EXPECT_NEAR(std::max({sum.r, sum.g, sum.b}) / 2147483648.0, 1, 1e-5);
 }
 
-// A floor under the open sky sends its paths nowhere; so do an empty scene and one behind the eye. A black
-// back reflects nothing.
+// Paths from a floor under the open sky hit nothing, and neither do those of an empty scene or of one behind the eye.
+// A black back reflects nothing.
 TEST(EyePaths, NothingToFind) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
@@ -178,7 +178,7 @@ TEST(EyePaths, NothingToFind) {
   EXPECT_EQ(empty.counter("ends"), 0);
 }
 
-// The pass hands on what the tracer finds, for its own gaze.
+// The pass returns what the tracer finds, for its own gaze.
 TEST(EyePaths, PassEqualsTheTracer) {
   const Look look(litRoom(true), {32, 32});
   PassTest test("eye-paths");
@@ -197,7 +197,7 @@ TEST(EyePaths, PassEqualsTheTracer) {
   EXPECT_EQ(test.counter("ends"), 512);
 }
 
-// After a jump of the gaze a share of the points moves on in each frame, the others stay.
+// After a jump of the gaze a share of the points moves in each frame and the others stay.
 TEST(EyePaths, StartsMoveOnInTurns) {
   const Look look(litRoom(true), {32, 32});
   passes::EyePathSettings settings;
@@ -229,8 +229,7 @@ TEST(EyePaths, StartsMoveOnInTurns) {
   EXPECT_NE(before[0].position, after[0].position);
 }
 
-// The eye moves past the block. A start that is due stays where the eye still sees it, `stray` from its place
-// at most.
+// The eye moves past the block. A start that is due stays where the eye still sees it, at most `stray` from its place.
 TEST(EyePaths, StartsStayUntilTheyStray) {
   const Look before(litRoom(true));
   scene::Scene moved = litRoom(true);
@@ -255,7 +254,7 @@ TEST(EyePaths, StartsStayUntilTheyStray) {
     int kept = 0, hidden = 0, strayed = 0;
     for (uint32_t i = 0; i < got.size(); ++i) {
       const glm::dvec3 eye(view.eye), to = glm::dvec3(old[i].position) - eye;
-      // On the plane of the picture, by the camera's angle; it looks along -Z.
+      // In the plane of the picture, from the camera's angle; the camera looks along -Z.
       const glm::dvec2 at =
           (glm::dvec2(to.x, -to.y) / (-to.z * 2 * std::tan(view.verticalFov / 2.0)) + 0.5) * double(size.x);
       const double off =
@@ -280,7 +279,7 @@ TEST(EyePaths, StartsStayUntilTheyStray) {
   }
 }
 
-// The light goes out between two frames: in each frame a share of the points finds that out.
+// The light is switched off between two frames; in each frame a share of the points notices.
 TEST(EyePaths, PathsAreTracedInTurns) {
   const Look look(litRoom(true), {32, 32});
   for (uint32_t dark = 1; dark <= 4; ++dark) {

@@ -1,4 +1,4 @@
-// A wall and a nearer box, seen by an eye: what passes over the surfaces of the picture are tried on.
+// A wall and a nearer box as an eye sees them, for tests of passes that work on the surfaces of the picture.
 #pragma once
 
 #include <cmath>

@@ -47,8 +47,8 @@ class Output {
   std::vector<uint32_t> id_;
 };
 
-// Compares every pixel with the ray through its centre. A pixel may see something else only if a ray within
-// 1/64 of a pixel sees it too. Returns the share of such pixels.
+// Compares every pixel with the ray through its centre. A pixel may see something else only if a ray within 1/64 of a
+// pixel sees it too. Returns the share of such pixels.
 class Comparison {
  public:
   Comparison(const PassTest& test, const scene::Scene& scene, bool cull)
@@ -80,7 +80,7 @@ class Comparison {
   size_t hits() const { return hits_; }
 
  private:
-  // What differs from the ray through p, which may be off by `slack` pixels; "" if nothing does.
+  // Describes what differs from the ray through p, which may be off by `slack` pixels; "" if nothing does.
   std::string explain(const Pixel& pixel, glm::vec2 p, double slack) {
     const glm::dvec3 eye(view_.eye), ray(view_.rayDirection(p));
     const RayHit hit = castRay(scene_, geometry_, eye, ray, options_);
@@ -147,7 +147,7 @@ TEST(GBuffer, EqualsRaysThroughPixelCentres) {
   EXPECT_GT(comparison.hits(), 48u * 48u / 2);
 }
 
-// A masked quad in front of a wall, one quad seen from behind per kind of material, a glowing one, a tilted
+// A masked quad in front of a wall, one quad seen from behind for each kind of material, a glowing quad, and a tilted
 // one far away.
 scene::Scene materials() {
   scene::Scene s;
@@ -164,14 +164,14 @@ scene::Scene materials() {
   both.baseColor = {0.2f, 0.3f, 0.4f, 1};
   both.doubleSided = true;
   glowing.emission = {3, 2, 1};
-  tiled.baseColorTexture = checker;  // opaque: its alpha counts for nothing
+  tiled.baseColorTexture = checker;  // opaque, so its alpha is ignored
   tiled.baseColorTexture.transform = {3, 0.5f, -0.5f, 2, 0.1f, 0.2f};
   tiled.baseColorTexture.wrapV = scene::Wrap::Mirror;
   s.materials = {masked, single, both, glowing, tiled};
   addQuad(s, 0, {-2, -1, 1}, {-0.1f, -1, 1}, {-0.1f, 1, 1}, {-2, 1, 1});
   addQuad(s, 4, {-2.5f, -1.5f, 0}, {2.5f, -1.5f, -1}, {2.5f, 1.5f, -1}, {-2.5f, 1.5f, 0});
-  addQuad(s, 1, {0.2f, 0, 1}, {0.2f, 1, 1}, {1, 1, 1}, {1, 0, 1});            // its back: not there
-  addQuad(s, 2, {0.2f, -1, 1}, {0.2f, -0.2f, 1}, {1, -0.2f, 1}, {1, -1, 1});  // its back: there
+  addQuad(s, 1, {0.2f, 0, 1}, {0.2f, 1, 1}, {1, 1, 1}, {1, 0, 1});            // its back is not seen
+  addQuad(s, 2, {0.2f, -1, 1}, {0.2f, -0.2f, 1}, {1, -0.2f, 1}, {1, -1, 1});  // its back is seen
   addQuad(s, 3, {1.2f, -1, 1}, {2, -1, 1.2f}, {2, 1, 1}, {1.2f, 1, 0.9f});
   scene::Camera camera;
   camera.position = {0.1f, 0.05f, 4};
@@ -191,7 +191,7 @@ TEST(GBuffer, MaterialsAsGltfSays) {
   }
 }
 
-// Off axis, as the eyes of a display see.
+// An off-axis projection, as for the eyes of a head-mounted display.
 TEST(GBuffer, ThroughALens) {
   const scene::Scene scene = materials();
   for (const bool left : {true, false}) {
@@ -209,8 +209,8 @@ TEST(GBuffer, ThroughALens) {
   }
 }
 
-// A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle to
-// the horizon.
+// A long floor that passes under the camera: a triangle clipped at the near plane, seen at a grazing angle
+// to the horizon.
 TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {
   scene::Scene s;
   s.materials.emplace_back();
@@ -226,7 +226,8 @@ TEST(GBuffer, ExactOnLargeTrianglesThroughTheNearPlane) {
   EXPECT_LT(comparison.run(), 0.02);
 }
 
-// Odd sizes, repeated and mirrored dozens of times on either side of 0: the remainders of texel numbers.
+// Textures of odd sizes, repeated and mirrored dozens of times on either side of 0, for the remainders
+// of texel numbers.
 TEST(GBuffer, TexturesWrapFarFromTheirOrigin) {
   scene::Scene s;
   scene::Texture noise;
@@ -255,7 +256,7 @@ TEST(GBuffer, TexturesWrapFarFromTheirOrigin) {
   EXPECT_LT(comparison.run(), 0.02);
 }
 
-// To the precision of the half floats that hold it, also in the dark.
+// The values must match to the precision of the half floats that hold them, also in the dark.
 TEST(GBuffer, CodesOfColoursBecomeLinearLight) {
   scene::Scene s;
   scene::Texture codes;

@@ -1,4 +1,4 @@
-// Importance of VPLs: rays against the CPU, and scenes whose importance is known.
+// Tests the importance of VPLs: rays against the CPU, and scenes whose importance is known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -106,8 +106,8 @@ std::vector<float> randomWeights(size_t count) {
   return weights;
 }
 
-// A ray that grazes the border of a voxel hits one side or the other by rounding: what it may see is a range.
-// All other rays are exact.
+// A ray that grazes the border of a voxel hits one side or the other depending on rounding, so what it may see is a
+// range. All other rays are exact.
 struct Reference {
   scene::Voxels voxels;
   const std::vector<float>& weights;
@@ -144,8 +144,7 @@ struct Reference {
   }
 };
 
-// ---- Against the CPU
-// ---------------------------------------------------------------------------------------------------
+// ---- Against the CPU --------------------------------------------------------------------------------------
 
 class AgainstTheCpu : public testing::TestWithParam<bool> {};
 
@@ -187,7 +186,7 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
           [](const Candidate& c) { return c.side != scene::kNoSide; });
   compare(test.values<float>("vpl_importance"), vpls, [](const VplState& v) { return v.life > 0; });
   EXPECT_EQ(test.counter("rays"), double(6 * live));
-  // In the edges of the room rays run along walls exactly: whether they face them is up to rounding.
+  // In the edges of the room rays run exactly along walls, so rounding decides whether the walls face them.
   std::printf("[ MEASURED ] %zu of %zu rays graze the border of a voxel\n", reference.grazing,
               reference.rays);
   EXPECT_LT(double(reference.grazing), 0.02 * double(reference.rays));
@@ -195,10 +194,9 @@ TEST_P(AgainstTheCpu, EveryVplIsEqual) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, AgainstTheCpu, testing::Values(false, true));
 
-// ---- Scenes whose importance is known
-// ----------------------------------------------------------------------------------
+// ---- Scenes whose importance is known ---------------------------------------------------------------------
 
-// What nobody asks for costs nothing, and the VPLs are the same.
+// An output that nobody reads costs nothing, and the VPLs are the same without it.
 TEST(Importance, CandidatesNeedNotBeRated) {
   const scene::Scene s = clutteredRoom();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
@@ -221,8 +219,7 @@ TEST(Importance, CandidatesNeedNotBeRated) {
   EXPECT_EQ(rays[1], 2 * rays[0]);  // the VPLs are the candidates
 }
 
-// Above the middle of a floor: a ceiling of weight 1 is seen by every ray but those that a lid of weight 0
-// takes.
+// Above the middle of a floor, every ray sees a ceiling of weight 1 except those that a lid of weight 0 catches.
 TEST(Importance, OccludersBlock) {
   for (const bool lid : {false, true}) {
     scene::Scene s;
@@ -244,7 +241,7 @@ TEST(Importance, OccludersBlock) {
   }
 }
 
-// Where every ray hits something of weight 1, importance is 1. (In an edge of the room two walls share a
+// Where every ray hits something of weight 1, the importance is 1. (In an edge of the room two walls share a
 // side, whose normal lies between theirs and whose position is so near to both that it may count as the own
 // surface of its neighbours.)
 TEST(Importance, IsOneWhereEverythingCounts) {
@@ -268,7 +265,7 @@ TEST(Importance, IsOneWhereEverythingCounts) {
   EXPECT_GT(compared, 130);
 }
 
-// Neither the frame nor the slot matters: the bits stay the same.
+// The bits depend neither on the frame nor on the slot.
 TEST(Importance, IsSteady) {
   const scene::Scene s = clutteredRoom();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), 32);
@@ -303,7 +300,7 @@ TEST(Importance, EmptyListsAndScenes) {
       EXPECT_EQ(test.counter("rays"), 0);
     }
   }
-  // A VPL in a scene that has gone.
+  // A VPL of a scene that is no longer loaded.
   const VoxelArrays nothing = voxelizeReference(empty, scene::flatten(empty), 8);
   const std::vector<Candidate> one = {makeCandidate({0, 0, 0}, {0, 1, 0})};
   PassTest test("importance");
@@ -312,10 +309,9 @@ TEST(Importance, EmptyListsAndScenes) {
   EXPECT_EQ(test.values<float>("candidate_importance")[0], 0);
 }
 
-// ---- Cones
-// -------------------------------------------------------------------------------------------------------------
+// ---- Cones ------------------------------------------------------------------------------------------------
 
-// The bundle "voxel-mips" of these weights, made by its own pass.
+// The bundle "voxel-mips" of these weights, made by pass mipmap.
 void wireMips(PassTest& test, const scene::Scene& s, const VoxelArrays& voxels,
               const std::vector<float>& weights) {
   PassTest mipmap("mipmap");

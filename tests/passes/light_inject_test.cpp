@@ -87,7 +87,7 @@ TEST(LightInject, EveryLightEqualsTheReference) {
   }
 }
 
-// rho E A of all sides of a plane against the integral over it, by far finer points.
+// Compares rho E A of all sides of a plane with the integral over the plane by far finer points.
 TEST(LightInject, PlaneReceivesTheLightOfTheClosedForm) {
   for (const scene::Light& light : everyLight()) {
     scene::Scene model;
@@ -108,7 +108,7 @@ TEST(LightInject, PlaneReceivesTheLightOfTheClosedForm) {
   }
 }
 
-// What arrives at every side, by rays from random points of its surface.
+// What arrives at every side, computed with rays from random points of its surface.
 std::vector<double> tracedIrradiance(const VoxelScene& s) {
   const scene::RayScene rays(s.scene, s.geometry);
   std::vector<double> sum(s.sides().size()), points(s.sides().size());
@@ -168,8 +168,8 @@ Balance balance(const VoxelScene& s, const std::vector<double>& traced, const In
   return b;
 }
 
-// The Cornell box with maps against rays. A quarter of a cell above the plane costs nothing and gains what
-// shadows of the own surface would take.
+// The Cornell box with maps against rays. Sampling a quarter of a cell above the plane costs nothing and avoids the
+// loss to shadows of the own surface.
 TEST(LightInject, CornellBoxReceivesWhatRaysSay) {
   const VoxelScene s(scene::builtin("cornellbox"), 64);
   const std::vector<double> traced = tracedIrradiance(s);

@@ -1,4 +1,4 @@
-// Random input for pass manage, and the pass next to its reference.
+// Random input for pass manage, and a harness that runs the pass next to its reference.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class Dice {
   uint32_t seed_, count_ = 0;
 };
 
-// A box with corners (-1, -2, -3) and (4, 2, 3): bounds, nothing else, matter here.
+// A box with corners (-1, -2, -3) and (4, 2, 3); only its bounds matter here.
 inline scene::Scene boundsOnly() {
   scene::Scene s;
   const uint32_t material = addMaterial(s, glm::vec3(0.5f));
@@ -114,7 +114,7 @@ inline ManageInput randomInput(Dice& dice, const Content& content) {
   return in;
 }
 
-// The pass, with the settings of its reference.
+// The pass with the settings of its reference.
 class Manager {
  public:
   Manager(const ManageSettings& settings, const ManageInput& in, uint32_t seed = 1)
@@ -132,7 +132,7 @@ class Manager {
     test_->buffer("vpl_importance", in.vplImportance, "float");
   }
 
-  // One frame. Fails unless the pass gives the bits of the reference.
+  // Runs one frame, which fails unless the pass gives the same bits as the reference.
   ManageOutput run(ManageInput in) {
     set(in);
     test_->run(1);
@@ -175,7 +175,7 @@ class Manager {
   std::unique_ptr<PassTest> test_;
 };
 
-// What pass vpl-motion does to a list whose objects rest, and importances that waver.
+// What pass vpl-motion does to a list whose objects rest, with importances that fluctuate.
 inline void nextFrame(ManageInput& in, const std::vector<VplState>& vpls, Dice& dice) {
   in.vpls = vpls;
   for (size_t i = 0; i < vpls.size(); ++i) {

@@ -1,4 +1,4 @@
-// Pass manage: how it thins candidates, and input that is empty, broken or long.
+// Tests how pass manage thins candidates, and its behaviour on input that is empty, broken or long.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace fovea::test {
 namespace {
 
-// A candidate is kept with probability min(1, K I / sum I), and K of them are when none reaches 1.
+// A candidate is kept with probability min(1, K I / sum I), and exactly K are kept when no probability reaches 1.
 TEST(Manage, ThinningFollowsTheCdf) {
   constexpr uint32_t kFrames = 200, kCandidates = 40, kKeep = 10;
   Dice dice(6);
@@ -98,7 +98,7 @@ TEST(Manage, SceneWithoutTriangles) {
   for (std::byte b : test.bytes("list")) ASSERT_EQ(b, std::byte(0));
 }
 
-// Long lists are right, too; and the time of lists of a usual length.
+// Long lists give correct results, too. Prints the time for lists of a usual length.
 TEST(Manage, LongLists) {
   for (const Content& content :
        {Content{4096, 8192, 0.6f, Importance::Fine}, Content{65536, 65536, 0.6f, Importance::Fine}}) {

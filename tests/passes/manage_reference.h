@@ -1,4 +1,4 @@
-// METHOD.md's management of VPLs as the plain serial algorithm; pass manage must give the same bits.
+// The management of VPLs as a plain serial algorithm (passes/README.md, manage); pass manage must give the same bits.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Pass manage against the serial algorithm, and what follows from that.
+// Compares pass manage with the serial algorithm and tests properties that follow from it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ ManageSettings randomSettings(Dice& dice, uint32_t slots) {
   return s;
 }
 
-// Random settings and random lists, then a few frames with the list fed back.
+// Random settings and random lists, followed by a few frames in which the list is fed back.
 void compareRandomCases(const char* reuse, uint32_t firstSeed) {
   ManageOutput sum;  // to see that the cases exercise what they are for
   for (uint32_t seed = firstSeed; seed < firstSeed + 14; ++seed) {
@@ -93,7 +93,7 @@ TEST(Manage, LightAndTurnoverEqualTheSerialAlgorithm) {
   }
 }
 
-// Two lights: VPLs in proportion to them, and to the floor.
+// Two lights: the VPLs are in proportion to them, and to the floor.
 TEST(Manage, PlacesVplsInProportionToLight) {
   Dice dice(51);
   ManageInput in = randomInput(dice, {200, 2400, 0.8f, Importance::Fine, 1.0f});
@@ -132,7 +132,7 @@ TEST(Manage, RandomReusesAsManyAsLinear) {
   EXPECT_GT(linear.rejected, 20u);
 }
 
-// A VPL stays in its slot for life, unchanged but for its importance, and no candidate comes twice.
+// A VPL stays in its slot as long as it lives, unchanged except for its importance, and no candidate is taken twice.
 TEST(Manage, ASlotIsForLife) {
   Dice dice(2);
   Content content{60, 100, 0.4f, Importance::Fine};
@@ -179,7 +179,7 @@ TEST(Manage, AShorterLimitKeepsTheMostImportant) {
   std::vector<float> importance = in.vplImportance;
   std::sort(importance.rbegin(), importance.rend());
   for (const VplState& vpl : out.vpls) EXPECT_TRUE(vpl.life == 0 || vpl.importance >= importance[19]);
-  // Longer again: candidates fill it up.
+  // When the list grows again, candidates fill it up.
   in.vpls = out.vpls;
   settings.limit = 25;
   settings.keep = 200;
@@ -255,8 +255,7 @@ TEST(Manage, CellsAreTheirOwn) {
   EXPECT_EQ(out.dense, 0u);
 }
 
-// The normal that turns are measured against is kept in the space of the object, which is turned and scaled
-// here.
+// The normal that turns are measured against is stored in the space of the object, which is turned and scaled here.
 TEST(Manage, NormalInTheSpaceOfTheObject) {
   scene::Scene s = boundsOnly();
   addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});

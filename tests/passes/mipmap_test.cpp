@@ -18,7 +18,7 @@ struct Cell {
 Cell operator+(const Cell& a, const Cell& b) { return {a.color + b.color, a.weight + b.weight}; }
 Cell operator*(double f, const Cell& c) { return {f * c.color, f * c.weight}; }
 
-// The far one shows where the near one leaves room.
+// Where the near one leaves room, the far one shows.
 Cell behind(const Cell& near, const Cell& far, bool directional) {
   const double room = far.color.a > 0 ? std::clamp((1 - near.color.a) / far.color.a, 0.0, 1.0) : 1.0;
   return near + (directional ? room : 1.0) * far;
@@ -54,7 +54,7 @@ Cell voxelTowards(const VoxelScene& s, const std::vector<glm::vec4>& radiance,
   return sum;
 }
 
-// Next level from a function of the finer one's cells.
+// Next level as a function of the finer level's cells.
 template <class F>
 Level halve(int size, int faces, bool directional, F child) {
   Level level{size, std::vector<Cell>(size_t(faces) * size * size * size)};
@@ -110,7 +110,7 @@ void expectReference(const VoxelScene& s, bool directional, bool weighted) {
       }
   }
   EXPECT_GT(occupied, 100);
-  // What is no half of the level before is 0.
+  // What is not half of the level before is 0.
   for (uint32_t l = got.halvings(); l < got.levels; ++l)
     for (uint32_t i = 0; i < got.widthAt(l) * got.sizeAt(l) * got.sizeAt(l); ++i)
       ASSERT_EQ(got.at(l, i % got.widthAt(l), i / got.widthAt(l) % got.sizeAt(l),
@@ -143,8 +143,8 @@ TEST(Mipmap, OtherSizesThanPowersOfTwo) {
   }
 }
 
-// A wall of one voxel, white on its left, black on its right: from every distance the left sees white, the
-// right black, and nobody sees through.
+// A wall of one voxel, white on its left and black on its right: from every distance the left sees white and the
+// right sees black, and nothing is seen through it.
 TEST(Mipmap, ThinWallsStayOpaqueAndTwoSided) {
   scene::Scene model;
   const uint32_t grey = addMaterial(model, glm::vec3(0.5f));
@@ -171,7 +171,7 @@ TEST(Mipmap, ThinWallsStayOpaqueAndTwoSided) {
   }
 }
 
-// Cells that become empty are emptied at all levels.
+// Cells that become empty are cleared at all levels.
 TEST(Mipmap, NothingStaysWhereSomethingWas) {
   const VoxelScene s(mixedScene(), 16);
   const auto radiance = radianceOf(s, [](auto&) { return glm::vec3(1); });

@@ -1,4 +1,4 @@
-// Where surfaces were seen a frame ago, against projections in double precision.
+// Compares where surfaces were seen in the previous frame with projections in double precision.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kNone = 0xffffffffu;
 
-// One frame of the pass; `object`: of all that is seen.
+// One frame of the pass; `object` is the object of everything that is seen.
 std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, uint32_t object = 0,
                                 const std::function<void(scene::Frame&)>& change = {}) {
   PassTest test("motion-vectors");
@@ -31,7 +31,7 @@ std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, uint32_t obje
 
 glm::ivec2 pixelOf(uint32_t origin) { return {int(origin & 0xffff), int(origin >> 16)}; }
 
-// Every pixel is its own; the background is nowhere.
+// Every pixel maps to itself; the background has no previous position.
 TEST(MotionVectors, StandingStill) {
   Eye eye({0, 0, 0});
   eye.seen.pixels[5].distance = 0;
@@ -41,8 +41,8 @@ TEST(MotionVectors, StandingStill) {
     EXPECT_EQ(pixelOf(got[size_t(i)]), glm::ivec2(i % kSize.x, i / kSize.x));
 }
 
-// The eye moves: each pixel gets one of the four pixels around where it was, if there is one of
-// its surface, on average of the very place; where the box has uncovered the wall there is none.
+// The eye moves. Each pixel gets one of the four pixels around its previous position, if one of them shows its
+// surface; on average this is the exact position. Where the box has uncovered the wall there is none.
 TEST(MotionVectors, FollowsSurfacesAsTheEyeMoves) {
   const Eye now({0.13f, 0.05f, 0}), before({0, 0, 0});
   const auto got = originsOf(now, before);
@@ -82,7 +82,7 @@ TEST(MotionVectors, FollowsSurfacesAsTheEyeMoves) {
   }
 }
 
-// What moves is found where it was.
+// A moving object is found where it was.
 TEST(MotionVectors, FollowsObjects) {
   const Eye eye({0, 0, 0});
   const glm::vec3 moved(0.4f, 0, 0);  // all that is seen is object 1, since the frame before

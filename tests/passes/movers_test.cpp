@@ -1,4 +1,4 @@
-// Every pass sees what moves where the frame has it: against rays through the frame's own geometry.
+// Every pass sees moving objects where the frame has them; compared with rays through the frame's own geometry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace fovea::test {
 namespace {
 
 constexpr int kSize = 40;
-// At 42 Hz: the box stands still at first, then slides and turns; it is away around frame 12.
+// At 42 Hz the box stands still at first, then slides and turns; it is absent around frame 12.
 constexpr uint32_t kFrames[] = {0, 1, 6, 12, 15, 20};
 constexpr uint32_t kAway = 12;
 
@@ -44,7 +44,7 @@ void bend(scene::Scene& s) {
   s.animations = {bending};
 }
 
-// A floor, a wall, and a box that moves, and deforms when told to; a sun, and a lamp that moves.
+// A floor, a wall, a box that moves and may also deform, a sun, and a lamp that moves.
 scene::Scene movingScene(bool deforms) {
   scene::Scene s;
   s.name = "moving";
@@ -118,7 +118,7 @@ TEST_P(Movers, GBuffer) {
     EXPECT_EQ(box > 0, index != kAway) << "frame " << index;
     counts.insert(box);
   });
-  EXPECT_GE(counts.size(), 4u);  // it did move
+  EXPECT_GE(counts.size(), 4u);  // the object has moved
 }
 
 TEST_P(Movers, ShadowMap) {
@@ -226,7 +226,7 @@ TEST_P(Movers, Voxels) {
         EXPECT_EQ(sides[i].triangle, 0);
         continue;
       }
-      // The triangle that a VPL here holds on to is one of the object's, and passes through the cell.
+      // The triangle that a VPL here is attached to belongs to the object and passes through the cell.
       const scene::Triangle& t = g.triangles.at(g.staticTriangles + size_t(sides[i].triangle));
       EXPECT_EQ(float(t.object()), sides[i].object);
       const glm::vec3 n = glm::normalize(

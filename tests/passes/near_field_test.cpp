@@ -1,4 +1,4 @@
-// Light of what is near: the part that discs leave out, by rays, against plain rays in rooms that shine.
+// Compares near-field light, the part that discs leave out, with plain rays in rooms that shine.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ namespace {
 using passes::NearFieldSettings;
 using passes::NearFieldStatistics;
 
-// Walls that shine {1, 2, 4} and reflect half of what they get: after n bounces a wall sends (2 - 1 /
-// 2^(n-1)) of its own.
+// Walls that emit {1, 2, 4} and reflect half of what they get: after n bounces a wall sends (2 - 1 / 2^(n-1)) times
+// its own emission.
 scene::Scene shiningRoom(bool block) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
@@ -43,7 +43,7 @@ struct Look {
     statistics = passes::traceNearField(frame, frame.views[0], *rays, settings, image);
     return image;
   }
-  // Mean of A / (pi d^2 + A) over the cosine-weighted hemisphere of a pixel, and of d.
+  // Means of A / (pi d^2 + A) and of d over the cosine-weighted hemisphere of a pixel.
   std::pair<double, double> part(const Seen& seen, double area, int count) const {
     double sum = 0, length = 0;
     for (int i = 0; i < count; ++i) {
@@ -94,7 +94,7 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
   }
 }
 
-// Few rays go far, and yet on average as far as they would all go.
+// Few rays go far, and yet on average they go as far as if all of them did.
 TEST(NearField, MeanLengthWithoutItsRays) {
   Look look(shiningRoom(true));
   NearFieldSettings settings;
@@ -114,14 +114,14 @@ TEST(NearField, MeanLengthWithoutItsRays) {
   EXPECT_LT(look.statistics.shaded, 65536u / 4);
 }
 
-// One sample for 2 x 2 pixels in the fovea, for a tile outside; nothing where the pixel shows the background.
+// One sample for 2 x 2 pixels in the fovea and for a tile outside it; none where the pixel shows the background.
 TEST(NearField, SamplesWhereTheEyeLooks) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
   s.materials[m].emission = glm::vec3(1);
   addBox(s, m, {-0.8f, -0.8f, -4}, {0.8f, 0.8f, -3});
   addBox(s, m, {-0.8f, -1.6f, -3.2f}, {0.8f, -0.8f, -2});
-  Look look(std::move(s), glm::ivec2(70, 50));  // tiles hang over
+  Look look(std::move(s), glm::ivec2(70, 50));  // tiles extend past the image
   NearFieldSettings settings;
   settings.foveaRadius = 0.1f;
   settings.spacing = 8;
@@ -171,7 +171,7 @@ TEST(NearField, EveryPixelOfABlockHasItsTurn) {
     }
 }
 
-// Every column, and every row, of two blocks next to each other.
+// Every column and every row of two neighbouring blocks.
 TEST(NearField, NarrowStripsAreMetInEveryFrame) {
   for (uint32_t turn = 0; turn < 4; ++turn)
     for (uint32_t i = 0; i < 4; ++i) {

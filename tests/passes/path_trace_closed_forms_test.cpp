@@ -1,4 +1,4 @@
-// The path tracer against closed forms.
+// Compares the path tracer with closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace fovea::test {
 namespace {
 
-// Within 4 standard errors and 0.5%; and the estimate must be sharp enough for the 0.5% to mean something.
+// The result must be within 4 standard errors and within 0.5%, and the estimate must be precise enough for the 0.5%
+// to mean something.
 void expectMean(const Traced& t, glm::dvec3 expected, const char* what) {
   const glm::dvec3 mean = meanOf(t.radiance), error = errorOfMean(t);
   for (int c = 0; c < 3; ++c) {
@@ -78,8 +79,8 @@ double cornerFactor(double a, double b, double c) {
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
-// Emissive rectangle over a plane: irradiance pi L F at every point. Close above it, so that both ways of
-// sampling count.
+// Emissive rectangle over a plane: the irradiance is pi L F at every point. It is tested close above the plane, so
+// that both ways of sampling count.
 TEST(PathTrace, EmissiveTrianglesOnAPlane) {
   for (const double height : {0.25, 2.0}) {
     scene::Scene s = plane(glm::vec3(0.5f));
@@ -87,8 +88,8 @@ TEST(PathTrace, EmissiveTrianglesOnAPlane) {
     s.materials[1].emission = {4, 2, 1};
     const float h = float(height);
     addQuad(s, 1, {-1, h, -0.5f}, {2, 0, 0}, {0, 0, 1});  // shines down: cross(x, z) = -y
-    // From below the rectangle, which would hide the plane otherwise (single-sided: the eye looks through its
-    // back).
+    // Seen from below the rectangle, which would hide the plane otherwise (it is single-sided, and the eye looks
+    // through its back).
     const Traced t = trace(s, 24, independent(2, 2048));
     double expected = 0, z2 = 0;
     for (size_t i = 0; i < t.radiance.size(); ++i) {
@@ -106,7 +107,7 @@ TEST(PathTrace, EmissiveTrianglesOnAPlane) {
   }
 }
 
-// Two facing unit squares one apart. Seen along the normal pixels cover equal areas of a square, so the mean
+// Two facing unit squares one metre apart. Seen along the normal, pixels cover equal areas of a square, so the mean
 // over the picture is the mean over the square: rho L F.
 TEST(PathTrace, FacingSquaresExchangeTheirFormFactor) {
   scene::Scene s;
@@ -126,9 +127,9 @@ TEST(PathTrace, FacingSquaresExchangeTheirFormFactor) {
   expectMean(trace(s, 48, settings), f * glm::dvec3(0.6 * 2, 0.4 * 3, 0.2 * 5), "squares");
 }
 
-// In a closed room whose walls all shine and reflect alike the light is the same everywhere, whatever the
-// room's shape: e (1 + rho + ... + rho^(depth - 1)). Paths that end on emitters by chance and those sent
-// there must share correctly.
+// In a closed room whose walls all emit and reflect alike, the light is the same everywhere, whatever the room's
+// shape: e (1 + rho + ... + rho^(depth - 1)). Paths that reach emitters by chance and those sent there must be
+// weighted correctly against each other.
 TEST(PathTrace, EmissiveFurnaceFormsAGeometricSeries) {
   const glm::dvec3 rho(0.9, 0.5, 0.2), e(1, 2, 3);
   scene::Scene s;
@@ -149,7 +150,7 @@ TEST(PathTrace, EmissiveFurnaceFormsAGeometricSeries) {
   }
 }
 
-// Without what smooth normals would add to its form: a body of flat facets.
+// Removes smooth normals, which leaves a body of flat facets.
 void useFlatNormals(scene::Primitive& p) {
   scene::Primitive flat;
   flat.material = p.material;
@@ -164,10 +165,10 @@ void useFlatNormals(scene::Primitive& p) {
   p = std::move(flat);
 }
 
-// A light in the middle of a closed body of one albedo: the light that it sends out is all absorbed and
-// reflected once, so that the mean irradiance on the area A is 4 pi I / A, and that after k more reflections
-// rho^k of it: exactly, whatever the body. It is a sphere but for facets of 2 degrees: what comes by way of
-// other facets is the same everywhere. Only the first reflection shows them: I cos / d^2 at each pixel.
+// A light in the middle of a closed body of one albedo. Its light is all absorbed and reflected once, so the mean
+// irradiance on the area A is 4 pi I / A, and after k more reflections rho^k of it, exactly and for any body. The
+// body is a sphere except for facets of 2 degrees, so the light that comes by way of other facets is the same
+// everywhere. Only the first reflection shows the facets: I cos / d^2 at each pixel.
 TEST(PathTrace, FurnaceWithALightFormsAGeometricSeries) {
   const glm::dvec3 rho(0.9, 0.5, 0.2);
   scene::Scene s;

@@ -1,4 +1,4 @@
-// path-trace against pictures of Mitsuba 3 (tests/data/mitsuba/README.md): a renderer with which it shares no
+// Compares path-trace with pictures of Mitsuba 3 (tests/data/mitsuba/README.md), a renderer with which it shares no
 // code. samples/compare_with_mitsuba.py made the pictures and does the same comparison with more samples.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 const std::filesystem::path kFolder = std::filesystem::path(FOVEA_TEST_DATA) / "mitsuba";
 
-// The mean of each channel of each pixel, and how far it is known.
+// The mean of each channel of each pixel, and its precision.
 struct Estimate {
   std::vector<double> mean, variance;
 };
@@ -63,8 +63,8 @@ Estimate trace(const scene::Scene& scene, glm::uvec2 size, uint32_t samples) {
   return e;
 }
 
-// Welch's t of two means, brought to the normal distribution (Wallace 1959); the tracer's variance, from all
-// of its samples, counts as known. What 16-bit images and the order of sums do is allowed for.
+// Welch's t of two means, transformed to the normal distribution (Wallace 1959). The tracer's variance, from all of
+// its samples, counts as known. The tolerance includes the precision of 16-bit images and the order of sums.
 double zValue(const Mitsuba& m, const Estimate& e, size_t i) {
   constexpr double kArithmetic = 1e-3;
   const double floor = kArithmetic * std::max(m.mean[i], e.mean[i]), difference = m.mean[i] - e.mean[i];
@@ -74,7 +74,7 @@ double zValue(const Mitsuba& m, const Estimate& e, size_t i) {
          (8 * freedom + 3);
 }
 
-// Two-sided, of all channels together at a level of 1% (Sidak 1967): the normal quantile by bisection.
+// Two-sided test of all channels together at a level of 1% (Sidak 1967): the normal quantile by bisection.
 double zLimit(size_t tests) {
   const double each = 1 - std::pow(0.99, 1.0 / double(tests));
   double low = 0, high = 20;

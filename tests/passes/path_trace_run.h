@@ -1,4 +1,4 @@
-// What the tests of the path tracer share: a picture by it, and its mean.
+// Shared by the tests of the path tracer: rendering a picture, and its mean.
 #pragma once
 
 #include <cmath>
@@ -51,7 +51,7 @@ inline glm::dvec3 meanOf(const std::vector<glm::vec4>& image) {
   return sum / double(image.size());
 }
 
-// Standard error of the mean over the picture: pixels are independent of each other.
+// Standard error of the mean over the picture; pixels are independent of each other.
 inline glm::dvec3 errorOfMean(const Traced& t) {
   return glm::sqrt(meanOf(t.variance) / double(t.variance.size()));
 }

@@ -1,4 +1,4 @@
-// The path tracer's statistics, the rules it shares with the raster passes, and the pass around it.
+// Tests the path tracer's statistics, the rules it shares with the raster passes, and the pass around it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,7 @@
 namespace fovea::test {
 namespace {
 
-// ---- Statistics
-// ----------------------------------------------------------------------------------------------------
+// ---- Statistics -------------------------------------------------------------------------------------------
 
 TEST(PathTrace, MeanOfTheCornellBoxDoesNotDependOnTheSeed) {
   const scene::Scene s = scene::builtin("cornellbox");
@@ -43,7 +42,7 @@ TEST(PathTrace, MeanOfTheCornellBoxDoesNotDependOnTheSeed) {
   EXPECT_GT(z2 / pairs, 0.3);
 }
 
-// MSE(h1, h2) / 4 is the squared error of the mean: it falls as 1 / spp, and the variance says the same.
+// MSE(h1, h2) / 4 is the squared error of the mean; it falls as 1 / spp, and the variance agrees with it.
 TEST(PathTrace, ErrorFallsAsOneOverTheSamples) {
   const scene::Scene s = scene::builtin("cornellbox");
   std::vector<double> x, y;
@@ -68,7 +67,7 @@ TEST(PathTrace, ErrorFallsAsOneOverTheSamples) {
   EXPECT_NEAR(slope, -1, 0.05);
 }
 
-// Also with low-discrepancy sampling, over many seeds: the variance that is put out is the one there is.
+// Also with low-discrepancy sampling, over many seeds, the reported variance is the actual one.
 TEST(PathTrace, VarianceIsThatBetweenSeeds) {
   const scene::Scene s = scene::builtin("cornellbox");
   constexpr uint32_t kSeeds = 24, kSide = 24;
@@ -92,8 +91,7 @@ TEST(PathTrace, VarianceIsThatBetweenSeeds) {
   }
 }
 
-// ---- Determinism and interruption
-// ----------------------------------------------------------------------------------
+// ---- Determinism and interruption -------------------------------------------------------------------------
 
 TEST(PathTrace, SameBitsForAnyNumberOfThreads) {
   const scene::Scene s = scene::builtin("cornellbox");
@@ -136,10 +134,9 @@ TEST(PathTrace, StoppedEarlyItKeepsWhatItHas) {
   for (const glm::vec4& v : t.variance) ASSERT_TRUE(std::isfinite(v.r));
 }
 
-// ---- Rules shared with the raster passes
-// ---------------------------------------------------------------------------
+// ---- Rules shared with the raster passes ------------------------------------------------------------------
 
-// A floor, and halfway up to the eye and the lights a sheet with holes where its texture is transparent.
+// A floor and, halfway up to the eye and the lights, a sheet with holes where its texture is transparent.
 scene::Scene withSheet() {
   scene::Scene s = plane(glm::vec3(0.5f));
   addMaterial(s, glm::vec3(0.8f, 0.1f, 0.1f));
@@ -164,8 +161,8 @@ std::vector<float> differences(const Traced& t, const std::vector<float>& image)
   return d;
 }
 
-// Visibility, materials, textures, masks, normals, lights: everything but the texels of the shadow maps along
-// the shadows' edges.
+// Compares visibility, materials, textures, masks, normals and lights: everything but the texels of the shadow maps
+// along the edges of shadows.
 TEST(PathTrace, DirectLightIsThatOfTheRasterPasses) {
   scene::Scene s = withSheet();
   addMaterial(s, glm::vec3(0.2f, 0.3f, 0.9f));
@@ -198,8 +195,8 @@ TEST(PathTrace, HolesOfMasksLetEyeAndLightThrough) {
     if (std::abs(v.r - 0.5 * e) < 1e-3) ++lit;
     if (v.r == 0) ++shadowed;
   }
-  // The sheet spans (64 / 2 / tan 0.5 / 2)^2 pixels a quarter, half of them holes (edges at the cutoff of a
-  // bilinear ramp).
+  // A quarter of the sheet spans (64 / 2 / tan 0.5 / 2)^2 pixels, half of which are holes (edges at the cutoff of
+  // a bilinear ramp).
   const double spans = std::pow(64 / (2 * std::tan(0.5)), 2);
   EXPECT_NEAR(sheet, 0.5 * spans, 0.08 * spans);
   EXPECT_GT(lit, 200);
@@ -207,7 +204,7 @@ TEST(PathTrace, HolesOfMasksLetEyeAndLightThrough) {
   EXPECT_EQ(sheet + lit + shadowed, 64 * 64);
 }
 
-// The back of a single-sided board: the eye looks through it, it stops light and is black.
+// The back of a single-sided board: the eye looks through it, but it stops light and is black.
 TEST(PathTrace, BacksOfSingleSidedMaterialsAreBlackAndUnseen) {
   const auto at = [](const Traced& t) { return t.radiance[t.radiance.size() / 2 + t.size.x / 2].r; };
   scene::Scene s = plane(glm::vec3(0.5f));
@@ -221,7 +218,7 @@ TEST(PathTrace, BacksOfSingleSidedMaterialsAreBlackAndUnseen) {
   EXPECT_GT(shadow.indirect[17 * 8 + 8].r, 0);  // the lit floor around, by way of the board's front
   s.materials[1].doubleSided = true;
   EXPECT_NEAR(at(trace(s, 17, independent(2, 2))), 1 / kPi, 1e-5);  // now the board is seen
-  // Light that the floor sends up to a back does not come down again.
+  // Light that the floor reflects up to a back does not return.
   s = plane(glm::vec3(0.5f));
   addMaterial(s, glm::vec3(1));
   addQuad(s, 1, {-9, 1, 9}, {18, 0, 0}, {0, 0, -18});  // faces up
@@ -244,8 +241,7 @@ TEST(PathTrace, EnvironmentIsSeenButLightsNothing) {
   EXPECT_EQ(t.radiance.back(), glm::vec4(0, 0, 0, 1));
 }
 
-// ---- As a pass
-// -----------------------------------------------------------------------------------------------------
+// ---- As a pass --------------------------------------------------------------------------------------------
 
 TEST(PathTracePass, PutsOutWhatTheTracerMakes) {
   const scene::Scene s = scene::builtin("cornellbox");
@@ -280,7 +276,7 @@ TEST(PathTracePass, EmptySceneIsTheEnvironment) {
   for (const glm::vec4& v : test.values<glm::vec4>("radiance")) EXPECT_EQ(v, glm::vec4(0.25f, 0.5f, 1, 1));
 }
 
-// A board that comes between the sun and the floor, and new noise every frame.
+// A board moves between the sun and the floor, and every frame has new noise.
 TEST(PathTracePass, FollowsWhatMoves) {
   scene::Scene s = plane(glm::vec3(0.5f));
   s.lights = {sun({0, -1, 0}, glm::vec3(1))};

@@ -28,7 +28,7 @@ scene::VplState vplOf(const scene::VoxelSide& side, uint32_t number) {
   return v;
 }
 
-// A VPL on every `stride`-th side that has surface.
+// A VPL on every `stride`-th side that has a surface.
 std::vector<scene::VplState> vplsOn(const VoxelScene& s, uint32_t stride) {
   std::vector<scene::VplState> vpls;
   uint32_t seen = 0;
@@ -79,7 +79,7 @@ glm::vec3 uneven(const scene::VoxelSide& v) {
   return glm::vec3(1.5f, 1, 0.5f) * (2.0f + v.position.x + 0.5f * v.normal.y);
 }
 
-// Everything shines with radiance L: pi L arrives everywhere, also in the corners.
+// If everything shines with radiance L, pi L arrives everywhere, also in the corners.
 void expectFurnace(const scene::Scene& model, bool directional) {
   const VoxelScene s(model, 64);
   const glm::vec3 light(2, 1, 0.5f);
@@ -124,7 +124,7 @@ TEST(Radiance, ConesEqualTheReference) {
           referenceGather(s, mips.mips, radiance, vpls[i].position, vpls[i].normal, turnOf(uint32_t(i)));
       const glm::vec3 want = vpls[i].reflectance * e;
       const double d = glm::length(glm::vec3(got[i]) - want);
-      // A level or a voxel may turn out differently by rounding.
+      // Rounding may select another level or voxel.
       off += d > 5e-3 * glm::length(want);
       error += d;
       total += glm::length(want);
@@ -164,7 +164,7 @@ TEST(Radiance, EmptySlotsAndSidesOutOfRange) {
   EXPECT_GT(got[2].w, 0);
 }
 
-// Without cones the pass needs no mips, and says so where it does.
+// Without cones the pass needs no mips; with cones a missing input is reported.
 TEST(Radiance, DirectTermNeedsNoMips) {
   const VoxelScene s(cluttered(), 32);
   const auto radiance = radianceOf(s, uneven);
@@ -194,8 +194,7 @@ TEST(Radiance, NothingThere) {
     EXPECT_EQ(b, glm::vec4(0));
 }
 
-// A board of no thickness between a lit and a dark half of a room, and how much of the light the dark side
-// gets.
+// A board of no thickness between a lit and a dark half of a room, and how much of the light reaches the dark side.
 double leak(bool directional, float wall) {
   scene::Scene model = room();
   const uint32_t thin = addMaterial(model, kRho);
@@ -209,7 +208,7 @@ double leak(bool directional, float wall) {
   std::vector<scene::VplState> vpls;
   for (const scene::VplState& v : vplsOn(s, 5)) {
     const bool board = std::abs(v.position.x - wall) < 0.01f;
-    // Voxels that the wall ends in have light of both halves.
+    // Voxels in which the wall ends have light of both halves.
     if (board ? v.normal.x > 0.9f : v.position.x > wall + 0.04f) vpls.push_back(v);
   }
   double sum = 0;
@@ -224,11 +223,11 @@ TEST(Radiance, ThinWallsDoNotLeak) {
     std::printf("leak through a thin wall at %.2f: faces %.4f, one volume %.4f of the lit side\n", wall,
                 faces, one);
     EXPECT_LT(faces, 0.06);  // the cells of the cones reach past the wall's edge
-    EXPECT_LT(one, 0.16);    // besides, half of what the wall shows is its other side
+    EXPECT_LT(one, 0.16);    // also, half of what the wall shows is its other side
   }
 }
 
-// The gather against rays through the same voxels, many over the hemisphere.
+// Compares the gather with many rays over the hemisphere through the same voxels.
 TEST(Radiance, ConesAgreeWithManyRays) {
   const VoxelScene s(cluttered(), 64);
   const auto radiance = radianceOf(s, uneven);
@@ -287,7 +286,7 @@ std::vector<scene::VplState> vplsOnSurfaces(const VoxelScene& s, size_t count) {
   return vpls;
 }
 
-// Green irradiance by light that has been reflected once, from traced rays.
+// Green irradiance by light that has been reflected once, from traced paths.
 double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, const scene::VplState& vpl) {
   const glm::mat3 frame = scene::orthonormalFrame(vpl.normal);
   constexpr int kRays = 512;
@@ -318,7 +317,7 @@ double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, cons
   return e;
 }
 
-// From the lights to the radiosity by the passes alone.
+// From the lights to the radiosity with the passes alone.
 TEST(Radiance, SecondBounceInTheCornellBoxAgreesWithRays) {
   const VoxelScene s(scene::builtin("cornellbox"), 64);
   const scene::RayScene rays(s.scene, s.geometry);

@@ -1,4 +1,4 @@
-// The plainest ray caster there is, in double precision: what rasterised visibility is compared with.
+// The plainest possible ray caster, in double precision, which rasterised visibility is compared with.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-// The warp from eye to eye: exact on planes, holes where the first eye sees nothing, blocks and their list.
+// Tests the warp from eye to eye: exact on planes, with holes where the first eye sees nothing, and the list of blocks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ struct Eye {
     return scene::makeView(camera, size, geometry);
   }
 
-  // In pixels, of a point; false: behind the eye.
+  // Image position of a point in pixels; false if it lies behind the eye.
   bool project(glm::vec3 p, glm::dvec2& at) const {
     const glm::dvec4 clip = glm::dmat4(view.worldToClip) * glm::dvec4(p, 1);
     at = (0.5 * glm::dvec2(clip) / clip.w + 0.5) * glm::dvec2(view.size);
@@ -75,7 +75,7 @@ void wire(PassTest& test, const Eye& first, const GBuffer& second, const std::ve
   });
 }
 
-// The pass in plain words. `close`: decisions that rounding may turn round.
+// A plain version of the pass. `close` marks decisions that rounding may change.
 struct Warped {
   glm::dvec3 irradiance{0};
   bool known = false, close = false;
@@ -143,11 +143,10 @@ struct Result {
   }
 };
 
-// ---- Planes
-// ------------------------------------------------------------------------------------------------------------
+// ---- Planes -----------------------------------------------------------------------------------------------
 
-// A wall seen by both eyes: even light exactly, uneven light to what is bilinear about it. Without a source:
-// the border only.
+// A wall seen by both eyes: even light comes out exactly, and uneven light up to the error of bilinear interpolation.
+// Only the border has no source.
 TEST(Reproject, WallsKeepTheirLight) {
   scene::Scene s;
   s.materials.emplace_back();
@@ -185,7 +184,7 @@ TEST(Reproject, WallsKeepTheirLight) {
   }
 }
 
-// The second eye where the first one is: the image itself.
+// With the second eye at the first one, the result is the image itself.
 TEST(Reproject, TheSameEyeSeesTheSame) {
   const Pillar scene;
   const Eye eye = scene.eye(0.1f);
@@ -202,11 +201,10 @@ TEST(Reproject, TheSameEyeSeesTheSame) {
   EXPECT_TRUE(result.blocks.empty());
 }
 
-// ---- Holes
-// -------------------------------------------------------------------------------------------------------------
+// ---- Holes ------------------------------------------------------------------------------------------------
 
-// A pixel's point is without a source if something hides it from the first eye or it lies outside its image.
-// Within a texel of a silhouette both are right: the rays around tell.
+// A pixel's point has no source if something hides it from the first eye or it lies outside the first eye's image.
+// Within a texel of a silhouette both answers are valid, as the rays around it show.
 TEST(Reproject, HolesAreWhatTheFirstEyeDoesNotSee) {
   const Pillar scene;
   for (const float apart : {0.064f, -0.3f}) {
@@ -244,7 +242,7 @@ TEST(Reproject, HolesAreWhatTheFirstEyeDoesNotSee) {
   }
 }
 
-// The light of the wall must not bleed onto the pillar, nor the other way round.
+// The light of the wall must not bleed onto the pillar, nor that of the pillar onto the wall.
 TEST(Reproject, SilhouettesKeepTheirOwnLight) {
   const Pillar scene;
   const Eye first = scene.eye(0), second = scene.eye(-0.25f);
@@ -259,8 +257,8 @@ TEST(Reproject, SilhouettesKeepTheirOwnLight) {
     }
 }
 
-// A pixel without a source takes the mean of its surface's light at most two pixels away in its tile, nearer
-// pixels with more weight; only blocks with a pixel that has none around are shaded.
+// A pixel without a source takes the mean of its surface's light at most two pixels away in its tile, with more
+// weight for nearer pixels. Only blocks that contain a pixel without any such neighbour are shaded.
 TEST(Reproject, NarrowHolesAreFilledFromTheirSurface) {
   const Pillar scene;
   const Eye first = scene.eye(0), second = scene.eye(-0.25f);
@@ -348,8 +346,7 @@ TEST(Reproject, BackgroundIsNoHole) {
   for (const char* name : {"pixels", "new_pixels", "shaded_pixels"}) EXPECT_EQ(test.counter(name), 0);
 }
 
-// ---- Against the plain reference; blocks
-// ---------------------------------------------------------------------------------
+// ---- Against the plain reference; blocks ------------------------------------------------------------------
 
 // Surfaces shifted and turned at random against what the first eye saw.
 GBuffer shaken(const GBuffer& g) {
@@ -403,7 +400,7 @@ TEST_P(Blocks, AndIrradianceEqualTheReference) {
   EXPECT_LT(double(close), 0.045 * double(surfaces));
   EXPECT_GT(double(holes), 0.03 * double(surfaces));
 
-  // The list: tiles of 16 x 16 pixels row by row, in each its blocks row by row.
+  // The list has tiles of 16 x 16 pixels row by row, and in each tile its blocks row by row.
   std::vector<uint32_t> list;
   for (int ty = 0; ty * 16 < second.height; ++ty)
     for (int tx = 0; tx * 16 < second.width; ++tx)

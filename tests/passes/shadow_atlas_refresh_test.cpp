@@ -1,4 +1,4 @@
-// Which maps the atlas draws again, and that they come out the same however they are drawn.
+// Tests which maps the atlas draws again, and that they are the same however they are drawn.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,9 +38,9 @@ void runFrame(PassTest& test, uint32_t frame, const std::vector<Vpl>& vpls,
   test.run();
 }
 
-// The rule in plain words, over slots in order.
+// A plain version of the rule, over slots in order.
 struct RefreshReference {
-  std::vector<uint32_t> drawnIn;  // frame + 1, 0: no map
+  std::vector<uint32_t> drawnIn;  // frame + 1; 0 if there is no map
 
   std::vector<bool> frame(const std::vector<Vpl>& vpls, const std::vector<scene::VplState>& state,
                           uint32_t frame, double share, const std::string& policy) {
@@ -74,7 +74,7 @@ struct RefreshReference {
   }
 };
 
-// Every frame moves every VPL, so that a map tells when it was drawn.
+// Every VPL moves in every frame, so that a map tells when it was drawn.
 void checkRefresh(const char* policy, double share) {
   SCOPED_TRACE(policy);
   Scene s = emptyScene();
@@ -106,7 +106,7 @@ void checkRefresh(const char* policy, double share) {
     const std::vector<bool> draw = reference.frame(vpls, state, frame, share, policy);
     for (uint32_t i = 0; i < kSlots; ++i) fresh += draw[i] && (state[i].life <= 1 || before[i] == 0);
     runFrame(test, frame, vpls, state);
-    // What an atlas of this frame alone holds, for the slots that were drawn; the rest as they were.
+    // The slots that were drawn hold what an atlas of this frame alone holds; the rest are as they were.
     PassTest whole("shadow-atlas");
     whole.scene(s).param("size", 8).buffer("vpls", vpls, "Vpl");
     whole.run();
@@ -136,8 +136,7 @@ TEST(ShadowAtlasRefresh, NewAndMostImportantMapsAreDrawn) { checkRefresh("top", 
 TEST(ShadowAtlasRefresh, HalfOfTheBudgetGoesToStaleMaps) { checkRefresh("split", 0.1); }
 TEST(ShadowAtlasRefresh, ImportantMapsThatAreOutOfDateAreDrawn) { checkRefresh("stale", 0.1); }
 
-// `split` draws maps that see a mover first, and comes round to the others: those count as four times
-// younger.
+// `split` draws maps that see a mover first and still reaches the others, which count as four times younger.
 TEST(ShadowAtlasRefresh, StaleMapsThatSeeAMoverAreDrawnFirst) {
   Scene s = emptyScene();
   addBox(s, 0, {-9, -9, -9}, {9, 9, 9});
@@ -198,7 +197,7 @@ TEST(ShadowAtlasRefresh, WholeBudgetDrawsAllMaps) {
   }
 }
 
-// A mover flies along behind a wall and out of its shadow, and stops in frame 9; VPLs that look anywhere.
+// A mover flies along behind a wall and out of its shadow and stops in frame 9. The VPLs look in any direction.
 struct MoverBehindWall {
   Scene scene = emptyScene();
   std::vector<Vpl> vpls;
@@ -224,8 +223,8 @@ struct MoverBehindWall {
   }
 };
 
-// Maps that the mover cannot have changed are not drawn, and the atlas holds the same bits as one of which
-// every map is drawn in every frame.
+// Maps that the mover cannot have changed are not drawn, and the atlas holds the same bits as one of which every map
+// is drawn in every frame.
 void checkUnchanged(bool staticMaps, const char* technique) {
   SCOPED_TRACE(staticMaps ? "static maps" : "whole maps");
   constexpr uint32_t kSlots = 60, kFrames = 16;
@@ -271,8 +270,8 @@ TEST(ShadowAtlasRefresh, WhatMovesIsDrawnOverMapsOfWhatNeverDoes) {
   checkUnchanged(true, "simplified");
 }
 
-// The budget goes to maps that would change: soon after the mover has stopped all are as if drawn anew, and
-// then none is drawn.
+// The budget is spent on maps that would change: soon after the mover has stopped, all maps are as if drawn anew, and
+// after that none is drawn.
 TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
   constexpr uint32_t kSlots = 60;
   MoverBehindWall world(kSlots);
@@ -294,7 +293,7 @@ TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
   EXPECT_EQ(stale.counter("maps"), 0);
 }
 
-// Slack holds for what moves, in the frames in which it does, and leaves everything else where it is.
+// Slack applies to moving objects in the frames in which they move and leaves everything else unchanged.
 TEST(ShadowAtlasRefresh, MoversAreDrawnFartherByTheirWay) {
   const float way = 6 / 0.2f / 42;  // m a frame
   MoverBehindWall world(60), away(60);

@@ -1,4 +1,4 @@
-// The atlas against the plainest ray caster there is: every texel, every triangle, in double precision.
+// Compares the atlas with the plainest possible ray caster: every texel, every triangle, in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ std::vector<Vpl> surfaceVpls(const Geometry& g, uint32_t count, uint32_t seed) {
   return list;
 }
 
-// Distance along the direction through point p of the map. The rule for the VPL's own surface is the pass's:
+// Distance along the direction through point p of the map. The rule for the VPL's own surface is that of the pass:
 // triangles whose plane is closer than epsilon block nothing.
 double castTexel(const Scene& s, const Geometry& g, const Vpl& v, const glm::dmat3& frame, glm::dvec2 p,
                  double epsilon, bool alphaMask) {
@@ -94,8 +94,7 @@ struct Check {
   double allowed = 1e-3;  // share of texels that may lie on the other side of a silhouette
 };
 
-// A texel that differs must be next to a discontinuity: rays that pass by at a thousandth of a texel bracket
-// its value.
+// A texel that differs must be next to a discontinuity: rays that pass at a thousandth of a texel bracket its value.
 void expectExact(const Scene& s, const std::vector<Vpl>& vpls, const std::vector<float>& atlas,
                  scene::AtlasLayout layout, const Check& check) {
   const Geometry g = scene::flatten(s);
@@ -321,8 +320,8 @@ TEST(ShadowAtlas, IsRepeatableBitForBit) {
   EXPECT_EQ(a.bytes("atlas"), b.bytes("atlas"));
 }
 
-// Where something is coarser for VPL maps, they are those of the coarser scene: also the parts that move, the
-// masked ones and the simplified mesh.
+// Where an object is coarser for VPL maps, the maps are those of the coarser scene, including moving parts, masked
+// parts and the simplified mesh.
 TEST(ShadowAtlas, SeesTheTrianglesThatAreCoarserForLight) {
   Scene s = scene::builtin("cornellbox");
   s.textures.push_back(checkerTexture());
@@ -373,7 +372,7 @@ TEST(ShadowAtlas, SimplifiedKeepingAllIsExactAndKeepingLessIsClose) {
   const glm::vec3 middle = 0.5f * (g.boundsMin + g.boundsMax);
   addQuad(s, uint32_t(s.materials.size() - 1), middle + glm::vec3(-1, 0, 1), middle + glm::vec3(1, 0, 1),
           middle + glm::vec3(1, 0, -1), middle + glm::vec3(-1, 0, -1));
-  // On the walls, facing in: a light inside a curved object sees nothing but the simplified surface close by.
+  // VPLs on the walls that face inwards; a light inside a curved object sees only the simplified surface close by.
   std::vector<Vpl> vpls;
   for (int axis = 0; axis < 3; ++axis)
     for (float side : {-1.0f, 1.0f})

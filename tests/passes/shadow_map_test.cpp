@@ -87,7 +87,7 @@ TEST_F(ShadowMapTest, DepthEqualsRays) {
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const double got = depth_[(size_t(layer) * kSize + y) * kSize + x];
-        // Vertices are snapped to 1/256 of a texel: the truth lies between what rays around the centre see.
+        // Vertices are snapped to 1/256 of a texel, so the true value lies between those of rays around the centre.
         double lo = 2, hi = -1;
         for (const glm::dvec2 d : {glm::dvec2(0), {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
           const double z = castDepth(scene_, test_.geometry(), worldToClip, clipToWorld, x + 0.5 + d.x / 128,
@@ -113,7 +113,7 @@ TEST_F(ShadowMapTest, SunSeesTheWholeSceneTightly) {
     const glm::dvec3 p = project(0, corner);
     EXPECT_TRUE(inside(p)) << "corner " << i << ": " << p.x << " " << p.y << " " << p.z;
     most = glm::max(most, glm::abs(p));
-    // Along the light only depth changes, and it falls.
+    // Along the light only the depth changes, and it decreases.
     const glm::dvec3 further = project(0, corner + 0.1f * scene_.lights[0].direction);
     EXPECT_NEAR(p.x, further.x, 1e-5);
     EXPECT_NEAR(p.y, further.y, 1e-5);
@@ -122,7 +122,7 @@ TEST_F(ShadowMapTest, SunSeesTheWholeSceneTightly) {
   const double guarded = 1 - 12.0 / kSize;  // a few texels of margin for the filter
   EXPECT_GT(most.x, guarded);
   EXPECT_GT(most.y, guarded);
-  // No map turned about the light's direction would be smaller.
+  // No map turned about the light's direction could be smaller.
   const glm::dvec3 extent(g.boundsMax - g.boundsMin), x(glm::vec3(views_[0].right)),
       y(glm::vec3(views_[0].up));
   const auto areaAt = [&](double angle) {

@@ -1,4 +1,4 @@
-// Edges of shadows by rays: the pixels in doubt against plain rays, the others untouched.
+// Tests shadow edges by rays: the pixels in doubt against plain rays, and that the others are untouched.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// struct ShadowView of shaders/common/shadow.glsl, and a second derivation of its projections for the tests.
+// struct ShadowView of shaders/common/shadow.glsl, with a second derivation of its projections for the tests.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@ struct ShadowView {
 };
 static_assert(sizeof(ShadowView) == 112);
 
-// Looks from `eye` along `forward`; depth is near / distance along it.
+// Looks from `eye` along `forward`; the depth is near / distance along it.
 inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHalf, float near, int size) {
   const glm::vec3 up = glm::normalize(
       glm::cross(forward, std::abs(forward.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1)));
@@ -29,7 +29,7 @@ inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHal
   return v;
 }
 
-// A cube of half side `half` around `centre`, seen along `forward`; depth falls from 1 to 0.
+// A cube of half side `half` around `centre`, seen along `forward`; the depth falls from 1 to 0.
 inline ShadowView orthographicView(glm::vec3 centre, glm::vec3 forward, float half, int size) {
   ShadowView v = perspectiveView(centre, forward, half, 1, size);
   for (int c = 0; c < 4; ++c) {

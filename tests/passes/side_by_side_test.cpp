@@ -7,7 +7,7 @@
 namespace fovea::test {
 namespace {
 
-// Texels that tell the picture, the column and the row.
+// Texels that encode the picture, the column and the row.
 std::vector<uint8_t> numbered(uint32_t width, uint32_t height, uint32_t picture) {
   std::vector<uint8_t> texels;
   for (uint32_t y = 0; y < height; ++y)

@@ -1,4 +1,4 @@
-// The table of surfaces of the path tracer against the look-ups it was made from.
+// Compares the path tracer's table of surfaces with the look-ups it was made from.
 #include "passes/path-trace/surface_table.h"
 #include "framework/scene/scene.h"
 

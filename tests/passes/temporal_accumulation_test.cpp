@@ -1,4 +1,4 @@
-// The running mean over frames: what counts, and for how much.
+// Tests the running mean over frames: which samples count, and with what weight.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,14 +16,14 @@ std::vector<uint16_t> halves(const std::vector<glm::vec4>& image) {
   return half;
 }
 
-// Every pixel's own place, as x | y << 16.
+// The position of every pixel, as x | y << 16.
 std::vector<uint32_t> ownPlaces() {
   std::vector<uint32_t> places;
   for (int i = 0; i < kSize.x * kSize.y; ++i) places.push_back(uint32_t(i % kSize.x | i / kSize.x << 16));
   return places;
 }
 
-// One frame of the pass; `samples` are those of blocks of 2 x 2 pixels, or of all pixels.
+// One frame of the pass; `samples` holds one per block of 2 x 2 pixels, or one per pixel.
 std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samples,
                               const std::vector<glm::vec4>& history, int firstSamples = 1,
                               const std::vector<uint32_t>& origin = ownPlaces()) {
@@ -46,7 +46,7 @@ std::vector<glm::vec4> everywhere(glm::ivec2 size, glm::vec4 value) {
 
 const glm::vec4 kNoSample(0, 0, 0, passes::sampleCode(2, {1, 0}, false));
 
-// Stands still: of n frames each has the same weight, up to eight; then the newest one has an eighth.
+// When nothing moves, each of n frames has the same weight, up to eight; after that the newest one has an eighth.
 TEST(TemporalAccumulation, MeanOfTheFramesSoFar) {
   const Eye eye({0, 0, 0});
   for (const auto& [count, place] :
@@ -71,7 +71,7 @@ TEST(TemporalAccumulation, MeanOfTheFramesSoFar) {
   }
 }
 
-// Larger blocks have as much smaller weights.
+// Larger blocks have correspondingly smaller weights.
 TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   const Eye eye({0, 0, 0});
   const auto got = accumulate(eye, everywhere(kSize / 2, {9, 9, 9, 8}), everywhere(kSize, {1, 1, 1, 100}));
@@ -84,8 +84,8 @@ TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   EXPECT_GT(own, 1000);
 }
 
-// Where there is no mean yet the samples around make one, of single rays without the brightest: so many as
-// lie on the same surface count, each of a first frame for many.
+// Where there is no mean yet, the samples around the pixel make one; if they are single rays, the brightest is left
+// out. The mean counts as many samples as lie on the same surface, each with the weight of a first frame.
 TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
   const Eye eye({0, 0, 0});
   auto samples = everywhere(kSize / 2, {4, 2, 1, 2});
@@ -112,7 +112,7 @@ TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
           for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(v[c], float(4 >> c) * mean, 1e-3 * float(4 >> c) * mean) << x << " " << y;
           }
-        } else if (same != 1) {  // of one sample nobody knows
+        } else if (same != 1) {  // a single sample cannot be judged
           EXPECT_EQ(glm::vec3(v[0], v[1], v[2]), glm::vec3(4, 2, 1)) << x << " " << y;
         }
         counted += same > 0;
@@ -121,8 +121,7 @@ TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
   }
 }
 
-// Every pixel has a sample: its own counts and no other's, also where there is no mean yet, be it as bright
-// as it may.
+// When every pixel has a sample, only its own counts, also where there is no mean yet, however bright it is.
 TEST(TemporalAccumulation, ASampleForEveryPixel) {
   const Eye eye({0, 0, 0});
   std::vector<glm::vec4> samples, history = everywhere(kSize, {1, 1, 3, 8});
@@ -142,8 +141,8 @@ TEST(TemporalAccumulation, ASampleForEveryPixel) {
   }
 }
 
-// The history comes from where the surface was, of samples for all pixels and for blocks; where that is
-// nowhere there is none.
+// The history comes from the surface's previous position, with samples for all pixels and for blocks. Where there is
+// no such position there is no history.
 TEST(TemporalAccumulation, TakesOverWhatItsOriginHad) {
   const Eye eye({0, 0, 0});
   std::vector<glm::vec4> history;

@@ -36,8 +36,7 @@ void expectImage(const PassTest& test, const std::vector<float>& radiance, doubl
     EXPECT_NEAR(image[i], want, 1) << "channel " << i;
     offByOne += image[i] != want;
   }
-  // Only a value within the rounding error of pow() of the middle between two bytes may fall to the other
-  // side.
+  // Only a value within the rounding error of pow() of the midpoint between two bytes may be rounded to the other byte.
   EXPECT_LE(offByOne, int(image.size() / 500));
 }
 

@@ -1,4 +1,4 @@
-// The debug views: what they show, pixel by pixel.
+// Tests what the debug views show, pixel by pixel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,16 +27,14 @@ vec3 pixel(const PassTest& test, uint32_t x, uint32_t y, uint32_t width = kSize)
   return {p[0], p[1], p[2]};
 }
 
-// ---- view-voxels
-// ---------------------------------------------------------------------------------------------------
+// ---- view-voxels ------------------------------------------------------------------------------------------
 
 struct VoxelView {
   scene::Scene scene = scene::builtin("cornellbox");
   VoxelArrays voxels = voxelizeReference(scene, scene::flatten(scene), 32);
 };
 
-// The side that the CPU's ray meets, at every pixel of a coarse raster; `color` says what is to be seen of
-// it.
+// The side that the CPU's ray meets, at every pixel of a coarse raster; `color` gives its expected colour.
 template <class Color>
 void expectView(const VoxelView& v, const PassTest& test, vec3 background, Color color) {
   const scene::View view = *test.lastFrame().findView("main");
@@ -115,8 +113,7 @@ TEST(ViewVoxels, NoVoxelsAndMissingInputs) {
   EXPECT_THROW(missing.run(), Error);
 }
 
-// ---- view-vpls
-// -----------------------------------------------------------------------------------------------------
+// ---- view-vpls --------------------------------------------------------------------------------------------
 
 // The camera at (0, 0, 5) looks along -z.
 scene::VplState vplAt(vec3 position, float importance, float life) {
@@ -191,11 +188,10 @@ TEST(ViewVpls, LuminanceNeedsVpls) {
   EXPECT_LT(glm::length(pixel(lit, kSize / 2, kSize / 2) - middle), 0.01f);
 }
 
-// ---- view-atlas
-// ----------------------------------------------------------------------------------------------------
+// ---- view-atlas -------------------------------------------------------------------------------------------
 
 TEST(ViewAtlas, MapsLieSideBySide) {
-  // Three maps of 8 x 8 texels at distances 1, 2 and none, two a row.
+  // Three maps of 8 x 8 texels, two in a row, with distances 1, 2 and none.
   std::vector<uint32_t> texels;
   for (const float distance : {1.0f, 2.0f, INFINITY})
     for (int i = 0; i < 64; ++i) {

@@ -1,5 +1,4 @@
-// Light on voxels for the tests of the passes that make and read it: chains of passes, and the cone gather on
-// the CPU.
+// Light on voxels for the tests of the passes that make and read it: chains of passes, and the cone gather on the CPU.
 #pragma once
 
 #include <algorithm>
@@ -33,10 +32,10 @@ struct VoxelScene {
   scene::Voxels trace() const { return {voxels.grid, voxels.index, voxels.surface}; }
 };
 
-// Sides of an empty scene are one voxel of nothing: buffers are never empty.
+// The sides of an empty scene are those of one empty voxel, because buffers are never empty.
 inline size_t sideCount(const VoxelScene& s) { return std::max<size_t>(s.sides().size(), 2); }
 
-// Radiance of every side by a function of it; empty sides have none.
+// Radiance of every side as a function of the side; empty sides have none.
 template <class F>
 std::vector<glm::vec4> radianceOf(const VoxelScene& s, F f) {
   std::vector<glm::vec4> result(sideCount(s), glm::vec4(0));
@@ -45,7 +44,7 @@ std::vector<glm::vec4> radianceOf(const VoxelScene& s, F f) {
   return result;
 }
 
-// Pass light-inject, with the maps of pass shadow-map.
+// Pass light-inject with the maps of pass shadow-map.
 struct Inject {
   int taps = 6;
   double offset = 0.25;
@@ -75,10 +74,10 @@ inline std::vector<glm::vec4> inject(const VoxelScene& s, const Inject& options 
   return result;
 }
 
-// The bundle "voxel-mips", level after level. Faces side by side in x.
+// The bundle "voxel-mips", level after level, with the faces side by side in x.
 struct Mips {
   uint32_t width = 0, size = 0, levels = 0;
-  std::vector<float> color, weight;  // 4 and 1 a texel
+  std::vector<float> color, weight;  // 4 and 1 per texel
 
   uint32_t widthAt(uint32_t level) const { return std::max(1u, width >> level); }
   uint32_t sizeAt(uint32_t level) const { return std::max(1u, size >> level); }
@@ -122,8 +121,7 @@ inline void setMips(PassTest& test, const MipRun& run) {
               m.levels);
 }
 
-// ---- The gather of shaders/common/cone.glsl, with its own filter
-// -----------------------------------------------------
+// ---- The gather of shaders/common/cone.glsl, with its own filter ------------------------------------------
 
 inline glm::vec4 filterMips(const Mips& m, glm::vec3 p, int face, uint32_t level) {
   const float size = float(m.sizeAt(level)), cell = float(1u << level);

@@ -1,5 +1,5 @@
-// The voxeliser against plain loops on the CPU: the same voxels and sides, sums as good as their fixed point;
-// and against geometry that can be worked out by hand.
+// Compares the voxeliser with plain loops on the CPU (the same voxels and sides, sums as precise as their fixed
+// point) and with geometry that can be worked out by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ scene::Primitive trianglePrimitive(const std::vector<vec3>& corners, uint32_t ma
   return p;
 }
 
-// Triangles of sizes over six decades, some past the last cell's width, some degenerate.
+// Triangles of sizes over six decades, some beyond the last cell's width, some degenerate.
 std::vector<vec3> soup(uint32_t count, uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
@@ -77,7 +77,7 @@ VoxelArrays voxelize(const Scene& scene, int resolution) {
 void expectClose(const VoxelSide& a, const VoxelSide& b, const VoxelArrays& v, size_t side) {
   const float cell = v.grid.cell;
   ASSERT_NEAR(a.area, b.area, 1e-6f * b.area + 1e-9f * cell * cell) << side;
-  // Pieces of few units of fixed point have rough averages.
+  // Pieces of few fixed-point units have inaccurate averages.
   const float rough = 1.0f + 1e-3f * cell * cell / b.area;
   ASSERT_LT(glm::length(a.position - b.position), 2e-6f * rough * cell * float(v.resolution))
       << side << " area " << b.area;
@@ -145,8 +145,8 @@ TEST(Voxelize, EqualsTheReferenceInTheCornellBox) {
   EXPECT_NEAR(voxelArea(v) / meshArea(g), 1, 1e-3);
 }
 
-// Every cell that a triangle of the soup passes through by more than a hair is there: dense samples of the
-// triangles.
+// Every cell that a triangle of the soup passes through by more than a hair is present, which dense samples of
+// the triangles check.
 TEST(Voxelize, IsConservative) {
   Scene s = emptyScene();
   addMaterial(s, vec3(0.5f));
@@ -226,8 +226,8 @@ TEST(Voxelize, HugeAndTinyTriangles) {
   EXPECT_NEAR(voxelArea(v) / meshArea(scene::flatten(s)), 1, 1e-4);
 }
 
-// The faces of a wall thinner than a cell are two sides, and so is a sheet that is double-sided; a
-// single-sided sheet is one.
+// The faces of a wall thinner than a cell are two sides, and so are those of a double-sided sheet; a single-sided
+// sheet is one side.
 TEST(Voxelize, ThinWallsKeepBothSides) {
   Scene s = emptyScene();
   const uint32_t red = addMaterial(s, vec3(0.8f, 0.1f, 0.1f)), blue = addMaterial(s, vec3(0.1f, 0.1f, 0.8f)),
@@ -305,7 +305,7 @@ TEST(Voxelize, OverflowIsCountedAndLeftOut) {
     ASSERT_NO_FATAL_FAILURE(expectClose(got.surface[i], want.surface[i], want, i));
 }
 
-// A soup that moves by keys of one frame each: into the static geometry, out of the grid's other corner,
+// A soup that moves by keys of one frame each: into the static geometry, out beyond the opposite corner of the grid,
 // away, and back.
 Scene movingScene(uint32_t objects) {
   Scene s = emptyScene();
@@ -357,8 +357,8 @@ TEST(Voxelize, DynamicObjectsMoveAppearAndDisappear) {
   EXPECT_EQ(gone, 1u);     // the frame without any object
 }
 
-// Of a scene in which every third triangle is missing for voxels: they are those of the scene that has but
-// the others.
+// The voxels of a scene in which every third triangle is hidden from voxels are those of the scene that has only
+// the other triangles.
 TEST(Voxelize, TrianglesThatAreCoarserForLight) {
   Scene s = movingScene(2), coarse = s;
   for (size_t m = 0; m < s.meshes.size(); ++m)
@@ -395,7 +395,7 @@ TEST(Voxelize, OnlyDynamicObjects) {
   }
 }
 
-// What finds no room leaves the static voxel of its cell in sight.
+// What finds no room leaves the static voxel of its cell visible.
 TEST(Voxelize, DynamicOverflow) {
   const Scene s = movingScene(2);
   PassTest test("voxelize");
@@ -417,7 +417,7 @@ TEST(Voxelize, DynamicOverflow) {
   }
 }
 
-// More voxels than sums find room at once (2^19): sheets that each fill a layer of cells.
+// More voxels than there is room for sums at once (2^19): sheets that each fill a layer of cells.
 TEST(Voxelize, SumsInBatches) {
   Scene s = emptyScene();
   const uint32_t material = addMaterial(s, vec3(0.2f, 0.4f, 0.6f));

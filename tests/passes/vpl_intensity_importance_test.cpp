@@ -1,4 +1,4 @@
-// Strategy `importance-area` of pass vpl-intensity.
+// Tests strategy `importance-area` of pass vpl-intensity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace fovea::test {
 namespace {
 
-// Discs of many cells, close to what they light: what a disc sends less than a point, the VPL makes good.
+// Discs of many cells, close to what they light: the VPL makes up for what a disc sends less than a point would.
 TEST(Weights, FurnaceOfFewVpls) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
@@ -21,9 +21,9 @@ TEST(Weights, FurnaceOfFewVpls) {
   EXPECT_NEAR(mean, 1, 0.02);
 }
 
-// A list that something else has picked: the VPLs of one half of the room are four times as many. The
-// furnace's light stays, which 1 / (N p) gets wrong; and where the light is not the same everywhere, the
-// paths bring it to whichever VPL is there.
+// A list chosen by another rule, in which one half of the room has four times as many VPLs. The furnace's light
+// stays the same, which 1 / (N p) gets wrong; and where the light is not uniform, the paths assign it to whichever
+// VPL is there.
 TEST(Weights, FurnaceOfImportanceAreasWhateverPickedTheVpls) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
@@ -53,7 +53,7 @@ TEST(Weights, FurnaceOfImportanceAreasWhateverPickedTheVpls) {
   EXPECT_GT(meanIrradiance("pdf"), 0.6);
 }
 
-// VPLs that hardly anything sees, within boxes with a slit: what their paths find goes to the others, and
+// VPLs that hardly anything sees, within boxes with a slit: what their paths find is passed to the others, and
 // none is lost.
 TEST(Weights, LightOfHiddenVplsGoesToOthers) {
   const Room room = closedRoom(false, 32);
@@ -79,7 +79,7 @@ TEST(Weights, LightOfHiddenVplsGoesToOthers) {
   EXPECT_NEAR(meanIrradiance(list), open, 0.03);
 }
 
-// Every VPL twice as bright as the surface around it: it is the surface that counts.
+// With every VPL twice as bright as the surface around it, only the surface counts.
 TEST(Weights, ImportanceAreasTakeTheLightFromTheEndsOfPaths) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
@@ -141,7 +141,7 @@ TEST(Weights, ImportanceAreasEqualTheReference) {
   }
 }
 
-// The whole view's share of the points counts in the densities and in the paths.
+// The share of points over the whole view counts in the densities and in the paths.
 TEST(Weights, ImportanceAreasOfTheMixedRegion) {
   const Room room = closedRoom(true);
   WeightSettings settings;
@@ -162,7 +162,7 @@ TEST(Weights, ImportanceAreasOfTheMixedRegion) {
   EXPECT_LT(off, 0.01 * all);
 }
 
-// A VPL that comes into a list takes its share step by step, never in a jump, and all of it in the end.
+// A VPL that enters a list takes its share step by step, never in a jump, and has all of it in the end.
 TEST(Weights, TheShareOfANewVplGrows) {
   const Room room = closedRoom(false, 32);
   Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, {})));
@@ -189,7 +189,7 @@ TEST(Weights, TheShareOfANewVplGrows) {
   EXPECT_EQ(grown[8], whole);
 }
 
-// Ends that bring their own light, in colour, and none of what the VPLs have themselves.
+// Ends that bring their own light, in colour, and use none of the light of the VPLs themselves.
 std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector<Seen>& points,
                                              uint32_t count) {
   std::vector<passes::EyePathEnd> ends(count);
@@ -226,7 +226,7 @@ std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& p
   return test.values<scene::Vpl>("emitters");
 }
 
-// The region gets the mean light of the paths' ends, channel by channel, however the VPLs shine themselves.
+// The region gets the mean light of the paths' ends, channel by channel, whatever the emission of the VPLs.
 TEST(Weights, TracedPathsBringTheirOwnLight) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
@@ -238,7 +238,7 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   const auto ends = colouredEnds(room, points, 4096);
   const double pi = glm::pi<double>();
   for (const float nearArea : {0.0f, 0.1f}) {
-    glm::dvec3 want(0), got(0);  // without what pass near-field brings
+    glm::dvec3 want(0), got(0);  // without the light of pass near-field
     for (size_t i = 0; i < ends.size(); ++i) {
       const double d = glm::distance(ends[i].position, points[i % points.size()].position);
       want += glm::dvec3(ends[i].radiance) * (pi * d * d / (pi * d * d + nearArea)) / double(ends.size());
@@ -259,7 +259,7 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   }
 }
 
-// Else the light of what is near would be in the picture twice.
+// Otherwise near-field light would be in the picture twice.
 TEST(Weights, SpreadNeedsPathsAndDiscs) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;
@@ -282,8 +282,7 @@ TEST(Weights, SpreadNeedsPathsAndDiscs) {
     }
 }
 
-// Behind a block some VPLs are seen from here and others from there: a path goes to one that its own start
-// sees.
+// Behind a block some VPLs are seen from here and others from there; a path is assigned to one that its own start sees.
 TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
   const Room room = closedRoom(true);
   const WeightSettings settings;
@@ -317,7 +316,7 @@ TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
   EXPECT_GT(other, 0.02 * all);  // it makes a difference
 }
 
-// Paths that end nowhere count among those tried; without any that ends somewhere nothing shines.
+// Paths that hit nothing count among those tried; if none hits anything, nothing shines.
 TEST(Weights, TracedPathsThatEndNowhere) {
   const Room room = closedRoom(false, 16, glm::ivec2(32));
   const WeightSettings settings;

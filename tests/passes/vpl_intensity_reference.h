@@ -1,4 +1,4 @@
-// Pass weights on the CPU, plain loops over METHOD section 2, and a room to run it in.
+// A plain CPU version of pass vpl-intensity (passes/README.md, vpl-intensity), and a room to run it in.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace fovea::test {
 
-// What an eye in the scene sees: one entry a pixel.
+// What an eye in the scene sees, one entry per pixel.
 struct Seen {
   glm::vec3 position{0}, normal{0};
   bool there = false;
@@ -60,7 +60,7 @@ inline Room lookInto(scene::Scene scene, int resolution, glm::ivec2 size, float 
   return room;
 }
 
-// A closed room of 4 m with, if wanted, a block in it. The camera stands in the middle and looks along -z.
+// A closed room of 4 m, optionally with a block in it. The camera stands in the middle and looks along -z.
 inline Room closedRoom(bool block, int resolution = 24, glm::ivec2 size = glm::ivec2(64),
                        float verticalFov = 0.8f) {
   scene::Scene s;
@@ -81,7 +81,7 @@ struct WeightSettings {
   uint32_t points = 1024;
   double areaCap = 4, normalWeight = 0.5;
   bool litOnly = true;
-  double clamp = 0;  // m; 0: the kernel is `disc`
+  double clamp = 0;  // m; 0 if the kernel is `disc`
   glm::vec2 gaze{0.5f};
 };
 
@@ -121,7 +121,7 @@ struct Maps {
   std::vector<uint32_t> texels;
 };
 
-// Nothing hides anything: for rooms without a block in them.
+// Maps in which nothing hides anything, for rooms without a block.
 inline Maps emptyMaps(size_t vpls) { return {4, std::vector<uint32_t>(16 * vpls, scene::kParaboloidEmpty)}; }
 
 inline Maps tracedMaps(const Room& room, const std::vector<scene::VplState>& vpls, int size = 32) {
@@ -141,8 +141,8 @@ inline Maps tracedMaps(const Room& room, const std::vector<scene::VplState>& vpl
   return maps;
 }
 
-// As pass deferred compares: the map's distance with that of the point's tangent plane along the texel's
-// centre.
+// The comparison of pass deferred: the map's distance with that of the point's tangent plane along the direction of
+// the texel's centre.
 inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl, size_t slot) {
   const glm::mat3 frame = scene::orthonormalFrame(vpl.normal);
   const glm::vec3 local = scene::toLocal(frame, s.position - vpl.position),
@@ -156,8 +156,8 @@ inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl,
   return stored >= std::min(plane, len) - (0.5f * (len + local.z) * (2.0f / float(maps.size)) + 1e-3f);
 }
 
-// What a point gets from a VPL per area and radiosity, 1/m^2, 0: it does not see it. area: of the disc that
-// the VPL shines with.
+// What a point gets from a VPL per area and radiosity, 1/m^2; 0 if it does not see the VPL. area is that of the disc
+// with which the VPL shines.
 inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& maps, size_t slot, double area,
                        float clamp) {
   if (!(vpl.life > 0) || !s.there) return 0;
@@ -170,8 +170,8 @@ inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& ma
   return cosines / (d2 * (clamp > 0 ? pi * std::max(d2, double(clamp) * clamp) : pi * d2 + area));
 }
 
-// What the region gets from each slot per area and radiosity, 1/m^2; areas: of the discs that the VPLs shine
-// with, without them those of a cell. seenFrom: points that each is an average of.
+// What the region gets from each slot per area and radiosity, 1/m^2. areas are those of the discs with which the VPLs
+// shine; if there are none, those of a cell. seenFrom is the number of points that each value is an average of.
 inline std::vector<double> seenDensities(const Room& room, const std::vector<scene::VplState>& vpls,
                                          const std::vector<Seen>& points, const Maps& maps, float clamp = 0,
                                          const std::vector<double>* areas = nullptr,
@@ -192,9 +192,9 @@ inline std::vector<double> seenDensities(const Room& room, const std::vector<sce
   return result;
 }
 
-// Whether no side of a voxel along the way blocks: one that faces the ray, in front of the start's tangent
-// plane, neither within 1.5 cells of the VPL nor within one of its tangent plane and turned the same way.
-// Every cell is looked at.
+// Whether no side of a voxel along the way blocks. A side blocks if it faces the ray and lies in front of the start's
+// tangent plane, neither within 1.5 cells of the VPL nor within one of its tangent plane and turned the same way.
+// Every cell is tested.
 inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::VplState& vpl) {
   const glm::vec3 to = vpl.position - from.position, p = voxels.grid.worldToVoxel(from.position);
   const float d = glm::length(to), cell = voxels.grid.cell;
@@ -222,8 +222,7 @@ inline bool seesVpl(const scene::Voxels& voxels, const Seen& from, const scene::
   return true;
 }
 
-// p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and looks at one of them, drawn in proportion
-// to the terms.
+// p_A of each slot, 1/m^2. Lane i of 64 sums every 64th point and tests one of them, drawn in proportion to the terms.
 inline std::vector<double> densities(const Room& room, const std::vector<scene::VplState>& vpls,
                                      const std::vector<Seen>& points) {
   const scene::Voxels voxels = room.view();
@@ -259,7 +258,7 @@ inline std::vector<double> densities(const Room& room, const std::vector<scene::
   return result;
 }
 
-// Attempts for each that finds a surface: one diffuse bounce from each of the first 1024 points.
+// Attempts per hit on a surface, with one diffuse bounce from each of the first 1024 points.
 inline double escaping(const Room& room, const std::vector<Seen>& points) {
   const uint32_t tried = std::min(uint32_t(points.size()), 1024u);
   uint32_t found = 0;
@@ -275,7 +274,7 @@ inline double escaping(const Room& room, const std::vector<Seen>& points) {
   return found > 0 ? double(tried) / found : 1;
 }
 
-// escaping: attempts for each that finds a surface.
+// escaping is the number of attempts per hit on a surface.
 inline double leastDensity(const std::vector<double>& p, double areaCap) {
   std::vector<double> seen;
   for (const double x : p)
@@ -303,8 +302,8 @@ inline double normalLambda(const Room& room, double normalWeight) {
   return normalWeight * path * path;
 }
 
-// Area of the sides nearest to each VPL, by trying every one. `doubtful`: area of the sides that two VPLs are
-// equally near to.
+// Area of the sides nearest to each VPL, found by trying every VPL. `doubtful` is the area of the sides that two VPLs
+// are equally near to.
 inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scene::VplState>& vpls,
                                         const std::vector<glm::vec4>& radiance,
                                         const WeightSettings& settings, double* doubtful) {
@@ -334,7 +333,7 @@ inline std::vector<double> voronoiAreas(const Room& room, const std::vector<scen
   return areas;
 }
 
-// The voxel side that an eye path ends on: one bounce from point i mod points.
+// The voxel side on which an eye path ends, after one bounce from point i mod points.
 inline uint32_t endOfPath(const Room& room, const std::vector<Seen>& points, uint32_t path) {
   const uint32_t point = path % uint32_t(points.size()), turn = path / uint32_t(points.size());
   const Seen& from = points[point];
@@ -347,12 +346,12 @@ inline uint32_t endOfPath(const Room& room, const std::vector<Seen>& points, uin
   return scene::traceVoxels(room.view(), from.position, direction, from.normal).side;
 }
 
-// Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, goes to the nearest
-// VPL of its kind, with `seenFirst` of those that the point sees, by trying every one. A VPL that the region
-// hardly sees, p below the least density or from less than 4 points, keeps as small a part of it (in
-// 1024ths), and the nearest of all others gets the rest. `light`: mean direct light of the paths in units of
-// the VPL's own. gain: p by the disc of a cell over p by that of the VPL's own area. doubtful: paths that two
-// VPLs are equally near to. passed: paths that were passed on.
+// Strategy `importance-area`: each of M eye paths, one bounce from point i mod points, is assigned to the nearest VPL
+// of its kind (with `seenFirst`, of those that the point sees), found by trying every VPL. A VPL that the region
+// hardly sees, with p below the least density or from less than 4 points, keeps a correspondingly small part of it
+// (in 1024ths), and the nearest of all others gets the rest. `light` is the mean direct light of the paths in units
+// of the VPL's own. gain is p by the disc of a cell over p by that of the VPL's own area. doubtful counts paths that
+// two VPLs are equally near to, passed those that were passed on.
 struct SharedAreas {
   std::vector<double> area, light, gain;
   int doubtful = 0;

@@ -1,4 +1,4 @@
-// What the tests of pass vpl-intensity share: a room with VPLs in it, and how the pass is run there.
+// Shared by the tests of pass vpl-intensity: a room with VPLs in it, and how the pass is run there.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline glm::vec3 cosineDirection(glm::vec3 n, float u, float v) {
   return glm::normalize(r * std::cos(phi) * t + r * std::sin(phi) * glm::cross(n, t) + std::sqrt(1 - u) * n);
 }
 
-// As pass candidates: a pixel of the region, one diffuse bounce.
+// A pixel of the region and one diffuse bounce, as in pass candidates.
 inline std::vector<scene::Candidate> candidatesOf(const Room& room, uint32_t count,
                                                   const WeightSettings& settings) {
   const scene::Fovea fovea = scene::makeFovea(settings.gaze, room.size, settings.foveaRadius);
@@ -58,15 +58,15 @@ inline std::vector<scene::VplState> vplsOf(const Room& room,
   return vpls;
 }
 
-// Inputs of the pass; radiosity and radiance 1 everywhere until changed.
+// Inputs of the pass. Radiosity and radiance are 1 everywhere until changed.
 struct Inputs {
   const Room* room = nullptr;
   std::vector<scene::VplState> vpls;
   std::vector<glm::vec4> radiosity, radiance;
-  Maps maps;  // without texels: nothing hides anything
+  Maps maps;  // if empty, nothing hides anything
 };
 
-// As pass vpl-origins.
+// As in pass vpl-origins.
 inline std::vector<scene::Vpl> placed(const Inputs& in) {
   std::vector<scene::Vpl> list(in.vpls.size());
   for (size_t i = 0; i < list.size(); ++i) {
@@ -142,7 +142,8 @@ inline double sumOfAreas(const std::vector<scene::Vpl>& list) {
   return sum;
 }
 
-// Slots whose area is off by more than `tolerance`, relative; what is not area must be right in all of them.
+// Number of slots whose area is off by more than `tolerance`, relative. Everything that is not area must be correct
+// in all of them.
 inline int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, const std::vector<double>& want,
                       double tolerance) {
   EXPECT_EQ(got.size(), want.size());
@@ -163,7 +164,7 @@ inline int wrongAreas(const std::vector<scene::Vpl>& got, const Inputs& in, cons
   return wrong;
 }
 
-// Irradiance at a point from all VPLs, with the disc kernel or clamped; nothing stands in between.
+// Irradiance at a point from all VPLs, with the disc kernel or clamped, without any occlusion.
 inline double irradiance(const std::vector<scene::Vpl>& list, const Seen& s, double clamp = 0) {
   double e = 0;
   for (const scene::Vpl& v : list) {

@@ -23,14 +23,14 @@ TEST(Weights, PdfEqualsTheReference) {
     for (size_t i = 0; i < in.vpls.size(); i += 7) in.vpls[i] = {};
     for (size_t i = 0; i < in.radiosity.size(); ++i) in.radiosity[i] = {0.1f * i, 2, 0.5f, 1};
     const auto p = densities(room, in.vpls, screenPoints(room, settings));
-    // A test of visibility or a pixel may fall to the other side by rounding.
-    // A ray that loses one of 64 shares by rounding changes an area by a percent or two.
+    // Rounding may change the result of a visibility test or move a point to another pixel. A ray that loses one of
+    // 64 shares to rounding changes an area by a percent or two.
     const double share = escaping(room, screenPoints(room, settings));
     EXPECT_LE(wrongAreas(weigh(in, "pdf", settings), in, pdfAreas(in.vpls, p, 4, share), 3e-4), 8);
   }
 }
 
-// The share that escapes belongs to the paths: a room of which only two walls are left.
+// The share that escapes belongs to the paths, as in a room of which only two walls are left.
 TEST(Weights, PathsThatEscapeCount) {
   scene::Scene s;
   addMaterial(s, glm::vec3(0.5f));
@@ -54,7 +54,8 @@ TEST(Weights, PdfSpreadsOverTheSurfaceThatIsReached) {
   settings.areaCap = 16;  // few VPLs in edges, between two walls, are hardly seen
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 2000, settings)));
   const auto list = weigh(in, "pdf", settings);
-  // The wall that is looked at: most of it is reached by no path of its own region, 5/6 of 96 m^2 are.
+  // The paths start on the wall that is looked at and hardly reach that wall itself, so the areas add up to 5/6
+  // of 96 m^2.
   EXPECT_NEAR(sumOfAreas(list), 80, 8);
 }
 
@@ -73,8 +74,7 @@ TEST(Weights, FurnaceOfDensities) {
   EXPECT_NEAR(mean, 1, 0.04);
 }
 
-// Here paths have to reach every surface: one that no VPL lies on gives its area to VPLs that shine
-// elsewhere.
+// Here paths have to reach every surface; a surface without a VPL gives its area to VPLs elsewhere.
 TEST(Weights, FurnaceOfAreas) {
   const Room room = closedRoom(false, 32, glm::ivec2(64), 2.2f);
   WeightSettings settings;
@@ -111,7 +111,7 @@ TEST(Weights, AreasEqualASearchOfAllVpls) {
     double off = 0;
     for (size_t i = 0; i < want.size(); ++i) off += std::abs(got[i].area - want[i]);
     EXPECT_LE(off, 2 * doubtful + 1e-4 * lit);
-    EXPECT_LT(doubtful, 0.01 * lit);  // the test tests something
+    EXPECT_LT(doubtful, 0.01 * lit);  // the test is not vacuous
     wrongAreas(got, in, want, 1);
     EXPECT_NEAR(sumOfAreas(got), lit, 1e-5 * lit);
   }
@@ -210,7 +210,7 @@ TEST(Weights, NothingLit) {
     for (const scene::Vpl& v : weigh(in, strategy)) EXPECT_EQ(v.intensity, glm::vec3(0)) << strategy;
 }
 
-// The eye looks elsewhere: the region is the whole image then. No surface on screen: no path starts.
+// When the eye looks elsewhere, the region is the whole image. With no surface on the screen, no path starts.
 TEST(Weights, FoveaOutsideAndBackground) {
   Room room = closedRoom(true, 16, glm::ivec2(32));
   WeightSettings settings;
@@ -238,7 +238,7 @@ TEST(Weights, NoVoxels) {
     for (const scene::Vpl& v : weigh(inputs(room, {vpl, {}}), strategy)) EXPECT_EQ(v.area, 0) << strategy;
 }
 
-// Whatever comes in, what goes out to the shading is a number.
+// Whatever the input, the output for the shading is a finite number.
 TEST(Weights, OutputsAreFinite) {
   const Room room = closedRoom(true, 16, glm::ivec2(32));
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// VPLs brought to this frame: against the CPU, and one case for each way in which a VPL ends or goes on.
+// Compares VPLs brought to the current frame with the CPU, with one case for each way in which a VPL ends or continues.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -43,7 +43,7 @@ VplState makeVpl(glm::vec3 position, glm::vec3 normal, float object = 0) {
   return v;
 }
 
-// A floor of 4 m x 4 m around the origin, seen from both sides: the voxels are 0.5 m.
+// A floor of 4 m x 4 m around the origin, seen from both sides; the voxels are 0.5 m wide.
 struct Floor {
   scene::Scene scene;
   VoxelArrays voxels;
@@ -54,7 +54,7 @@ struct Floor {
     addQuad(scene, addMaterial(scene, {0.2f, 0.4f, 0.6f}), {-2, 0, -2}, {0, 0, 4}, {4, 0, 0});
     voxels = voxelizeReference(scene, scene::flatten(scene), 8);
   }
-  // Number of the voxel at a place.
+  // Index of the voxel at a position.
   uint32_t voxel(glm::vec3 p) const { return voxels.voxelAt(glm::ivec3(voxels.grid.worldToVoxel(p))) - 1; }
   void clear(glm::vec3 p) {
     const glm::ivec3 c(voxels.grid.worldToVoxel(p));
@@ -167,7 +167,7 @@ TEST(Update, EmptyListAndEmptyScene) {
   EXPECT_TRUE(isEmpty(update(Floor(), {VplState{}}).at(0)));
 }
 
-// Any VPLs over the voxels of a sphere, against a plain loop.
+// Compares random VPLs over the voxels of a sphere with a plain loop.
 TEST(Update, RandomVplsEqualTheCpus) {
   Floor f;
   f.scene.nodes.clear();
@@ -225,8 +225,7 @@ TEST(Update, RandomVplsEqualTheCpus) {
   EXPECT_LT(close, 20);
 }
 
-// ---- Objects that move
-// ---------------------------------------------------------------------------------------------------
+// ---- Objects that move ------------------------------------------------------------------------------------
 
 // A floor and a cube of edge 2 in its own space, object 1.
 scene::Scene makeMoving() {
@@ -281,7 +280,7 @@ struct Moment {  // the scene with its cube somewhere
     scene::moveObjects(frame, geometry);
     voxels = voxelizeReference(scene, geometry, 32);
   }
-  // One VPL on every side, as they are found.
+  // One VPL on every side, in the order in which the sides are found.
   std::vector<VplState> vpls() const {
     std::vector<VplState> list;
     for (const VoxelSide& side : voxels.surface) {
@@ -332,12 +331,12 @@ TEST(Update, FollowsAnObjectThatMovesAndTurns) {
     EXPECT_EQ(vpl.localNormal, old.localNormal);
   }
   EXPECT_GT(moving, 400);
-  // On faces all follow; on edges the average of a voxel may have left the surface or have another normal.
+  // On faces all VPLs follow; on edges the average of a voxel may have left the surface or have another normal.
   EXPECT_GT(followed, 0.8 * moving);
   EXPECT_GT(covered, 20);
 }
 
-// The same voxels, but nobody says that the cube moved: its VPLs are where it no longer is.
+// The same voxels without the information that the cube has moved: its VPLs are where it no longer is.
 TEST(Update, DropsWhatAnObjectLeftBehind) {
   const Moment before(pose(0, {-0.9f, 0.5f, 0.1f}));
   Moment after(pose(0, {0.9f, 0.5f, 0.1f}));

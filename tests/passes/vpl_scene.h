@@ -1,4 +1,4 @@
-// What tests of passes with VPLs begin with.
+// Shared by the tests of passes with VPLs: shadow map values, an empty scene, and VPLs.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,10 +9,10 @@
 
 namespace fovea::test {
 
-// What a texel of a shadow map that sees nothing holds.
+// Value of a shadow map's texel that sees nothing.
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// A camera and a white material, nothing to see.
+// A scene with a camera and a white material and nothing to see.
 inline scene::Scene emptyScene() {
   scene::Scene s;
   s.name = "test";
@@ -21,7 +21,7 @@ inline scene::Scene emptyScene() {
   return s;
 }
 
-// Of 1 W/sr.
+// A VPL of 1 W/sr.
 inline scene::Vpl vpl(glm::vec3 position, glm::vec3 normal) {
   scene::Vpl v;
   v.position = position;

@@ -1,5 +1,5 @@
-// Weights of what the eye sees: closed forms on a wall, and random G-buffers against a plain loop over the
-// pixels.
+// Tests the weights of what the eye sees: closed forms on a wall, and random G-buffers against a plain loop
+// over the pixels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ scene::Scene room() {
 
 struct Pixel {
   glm::vec3 position{0};
-  float distance = 0;  // 0: background
+  float distance = 0;  // 0 in the background
   glm::vec3 face{0, 0, 1};
 };
 
@@ -74,7 +74,7 @@ struct Expected {
   double visible = 0, unassigned = 0;
 };
 
-// METHOD importance step 1, one pixel after the other.
+// The definition of the weights (passes/README.md, weight-map), one pixel after the other.
 Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze,
                    float radius) {
   Expected e;
@@ -126,8 +126,8 @@ std::vector<glm::ivec3> surfaceCells(const VoxelArrays& voxels) {
   return cells;
 }
 
-// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a
-// face that the cell has no side for.
+// Patches of a few pixels that lie in one cell each, some of them background, outside the grid, or with a face for
+// which the cell has no side.
 Picture randomPicture(int width, int height, const VoxelArrays& voxels) {
   const std::vector<glm::ivec3> cells = surfaceCells(voxels);
   Picture picture(width, height);
@@ -164,12 +164,12 @@ TEST(WeightMap, EqualsTheReference) {
     const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f);
     expectEqual(test, expected);
     if (size.x < 50) continue;
-    EXPECT_GT(expected.visible, 200);  // the test tests something
+    EXPECT_GT(expected.visible, 200);  // the test is not vacuous
     EXPECT_GT(expected.unassigned, 100);
   }
 }
 
-// A wall across the whole image, one cell a pixel and so on: all that is known of a side is its own pixels.
+// A wall across the whole image, with one pixel per cell and so on: a side is known only from its own pixels.
 Picture wallPicture(int size) {
   Picture picture(size, size);
   for (int y = 0; y < size; ++y)
@@ -191,8 +191,8 @@ std::vector<float> wallWeights(PassTest& test, const VoxelArrays& voxels, glm::v
   return test.values<float>("weights");
 }
 
-// Inside the disc exactly 1, r_f / r at the nearest pixel outside: continuous across its edge, and wherever
-// the gaze is.
+// The weight is exactly 1 inside the disc and r_f / r at the nearest pixel outside: continuous across the disc's
+// edge, wherever the gaze is.
 TEST(WeightMap, FallsOutsideTheDisc) {
   const scene::Scene s = room();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
@@ -241,7 +241,7 @@ TEST(WeightMap, RegionImageWeighsAllThatIsSeenAlike) {
   EXPECT_GT(seen, 200);
 }
 
-// Nothing stays from the frame before.
+// Nothing is left from the previous frame.
 TEST(WeightMap, ForgetsTheLastFrame) {
   const scene::Scene s = room();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
@@ -256,7 +256,7 @@ TEST(WeightMap, ForgetsTheLastFrame) {
   for (const float w : test.values<float>("weights")) ASSERT_EQ(w, 0);
 }
 
-// No triangles: an empty grid, and a picture that does not know it.
+// Without triangles the grid is empty, and the G-buffer does not match it.
 TEST(WeightMap, EmptySceneHasNothingToWeigh) {
   scene::Scene s;
   PassTest test("weight-map");

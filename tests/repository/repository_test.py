@@ -184,6 +184,21 @@ class Documents(unittest.TestCase):
         self.assertEqual(missing, [])
 
 
+class ExitCodes(unittest.TestCase):
+    def test_enum_document_and_help_agree(self):
+        enum = re.search(r"enum class ExitCode : int \{(.*?)\};", read("framework/include/fovea/error.h"), re.S).group(1)
+        codes = {int(n) for n in re.findall(r"= *(\d+)", enum)}
+        document = {int(n) for n in re.findall(r"^\| *(\d+) *\|", read("samples/fovea/README.md"), re.M)}
+        footer = re.search(r'Exit codes: .*?\)"', read("samples/fovea/main.cpp"), re.S).group(0)
+        spoken = {int(n) for n in re.findall(r"\b(\d+) [a-z]", footer)}
+        self.assertGreater(len(codes), 8)
+        self.assertEqual(document, codes)
+        self.assertEqual(spoken, codes)
+        for path in tracked():
+            if path.suffix in {".cpp", ".h"} and path.name != "error.h":
+                self.assertNotRegex(read(path), r"ExitCode[({]\d", f"{path} makes an exit code of its own")
+
+
 class Shaders(unittest.TestCase):
     def test_what_the_compiler_supplies_is_not_repeated(self):
         found = []

@@ -1,4 +1,4 @@
-// Control cages of the tests.
+// Control cages for the tests.
 #pragma once
 
 #include <array>
@@ -92,7 +92,7 @@ inline SubdivisionCage icosahedronCage(uint32_t level) {
   return cage;
 }
 
-// A fan of `count` faces over `angle` around vertex 0, in the plane z = 0: quads, or triangles for Loop.
+// A fan of `count` faces over `angle` around vertex 0 in the plane z = 0; the faces are quads, or triangles for Loop.
 inline SubdivisionCage fanCage(SubdivisionCage::Scheme scheme, uint32_t count, float angle, uint32_t level) {
   SubdivisionCage cage;
   cage.scheme = scheme;
@@ -113,7 +113,7 @@ inline SubdivisionCage fanCage(SubdivisionCage::Scheme scheme, uint32_t count, f
   return cage;
 }
 
-// The cage with its points moved about by up to `size`.
+// The cage with its points displaced by up to `size`.
 inline SubdivisionCage jittered(SubdivisionCage cage, float size, uint32_t seed) {
   for (size_t i = 0; i < cage.positions.size(); ++i)
     for (int k = 0; k < 3; ++k)
@@ -121,7 +121,7 @@ inline SubdivisionCage jittered(SubdivisionCage cage, float size, uint32_t seed)
   return cage;
 }
 
-// Creases, a corner, seams and two materials on a closed surface: all that the tables must carry.
+// Creases, a corner, seams and two materials on a closed surface: everything that the tables must represent.
 inline SubdivisionCage everythingCage(uint32_t level) {
   SubdivisionCage cage = jittered(torusCage(6, 5, level), 0.1f, 7);
   const auto at = [](uint32_t i, uint32_t k) { return i % 6 * 5 + k % 5; };

@@ -14,7 +14,7 @@ namespace fovea::test {
 
 class DeformReference {
  public:
-  // Times of the animation that plays, not looped: `time` lies between its first and last key.
+  // Times of the animation that plays, not looped; `time` lies between its first and last key.
   DeformReference(const scene::Scene& s, double time) : scene_(s), time_(time) {}
 
   glm::dmat4 world(uint32_t node) {
@@ -76,7 +76,7 @@ class DeformReference {
   }
 
  private:
-  // Of the channel that moves this; empty: none does.
+  // Keys of the channel that moves this; empty if none does.
   std::vector<double> value(uint32_t node, scene::AnimationChannel::Path path) const {
     for (const scene::Animation& a : scene_.animations)
       for (const scene::AnimationChannel& c : a.channels)
@@ -130,7 +130,7 @@ class DeformReference {
   std::map<uint32_t, glm::dmat4> world_;
 };
 
-// Largest distance between the moved vertices and the reference's, relative to `scale`; normals likewise.
+// Largest distance between the moved vertices and those of the reference, relative to `scale`; likewise for normals.
 inline double deformError(const scene::Scene& s, const scene::Geometry& g, double time, double scale) {
   DeformReference reference(s, time);
   double worst = 0;

@@ -7,7 +7,7 @@
 
 namespace {
 
-// A test that makes the validation layers speak has failed, whatever it computed.
+// A test that causes a message of the validation layers has failed, whatever it computed.
 class ValidationListener : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo&) override { fovea::test::takeValidationMessages(); }
   void OnTestEnd(const testing::TestInfo&) override {
@@ -18,8 +18,8 @@ class ValidationListener : public testing::EmptyTestEventListener {
 
 }  // namespace
 
-// Drivers and layers leave blocks behind when they are unloaded, in modules that no suppression can name any
-// more. Leaks of our own Vulkan objects show below; leaks of plain memory are looked for in the unit tests.
+// Drivers and layers leave blocks behind when they are unloaded, in modules that no suppression can name any more.
+// Leaks of our own Vulkan objects are reported below; the unit tests look for leaks of plain memory.
 extern "C" const char* __asan_default_options();
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new ValidationListener);
   const int result = RUN_ALL_TESTS();
-  // Objects that were never destroyed are reported when the device goes.
+  // Objects that were never destroyed are reported when the device is destroyed.
   const std::vector<std::string> left = fovea::test::destroyTestDevice();
   for (const std::string& message : left) std::cerr << "validation: " << message << "\n";
   if (left.empty()) return result;

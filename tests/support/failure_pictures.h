@@ -1,4 +1,4 @@
-// What a failed comparison of pictures saw, as pictures.
+// Writes the pictures of a failed comparison to files.
 #pragma once
 
 #include <cstdint>

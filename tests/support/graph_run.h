@@ -1,4 +1,4 @@
-// Runs a whole graph (file or bare name) over a scene, for tests of pipelines.
+// Runs a whole graph (a file or a bare name) over a scene, for tests of pipelines.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ struct GraphRunOptions {
   glm::uvec2 size{128, 128};
   uint32_t frames = 1, seed = 1;
   std::vector<std::string> set;      // "vpl_count=100"
-  std::vector<std::string> outputs;  // names to read back; empty: all images
+  std::vector<std::string> outputs;  // names to read back; if empty, all images
   bool everyFrame = false;           // read back after every frame: GraphRun::frames[i].outputs
   std::function<void(scene::Frame&)> beforeFrame;
 };

@@ -1,4 +1,4 @@
-// Graphs of test passes, run over an empty scene.
+// Runs graphs of test passes over an empty scene.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace fovea::test {
 constexpr uint32_t kSide = 24;
 constexpr VkFormat kFormat = VK_FORMAT_R32_UINT;
 
-// What pass test-fill, which fills it with its `key` + the frame's number, writes as `value`.
+// The image that pass test-fill writes as `value`, filled with its `key` plus the frame's number.
 inline graph::ResourceSpec image() { return graph::image2D(kFormat, kSide, kSide); }
 
 void addTestShaders(graph::PrepareContext& context);

@@ -1,4 +1,4 @@
-// Normals as buffers and images hold them (shaders/common/octahedral.glsl), read on the CPU.
+// Decodes normals as buffers and images hold them (shaders/common/octahedral.glsl) on the CPU.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace fovea::test {
 
-// Unit, from octahedral coordinates in [-1, 1].
+// Unit vector from octahedral coordinates in [-1, 1].
 inline glm::vec3 octDecode(glm::vec2 e) {
   glm::vec3 n(e, 1 - std::abs(e.x) - std::abs(e.y));
   const float t = std::max(-n.z, 0.0f);

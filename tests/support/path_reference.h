@@ -1,4 +1,4 @@
-// Indirect light by tracing paths on the CPU, by the plainest means: what VPLs are compared with.
+// Indirect light by plain path tracing on the CPU, which the light of VPLs is compared with.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace fovea::test {
 
 class PathReference {
  public:
-  // bounces: diffuse reflections between the light and the surface that is seen.
+  // bounces is the number of diffuse reflections between the light and the surface that is seen.
   PathReference(const scene::Scene& s, const scene::Geometry& g, uint32_t bounces = 2)
       : scene_(s), geometry_(g), rays_(s, g), bounces_(bounces) {}
 
@@ -82,8 +82,8 @@ class PathReference {
   uint32_t bounces_;
 };
 
-// Indirect radiance of every pixel, 4 floats each, as graphs put it out. Another `stream`: other random
-// numbers.
+// Indirect radiance of every pixel, 4 floats each, in the layout of the graphs' output. Another `stream` gives
+// other random numbers.
 inline std::vector<float> tracedIndirect(const scene::Scene& s, glm::uvec2 size, uint32_t bounces,
                                          int samples, uint32_t stream = 0) {
   const scene::Geometry g = flatten(s);

@@ -1,4 +1,4 @@
-// Small scenes whose light can be worked out by hand: quads, closed boxes, spheres seen from inside.
+// Small scenes whose light can be worked out by hand: quads, closed boxes, and spheres seen from inside.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,8 @@ inline void addPrimitive(scene::Scene& s, scene::Primitive p) {
   s.nodes.push_back(node);
 }
 
-// Parallelogram corner, corner + u, corner + u + v, corner + v; its front is where cross(u, v) points. uv = (0,0) .. (1,1).
+// Parallelogram corner, corner + u, corner + u + v, corner + v; its front is where cross(u, v) points. uv =
+// (0,0) .. (1,1).
 inline void addQuad(scene::Scene& s, uint32_t material, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
   scene::Primitive p;
   p.material = material;
@@ -37,7 +38,7 @@ inline void addQuad(scene::Scene& s, uint32_t material, glm::vec3 corner, glm::v
   addPrimitive(s, std::move(p));
 }
 
-// The inside of the cube |x|, |y|, |z| <= h: six quads that face inwards. materials: -x +x -y +y -z +z.
+// The inside of the cube |x|, |y|, |z| <= h: six quads that face inwards. The order of materials is -x +x -y +y -z +z.
 inline void addRoom(scene::Scene& s, const uint32_t materials[6], float h) {
   const glm::vec3 x(2 * h, 0, 0), y(0, 2 * h, 0), z(0, 0, 2 * h), low(-h), high(h);
   addQuad(s, materials[0], low, y, z);
@@ -48,7 +49,7 @@ inline void addRoom(scene::Scene& s, const uint32_t materials[6], float h) {
   addQuad(s, materials[5], high, -y, -x);
 }
 
-// A sphere seen from inside: smooth normals that point to its centre.
+// A sphere seen from inside, with smooth normals that point to its centre.
 inline void addHollowSphere(scene::Scene& s, uint32_t material, glm::vec3 centre, float radius,
                             uint32_t segments, uint32_t rings) {
   scene::Primitive p;

@@ -14,7 +14,7 @@ using glm::ivec3;
 using glm::vec2;
 using glm::vec3;
 
-// Sums are whole numbers of 2^-32.
+// Sums are integers in units of 2^-32.
 uint64_t fixedPoint(float x) { return uint64_t(std::floor(x * 4294967296.0f + 0.5f)); }
 
 struct Sums {
@@ -24,13 +24,13 @@ struct Sums {
 };
 using Cells = std::map<uint32_t, std::array<Sums, 2>>;  // by linear cell index
 
-// A triangle in units of cells, the axes turned so that z is the one of the largest component of n.
+// A triangle in units of cells, with the axes permuted so that z is the axis of the largest component of n.
 struct Triangle {
   vec3 a{0}, b{0}, c{0}, n{0};
   vec3 normal{0};       // unit, axes not turned
-  vec2 slope{0};        // of z over x and y
+  vec2 slope{0};        // slopes of z over x and y
   float areaScale = 0;  // area per doubled area seen along z
-  int axis = 0;         // that z is
+  int axis = 0;         // index of the original axis of z
   ivec3 lo{0}, hi{-1};  // cells of its box
 };
 
@@ -42,8 +42,8 @@ vec3 turnBack(vec3 v, int axis) {
 Triangle makeTriangle(const scene::VoxelGrid& grid, vec3 a, vec3 b, vec3 c) {
   Triangle t;
   const float inverse = 1.0f / grid.cell;
-  // Edges from the positions as given: differences of coordinates that were rounded to the grid's would ruin
-  // the areas of small triangles.
+  // Edges come from the positions as given: differences of coordinates that were rounded to the grid's would ruin the
+  // areas of small triangles.
   const vec3 e1 = (b - a) * inverse, e2 = (c - a) * inverse;
   t.a = (a - grid.origin) * inverse;
   t.b = t.a + e1;
@@ -78,9 +78,9 @@ bool edgeMeetsCell(vec3 p, vec3 q, int u, int v, float sign) {
   return reach + kSlack * (std::abs(nu) + std::abs(nv)) >= nu * p[u] + nv * p[v];
 }
 
-// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001,
-// as 2D edge tests as in Schwarz and Seidel 2010); the box's own axes are the loop's. With slack: what it
-// lets through is clipped.
+// Separating axes: the triangle's plane and the nine cross products of edges and axes (Akenine-Moeller 2001, as 2D
+// edge tests as in Schwarz and Seidel 2010); the loop covers the axes of the box itself. The tests have slack,
+// because what they let through is clipped.
 bool overlapsCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   const vec3 n = t.n;
   const float d = (n.x * a.x + n.y * a.y) + n.z * a.z;
@@ -100,7 +100,7 @@ bool overlapsCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
 
 using Polygon = std::vector<vec3>;
 
-// Sutherland-Hodgman: what lies at or above 0 (upper: at or below 1) along an axis.
+// Sutherland-Hodgman clipping: keeps what lies at or above 0 along an axis (upper: at or below 1).
 Polygon clip(const Polygon& in, int axis, bool upper) {
   Polygon out;
   for (size_t i = 0; i < in.size(); ++i) {
@@ -126,7 +126,7 @@ Piece clipToCell(const Triangle& t, vec3 a, vec3 b, vec3 c) {
   Polygon polygon{a, b, c};
   for (int axis = 0; axis < 3; ++axis) polygon = clip(clip(polygon, axis, false), axis, true);
   if (polygon.size() < 3) return {};
-  // Weights of the fan's triangles are as seen along z; none is negative, so the centroid stays inside.
+  // The weights of the fan's triangles are those seen along z; none is negative, so the centroid stays inside.
   const vec3 first = polygon[0];
   float sum = 0;
   vec3 moment{0};
@@ -146,7 +146,7 @@ bool edgeHoldsCell(vec3 p, vec3 q, float side) {
   return std::min(nu, 0.0f) + std::min(nv, 0.0f) >= nu * p.x + nv * p.y;
 }
 
-// The short way of the shader, for a triangle that goes through all four of the cell's edges along z.
+// The fast path of the shader, for a triangle that passes through all four of the cell's edges along z.
 bool crossesCell(const Triangle& t, vec3 a, vec3 b, vec3 c, Piece& piece) {
   const float side = t.n.z < 0.0f ? -1.0f : 1.0f;
   const float z = (a.z - t.slope.x * a.x) - t.slope.y * a.y;  // at the corner
@@ -216,7 +216,7 @@ scene::VoxelSide resolveSide(const scene::VoxelGrid& grid, uint32_t linear, uint
   result.position = grid.voxelToWorld(cell + average(sums.position, sums.area));
   result.area = float(double(sums.area) / 4294967296.0) * grid.cell * grid.cell;
   const vec3 normal = average(sums.normal, sums.area) - 1.0f;
-  // Normals of one side can cancel, if three or more meet: any direction to that side will do.
+  // The normals of one side can cancel if three or more meet; any direction to that side will do.
   const float length = glm::length(normal);
   result.normal = length > 1e-3f ? normal / length : vec3(side == 0 ? 0.57735027f : -0.57735027f);
   result.object = float(0xffffu - (sums.object & 0xffffu));

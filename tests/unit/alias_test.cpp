@@ -1,4 +1,4 @@
-// Alias: exact places on small examples, and the rules about who may share.
+// Tests the aliasing of memory: exact offsets on small examples, and the rules about what may share memory.
 #include "framework/graph/compile/alias.h"
 
 #include <gtest/gtest.h>
@@ -34,12 +34,12 @@ TEST(Alias, LivesThatMeetInALevelDoNotShare) {
 }
 
 TEST(Alias, LargestFirst) {
-  // The large one takes the bottom although it is born last.
+  // The large one takes the bottom although it is created last.
   EXPECT_EQ(offsets({request(0, 0, 2, 10), request(1, 1, 3, 1000)}), (Offsets{1000, 0}));
 }
 
 TEST(Alias, TightestGap) {
-  // At level 2 and 3 there are gaps of 300 (at 0) and 100 (at 400); 90 bytes go into the tighter one.
+  // At levels 2 and 3 there are gaps of 300 (at 0) and 240 (at 550); 90 bytes go into the tighter one.
   const std::vector<AliasRequest> requests = {request(0, 0, 1, 300), request(1, 0, 3, 250),
                                               request(2, 0, 1, 240), request(3, 0, 3, 230),
                                               request(4, 2, 3, 90)};
@@ -112,7 +112,7 @@ TEST(Alias, KeptHistoryAndExternalNeverShare) {
     "outputs": {"o": "e"}})");
   ASSERT_EQ(c.plan.placements.size(), 1u);
   EXPECT_EQ(c.graph->resources[c.plan.placements[0].resource].name, "e.image_out");
-  // The kept image once, the history twice.
+  // The kept image counts once, the history twice.
   EXPECT_EQ(c.plan.bytesKept, 3u * 64 * 32 * 8);
 }
 

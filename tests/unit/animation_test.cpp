@@ -1,4 +1,4 @@
-// Animations: channels against closed forms; skins and morph targets against a plain reference.
+// Tests animations: channels against closed forms, skins and morph targets against a plain reference.
 #include "framework/scene/motion/animation.h"
 #include "framework/scene/scene.h"
 
@@ -88,11 +88,11 @@ TEST(Animation, RepeatsAsToldAndAtItsSpeed) {
   EXPECT_FLOAT_EQ(animationTime(a, 1.25), 2.5f);
 }
 
-// ---- Files ----
+// ---- Files ------------------------------------------------------------------------------------------------
 
 double sizeOf(const Geometry& g) { return glm::length(g.boundsMax - g.boundsMin); }
 
-// At several times: the frame's vertices against the reference, and inside the bounds.
+// Compares the frame's vertices with the reference at several times and checks that they are inside the bounds.
 void compareWithReference(const std::filesystem::path& file, std::initializer_list<double> times,
                           size_t leastDynamic) {
   Diagnostics warnings;
@@ -163,13 +163,13 @@ TEST(Animation, ACageOfAFileDeforms) {
   const Geometry rest = g;
   ASSERT_EQ(g.objects.size(), 2u) << warnings.format();
   EXPECT_TRUE(g.objects[1].stencils);
-  // The target displaces by the position itself: at weight 0.5 all is half as large again.
+  // The target displaces by the position itself, so at weight 0.5 everything is half as large again.
   moveObjects(makeFrame(s, g, {8, 8}, 1, 1, 2.0), g);
   for (size_t v = 0; v < g.positions.size(); ++v)
     EXPECT_LT(glm::distance(g.positions[v], 1.5f * rest.positions[v]), 1e-6f);
 }
 
-// What the file's first target does is known: its twelve displaced vertices rise by the weight.
+// The effect of the file's first target is known: its twelve displaced vertices rise by the weight.
 TEST(Animation, SparseMorphInClosedForm) {
   FOVEA_NEED_SCENES(root);
   Diagnostics warnings;
@@ -250,7 +250,8 @@ TEST(Animation, ALightGoesWithItsNode) {
   EXPECT_TRUE(moved);
 }
 
-// A camera on a turned child of a node that flies and turns: without a path, and only as the first one.
+// A camera on a turned child of a node that flies and turns; it is used if there is no path and only if it is
+// the first one.
 TEST(Animation, ACameraGoesWithItsNode) {
   Scene s;
   s.nodes.resize(2);
@@ -288,7 +289,7 @@ TEST(Animation, ACameraGoesWithItsNode) {
   EXPECT_EQ(cameraAt(s, 1).position, s.cameras[1].position);
 }
 
-// ---- Errors ----
+// ---- Errors -----------------------------------------------------------------------------------------------
 
 test::TriangleDocument animatedTriangle() {
   test::TriangleDocument d;
@@ -377,7 +378,7 @@ TEST(AnimationErrors, ASkinNeedsJoints) {
   EXPECT_THAT(test::errorOfText(d.json()), AllOf(HasSubstr("skins[0].joints[0]"), HasSubstr("index 4")));
 }
 
-// ---- Scene files ----
+// ---- Scene files ------------------------------------------------------------------------------------------
 
 TEST(SceneFileAnimation, ChoosesByNameNumberOrNone) {
   test::TemporaryFolder folder;
@@ -407,7 +408,7 @@ TEST(SceneFileAnimation, ChoosesByNameNumberOrNone) {
   EXPECT_THAT(test::errorOf([&] { playing(R"(,"animation":{"speed":0})"); }), HasSubstr("speed"));
 }
 
-// A placed model: its skin and animation go with it.
+// A placed model brings its skin and animation along.
 TEST(SceneFileAnimation, APlacedModelMovesWhereItStands) {
   FOVEA_NEED_SCENES(root);
   test::TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// Barriers: exact ones on small graphs, in the words of graph_support.h.
+// Compares the barriers of small graphs with exact expectations, written in the words of graph_support.h.
 #include "framework/graph/compile/barriers.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace fovea::graph::test {
 namespace {
 
-// Each level's barriers, then those of the end. The checker must agree.
+// The barriers of each level, then those of the end. The checker must agree.
 std::vector<std::string> barriersOf(const Compiled& c) {
   std::vector<std::string> lines;
   for (const Level& level : c.plan.levels) lines.push_back(barrierText(level.before, *c.graph));
@@ -45,7 +45,7 @@ TEST(Barriers, BufferHazardsMergeIntoOneMemoryBarrier) {
     "s": {"type": "shade", "inputs": {"gbuffer": "d", "vpls": "e"}}}, "outputs": {"o": "s"}})",
                                  noAlias());
   EXPECT_EQ(barriersOf(c)[1].substr(0, 43), "memory compute:write > compute:uniform; d.g");
-  // The scratch buffer is written every frame: the next write waits for the last one.
+  // The scratch buffer is written in every frame, so the next write waits for the last one.
   EXPECT_EQ(barriersOf(c)[0].substr(0, 83),
             "memory color+compute:write+color-write > color+compute:write+color-read+color-write");
 }
@@ -67,7 +67,7 @@ TEST(Barriers, AttachmentsOfAGBuffer) {
 }
 
 TEST(Barriers, AllReadersOfAVersionShareOneBarrier) {
-  // Read in levels 1 and 2, by compute and by the host: one barrier, before level 1.
+  // Compute and the host read it in levels 1 and 2, so there is one barrier, before level 1.
   const Compiled c = compileText(R"({"passes": {
     "a": {"type": "source"},
     "b": {"type": "filter", "inputs": {"image": "a"}},
@@ -90,7 +90,7 @@ TEST(Barriers, ReadersThatWantDifferentLayoutsMeetInGeneral) {
   const BoundGraph& g = *c.graph;
   EXPECT_EQ(g.passes[c.pass("b")].accesses[0].layout, VK_IMAGE_LAYOUT_GENERAL);
   EXPECT_EQ(g.passes[c.pass("c")].accesses[0].layout, VK_IMAGE_LAYOUT_GENERAL);
-  // No change of layout: a memory barrier serves both.
+  // The layout does not change, so one memory barrier serves both.
   EXPECT_EQ(barriersOf(c)[1].substr(0, 53), "memory compute:write > compute:sampled+read; b.image_");
 }
 
@@ -134,12 +134,12 @@ TEST(Barriers, UpdateInPlaceSeesTheWriteAndWaitsForReaders) {
     "e": {"type": "blend", "inputs": {"a": "r", "b": "u"}}}, "outputs": {"o": "e"}})",
                                  noAlias());
   EXPECT_EQ(c.order(), "a | r | u | e");
-  // Same layout throughout: memory barriers only.
+  // The layout is the same throughout, so there are only memory barriers.
   EXPECT_EQ(barriersOf(c)[2], "memory compute:write > compute:read+write");
 }
 
 TEST(Barriers, MemoryTakenOverWaitsForItsLastOccupant) {
-  // c.image_out lies where a.image was; b's reads of a are all there is to wait for.
+  // c.image_out lies where a.image was; only b's reads of a have to be waited for.
   const Compiled c = compileText(R"({"passes": {
     "a": {"type": "source"},
     "b": {"type": "filter", "inputs": {"image": "a"}},

@@ -1,5 +1,4 @@
-// Suites of benchmarks: what they are written out into, and that every mistake
-// is found with its place.
+// Tests what suites of benchmarks expand to, and that the message for every mistake gives its position.
 #include "benchmarks/runner/suite.h"
 
 #include <gmock/gmock.h>

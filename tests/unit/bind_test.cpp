@@ -1,5 +1,5 @@
-// Bind: parameters, ports, bundles, sizes, views, history, limits. Where mistakes are reported:
-// located_errors_test.
+// Tests bind: parameters, ports, bundles, sizes, views, history and limits. Positions of errors are
+// tested in located_errors_test.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(Bind, OverridesAreTypedByTheDeclaration) {
   EXPECT_EQ(p.text("label"), "12");
 }
 
-// A pass that updates a bundle may list fewer members than there are, in places of its own.
+// A pass that updates a bundle may list only some of its members, in an order of its own.
 TEST(Bind, MembersAreReachedThroughAnUpdateOfSomeOfThem) {
   const Compiled c = bound(R"({"passes": {
     "d": {"type": "draw"},
@@ -290,7 +290,7 @@ TEST(Bind, WarnsAboutPassesThatDoNotRun) {
             "  -> wire one of its outputs, or remove it");
 }
 
-// ---- Declarations ------------------------------------------------------------------------------------
+// ---- Declarations -----------------------------------------------------------------------------------------
 
 TEST(SizeExpression, Prints) {
   EXPECT_EQ(ceilDiv(viewWidth(), 4).print(), "view.width / 4");

@@ -1,4 +1,4 @@
-// The built-in scenes: as large as the paper's, sound, the same every time, and complete as scene files.
+// The built-in scenes must be as large as the paper's, sound, the same every time, and complete as scene files.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -41,7 +41,7 @@ TEST_P(BuiltinScenes, HasAsManyTrianglesAsThePapers) {
 }
 
 TEST_P(BuiltinScenes, IsTheSameEveryTimeAndQuicklyMade) {
-  const std::clock_t begin = std::clock();  // of the process: others' load does not count
+  const std::clock_t begin = std::clock();  // time of the process, so that other load does not count
   const Scene again = builtin(GetParam().name);
   EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 4.0);
   EXPECT_EQ(again.hash, builtin(GetParam().name).hash);
@@ -93,7 +93,7 @@ TEST_P(BuiltinScenes, HasOneMainLightAViewAPathAndAGaze) {
   for (const Mesh& m : s.meshes) cages += m.cage && !m.cage->targets.empty();
   EXPECT_GE(cages, 1u) << "nothing deforms";
   EXPECT_FALSE(s.animations.empty());
-  // The path starts at the still view of the generator.
+  // The path starts at the generator's view of the still scene.
   const Scene still = builtin(GetParam().name);
   ASSERT_FALSE(still.cameras.empty());
   EXPECT_LT(glm::length(still.cameras[0].position - s.cameraPath[0].camera.position), 1e-3f);
@@ -101,8 +101,8 @@ TEST_P(BuiltinScenes, HasOneMainLightAViewAPathAndAGaze) {
   EXPECT_NEAR(still.cameras[0].verticalFov, s.cameraPath[0].camera.verticalFov, 1e-4f);
 }
 
-// From where the camera goes nothing is seen from its inside, and below the horizon there is always
-// something: walls have a thickness and no gaps.
+// Along the camera's path no object is seen from its inside, and below the horizon there is always something: walls
+// have a thickness and no gaps.
 TEST_P(BuiltinScenes, IsClosedAroundTheViewer) {
   if (!GetParam().closed) GTEST_SKIP() << "seen from outside";
   const Scene& s = scene();

@@ -1,4 +1,4 @@
-// Control cages from glTF files and from scene files, and the messages about those that are wrong.
+// Tests control cages from glTF files and from scene files, and the messages about invalid ones.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using fovea::test::TriangleDocument;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Faces as fans.
+// Triangulates the faces as fans.
 std::vector<uint16_t> trianglesOf(const SubdivisionCage& cage, size_t firstFace, size_t endFace) {
   std::vector<uint16_t> list;
   size_t first = 0;
@@ -30,7 +30,7 @@ std::vector<uint16_t> trianglesOf(const SubdivisionCage& cage, size_t firstFace,
   return list;
 }
 
-// The cage's points as they are, its faces [0, firstOfSecond) in one primitive and the rest in another.
+// The cage's points as they are, with its faces [0, firstOfSecond) in one primitive and the rest in another.
 TriangleDocument document(const SubdivisionCage& cage, const std::string& extras, size_t firstOfSecond = 0) {
   TriangleDocument d;
   d.bytes.clear();
@@ -134,7 +134,7 @@ TEST(CageFiles, PrimitivesOfAMeshAreOneCage) {
   expectSame(s.meshes[0].primitives, refine(renumbered(cage)));
 }
 
-// Vertices split for texture coordinates and normals grow together again.
+// Vertices split for texture coordinates and normals are merged again.
 TEST(CageFiles, SplitVerticesAreOnePoint) {
   const SubdivisionCage cube = cubeCage(2);
   Primitive split;
@@ -239,7 +239,7 @@ TEST(CageFiles, BadSurfacesAreRefusedWithTheirPlace) {
               AllOf(HasSubstr("primitives[1]"), HasSubstr("all of them need it, or none")));
 }
 
-// Each byte of the description and of the indices changed: an error or a scene, never anything else.
+// With each byte of the description and of the indices changed, the result is an error or a scene and nothing else.
 TEST(CageFiles, EveryByteOfACageChanged) {
   const std::string good =
       document(tetrahedronCage(1), cageExtras(R"("scheme":"loop","level":1,"faceSizes":[3,3,3,3],
@@ -258,7 +258,7 @@ TEST(CageFiles, EveryByteOfACageChanged) {
   EXPECT_GT(loaded, 10);
 }
 
-// ---- scene files ----
+// ---- scene files ------------------------------------------------------------------------------------------
 
 struct SceneResult {
   std::string error;
@@ -292,7 +292,7 @@ TEST(CageFiles, AnyMeshOfASceneFileCanBeSubdivided) {
         << "still the tetrahedron";
   EXPECT_EQ(sharp.scene.meshes[0].primitives[0].positions.size(), 4u * 15) << "each face has its own normals";
 
-  // A cage takes the level.
+  // The level of the scene file applies to a cage.
   const SceneResult finer =
       loadScene(document(cubeCage(1), cageExtras(R"("faceSizes":4,"level":1)")), R"({"level": 3})");
   expectSame(finer.scene.meshes.at(0).primitives, refine(renumbered(cubeCage(3))));

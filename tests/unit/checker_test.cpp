@@ -1,4 +1,4 @@
-// The checker must find what is wrong: sound plans are broken on purpose, one way at a time.
+// The checker must find defects: sound plans are broken on purpose, one way at a time.
 #include "framework/graph/verify/checker.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// Everything a plan can hold: buffers and images, history, kept, in place, aliasing, attachments.
+// A plan with everything that one can hold: buffers and images, history, kept resources, updates in
+// place, aliasing, attachments.
 Compiled richPlan() {
   return compileText(R"({"passes": {
     "emit": {"type": "emit"},
@@ -30,7 +31,7 @@ Compiled richPlan() {
     "outputs": {"image": "end", "mix": "mix"}})");
 }
 
-// Buffers only: no layouts that could give a broken plan away.
+// A plan with buffers only, because layouts could give a broken plan away.
 Compiled bufferPlan(bool alias = true) {
   auto registry = std::make_shared<Registry>();
   PassDeclaration make("make", "Makes");
@@ -156,7 +157,7 @@ TEST(Checker, WrongLayouts) {
 }
 
 TEST(Checker, OverlappingMemory) {
-  // Every transient at the bottom of its heap: whatever lives at the same time is destroyed.
+  // With every transient at the bottom of its heap, resources that live at the same time overwrite each other.
   Compiled c = bufferPlan();
   for (Placement& p : c.plan.placements) p.offset = 0;
   EXPECT_THAT(checkPlan(c.plan), Contains(HasSubstr("`b.out` takes memory of `a.items` without waiting")));
@@ -169,13 +170,13 @@ TEST(Checker, OverlappingMemory) {
 }
 
 TEST(Checker, MemoryTakenWithoutWaiting) {
-  // The plan was made for separate memory; then the places are made to overlap.
+  // The plan was made for separate memory; then the offsets are made to overlap.
   Compiled apart = bufferPlan(false);
   const Compiled shared = bufferPlan(true);
   EXPECT_THAT(checkPlan(apart.plan), IsEmpty());
   apart.plan.placements = shared.plan.placements;
   apart.plan.heaps = shared.plan.heaps;
-  // Level 0 does not wait for whoever used the memory last.
+  // Level 0 does not wait for the previous user of the memory.
   apart.plan.levels[0].before = {};
   EXPECT_THAT(checkPlan(apart.plan), Contains(HasSubstr("takes memory of")));
 }
@@ -220,13 +221,13 @@ TEST(Checker, PassesMissingOrTwice) {
 }
 
 TEST(Checker, WrongVersions) {
-  // An update in place that runs before a reader of the old value.
+  // An update in place runs before a reader of the old value.
   Compiled c = compileText(R"({"passes": {
     "a": {"type": "source"}, "r": {"type": "storage-filter", "inputs": {"image": "a"}},
     "u": {"type": "update", "inputs": {"image": "a"}},
     "e": {"type": "blend", "inputs": {"a": "r", "b": "u"}}}, "outputs": {"o": "e"}})");
   ASSERT_EQ(c.order(), "a | r | u | e");
-  // Enough waiting everywhere, so that only the order is wrong.
+  // There is enough waiting everywhere, so that only the order is wrong.
   for (Level& level : c.plan.levels) {
     level.before.srcStage = level.before.dstStage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     level.before.srcAccess = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
@@ -238,7 +239,7 @@ TEST(Checker, WrongVersions) {
 }
 
 TEST(Checker, LastFramesMemoryIsRemembered) {
-  // Only the first barrier knows about the frame before.
+  // Only the first barrier takes the previous frame into account.
   Compiled c =
       compileText(R"({"passes": {"a": {"type": "source"}, "b": {"type": "filter", "inputs": {"image": "a"}}},
     "outputs": {"o": "b"}})");
@@ -247,8 +248,8 @@ TEST(Checker, LastFramesMemoryIsRemembered) {
   EXPECT_THAT(checkPlan(c.plan, {1, {}}), IsEmpty());  // one frame alone is fine
 }
 
-// Barriers of random plans removed one at a time: nearly all are needed. (Some memory barriers are covered by
-// others.)
+// Removes the barriers of random plans one at a time: nearly all are needed. (Some memory barriers are
+// covered by others.)
 TEST(Checker, MutationsOfRandomPlans) {
   Registry registry;
   const std::vector<RandomType> types = addRandomTypes(registry, 7);

@@ -1,5 +1,5 @@
-// The built-in Cornell box: what the paper says of it, closed but for its front, and lit so that indirect
-// light matters.
+// The built-in Cornell box must be what the paper says of it, closed except for its front, and lit so that
+// indirect light matters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ const Geometry& box() {
 TEST(CornellBox, IsAboutFivePointEightThousandTriangles) {
   EXPECT_GE(box().triangles.size(), 5500u);
   EXPECT_LE(box().triangles.size(), 6100u);
-  // The room itself is small: the rest is objects.
+  // The room itself has few triangles; the rest belongs to the objects.
   const Scene s = builtin("cornellbox");
   EXPECT_EQ(s.meshes[0].name, "room");
 }

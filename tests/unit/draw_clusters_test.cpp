@@ -1,4 +1,4 @@
-// Which triangles of random soups are drawn, against points of them that lie in the view.
+// Checks which triangles of random soups are drawn, using points on them that lie in the view.
 #include "framework/scene/device/draw_clusters.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kStatic = 3000, kAll = 3100;
 
-// Small triangles all around the origin, neighbours in neighbouring places; the last ones move.
+// Small triangles all around the origin, with neighbours at neighbouring indices; the last ones move.
 Geometry soup(uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
@@ -73,7 +73,7 @@ Camera randomCamera(std::mt19937& random) {
   return camera;
 }
 
-// Points on a grid over the triangle, and its corners.
+// Points on a grid over the triangle, including its corners.
 bool hasPointInView(const Geometry& g, const Triangle& t, const glm::mat4& worldToClip) {
   for (int i = 0; i <= 4; ++i)
     for (int j = 0; i + j <= 4; ++j) {

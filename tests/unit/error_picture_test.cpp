@@ -1,5 +1,5 @@
-// Error pictures: their colours keep order, the errors are where they belong, the legend and the circle are
-// drawn.
+// Tests error pictures: their colours keep the order of the errors, the errors are in their places, and the legend
+// and the circle are drawn.
 #include "framework/image/error_picture.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(Colors, SpacesMatchTheStandard) {
   EXPECT_NEAR(white[0], 0.95046, 1e-5);
   EXPECT_NEAR(white[1], 1, 1e-9);
   EXPECT_NEAR(white[2], 1.08906, 1e-5);
-  // CIELAB of sRGB's primaries under D65, as colorimetric tables have them.
+  // CIELAB of sRGB's primaries under D65, as listed in colorimetric tables.
   const Color primaries[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Color expected[] = {{53.24, 80.09, 67.20}, {87.74, -86.18, 83.18}, {32.30, 79.19, -107.86}};
   for (size_t i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ TEST(ErrorPicture, ColoursGrowLighterEvenly) {
   for (int i = 0; i <= 100; ++i) {
     const Color color = mapColor(i / 100.0);
     for (const double c : color) EXPECT_TRUE(c >= 0 && c <= 1);
-    // Colours a little outside the screen's are clipped: hence the tolerance.
+    // Colours slightly outside the screen's gamut are clipped, hence the tolerance.
     EXPECT_NEAR(lightness(color), 4 + 92 * i / 100.0, 2) << i;
     EXPECT_TRUE(i == 0 || lightness(color) > lightness(mapColor((i - 1) / 100.0))) << i;
   }

@@ -1,4 +1,4 @@
-// Exported scenes: glTF comes back as the same picture; Mitsuba's files say what the scene says.
+// Tests exported scenes: glTF loads as the same picture, and Mitsuba's files describe the scene.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -85,9 +85,9 @@ void expectSameView(const View& a, const View& b) {
   EXPECT_LT(glm::length(a.gaze - b.gaze), 1e-6f);
 }
 
-// Everything in its place at 0 s and at a later time; triangles in the same order, whatever node they hang
-// on. The normals of a cage that deforms come back as sums of its shapes', which is not quite the limit
-// surface's.
+// Compares all geometry at 0 s and at a later time. The triangles are in the same order, whatever node they belong
+// to. The normals of a cage that deforms come back as sums of the normals of its shapes, which are not quite those of
+// the limit surface.
 void expectSameScene(const Scene& a, const Scene& b, float normalError) {
   expectSameMaterials(a, b);
   Geometry ga = flatten(a), gb = flatten(b);
@@ -145,7 +145,7 @@ Primitive quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t material) {
   return p;
 }
 
-// A bit of everything that a scene can hold.
+// A scene with a bit of everything that a scene can hold.
 Scene everything() {
   Scene s;
   s.name = "a bit/of everything";
@@ -313,7 +313,7 @@ TEST(ExportMitsuba, SaysWhatTheSceneSays) {
   EXPECT_THAT(warnings.format(), HasSubstr("environment"));
 }
 
-// The image that a spot light projects holds its falloff: looked up bilinearly it is the light's own.
+// The image that a spot light projects holds the falloff; looked up bilinearly, it gives the falloff of the light.
 TEST(ExportMitsuba, SpotImageIsTheFalloff) {
   const TemporaryFolder folder;
   Scene s = everything();
@@ -334,7 +334,7 @@ TEST(ExportMitsuba, SpotImageIsTheFalloff) {
   }
 }
 
-// Where the mover is at the time that is asked for.
+// The export shows the mover at the requested time.
 TEST(ExportMitsuba, ExportsTheMoment) {
   const TemporaryFolder folder;
   Scene s = everything();

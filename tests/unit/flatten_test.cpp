@@ -1,4 +1,4 @@
-// flatten(): world space, static before dynamic, outsides stay outside.
+// Tests flatten(): world space, static before dynamic geometry, and outsides that stay outside.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -83,7 +83,7 @@ TEST(Flatten, NormalsGoByTheInverseTranspose) {
   const Geometry g = flatten(s);
   EXPECT_LT(glm::distance(g.normals[0], glm::normalize(glm::vec3(0.25f, 0, 1))), 1e-6f);
   EXPECT_LT(glm::distance(g.normals[0], geometricNormal(g, 0)), 1e-6f);
-  // A shear, given as a matrix.
+  // The node has a shear, given as a matrix.
   glm::mat4 shear(1.0f);
   shear[1][2] = 2.0f;
   s.nodes[0].matrix = shear;
@@ -111,7 +111,7 @@ TEST(Flatten, StaticFirstThenOneObjectPerMovingNode) {
   for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(g.triangles[i].object(), i < 2 ? 0u : i - 1);
 }
 
-// Only where something is coarser for voxels and VPL maps is there a list for them: all they see.
+// A separate list for voxels and VPL maps exists only where something is coarser for them; it holds all that they see.
 TEST(Flatten, WhatLightSeesIsAListOfItsOwnWhereItIsCoarser) {
   Scene s = triangleScene();
   s.nodes = {meshNode(), meshNode()};

@@ -1,4 +1,4 @@
-// LDR-FLIP against the values of its authors' tool, and what follows from its definition.
+// Compares LDR-FLIP with values of its authors' tool and with properties that follow from its definition.
 #include "framework/image/flip.h"
 
 #include <gtest/gtest.h>
@@ -57,8 +57,8 @@ double flipOf(const Image& a, const Image& b, double pixelsPerDegree = kDefaultP
   return mean(flip(a, b, pixelsPerDegree));
 }
 
-// Version 1.7 of the authors' package flip-evaluator, evaluate(reference, test, "LDR") on the same pictures:
-// the mean, and the pixels (0, 0), (17, 9), (31, 24) and (63, 47).
+// Results of version 1.7 of the authors' package flip-evaluator, evaluate(reference, test, "LDR"), on the same
+// pictures: the mean, and the pixels (0, 0), (17, 9), (31, 24) and (63, 47).
 TEST(Flip, MatchesTheAuthorsTool) {
   struct Case {
     const char* name;
@@ -89,7 +89,7 @@ TEST(Flip, IsSymmetricAndBetweenZeroAndOne) {
     ASSERT_TRUE(ab[i] >= 0 && ab[i] <= 1);
   }
   for (const float value : flip(chirp(0, 0), chirp(0, 0))) ASSERT_EQ(value, 0);
-  // The greatest difference in colour there is.
+  // The greatest possible difference in colour.
   const auto pure = [](int channel) {
     return picture([=](int, int, int c) { return c == channel ? 255 : 0; });
   };
@@ -103,7 +103,7 @@ TEST(Flip, GrowsWithTheDifferenceAndFallsWithTheDistance) {
     EXPECT_GT(error, last);
     last = error;
   }
-  // A pattern as fine as the pixels: the farther away, the less of it is seen.
+  // A pattern as fine as the pixels is seen less and less with distance.
   const auto fine = picture([](int x, int y, int) { return (x + y) % 2 * 255; });
   const auto shifted = picture([](int x, int y, int) { return (x + y + 1) % 2 * 255; });
   last = 1;

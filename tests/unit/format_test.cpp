@@ -24,7 +24,7 @@ TEST(Format, EveryNameRoundTrips) {
   EXPECT_GE(names.size(), 40u);
 }
 
-// The number in the name is the bits of one channel: a slip in the table shows here.
+// The number in the name is the number of bits of one channel, so this test reveals a slip in the table.
 TEST(Format, SizesFollowFromTheNames) {
   for (const FormatInfo& info : formats()) {
     const std::string name(info.name);

@@ -8,7 +8,7 @@
 namespace fovea::scene {
 namespace {
 
-// Part of each pixel that the disc covers, by 64 x 64 points in it.
+// Part of each pixel that the disc covers, estimated with 64 x 64 points in it.
 std::vector<double> coverage(const Fovea& fovea, glm::ivec2 size) {
   std::vector<double> part;
   for (int y = 0; y < size.y; ++y)
@@ -24,8 +24,8 @@ std::vector<double> coverage(const Fovea& fovea, glm::ivec2 size) {
   return part;
 }
 
-// Chi-square of the drawn pixels against `part`; pixels that expect less than 8 draws are thrown together. In
-// standard deviations from its mean.
+// Chi-square of the drawn pixels against `part`, in standard deviations from its mean. Pixels that expect less than 8
+// draws are merged.
 double deviation(uint32_t region, const Fovea& fovea, glm::ivec2 size, const std::vector<double>& part,
                  uint32_t draws) {
   std::vector<uint32_t> count(part.size());
@@ -103,7 +103,7 @@ TEST(RegionSample, TinyFoveaIsOnePixel) {
     ASSERT_EQ(regionSample(kRegionFovea, f, {33, 21}, randomStream(1, 2, 3, i)), glm::ivec2(16, 10));
 }
 
-// Only its outermost sliver reaches into the image: still nothing from elsewhere.
+// Only the outermost sliver of the disc reaches into the image; still, no sample comes from elsewhere.
 TEST(RegionSample, SliverOfTheDisc) {
   const Fovea f{{-9.9f, 10}, 10.5f};
   for (uint32_t i = 0; i < 5000; ++i) {

@@ -1,4 +1,4 @@
-// Views and frames: Vulkan's clip space, rays that agree with it, gaze and camera over time.
+// Tests views and frames: Vulkan's clip space, rays that agree with it, and gaze and camera over time.
 #include "framework/scene/frame.h"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ TEST(View, RaysHitWhatIsProjectedThere) {
   }
 }
 
-// The edges of each eye's picture are where the lens has them, mirrored from eye to eye; rays agree with clip
-// space, and what lies in the line of sight is not in the middle.
+// The edges of each eye's picture are where the lens has them, mirrored from eye to eye. Rays agree with clip space,
+// and the line of sight does not pass through the middle of the picture.
 TEST(View, ALensSeesFurtherOutThanIn) {
   const Lens lens{glm::radians(60.0f), glm::radians(40.0f), glm::radians(50.0f), glm::radians(55.0f)};
   Camera c;
@@ -85,7 +85,7 @@ TEST(View, FarPlaneHoldsTheWholeScene) {
   c.position = {100, 0, 0};
   const Geometry g = bounds({-300, -10, -20}, {50, 10, 20});
   const View v = makeView(c, {64, 64}, g);
-  // Look at the farthest corner from where the camera is.
+  // Look at the corner that is farthest from the camera.
   c.orientation = glm::quat(glm::vec3(0, glm::radians(90.0f), 0));
   const View w = makeView(c, {64, 64}, g);
   EXPECT_LT(project(w, {-300, 10, 20}).z, 1.0f);
@@ -117,7 +117,7 @@ TEST(Frame, PathGoesThroughItsKeysAndHoldsAtItsEnds) {
     EXPECT_NEAR(f.views[0].verticalFov, 0.5f + 0.1f * float(i), 1e-5f);
   }
   EXPECT_LT(glm::distance(makeFrame(s, g, {64, 64}, 99, 0, 10.0).views[0].eye, glm::vec3(6, 0, 0)), 1e-5f);
-  // Equal steps: the spline runs at constant speed, position and direction alike.
+  // The steps are equal: the spline runs at constant speed, for position and direction alike.
   const Frame middle = makeFrame(s, g, {64, 64}, 15, 0, 10.0);
   EXPECT_LT(glm::distance(middle.views[0].eye, glm::vec3(3, 0, 0)), 1e-4f);
   const glm::vec3 forward = middle.views[0].rayDirection({32, 32});

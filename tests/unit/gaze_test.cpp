@@ -1,5 +1,5 @@
-// The gaze over time: samples joined within fixations, held over blinks, pauses and saccades; tables with
-// mistakes; the fovea as an angle.
+// Tests the gaze over time (samples joined within fixations and held over blinks, pauses and saccades), tables with
+// mistakes, and the fovea as an angle.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ void expectGaze(const std::vector<GazeSample>& gaze, double time, glm::vec2 expe
   EXPECT_LT(glm::distance(gazeAt(gaze, time, gap).position, expected), 1e-5f) << time;
 }
 
-// 100 Hz: a fixation that drifts, a saccade from one sample to the next, another fixation.
+// Samples at 100 Hz: a fixation that drifts, a saccade from one sample to the next, another fixation.
 TEST(Gaze, FixationsAreJoinedAndSaccadesAreNot) {
   const std::vector<GazeSample> gaze = {at(0, 0.30f, 0.5f), at(0.01f, 0.32f, 0.5f), at(0.02f, 0.70f, 0.6f),
                                         at(0.03f, 0.70f, 0.62f)};
@@ -77,7 +77,7 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
   EXPECT_THAT(error(""), HasSubstr("no header line"));
 }
 
-// The pixel at the rim of the disc sees the angle.
+// The pixel at the rim of the disc is seen at the given angle.
 TEST(Gaze, FoveaAsAnAngle) {
   for (const glm::uvec2 size : {glm::uvec2(640, 480), glm::uvec2(100, 300)}) {
     Camera camera;

@@ -1,4 +1,4 @@
-// Every file of the shared collection: valid ones load, the others end in a clear error or load safely.
+// Reads every file of the shared collection: valid ones load, the others end in a clear error or load safely.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Malformed, GltfBroken, testing::ValuesIn(filesIn("confo
 INSTANTIATE_TEST_SUITE_P(Unsupported, GltfBroken, testing::ValuesIn(filesIn("conformance/unsupported")),
                          testName);
 
-// What exactly is said about files that cannot be right; a loader that accepts them has not looked.
+// The exact messages about invalid files; a loader that accepts them has not checked.
 TEST(GltfConformance, BrokenFilesAreToldApart) {
   FOVEA_NEED_SCENES(root);
   const std::pair<const char*, const char*> cases[] = {
@@ -162,8 +162,8 @@ TEST(GltfConformance, LayoutZoo) {
   FOVEA_NEED_SCENES(root);
   Diagnostics warnings;
   const Scene s = loadGltf(root / "conformance/valid/own/layout_zoo.glb", warnings);
-  // Interleaved, 32-bit, quantised colours, unindexed: 12 triangles each; strip and fan of 10 vertices: 8
-  // each.
+  // The interleaved, 32-bit, quantised-colour and unindexed variants have 12 triangles each; the strip and the fan of
+  // 10 vertices have 8 each.
   const size_t expected[] = {12, 12, 12, 12, 8, 8};
   for (size_t i = 0; i < 6; ++i) {
     ASSERT_EQ(s.meshes[i].primitives.size(), 1u) << i;

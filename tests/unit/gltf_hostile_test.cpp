@@ -1,4 +1,4 @@
-// The glTF loader on hostile and broken files: each ends in a message that names the place.
+// Feeds hostile and broken files to the glTF loader: each ends in a message that names the position of the mistake.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
                     UriCase{"http://example.com/a.png", "beside the model"}, UriCase{"a%00.png", "NUL"}));
 
 TEST(GltfHostile, NothingOutsideTheFolderIsRead) {
-  // A file of the right size really lies where the uri points; it still must not be opened.
+  // A file of the expected size really lies where the uri points; it still must not be opened.
   TemporaryFolder folder;
   TriangleDocument d;
   folder.write("secret.bin", d.bytes);
@@ -271,7 +271,7 @@ TEST(GltfHostile, WrongKindsOfFile) {
   EXPECT_THAT(errorOf([&] { loadGltf("/dev/zero", warnings); }), HasSubstr("not a regular file"));
 }
 
-// Every byte of a small file changed in three ways: an error or a scene, never anything else.
+// With every byte of a small file changed in three ways, the result is an error or a scene and nothing else.
 TEST(GltfHostile, EveryByteChanged) {
   const std::string good = TriangleDocument{}.glb();
   TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// The glTF loader on models written here: what it reads.
+// Tests what the glTF loader reads, on models written here.
 #include <gmock/gmock.h>
 
 #include "framework/scene/scene.h"
@@ -191,8 +191,7 @@ TEST(Gltf, CamerasAndLightsTakeTheirNodesPlace) {
   EXPECT_FLOAT_EQ(l.outerConeAngle, 0.6f);
 }
 
-// Two joints, one moved up by 3: a vertex between them moves up by its share, wherever the mesh's own node
-// stands.
+// Two joints, one moved up by 3: a vertex between them moves up by its share, wherever the mesh's own node is.
 TEST(Gltf, SkinnedMeshesStandAsTheirJointsHoldThem) {
   TriangleDocument d;
   d.bytes.resize(44);

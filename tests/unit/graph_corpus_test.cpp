@@ -1,5 +1,4 @@
-// What the fuzzer has seen stays sound: its corpus, and what becomes of it when bytes are changed, cut or
-// doubled.
+// The fuzzer's corpus must stay sound, also when its bytes are changed, cut or doubled.
 #include <gtest/gtest.h>
 
 #include "places.h"

@@ -1,4 +1,4 @@
-// What the graph compiler's tests share: small pass types, graphs from text, and plans as readable lines.
+// Shared by the tests of the graph compiler: small pass types, graphs from text, and plans as readable lines.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ namespace fovea::graph::test {
 inline constexpr VkFormat kColor = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT;
 
-// Types with one obvious port each: source, filter, blend (two inputs), sink, draw (bundle), shade, update
-// (in-out), ...
+// Pass types with one obvious port each: source, filter, blend (two inputs), sink, draw (bundle), shade,
+// update (in-out), ...
 inline void addBasicTypes(Registry& registry) {
   PassDeclaration source("source", "Makes an image");
   source.output("image", image2D(kColor), Usage::StorageWrite, "made");
@@ -171,7 +171,7 @@ inline Compiled compileText(const std::string& text, const CompileOptions& compi
   return result;
 }
 
-// A folder of files for one test.
+// A temporary folder of files for one test.
 class TempFolder {
  public:
   TempFolder() {
@@ -195,7 +195,7 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-// ---- Barriers in words -------------------------------------------------------------------------------
+// ---- Barriers in words ------------------------------------------------------------------------------------
 
 inline std::string stageText(VkPipelineStageFlags2 stages) {
   std::string text;

@@ -1,4 +1,4 @@
-// The six directions over a hemisphere: what every estimate with them rests on.
+// Tests the properties of the six directions over a hemisphere on which every estimate with them relies.
 #include <gtest/gtest.h>
 
 #include <cmath>

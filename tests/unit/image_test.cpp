@@ -254,7 +254,7 @@ TEST_F(ImageFiles, WhatCannotBeWrittenSaysWhy) {
   EXPECT_EQ(filesInFolder(), 1u);  // only dir.png
 }
 
-// A file-size limit stands for a full disk: small files would otherwise be reported as written.
+// A file-size limit stands in for a full disk; without it small files would be reported as written.
 TEST_F(ImageFiles, AnExistingFileSurvivesAFailedWrite) {
   for (const char* name : {"a.exr", "a.png", "a.pfm"}) {
     const fs::path file = folder_ / name;

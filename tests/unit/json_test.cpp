@@ -1,4 +1,4 @@
-// JSON with positions: values, places, and every way a text can be wrong.
+// Tests JSON with positions: values, positions, and every way in which a text can be wrong.
 #include "framework/base/json.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using Type = Value::Type;
 
-// "line:column message" of each error.
+// The errors, each as "line:column message".
 std::vector<std::string> errorsOf(const std::string& text) {
   try {
     parse(text, "f.json");
@@ -90,7 +90,7 @@ TEST(Json, NumbersKeepTheirKind) {
       parse("[9223372036854775807, -9223372036854775808, 9223372036854775808, 1.0, 1e2, -0]", "f.json");
   EXPECT_EQ(v.items[0].integer, INT64_MAX);
   EXPECT_EQ(v.items[1].integer, INT64_MIN);
-  EXPECT_EQ(v.items[2].type, Type::Real);  // no int64 holds it
+  EXPECT_EQ(v.items[2].type, Type::Real);  // too large for an int64
   EXPECT_EQ(v.items[3].type, Type::Real);
   EXPECT_EQ(v.items[4].type, Type::Real);
   EXPECT_EQ(v.items[5].type, Type::Int);

@@ -40,7 +40,7 @@ TEST(Lights, PointFallsWithTheSquareOfTheDistance) {
   expectNear(s.irradiance, {2, 1, 0.5f}, 1e-6f);
   expectNear(s.direction, {0, 0, -1}, 1e-6f);
   EXPECT_FLOAT_EQ(s.distance, 2);
-  // On the light itself: large, but a number.
+  // On the light itself the value is large, but finite.
   EXPECT_TRUE(std::isfinite(sampleLight(light, light.position).irradiance.x));
 }
 

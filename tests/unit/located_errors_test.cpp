@@ -1,5 +1,5 @@
-// One test per kind of mistake: the message names the place exactly (file, line, column, path in the
-// document), what was expected, and the nearest right name.
+// One test for each kind of mistake: the message gives the exact position (file, line, column, path in the document),
+// what was expected, and the nearest valid name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace fovea::graph::test {
 namespace {
 
-// All errors of a graph, as they would be printed.
+// All errors of a graph as they would be printed.
 std::vector<std::string> errorsOf(const std::string& text, const std::vector<Override>& overrides = {}) {
   const auto registry = basicRegistry();
   Diagnostics messages;

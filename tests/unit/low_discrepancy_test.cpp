@@ -10,7 +10,7 @@
 namespace fovea {
 namespace {
 
-// 2^m points of the first two dimensions of a group: each elementary interval of area 2^-m holds exactly one.
+// Among 2^m points of the first two dimensions of a group, each elementary interval of area 2^-m holds exactly one.
 TEST(LowDiscrepancy, PrefixesAreNetsInTwoDimensions) {
   constexpr uint32_t m = 8;
   for (const uint32_t seed : {0u, 7u, 12345u}) {
@@ -42,9 +42,8 @@ TEST(LowDiscrepancy, APairIsTwoDimensions) {
       EXPECT_EQ(sobolPair(index, d, 9), (std::array<float, 2>{sobol(index, d, 9), sobol(index, d + 1, 9)}));
 }
 
-// Any two dimensions, also of different groups: pairs must not fall on lines. 1024 points in 16 x 16 cells;
-// the points of one seed are no independent draws (single seeds reach 450), so the mean over seeds is what is
-// tested.
+// In any two dimensions, also of different groups, pairs must not fall on lines. There are 1024 points in 16 x 16
+// cells. The points of one seed are not independent draws (single seeds reach 450), so the mean over seeds is tested.
 TEST(LowDiscrepancy, PairsOfDimensionsCoverTheSquare) {
   constexpr uint32_t kSeeds = 32;
   for (uint32_t a = 0; a < 12; ++a) {
@@ -61,8 +60,7 @@ TEST(LowDiscrepancy, PairsOfDimensionsCoverTheSquare) {
   }
 }
 
-// Owen scrambling leaves each single point uniform: the mean over seeds of any point is 1/2, its variance
-// 1/12.
+// Owen scrambling leaves each single point uniform: over seeds, the mean of any point is 1/2 and its variance 1/12.
 TEST(LowDiscrepancy, SeedsMakeASinglePointUniform) {
   constexpr int kSeeds = 20000;
   for (const uint32_t index : {0u, 1u, 1000u}) {
@@ -80,8 +78,8 @@ TEST(LowDiscrepancy, SeedsMakeASinglePointUniform) {
   }
 }
 
-// What it is for: 1024 points integrate a smooth function far better than random numbers (error about 1 /
-// sqrt(12 n) = 0.009).
+// The purpose of the points: 1024 of them integrate a smooth function far better than random numbers (whose error is
+// about 1 / sqrt(12 n) = 0.009).
 TEST(LowDiscrepancy, IntegratesBetterThanRandomNumbers) {
   double worst = 0;
   for (uint32_t seed = 0; seed < 20; ++seed) {

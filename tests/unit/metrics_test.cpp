@@ -1,4 +1,4 @@
-// Error measures against hand-made pictures whose errors are known.
+// Tests error measures on hand-made pictures whose errors are known.
 #include "framework/image/metrics.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ Image flat(uint32_t width, uint32_t height, float value) {
 
 float uniform(uint32_t seed, size_t i) { return uniformFloat(hashCombine(seed, uint32_t(i))); }
 
-// Mean 0, variance 1/3.
+// Noise of mean 0 and variance 1/3.
 float symmetric(uint32_t seed, size_t i) { return 2 * uniform(seed, i) - 1; }
 
 Picture display(Image image) { return fromDisplay(image); }
@@ -96,7 +96,7 @@ TEST(Metrics, EqualPicturesHaveNoError) {
   EXPECT_EQ(m.whole.psnr, std::numeric_limits<double>::infinity());
 }
 
-// A reference that is the mean of two noisy halves: less its noise, the errors are those against the truth.
+// The reference is the mean of two noisy halves; with its noise subtracted, the errors are those against the truth.
 TEST(Metrics, NoiseOfTheReferenceIsSubtracted) {
   constexpr uint32_t kSide = 200;
   constexpr float kTruth = 0.3f, kError = 0.004f, kNoise = 0.03f;
@@ -113,7 +113,7 @@ TEST(Metrics, NoiseOfTheReferenceIsSubtracted) {
   const auto exact = compare(image, truth, {}, disc, 67);
   const auto m = compare(image, fromRadiance(g, 1), halves, disc, 67);
   EXPECT_GT(m.whole.noiseFloor, 3 * exact.whole.mse) << "the noise must matter";
-  // 120,000 squares, of which the noise floor has a relative spread of about 1/sqrt(n).
+  // The noise floor of 120,000 squares has a relative spread of about 1/sqrt(n).
   EXPECT_NEAR(m.whole.mse, exact.whole.mse, 0.02 * m.whole.noiseFloor);
   EXPECT_NEAR(m.fovea.mse, exact.fovea.mse, 0.04 * m.fovea.noiseFloor);
   // The noise is also in the denominator, which leaves 4 (error / truth) of it: 5%.
@@ -142,11 +142,10 @@ TEST(Metrics, WhatCannotBeComparedIsRefused) {
   expectError({"half", "3x1"}, [&] { run(good, good, Halves{fromRadiance(flat(3, 1, 1), 1), good}); });
 }
 
-// ---- Sequences
-// ---------------------------------------------------------------------------------------------------
+// ---- Sequences --------------------------------------------------------------------------------------------
 
 TEST(SequenceMeasures, ChangesAgainstHandMadeOnes) {
-  // Whole picture: the truth rises by 0.1 a frame; the sequence by 0.1 and then by 0.4.
+  // Over the whole picture, the truth rises by 0.1 per frame, the sequence by 0.1 and then by 0.4.
   SequenceComparison sequence;
   const float truth[] = {0.1f, 0.2f, 0.3f}, image[] = {0.15f, 0.25f, 0.65f};
   for (int i = 0; i < 3; ++i)
@@ -161,8 +160,7 @@ TEST(SequenceMeasures, ChangesAgainstHandMadeOnes) {
   EXPECT_TRUE(std::isnan(m.whole.excessNoiseFloor));
 }
 
-// Each pair counts in the fovea of its later frame; frames whose fovea is outside the picture count in the
-// periphery.
+// Each pair counts in the fovea of its later frame; frames whose fovea is outside the picture count in the periphery.
 TEST(SequenceMeasures, TheFoveaMoves) {
   SequenceComparison sequence;
   Image spot = flat(8, 1, 0);
@@ -177,8 +175,8 @@ TEST(SequenceMeasures, TheFoveaMoves) {
   EXPECT_NEAR(m.periphery.mse, (0 + 0 + 1.0 / 24) / 3, 1e-9);
 }
 
-// A picture that follows the truth exactly has no excess; noise of the reference, new in every frame, must
-// not show.
+// A picture that follows the truth exactly has no excess; noise of the reference, which is new in every frame, must
+// not appear as excess.
 TEST(SequenceMeasures, NoiseOfTheReferenceIsSubtracted) {
   constexpr uint32_t kSide = 150;
   constexpr float kNoise = 0.03f;

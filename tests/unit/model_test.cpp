@@ -1,4 +1,4 @@
-// The modelling toolkit: closed solids of the right volume, orientation, texture scale, cages.
+// Tests the modelling toolkit: closed solids of the expected volume, orientation, texture scale, and cages.
 #include "samples/scenes/builtin/modelling/model.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +14,13 @@
 namespace fovea::scene::model {
 namespace {
 
-// Every directed edge between places meets its opposite.
+// Every directed edge between positions meets its opposite.
 bool isClosed(const Shape& s) {
   using Point = std::array<float, 3>;
   std::map<std::pair<Point, Point>, int> edges;
   const auto key = [](const glm::vec3& v) {
-    // To a hundredth of a millimetre: rings meet where the angle is 0 and 2 pi, mitres by two ways.
+    // The tolerance is a hundredth of a millimetre: rings meet where the angle is 0 and 2 pi, and mitres are computed
+    // in two ways.
     return Point{std::round(v.x * 1e5f), std::round(v.y * 1e5f), std::round(v.z * 1e5f)};
   };
   for (size_t i = 0; i < s.indices.size(); i += 3)
@@ -52,7 +53,7 @@ void expectSound(const Shape& s, const char* what) {
                     c = s.positions[s.indices[i + 2]];
     const glm::vec3 n = glm::cross(b - a, c - a);
     ASSERT_GT(glm::length(n), 0) << what;
-    // Normals look the way the triangle faces.
+    // Normals point to the side that the triangle faces.
     for (size_t k = 0; k < 3; ++k)
       ASSERT_GT(glm::dot(glm::normalize(n), s.normals[s.indices[i + k]]), 0.1f) << what;
   }
@@ -68,7 +69,7 @@ TEST(Model, BoxesAreClosedAndAsLargeAsTheySay) {
   expectSolid(box({0, 0, 0}, {1, 2, 3}), 6, "box", 1e-6);
   expectSolid(box({0, 0, 0}, {1, 2, 3}, {.cells = {2, 3, 4}}), 6, "box of cells", 1e-6);
   const Shape round = box({-1, -1, -1}, {1, 1, 1}, {.bevel = 0.25f, .bevelSteps = 4});
-  // A cube, its edges taken off as quarter rods and its corners as parts of a ball.
+  // A cube whose edges are replaced by quarter rods and whose corners by parts of a ball.
   const double r = 0.25, s = 1.5,
                exact = s * s * s + 6 * s * s * r + 3 * glm::pi<double>() * r * r * s +
                        4.0 / 3 * glm::pi<double>() * r * r * r;
@@ -95,7 +96,7 @@ TEST(Model, ExtrusionsWithHoles) {
   expectSolid(extrude(archedPanel(3, 4, 2, 2, 48), 0.4f), (12 - 4 - 0.5 * glm::pi<double>()) * 0.4, "arch",
               1e-3);
   expectSolid(extrude(rectangle(1, 1), 1, {.bevel = 0.1f}), 1 - 0.0347, "bevelled", 4e-2);
-  // Whichever way an outline runs.
+  // The direction of the outline does not matter.
   expectSolid(extrude(rectangle(2, 1).reversed(), 1), 2, "clockwise", 1e-5);
 }
 
@@ -138,7 +139,7 @@ TEST(Model, SheetsFaceTheReaderAndThickOnesAreClosed) {
   expectSound(s, "sheet");
   for (const glm::vec3& n : s.normals) EXPECT_NEAR(n.z, 1, 1e-5);
   expectSolid(surface(flat, 0.1f), 4 * 3 * 0.1, "thick sheet", 1e-4);
-  // Texture coordinates are metres.
+  // Texture coordinates are in metres.
   EXPECT_FLOAT_EQ(s.uvs.back().x, 4);
   EXPECT_FLOAT_EQ(s.uvs.back().y, 3);
 }

@@ -1,4 +1,4 @@
-// What moves: paths, objects, lights, and the geometry of a frame.
+// Tests moving things: paths, objects, lights, and the geometry of a frame.
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
@@ -20,7 +20,7 @@ MotionKey key(float time, glm::vec3 at, float turnDeg = 0, bool visible = true) 
   return {time, at, glm::angleAxis(glm::radians(turnDeg), glm::vec3(0, 1, 0)), visible};
 }
 
-// A still floor, and a quad of its own, under a moving node that hangs below a turned and scaled one.
+// A still floor, and a separate quad under a moving node that hangs below a turned and scaled one.
 Scene movingScene() {
   Scene s;
   addMaterial(s, glm::vec3(0.5f));
@@ -131,7 +131,7 @@ TEST(Motion, FlattenShowsTimeZeroAndItsBoundsHoldEveryFrame) {
   }
   EXPECT_EQ(g.boundsMin, start.boundsMin);
   EXPECT_LT(g.boundsMax.y, 8.1f);  // tight: 2 (1 + 3)
-  // The last key counts also where the path starts anew when it is reached.
+  // The last key counts also if the path starts anew at its time.
   s.movers[0].repeat = Repeat::Loop;
   EXPECT_NEAR(flatten(s).boundsMax.y, g.boundsMax.y, 1e-3f);
 }

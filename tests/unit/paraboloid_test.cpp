@@ -57,8 +57,7 @@ TEST(Paraboloid, TexelCentresComeBackToTheirTexel) {
   EXPECT_EQ(paraboloidTexel({9, -9}, 128), glm::ivec2(127, 0));
 }
 
-// Texels of equal size cover solid angles dw = 4 / (1 + |p|^2)^2 dp; over the disc they add up to the
-// hemisphere.
+// Texels of equal size cover solid angles dw = 4 / (1 + |p|^2)^2 dp; over the disc they add up to the hemisphere.
 TEST(Paraboloid, TexelsOfTheDiscCoverTheHemisphere) {
   const int size = 256;
   double solidAngle = 0;

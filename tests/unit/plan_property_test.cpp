@@ -1,4 +1,4 @@
-// Random graphs, random orders, random memory: every plan must pass the independent checker.
+// Every plan of random graphs, orders and memory must pass the independent checker.
 #include <gtest/gtest.h>
 
 #include "framework/graph/verify/checker.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t kGraphs = 1500;
 
-// What a random graph may rightly be refused for; anything else is a defect of the generator or of bind.
+// Valid reasons to refuse a random graph; anything else is a defect of the generator or of bind.
 bool expectedRefusal(const std::string& message) {
   for (const char* known : {"before", "is updated in place later", "leave no order"})
     if (message.find(known) != std::string::npos) return true;
@@ -74,7 +74,7 @@ TEST(PlanProperty, RandomGraphsAreFreeOfHazards) {
       }
     }
   }
-  // The test is only worth something if the graphs hold what it is about.
+  // The test means something only if the graphs contain what it is about.
   EXPECT_GE(accepted, 1000u) << refused << " refused";
   EXPECT_EQ(plans, accepted * 4);
   EXPECT_GE(histories, 500u);

@@ -1,4 +1,4 @@
-// Random pass types and random graphs of them, as text: the same for the same seed, on every machine.
+// Random pass types and random graphs of them, as text; the same seed gives the same text on every machine.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class Dice {
   uint32_t seed_, count_ = 0;
 };
 
-// Kinds of value that random ports carry.
+// Kinds of value that the random ports carry.
 enum RandomKind : uint32_t { kRandomImage, kRandomDepth, kRandomBuffer, kRandomKinds };
 
 inline ResourceSpec randomResource(RandomKind kind, bool output) {
@@ -120,7 +120,7 @@ inline std::vector<RandomType> addRandomTypes(Registry& registry, uint32_t seed,
   return types;
 }
 
-// A graph that is right in nearly all cases: what is left are orders that updates in place make impossible.
+// A graph that is valid in nearly all cases; the exceptions are orders that updates in place make impossible.
 inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t seed, uint32_t maxPasses = 36) {
   Dice dice(seed);
   const uint32_t count = 2 + dice(maxPasses - 1);
@@ -155,12 +155,12 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
       if (port.direction == Direction::Input && dice.chance(15)) {
         wire = fmt::format("?{}?", static_cast<int>(port.kind));
       } else if (fitting.empty() || dice.chance(4)) {
-        // In place only where nobody else reads: an input of its own.
+        // An update in place only where nobody else reads, so it has an input of its own.
         const uint32_t number = port.direction == Direction::InOut ? p * 8 + ++external : 0;
         externals.insert({number, port.kind});
         wire = fmt::format("inputs.e{}_{}", static_cast<int>(port.kind), number);
       } else {
-        // Mostly recent ones, so that lives are of all lengths.
+        // Mostly recent values, so that there are lifetimes of all lengths.
         const uint32_t n = static_cast<uint32_t>(fitting.size());
         Offer& offer = *fitting[dice.chance(70) ? n - 1 - dice(std::min(n, 4u)) : dice(n)];
         wire = offer.wire;
@@ -177,7 +177,7 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
         fmt::format("{}\n  \"p{}\": {{\"type\": \"{}\", \"inputs\": {{{}}}, \"params\": {{\"side\": {}}}}}",
                     p ? "," : "", p, chosen[p]->name, inputs, 1 + dice(64));
   }
-  // Last frame's values: from any pass, also later ones.
+  // Values of the last frame, from any pass, also from later ones.
   for (size_t at = passes.find('?'); at != std::string::npos; at = passes.find('?')) {
     const RandomKind kind = static_cast<RandomKind>(passes[at + 1] - '0');
     std::vector<std::string> fitting;

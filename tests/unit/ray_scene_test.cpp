@@ -139,7 +139,7 @@ TEST(RayScene, CacheFollowsTheContentNotTheAddress) {
   EXPECT_EQ(first, RayScene::cached(s, copy));  // the two most recent are kept
 }
 
-// Static triangles behind and before moving ones, a mask among both.
+// Static triangles behind and in front of moving ones, with a mask among both.
 TEST(RayScene, MovingPartsAreFoundWhereTheyAre) {
   Scene s;
   addMaterial(s, glm::vec3(0.5f));
@@ -170,7 +170,7 @@ TEST(RayScene, MovingPartsAreFoundWhereTheyAre) {
   EXPECT_FALSE(first->occluded({{0.75f, 0.4f, 5}, {0, 0, -1}, 0, 3}));
   EXPECT_EQ(first, RayScene::cached(s, before));
   for (uint32_t v = g.objects[1].firstVertex; v < g.positions.size(); ++v) g.positions[v] = glm::vec3(0.3f);
-  const auto gone = RayScene::cached(s, g);  // no area: hit by nothing
+  const auto gone = RayScene::cached(s, g);  // no area, so nothing hits it
   EXPECT_FLOAT_EQ(hit(*gone, 0.75f).distance, 5);
   EXPECT_FLOAT_EQ(gone->intersect({{0.3f, 0.3f, 5}, {0, 0, -1}}).distance, 3);
 }

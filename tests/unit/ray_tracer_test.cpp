@@ -1,4 +1,4 @@
-// The tracer of portable builds against Embree.
+// Compares the ray tracer of portable builds with Embree.
 #include "framework/scene/rays/ray_tracer.h"
 #include "framework/scene/scene.h"
 
@@ -54,7 +54,7 @@ void compare(const Geometry& g, const RayTracer::Accepts& accepts, uint32_t rays
     const RayHit a = embree->intersect(ray), b = own->intersect(ray);
     hits += bool(a);
     EXPECT_EQ(bool(b), own->occluded(ray)) << "ray " << i;
-    // At edges, and where two triangles meet, both answers are right.
+    // At edges, and where two triangles meet, both answers are valid.
     if (bool(a) != bool(b) || (a && std::abs(a.distance - b.distance) > 1e-4f * (1 + a.distance))) {
       ++different;
       continue;
@@ -100,7 +100,7 @@ TEST(RayTracer, ClosedBoxLetsNothingOut) {
     if (i % 2 == 0) direction = glm::round(direction * 2.0f);  // straight at edges, corners and diagonals
     if (direction == glm::vec3(0)) continue;
     EXPECT_TRUE(closed->occluded({glm::vec3(0), direction})) << "ray " << i;
-    // Whatever is hit lies where the ray is.
+    // The reported hit lies on the ray.
     const RayHit hit = own->intersect({middle, direction});
     if (!hit) continue;
     const SurfaceHit s = surfaceAt(g, hit);

@@ -1,4 +1,4 @@
-// Reflection of every kind of binding, and how the stages of a pipeline are brought into line.
+// Tests the reflection of every kind of binding, and how the bindings of a pipeline's stages are unified.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -148,7 +148,7 @@ void main() { o = texelFetch(a, ivec2(0), 0) + texelFetch(b, ivec2(0), 0) + texe
   EXPECT_FALSE(find(shader->reflection.bindings, "fixedOne").automatic);
   EXPECT_TRUE(find(shader->reflection.bindings, "a").automatic);
   EXPECT_EQ(find(shader->reflection.bindings, "S").set, 1u);
-  // What reflection says is what the SPIR-V holds, and all numbers are different.
+  // Reflection agrees with the SPIR-V, and all numbers are different.
   std::set<std::pair<uint32_t, uint32_t>> seen;
   for (const BindingDecoration& d : bindingDecorations(shader->spirv)) {
     EXPECT_LT(d.binding, 16u);
@@ -166,10 +166,9 @@ TEST(Reflection, RejectsWhatIsNotSpirv) {
   EXPECT_THROW(reflect(std::vector<uint32_t>(100, 0xffffffffu)), Error);
 }
 
-// ---- Stages of one pipeline
-// ------------------------------------------------------------------------------------
+// ---- Stages of one pipeline -------------------------------------------------------------------------------
 
-// The number that the final SPIR-V of a stage has for a name.
+// The number of a name in the final SPIR-V of a stage.
 uint32_t finalNumber(const MergedStages& merged, size_t stage, const std::string& name) {
   return find(reflect(merged.spirv[stage]).bindings, name).binding;
 }

@@ -1,4 +1,4 @@
-// What a plan looks like to people, programs and the null device.
+// Tests how a plan is reported to people, to programs and to the null device.
 #include "framework/graph/report/report.h"
 
 #include <gmock/gmock.h>

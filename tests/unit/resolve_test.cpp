@@ -1,4 +1,4 @@
-// Resolve: extends, parameters, overrides, sub-graphs.
+// Tests resolve: extends, parameters, overrides and sub-graphs.
 #include "framework/graph/compile/resolve.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A value as compact JSON, to compare merges with what RFC 7396 says.
+// A value as compact JSON, for comparing merges with those of RFC 7396.
 std::string compact(const json::Value& v) {
   switch (v.type) {
     case json::Value::Type::Null:
@@ -74,7 +74,7 @@ TEST(Merge, AnotherTypeReplacesThePassWhole) {
   EXPECT_EQ(merged(base, R"({"passes":{"a":{"type":"s","params":{"y":2}}}})"),
             R"({"passes":{"a":{"type":"s","params":{"x":1,"y":2},"inputs":{"i":"b"}}}})");
   EXPECT_EQ(merged(base, R"({"passes":{"a":{"graph":"g.json"}}})"), R"({"passes":{"a":{"graph":"g.json"}}})");
-  // Only under "passes".
+  // This applies only under "passes".
   EXPECT_EQ(merged(R"({"inputs":{"a":{"type":"s","x":1}}})", R"({"inputs":{"a":{"type":"t"}}})"),
             R"({"inputs":{"a":{"type":"t","x":1}}})");
 }
@@ -99,7 +99,7 @@ TEST(Merge, PlacesPointIntoTheFileTheValueCameFrom) {
   EXPECT_EQ(v.findMember("b")->keyWhere.line, 2);
 }
 
-// ---- Whole graphs ------------------------------------------------------------------------------------
+// ---- Whole graphs -----------------------------------------------------------------------------------------
 
 struct Loaded {
   Description description;
@@ -280,8 +280,7 @@ TEST(Overrides, WrongValuesAreErrors) {
   EXPECT_EQ(parseOverride("a=").value, "");
 }
 
-// ---- Sub-graphs
-// --------------------------------------------------------------------------------------------------
+// ---- Sub-graphs -------------------------------------------------------------------------------------------
 
 class SubGraphs : public testing::Test {
  protected:

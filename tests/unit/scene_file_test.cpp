@@ -1,4 +1,4 @@
-// Scene files: everything they can say, and that every mistake is reported where it stands, all at once.
+// Tests scene files: everything they can say, and that all mistakes are reported at their positions, all at once.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// FOVEA_SCENES for the length of a test.
+// Sets FOVEA_SCENES for the duration of a test.
 class ScenesVariable {
  public:
   explicit ScenesVariable(const std::string& value) {
@@ -81,7 +81,7 @@ TEST(SceneFile, EverythingItCanSay) {
   EXPECT_LT(glm::distance(g.positions[0], glm::vec3(1, 2, 3)), 1e-5f);
   EXPECT_LT(glm::distance(g.positions[1], glm::vec3(1, 2, 1)), 1e-5f);
   EXPECT_LT(glm::distance(g.positions[2], glm::vec3(1, 4, 3)), 1e-5f);
-  // Materials of both models, each pointing at its own.
+  // The materials of both models are there, and each model refers to its own.
   EXPECT_EQ(s.materials.size(), 1 + builtin("cornellbox").materials.size());
   EXPECT_EQ(s.materials[g.triangles.back().material()].name, "white");
 }
@@ -316,7 +316,7 @@ TEST(SceneFile, ModelsAreFoundThroughTheVariable) {
   Diagnostics warnings;
   EXPECT_EQ(flatten(load(file.string(), warnings)).triangles.size(), 1u);
   EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("nothing in this scene shines")));
-  // The same model by its own name.
+  // The same model, loaded by its own name.
   EXPECT_EQ(flatten(load("m/tri.gltf", warnings)).triangles.size(), 1u);
 }
 
@@ -329,7 +329,7 @@ TEST(Load, BareModelsGetAViewAndASun) {
   ASSERT_EQ(s.lights.size(), 1u);
   EXPECT_EQ(s.lights[0].type, LightType::Directional);
   EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("no light")));
-  // The view holds the whole model, and the sun shines on what it sees.
+  // The view contains the whole model, and the sun shines on what it sees.
   const glm::vec3 forward = s.cameras[0].orientation * glm::vec3(0, 0, -1);
   for (const glm::vec3 p : {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)})
     EXPECT_GT(glm::dot(glm::normalize(p - s.cameras[0].position), forward),

@@ -1,4 +1,4 @@
-// Where shared test models lie, and small models written on the spot.
+// Finds the shared test models, and writes small models in code.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace fovea::test {
 
-// The folder with the models that are not part of the source; empty when it is not there.
+// The folder with the models that are not part of the source; empty if it does not exist.
 inline std::filesystem::path sharedScenes() {
   std::error_code ec;
   std::vector<std::filesystem::path> folders;
@@ -35,7 +35,7 @@ inline std::filesystem::path sharedScenes() {
   GTEST_SKIP() << "the shared test models are not here: put them into ../shared/scenes beside the " \
                   "source, or name their folder in FOVEA_SCENES"
 
-// A folder of its own, gone at the end.
+// A temporary folder that is removed at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -62,7 +62,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// The message of the Error that `action` throws; "" when it throws none.
+// The message of the Error that `action` throws; "" if it throws none.
 template <class Action>
 std::string errorOf(Action&& action, ExitCode expected = ExitCode::BadInput) {
   try {
@@ -103,12 +103,12 @@ inline std::string triangleBytes() {
   return bytes;
 }
 
-// A whole one-triangle document out of exchangeable parts. `extra` is added at the top level and starts with
-// a comma.
+// A complete one-triangle document made of exchangeable parts. `extra` is added at the top level and starts
+// with a comma.
 struct TriangleDocument {
   std::string asset = R"({"version":"2.0"})";
   std::string bytes = triangleBytes();
-  std::string bufferUri;  // "": the bytes as a data URI
+  std::string bufferUri;  // if "", the bytes as a data URI
   std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
   std::string accessors =
       R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}])";
@@ -153,8 +153,8 @@ inline std::string errorOfText(const std::string& text, const std::string& name 
   return errorOf([&] { loadText(folder, text, warnings, name); });
 }
 
-// Whether a binary document in which one byte is changed still loads; if not, its message must be one about
-// bad input.
+// Whether a binary document in which one byte is changed still loads; if not, its message must be one
+// about invalid input.
 inline bool loadsChanged(const TemporaryFolder& folder, const std::string& good, size_t at, int change) {
   std::string bad = good;
   bad[at] = char(bad[at] ^ change);

@@ -1,4 +1,4 @@
-// Schedule: levels, culling, versions, lifetimes.
+// Tests the schedule: levels, culling, versions and lifetimes.
 #include "framework/graph/compile/schedule.h"
 
 #include <gtest/gtest.h>

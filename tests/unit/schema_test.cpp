@@ -1,5 +1,5 @@
-// The generated JSON schema: structure here, and real validation with python3 jsonschema where it is
-// installed.
+// Tests the generated JSON schema: its structure here, and real validation with python3 jsonschema where
+// that is installed.
 #include "framework/graph/report/schema.h"
 
 #include <gmock/gmock.h>
@@ -57,7 +57,7 @@ struct Case {
   bool valid;
 };
 
-// What the schema must accept and refuse: the same as the compiler wherever one file can tell.
+// The schema must accept and refuse the same as the compiler, wherever a single file is enough to decide.
 const Case kCases[] = {
     {R"({"$schema": "x", "description": "d", "extends": "b.json", "parameters": {"n": 1}, "passes": {}, "outputs": {}})",
      true},

@@ -1,4 +1,4 @@
-// The shader compiler without a device: located errors, includes, the cache.
+// Tests the shader compiler without a device: located errors, includes and the cache.
 #include "framework/gpu/shader/shader.h"
 
 #include <gmock/gmock.h>
@@ -205,7 +205,7 @@ TEST_F(ShaderTest, ChangedIncludeIsNeverServedFromTheCache) {
   EXPECT_EQ(c->statistics().compiled, 1u);
 }
 
-// A file that appears beside the shader takes the place of one further down the search path.
+// A file that appears beside the shader takes precedence over one further down the search path.
 TEST_F(ShaderTest, ShadowingIncludeIsNeverServedFromTheCache) {
   file("value.glsl", "#define VALUE 1u\n");
   file("a/main.comp", std::string("#version 460\n#include \"value.glsl\"\n") + kBody);
@@ -239,7 +239,7 @@ TEST_F(ShaderTest, DamagedCacheFilesAreReplaced) {
     const auto c = compiler();
     EXPECT_EQ(c->compile("main.comp", {{"VALUE", "1u"}})->spirv, good->spirv);
     EXPECT_EQ(c->statistics().compiled, 1u);
-    EXPECT_EQ(fs::file_size(path), size);  // whole again
+    EXPECT_EQ(fs::file_size(path), size);  // complete again
   }
 }
 

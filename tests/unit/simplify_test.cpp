@@ -8,7 +8,7 @@
 namespace fovea::scene {
 namespace {
 
-// A flat grid of n x n cells in the plane y = 0 from 0 to 1, two triangles a cell.
+// A flat grid of n x n cells in the plane y = 0 from 0 to 1, with two triangles per cell.
 Primitive grid(uint32_t n, uint32_t material) {
   Primitive p;
   for (uint32_t z = 0; z <= n; ++z)

@@ -1,5 +1,4 @@
-// SmallVector against std::vector: random edits across the border between the elements in place and those
-// elsewhere.
+// Compares SmallVector with std::vector over random edits that cross the limit between inline and allocated elements.
 #include "framework/base/small_vector.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Cages that must be refused, cages made at random, cages of a scene.
+// Tests cages that must be refused, random cages, and cages of a scene.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,8 +68,8 @@ TEST(Subdivision, BadCagesAreRefused) {
   expectRefused(large, "level", "at most 4194304");
 }
 
-// Holes, random creases, corners, seams and wrong indices: refined, with stencils that say the same, or
-// refused.
+// Holes, random creases, corners, seams and wrong indices: the cage is refined, with stencils that give the
+// same, or refused.
 TEST(Subdivision, RandomCagesAreRefinedOrRefused) {
   uint32_t draw = 0;
   const auto below = [&](uint32_t n) { return hashCombine(17, draw++) % n; };

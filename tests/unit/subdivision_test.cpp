@@ -1,4 +1,4 @@
-// Limit points and normals against closed forms, topology, seams, stencils.
+// Tests limit points and normals against closed forms, and topology, seams and stencils.
 #include "framework/scene/subdivision/subdivision.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ void expectSmoothAt(const Primitive& p, glm::vec3 position, glm::vec3 normal) {
   EXPECT_LT(glm::distance(normals[0], glm::normalize(normal)), 1e-5f);
 }
 
-// Vertices - edges + faces, with vertices in one place taken for one.
+// Vertices - edges + faces, with vertices at the same position counted as one.
 int eulerCharacteristic(const std::vector<Primitive>& primitives) {
   std::map<std::tuple<long, long, long>, int> known;
   std::set<std::pair<int, int>> edges;
@@ -79,13 +79,12 @@ void expectFacing(const std::vector<Primitive>& primitives, float least) {
     }
 }
 
-// ---- closed forms ----
+// ---- closed forms -----------------------------------------------------------------------------------------
 
-// A vertex of n quads with neighbours e and diagonals d tends to (n^2 v + 4 sum e + sum d) / (n (n + 5))
-// (Halstead, Kass, DeRose 1993, section 3). The cube's corner: n = 3, (9 + 4 - 1) / 24 = 1/2. One refinement
-// by hand gives the centre of a face (0, 0, 1), of an edge (3/4, 0, 3/4) and the corner 5/9; their limits by
-// the same mask with n = 4 are (16 + 4 * 3 + 4 * 5/9) / 36 = 68/81 and (16 * 3/4 + 4 (1 + 10/9) + 3/2) / 36 =
-// 395/648.
+// A vertex of n quads with neighbours e and diagonals d tends to (n^2 v + 4 sum e + sum d) / (n (n + 5)) (Halstead,
+// Kass, DeRose 1993, section 3). The cube's corner: n = 3, (9 + 4 - 1) / 24 = 1/2. One refinement by hand gives the
+// centre of a face (0, 0, 1), of an edge (3/4, 0, 3/4) and the corner 5/9; their limits by the same mask with n = 4
+// are (16 + 4 * 3 + 4 * 5/9) / 36 = 68/81 and (16 * 3/4 + 4 (1 + 10/9) + 3/2) / 36 = 395/648.
 TEST(Subdivision, LimitPointsOfACube) {
   for (uint32_t level = 1; level <= 4; ++level) {
     const Primitive p = refineOne(cubeCage(level));
@@ -116,7 +115,7 @@ TEST(Subdivision, CreaseOfACubeIsASplineWithANormalASide) {
   EXPECT_EQ(eulerCharacteristic({p}), 2);
 }
 
-// All edges sharp: the cube itself, with the normals of its faces.
+// With all edges sharp, the result is the cube itself with the normals of its faces.
 TEST(Subdivision, SharpCubeStaysACube) {
   SubdivisionCage cage = cubeCage(3);
   for (uint32_t a = 0; a < 8; ++a)
@@ -233,7 +232,7 @@ TEST(Subdivision, FlatFansFaceUp) {
       }
 }
 
-// A cone's tip stays where it is and looks along the axis.
+// A cone's tip stays where it is and its normal points along the axis.
 TEST(Subdivision, SharpVertexIsKept) {
   for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Loop}) {
     SubdivisionCage cage = scheme == Scheme::Loop ? tetrahedronCage(3) : cubeCage(3);
@@ -243,7 +242,7 @@ TEST(Subdivision, SharpVertexIsKept) {
   }
 }
 
-// ---- topology ----
+// ---- topology ---------------------------------------------------------------------------------------------
 
 TEST(Subdivision, TriangleCountsAndEulerCharacteristic) {
   for (uint32_t level = 1; level <= 4; ++level) {
@@ -303,7 +302,7 @@ TEST(Subdivision, MaterialsGoDownWithTheFaces) {
       EXPECT_LT(glm::distance(other, normalsAt(primitives[0], v)[0]), 1e-5f);
 }
 
-// A texture island a face: seams split vertices, not the surface; island corners keep their coordinates.
+// One texture island per face: seams split vertices, not the surface, and island corners keep their coordinates.
 TEST(Subdivision, SeamsOfTextureCoordinates) {
   SubdivisionCage cage = cubeCage(2);
   for (uint32_t f = 0; f < 6; ++f)
@@ -327,7 +326,7 @@ TEST(Subdivision, SeamsOfTextureCoordinates) {
   }
 }
 
-// ---- stencils ----
+// ---- stencils ---------------------------------------------------------------------------------------------
 
 void expectStencilsRefine(const SubdivisionCage& cage, const SubdivisionCage& deformed) {
   const Stencils stencils(cage);
@@ -369,7 +368,7 @@ TEST(Subdivision, StencilsAreAffine) {
   }
 }
 
-// ---- the coarser level for voxels and VPL maps ----
+// ---- the coarser level for voxels and VPL maps ------------------------------------------------------------
 
 // Its triangles are those of the cage refined to that level, on vertices of the finer one.
 void expectCoarse(SubdivisionCage cage, uint32_t light) {
@@ -397,8 +396,8 @@ TEST(Subdivision, CoarserTrianglesForLightAreThoseOfTheirLevel) {
   for (uint32_t level = 2; level <= 4; ++level)
     for (uint32_t light = 1; light < level; ++light) {
       SCOPED_TRACE(std::to_string(level) + " " + std::to_string(light));
-      // Where a crease ends inside the surface, OpenSubdiv's limit point depends a little on the level:
-      // without.
+      // Creases that end inside the surface are left out, because OpenSubdiv's limit point there depends a little
+      // on the level.
       SubdivisionCage everything = everythingCage(level);
       everything.creases.resize(6);
       expectCoarse(everything, light);
@@ -411,7 +410,7 @@ TEST(Subdivision, CoarserTrianglesForLightAreThoseOfTheirLevel) {
     }
 }
 
-// Level 0: the cage's own faces, as fans between the limit points of its vertices.
+// Level 0 consists of the cage's own faces, as fans between the limit points of its vertices.
 TEST(Subdivision, CoarsestTrianglesForLightAreTheFacesOfTheCage) {
   for (uint32_t level = 1; level <= 3; ++level) {
     SubdivisionCage cage = cubeCage(level);

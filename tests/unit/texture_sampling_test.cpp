@@ -1,4 +1,4 @@
-// sampleTexture against values worked out by hand.
+// Compares sampleTexture with values worked out by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -53,7 +53,7 @@ VoxelSide makeSide(glm::vec3 position, glm::vec3 normal) {
   return s;
 }
 
-// Cells filled at random, positions anywhere in their cell, some sides empty.
+// Cells filled at random, with positions anywhere in their cell and some sides empty.
 Volume randomVolume(int resolution, float filled, Stream& random) {
   Volume v(resolution);
   for (int i = 0; i < resolution * resolution * resolution; ++i) {
@@ -71,7 +71,7 @@ Volume randomVolume(int resolution, float filled, Stream& random) {
   return v;
 }
 
-// Every cell against the ray, in double precision.
+// Tests every cell against the ray, in double precision.
 struct BruteForce {
   uint32_t side = kNoSide;
   double cellIn = 0, cellOut = 0;      // where the ray is in its cell, m
@@ -84,7 +84,7 @@ struct Side {
   bool met = false;
 };
 
-// The side of a voxel that a ray which leaves it at `out` meets, or else passes.
+// The side of a voxel that a ray which leaves it at `out` meets or passes.
 Side sideOf(const Volume& v, uint32_t voxel, glm::dvec3 origin, glm::dvec3 direction, glm::dvec3 normal,
             double out, bool& unclear) {
   const double cell = double(v.grid.cell);
@@ -140,7 +140,7 @@ BruteForce bruteForce(const Volume& v, glm::dvec3 origin, glm::dvec3 direction, 
       best.alsoPossible.push_back(side.side);
       continue;
     }
-    // The first that is met; when there is none, the last that is passed.
+    // The first side that is met or, if there is none, the last that is passed.
     if (best.side != kNoSide && (met != side.met ? met : met ? in >= best.cellIn : in <= best.cellIn))
       continue;
     met = side.met;
@@ -215,8 +215,8 @@ TEST(VoxelTrace, DirectionsWithZeroComponents) {
   EXPECT_LT(counts.touched, 10);
 }
 
-// Origins on the walls between cells, on the edges, in the corners: the walk ends, and hits what lies
-// straight ahead.
+// From origins on the walls between cells, on the edges and in the corners, the walk ends and hits what
+// lies straight ahead.
 TEST(VoxelTrace, OriginsOnWalls) {
   Volume v(8, {glm::vec3(-4), 1, 8});
   for (int y = 0; y < 8; ++y)
@@ -256,7 +256,8 @@ TEST(VoxelTrace, SkipsTheOwnSurfaceAndBacks) {
   EXPECT_FLOAT_EQ(below.distance, 1.8f);
 }
 
-// A voxel with both sides towards the ray (a sharp edge): the one that faces it more; of equals, side 0.
+// Of a voxel with both sides towards the ray (a sharp edge), the side that faces it more is hit; if they are
+// equal, side 0.
 TEST(VoxelTrace, TheSideThatFacesMoreIsHit) {
   Volume v(4, {glm::vec3(0), 1, 4});
   const glm::vec3 n0 = glm::normalize(glm::vec3(-1, 2, 0)), n1 = glm::normalize(glm::vec3(-2, 1, 0));
@@ -268,8 +269,7 @@ TEST(VoxelTrace, TheSideThatFacesMoreIsHit) {
   EXPECT_EQ(traceVoxels(v.voxels(), {1.5f, 3.5f, 2.5f}, both, both).side, 0u);
 }
 
-// Along a floor just under its voxels' tops the plane is met where it is, not where the first voxel is
-// entered.
+// Along a floor just under its voxels' tops, the plane is hit where it is, not where the first voxel is entered.
 TEST(VoxelTrace, GrazingRaysReachThePlane) {
   Volume v(16, {glm::vec3(0), 1, 16});
   for (int x = 0; x < 16; ++x)
@@ -281,7 +281,7 @@ TEST(VoxelTrace, GrazingRaysReachThePlane) {
       << "at x = 13.5 it is 0.1 cells above the plane or less";
 }
 
-// Too small a piece of surface to be met: hit only where nothing is behind it.
+// A piece of surface too small to be met is hit only where nothing is behind it.
 TEST(VoxelTrace, SmallSidesArePassedUnlessNothingFollows) {
   Volume v(8, {glm::vec3(0), 1, 8});
   const glm::vec3 back(-1, 0, 0), along(1, 0, 0), origin(0.5f, 3.9f, 3.9f);

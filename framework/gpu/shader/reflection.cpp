@@ -111,7 +111,7 @@ class Reflector {
 
   Reflection run() {
     readStage();
-    // Only what the entry point reaches: shared includes declare more than any one shader uses.
+    // Only what the entry point reaches, because shared includes declare more than any one shader uses.
     const spirv_cross::ShaderResources r =
         compiler_.get_shader_resources(compiler_.get_active_interface_variables());
     for (const auto& b : r.uniform_buffers) addBlock(b, BindingKind::UniformBuffer);

@@ -19,7 +19,7 @@
 namespace fovea::gpu {
 namespace {
 
-constexpr const char* kCacheVersion = "1";  // raise when the options below change
+constexpr const char* kCacheVersion = "1";  // to be raised when the options below change
 constexpr size_t kMaxIncludeDepth = 64;
 
 constexpr const char* kPreamble =
@@ -50,7 +50,7 @@ std::string preamble(const std::string& shader, const Defines& defines) {
   return text;
 }
 
-// Serves the files that were read, hence hashed, before; nothing else can get into the compilation.
+// Serves the files that were read and hashed before, so that nothing else can enter the compilation.
 class Includer : public glslang::TShader::Includer {
  public:
   explicit Includer(const ShaderSource& source) : source_(source) {}
@@ -76,8 +76,7 @@ class Includer : public glslang::TShader::Includer {
   std::set<const ShaderSource::File*> seen_;
 };
 
-// Leaves written bindings alone and numbers the others from kAutomaticBinding on, so that they can be told
-// apart.
+// Leaves explicit bindings alone and numbers the others from kAutomaticBinding on, so that they can be distinguished.
 class AutomaticBindings : public glslang::TIoMapResolver {
  public:
   bool validateBinding(EShLanguage, glslang::TVarEntryInfo&) override { return true; }
@@ -120,13 +119,13 @@ class AutomaticBindings : public glslang::TIoMapResolver {
   static std::string label(const glslang::TVarEntryInfo& ent) {
     const glslang::TString& name = ent.symbol->getName();
     const bool anonymous = name.compare(0, 5, "anon@") == 0;
-    return "`" + std::string((anonymous ? ent.symbol->getType().getTypeName() : name).c_str()) + "`";
+    return "`" + std::string(std::string_view(anonymous ? ent.symbol->getType().getTypeName() : name)) + "`";
   }
   uint32_t next_ = 0;
   std::vector<std::string> problems_;
 };
 
-// "ERROR: name:12: message" -> located. Names are matched whole, since they may hold colons.
+// Parses "ERROR: name:12: message". Names are matched as a whole, since they may contain colons.
 Diagnostic parseMessage(std::string_view line, const ShaderSource& source) {
   Diagnostic d;
   if (line.starts_with("ERROR: ")) line.remove_prefix(7);
@@ -160,7 +159,7 @@ Diagnostic parseMessage(std::string_view line, const ShaderSource& source) {
     if (line.empty() || line.find("compilation errors.  No code generated") != std::string_view::npos ||
         line.find("compilation terminated") != std::string_view::npos)
       continue;
-    // "Possible extensions include:" and their names come on lines of their own.
+    // "Possible extensions include:" and the names of the extensions are on lines of their own.
     if (!list.empty() && !line.starts_with("ERROR: ") && !line.starts_with("WARNING: "))
       list.back().message += " " + std::string(line);
     else
@@ -171,7 +170,7 @@ Diagnostic parseMessage(std::string_view line, const ShaderSource& source) {
   throw Error(ExitCode::BadInput, std::move(list));
 }
 
-// SPIR-V with automatic bindings still unnumbered: the form that the disk cache keeps.
+// SPIR-V in which automatic bindings have no final numbers, the form that the disk cache keeps.
 std::vector<uint32_t> compileGlsl(const ShaderSource& source, EShLanguage stage,
                                   const std::string& preambleText) {
   static const struct Process {
@@ -190,8 +189,8 @@ std::vector<uint32_t> compileGlsl(const ShaderSource& source, EShLanguage stage,
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
   shader.setAutoMapBindings(true);
-  // Cascading: all mistakes at once. Without it the compiler stops at the first and stumbles over its own
-  // stop.
+  // Cascading reports all mistakes at once. Without it the compiler stops at the first one and then reports follow-up
+  // errors of that stop.
   const auto messages =
       EShMessages(EShMsgDefault | EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
   Includer includer(source);
@@ -215,7 +214,7 @@ std::vector<uint32_t> compileGlsl(const ShaderSource& source, EShLanguage stage,
   return spirv;
 }
 
-// Gives automatic bindings the lowest free numbers of set 0, those in use first.
+// Gives automatic bindings the lowest free numbers of set 0; those in use come first.
 void numberBindings(std::vector<uint32_t>& spirv, Reflection& reflection) {
   std::vector<BindingDecoration> decorations = bindingDecorations(spirv);
   std::set<uint32_t> taken;

@@ -1,4 +1,4 @@
-// GLSL to SPIR-V at run time, with includes, a disk cache keyed by content, and reflection.
+// Compiles GLSL to SPIR-V at run time, with includes, a disk cache keyed by content, and reflection.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -27,11 +27,11 @@ enum class BindingKind {
 };
 
 struct ReflectedBinding {
-  std::string name;  // instance name, or block name where the block has no instance name
+  std::string name;  // instance name, or block name if the block has no instance name
   uint32_t set = 0, binding = 0, count = 1;
   BindingKind kind{};
   bool readOnly = false, writeOnly = false;  // storage buffers and images
-  uint64_t blockBytes = 0;                   // uniform and storage blocks: fixed part
+  uint64_t blockBytes = 0;                   // uniform and storage blocks: size of the fixed part
   std::optional<VkFormat> imageFormat;       // storage images
   bool integerTexels = false;                // images and texel buffers: isampler2D, usamplerBuffer
   bool automatic = false;                    // no layout(binding): the compiler chose the number
@@ -41,45 +41,45 @@ struct ReflectedConstant {  // a member of the push constant block
   std::string name;
   uint32_t offset = 0, bytes = 0;
   enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
-  uint32_t components = 1;  // of a matrix or a tightly packed array: all of them
+  uint32_t components = 1;  // all elements of a matrix or a tightly packed array
 };
 
 struct Reflection {
   VkShaderStageFlagBits stage{};
-  std::vector<ReflectedBinding> bindings;  // what the entry point really uses; sorted by set, then binding
+  std::vector<ReflectedBinding> bindings;  // what the entry point uses; sorted by set, then binding
   std::vector<ReflectedConstant> constants;
   uint32_t pushConstantBytes = 0;
   uint32_t localSize[3] = {1, 1, 1};
 };
 
 struct CompiledShader {
-  std::string file;  // as the user knows it, e.g. "shaders/tonemap/tonemap.comp"
+  std::string file;  // as the user knows it, e.g. "shaders/blur/blur.comp"
   std::vector<uint32_t> spirv;
   Reflection reflection;
   uint64_t hash = 0;  // of the source with all includes, the defines and the compiler version
 };
 
-// Stage from the file name: .comp .vert .frag . Without #version a shader is GLSL 4.60; #include, #pragma
-// once and texelFetch on plain textures (GL_EXT_samplerless_texture_functions) are always on. Resources of
-// set 0 need no layout(binding): `uniform texture2D radiance;` is found by its name, and pipelines bring the
-// numbers of their stages into line. Resources of set 1 (shaders/common/scene.glsl) carry theirs. Safe to
-// call from several threads.
+// The stage follows from the file name: .comp, .vert or .frag. Without #version, a shader is GLSL 4.60. #include,
+// #pragma once and texelFetch on plain textures (GL_EXT_samplerless_texture_functions) are always available.
+// Resources of set 0 need no layout(binding): `uniform texture2D radiance;` is found by its name, and pipelines make
+// the numbers of their stages consistent. Resources of set 1 (shaders/common/scene.glsl) have explicit numbers. Safe
+// to call from several threads.
 class ShaderCompiler {
  public:
-  // cacheDirectory empty: no disk cache.
+  // Without a cacheDirectory there is no disk cache.
   explicit ShaderCompiler(std::filesystem::path cacheDirectory);
   ~ShaderCompiler();
-  // Folders searched for shader files and #include, first match wins. The including file's own folder comes
-  // first.
+  // Adds a folder that is searched for shader files and #include; the first match wins. The including file's own
+  // folder is searched before these.
   void addSearchPath(std::filesystem::path path);
-  // name is relative to a search path ("tonemap/tonemap.comp"). Results are kept; a second call is a look-up.
+  // `name` is relative to a search path ("blur/blur.comp"). Results are kept, so that a second call is a look-up.
   // Throws Error(BadInput) with file and line of every compiler message, also inside included files.
   std::shared_ptr<const CompiledShader> compile(const std::string& name, const Defines& defines = {});
-  // Source text instead of a file (tests).
+  // Compiles source text instead of a file (tests).
   std::shared_ptr<const CompiledShader> compileSource(const std::string& name, const std::string& source,
                                                       const Defines& defines = {});
 
-  // Where results came from so far.
+  // The number of results so far, by origin.
   struct Statistics {
     uint32_t compiled = 0, fromDisk = 0, fromMemory = 0;
   };
@@ -90,7 +90,7 @@ class ShaderCompiler {
   std::unique_ptr<Impl> impl_;
 };
 
-// Throws Error(BadInput) on something that is not SPIR-V.
+// Throws Error(BadInput) if `spirv` is not SPIR-V.
 Reflection reflect(const std::vector<uint32_t>& spirv);
 
 }  // namespace fovea::gpu

@@ -23,7 +23,7 @@ bool isFile(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
-// Short when it lies below the current folder, so that messages stay readable.
+// Relative to the current folder if the file lies below it, so that messages stay readable.
 std::string displayName(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path relative = std::filesystem::proximate(path, error);
@@ -36,7 +36,7 @@ std::string_view skipSpaces(std::string_view s) {
   return first == std::string_view::npos ? std::string_view{} : s.substr(first);
 }
 
-// `# include "x"` -> x. Commented or dead directives count too: that only makes the hash stricter.
+// `# include "x"` -> x. Directives in comments or dead code count as well, which only makes the hash stricter.
 std::optional<std::string> includedName(std::string_view line) {
   line = skipSpaces(line);
   if (line.empty() || line[0] != '#') return std::nullopt;
@@ -95,7 +95,7 @@ size_t ShaderSource::load(const std::filesystem::path& path) {
 }
 
 void ShaderSource::scan(size_t file, const std::vector<std::filesystem::path>& searchPaths) {
-  const std::string text = files_[file].text;  // a copy: load() below may move the files
+  const std::string text = files_[file].text;  // a copy, because load() below may move the files
   const std::string name = files_[file].name;
   const std::filesystem::path own = files_[file].directory;
   for (size_t begin = 0; begin < text.size();) {
@@ -123,8 +123,8 @@ const ShaderSource::File* ShaderSource::find(const std::string& includer, const 
 std::string ShaderSource::serialize() const {
   std::string out;
   for (const File& file : files_) appendSized(out, file.text);
-  // By index, not by path: a checkout elsewhere finds the same entries. The order of files_ is that of the
-  // directives.
+  // Files are identified by index, not by path, so that another checkout finds the same entries. The order of files_
+  // is that of the directives.
   for (size_t i = 0; i < files_.size(); ++i) {
     for (const auto& [key, target] : includes_) {
       if (key.first != files_[i].name) continue;

@@ -1,4 +1,4 @@
-// A shader with everything it includes, read once: what is hashed is exactly what is compiled.
+// A shader with everything it includes, read once, so that what is hashed is exactly what is compiled.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,13 @@ class ShaderSource {
  public:
   struct File {
     std::string name;                 // for messages
-    std::filesystem::path directory;  // where its own #includes are looked for first; empty for plain text
+    std::filesystem::path directory;  // where its #includes are searched first; empty for plain text
     std::string text;
     bool once = false;  // has #pragma once
   };
 
-  // Both throw Error(BadInput) when a file cannot be read. A missing #include is left to the compiler, which
-  // knows whether it is in live code and on which line.
+  // Both throw Error(BadInput) if a file cannot be read. A missing #include is left to the compiler, which knows
+  // whether it is in live code and on which line.
   static ShaderSource fromFile(const std::string& name,
                                const std::vector<std::filesystem::path>& searchPaths);
   static ShaderSource fromText(const std::string& name, std::string text,
@@ -28,9 +28,9 @@ class ShaderSource {
 
   const File& main() const { return files_.front(); }
   const std::vector<File>& files() const { return files_; }
-  // The file that `header` means inside `includer`; null when it is missing.
+  // The file that `header` refers to in `includer`; null if it is missing.
   const File* find(const std::string& includer, const std::string& header) const;
-  // Everything above as one string: texts, and which #include leads to which text.
+  // All of the above as one string: the texts, and which #include leads to which text.
   std::string serialize() const;
 
  private:

@@ -12,13 +12,13 @@ struct Range {
   uint64_t begin, end;
 };
 
-// What is taken in one heap, level by level, as sorted ranges that do not touch each other. Resources that
-// are placed side by side melt into one range, so that a level with hundreds of them still has few ranges.
+// The occupied ranges of one heap per level, sorted and not touching each other. Adjacent resources merge into one
+// range, so that a level with hundreds of them still has few ranges.
 class Occupancy {
  public:
   Occupancy(detail::Scratch& scratch, uint32_t levels) : levels_(levels, scratch), merged_(scratch) {}
 
-  // Tightest gap for `bytes` that is free in all levels of the interval; aligned.
+  // Tightest aligned gap of `bytes` that is free in all levels of the interval.
   uint64_t findGap(const Interval& interval, uint64_t bytes, uint64_t alignment) {
     const std::span<const Range> taken = takenDuring(interval);
     uint64_t end = 0, best = 0, bestRoom = ~0ull;
@@ -49,7 +49,7 @@ class Occupancy {
   static uint64_t alignUp(uint64_t v, uint64_t alignment) { return (v + alignment - 1) & ~(alignment - 1); }
 
  private:
-  // A range that begins before the last one does.
+  // Inserts a range that begins before the last one does.
   static void insert(SmallVector<Range, 2>& taken, Range range) {
     Range* const next = std::lower_bound(taken.begin(), taken.end(), range,
                                          [](const Range& a, const Range& b) { return a.begin < b.begin; });
@@ -67,7 +67,7 @@ class Occupancy {
     }
   }
 
-  // What is taken in some level of the interval, sorted.
+  // What is occupied in any level of the interval, sorted.
   std::span<const Range> takenDuring(const Interval& interval) {
     uint32_t filled = 0, latestFilled = interval.first;
     for (uint32_t l = interval.first; l <= interval.last; ++l) {
@@ -75,8 +75,7 @@ class Occupancy {
       latestFilled = l;
       ++filled;
     }
-    if (filled <= 1)
-      return levels_[latestFilled];  // when images of one size come in the order of their lives
+    if (filled <= 1) return levels_[latestFilled];  // for images of one size in the order of their lifetimes
     merged_.clear();
     uint64_t latest = 0;
     bool sorted = true;
@@ -117,7 +116,7 @@ AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t gran
     if (x.interval.first != y.interval.first) return x.interval.first < y.interval.first;
     return x.resource < y.resource;
   };
-  // Images of one size, as most are, come in this order already.
+  // Images of one size, which most are, already come in this order.
   if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
   uint32_t h = 0;
   for (uint32_t i = 0; i < requests.size(); ++i) {  // heaps in the order of appearance

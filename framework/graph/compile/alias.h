@@ -1,4 +1,4 @@
-// Alias: transient resources whose lifetimes do not meet share memory.
+// Aliasing: transient resources whose lifetimes do not overlap share memory.
 #pragma once
 
 #include <span>
@@ -21,10 +21,10 @@ struct AliasResult {
   uint64_t bytesAliased = 0, bytesUnaliased = 0;
 };
 
-// Largest first, each into the tightest gap that is free during its whole life, else on top. Deterministic:
-// ties go to the earlier life, then the smaller resource number; equal gaps to the lower offset. Offsets and
-// sizes are multiples of `granularity` (bufferImageGranularity), so that images and buffers may be
-// neighbours.
+// Places the resources from the largest to the smallest, each in the tightest gap that is free during its whole
+// lifetime, otherwise on top. Deterministic: ties are broken by the earlier lifetime, then by the lower resource number; among equal gaps
+// the lower offset wins. Offsets and sizes are multiples of `granularity` (bufferImageGranularity), so that images
+// and buffers may be neighbours.
 AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t granularity, bool alias);
 
 }  // namespace fovea::graph

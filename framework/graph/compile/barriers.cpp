@@ -14,7 +14,7 @@ constexpr VkAccessFlags2 kWrites = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
                                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
                                    VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
 
-// One pass touching one copy of one resource, all its ports taken together.
+// One pass accessing one copy of one resource through all its ports together.
 struct Touch {
   uint32_t resource;
   uint32_t slot;  // of the version read or made
@@ -22,13 +22,13 @@ struct Touch {
   bool reads, writes, previous;
 };
 
-// What is known about one copy of a resource at a point of the frame.
+// What is known about one copy of a resource at some point of the frame.
 struct State {
   VkPipelineStageFlags2 pendingStage = 0;  // a write that nothing has waited for yet
   VkAccessFlags2 pendingAccess = 0;
   VkPipelineStageFlags2 writeStage = 0;  // the last write, waited for or not
   VkAccessFlags2 writeAccess = 0;
-  VkPipelineStageFlags2 readStage = 0;  // readers since, and layout changes made for them
+  VkPipelineStageFlags2 readStage = 0;  // readers since then, and layout changes made for them
   VkPipelineStageFlags2 seenStage = 0;  // where the contents are visible
   VkAccessFlags2 seenAccess = 0;
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -38,10 +38,10 @@ struct State {
 struct ReadGroup {
   VkPipelineStageFlags2 stage = 0;
   VkAccessFlags2 access = 0;
-  uint32_t served = 0;  // the last round in which a barrier has been placed for them
+  uint32_t served = 0;  // the last round in which a barrier was placed for them
 };
 
-// Piece of a heap that no placement splits, and how its last occupant left it.
+// A piece of a heap that no placement splits, and the state in which its last occupant left it.
 struct Segment {
   VkPipelineStageFlags2 stage = 0;
   VkAccessFlags2 access = 0;
@@ -63,7 +63,7 @@ class Planner {
     markLasting();
     current_ = scratch_.array<State>(graph_.resources.size());
     if (history_) previous_ = scratch_.array<State>(graph_.resources.size());
-    // Copies that change places need two rounds until both carry the state of a whole frame.
+    // Copies that swap need two rounds until both carry the state of a whole frame.
     for (int warmUp = history_ ? 3 : 1; warmUp > 0; --warmUp) settle();
     plan_.startLayout.assign(graph_.resources.size(), {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED});
     for (const uint32_t r : kept_) {
@@ -84,7 +84,7 @@ class Planner {
   void settle();
   void record();
   void endFrame();
-  // Without a batch they only follow states.
+  // Without a batch, these only follow states.
   void readOutputs(BarrierBatch* batch);
   void touch(const Touch& t, BarrierBatch* batch);
   void read(const Touch& t, State& state, const ReadGroup& group, BarrierBatch* batch);
@@ -103,7 +103,7 @@ class Planner {
     batch.srcAccess |= srcAccess;
     batch.dstStage |= dstStage;
     batch.dstAccess |=
-        srcAccess ? dstAccess : 0;  // without a write to wait for there is nothing to make visible
+        srcAccess ? dstAccess : 0;  // without a write to wait for, there is nothing to make visible
   }
 
   const BoundGraph& graph_;
@@ -117,12 +117,12 @@ class Planner {
   std::span<uint32_t> touchFirst_;  // per level
   std::span<ReadGroup> groups_;     // by slot
   std::span<State> current_, previous_;
-  std::span<SegmentRange> segmentsOf_;  // per resource; none where nothing is shared
+  std::span<SegmentRange> segmentsOf_;  // per resource; empty where nothing is shared
   std::span<Segment> segments_;
-  std::span<uint32_t> latest_;                      // per segment: who lies there at the end of a frame
+  std::span<uint32_t> latest_;                      // per segment: its occupant at the end of a frame
   detail::ScratchVector<uint32_t> kept_{scratch_};  // resources that are not transient
   std::span<uint8_t> lasting_;                      // per resource
-  bool history_ = false;                            // some resource has two copies
+  bool history_ = false;                            // a resource has two copies
 };
 
 void Planner::collectTouches() {
@@ -135,10 +135,10 @@ void Planner::collectTouches() {
     uint32_t key = kNone;
     AccessScope scope;
   };
-  Known knownScopes[2];  // the latest reader's and the latest writer's: most passes are alike
+  Known knownScopes[2];  // of the latest reader and the latest writer, since most passes are alike
   touchFirst_ = scratch_.array<uint32_t>(levels_ + 1);
   touches_.reserve(schedule_.order.size() * 2);
-  uint32_t count = 0;  // of touches
+  uint32_t count = 0;  // number of touches
   for (uint32_t l = 0; l < levels_; ++l) {
     touchFirst_[l] = count;
     for (uint32_t i = schedule_.levelFirst[l]; i < schedule_.levelFirst[l + 1]; ++i) {
@@ -157,8 +157,8 @@ void Planner::collectTouches() {
         if (s.pass != p) {
           s.pass = p;
           s.touch = count++;
-          touches_.emplace_back(a.resource, a.slot, AccessScope{scope.stage, scope.access, a.layout}, a.reads,
-                                a.writes, a.previous);
+          touches_.push_back({a.resource, a.slot, AccessScope{scope.stage, scope.access, a.layout}, a.reads,
+                              a.writes, a.previous});
           continue;
         }
         Touch& t = touches_[s.touch];
@@ -173,14 +173,14 @@ void Planner::collectTouches() {
 }
 
 void Planner::makeSegments() {
-  // Few boundaries are distinct where memory is shared, and neighbours meet in one.
+  // Few boundaries are distinct where memory is shared, and neighbouring placements share one.
   detail::ScratchVector<uint64_t> bounds(scratch_);  // heap and offset, ascending
-  // Placements often lie one behind the other, in pieces that nothing splits: where to look first.
+  // Placements often follow each other in pieces that nothing splits; `guess` is where to look first.
   const auto find = [&](uint64_t bound, uint32_t guess) {
     if (guess < bounds.size() && bounds[guess] == bound) return guess;
     return static_cast<uint32_t>(std::lower_bound(bounds.begin(), bounds.end(), bound) - bounds.begin());
   };
-  bool moved = false;  // some bound, by one in front of it
+  bool moved = false;  // a bound was shifted by one inserted before it
   const auto add = [&](uint64_t bound, uint32_t guess) {
     const uint32_t at = find(bound, guess);
     if (at == bounds.size()) {
@@ -205,8 +205,8 @@ void Planner::makeSegments() {
   segments_ = scratch_.array<Segment>(bounds.size());
 }
 
-// How a frame leaves a resource matters to the next one when its contents stay, or when it is the last to
-// lie in some piece of memory.
+// The state in which a frame leaves a resource matters to the next frame if the contents stay or if the resource is
+// the last occupant of some piece of memory.
 void Planner::markLasting() {
   lasting_ = scratch_.array<uint8_t>(graph_.resources.size());
   for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
@@ -235,14 +235,14 @@ void Planner::occupy(uint32_t resource, VkPipelineStageFlags2& stage, VkAccessFl
   }
 }
 
-// Whoever comes next waits for this occupant, which itself waited for the one before.
+// The next occupant waits for this one, which itself waited for the one before.
 Segment Planner::leftBy(uint32_t resource) const {
   const State& state = current_[resource];
   return {state.pendingStage | state.readStage, state.pendingAccess};
 }
 
-// A frame without writing barriers: only states that last beyond it are followed. What a resource finds in
-// its memory matters to barriers alone, so all may leave at the end.
+// Follows a frame without writing barriers, and only states that last beyond it. What a resource finds in its memory
+// matters to barriers alone, so all resources may leave at the end.
 void Planner::settle() {
   ++round_;
   for (const Touch& t : touches_)
@@ -269,7 +269,7 @@ void Planner::record() {
   endFrame();
 }
 
-// History's copies change places.
+// The copies of history resources swap.
 void Planner::endFrame() {
   for (size_t r = 0; r < previous_.size(); ++r)
     if (graph_.resources[r].history) std::swap(current_[r], previous_[r]);
@@ -302,15 +302,15 @@ void Planner::read(const Touch& t, State& state, const ReadGroup& group, Barrier
     if (batch)
       batch->images.emplace_back(t.resource, t.previous, state.writeStage | state.readStage, group.stage,
                                  state.writeAccess, group.access, state.layout, t.scope.layout);
-    // The change of layout is itself a write, which only this barrier's second scope has waited for; who
-    // comes later waits for that scope and for the write before it.
+    // The layout change is itself a write, for which only the second scope of this barrier has waited. Later accesses
+    // wait for that scope and for the write before it.
     state.writeStage |= group.stage;
     state.seenStage = group.stage;
     state.seenAccess = group.access;
     state.readStage = 0;
     state.layout = t.scope.layout;
   } else if (group.stage & ~state.seenStage || group.access & ~state.seenAccess) {
-    // Readers of another group may have waited for the write; these have not.
+    // Readers of another group may have waited for the write, but these have not.
     if (batch && state.writeStage)
       global(*batch, state.writeStage, state.writeAccess, group.stage, group.access);
     state.seenStage |= group.stage;
@@ -338,8 +338,7 @@ void Planner::write(const Touch& t, State& state, BarrierBatch* batch) {
     }
   }
   const bool change = resource.desc.kind == ResourceKind::Image && state.layout != t.scope.layout;
-  // An image's barrier speaks of that image only, so writes of other occupants of its memory need the global
-  // one.
+  // An image barrier covers that image only, so writes of other occupants of its memory need the global barrier.
   if (batch && source && (!change || (first && sourceAccess)))
     global(*batch, source, sourceAccess, t.scope.stage, t.scope.access);
   if (batch && change)

@@ -1,4 +1,4 @@
-// Bind: from names to a checked graph of passes and resources.
+// Bind: turns names into a checked graph of passes and resources.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,9 +76,9 @@ void Binder::openViews() {
 void Binder::declare() {
   const size_t count = description_.passes.size();
   graph_.passes.reserve(count);
-  values_->reserve(description_.parameters.size() + count);  // a guess: one left to its default each
+  values_->reserve(description_.parameters.size() + count);  // estimate: one default per pass
   firstPort_ = scratch_.array<uint32_t>(count + 1);
-  ports_.reserve(description_.wires.size() + 2 * count);  // a guess: all inputs wired, two outputs each
+  ports_.reserve(description_.wires.size() + 2 * count);  // estimate: all inputs wired, two outputs each
   passBySymbol_ = scratch_.array(description_.symbols.size(), kNone);
   const auto types = scratch_.array<const PassDeclaration*>(description_.symbols.size());
   for (uint32_t p = 0; p < count; ++p) {
@@ -149,7 +149,7 @@ void Binder::bindView(BoundPass& pass, const PassDescription& from) {
         fmt::format("`{}` passes do not look through a camera", pass.declaration->type), "remove `view`");
 }
 
-// False when the value is of another type or out of range.
+// False if the value is of another type or out of range.
 inline bool Binder::assign(const ParameterSpec& spec, const ParameterDescription& given, Value& out) const {
   using Type = ParameterSpec::Type;
   using Json = json::Value::Type;
@@ -193,7 +193,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   pass.parameters = Parameters(&specs, values_.get(), values_->size());
   const ParameterDescription* given = description_.parameters.data() + from.firstParameter;
   const ParameterDescription* const end = given + from.parameterCount;
-  for (const ParameterSpec& spec : specs) {  // mostly given in the order of the declaration
+  for (const ParameterSpec& spec : specs) {  // mostly given in the order of declaration
     if (given != end && sameText(spec.name, given->name))
       readParameter(spec, *given++, from, values_->emplace_back());
     else
@@ -202,7 +202,7 @@ void Binder::bindParameters(BoundPass& pass, const PassDescription& from) {
   for (; given != end; ++given) bindParameter(specs, *given, from, values_->end() - specs.size());
 }
 
-// One that is given out of order, or unknown.
+// Binds a parameter that is given out of order or unknown.
 void Binder::bindParameter(const std::vector<ParameterSpec>& specs, const ParameterDescription& given,
                            const PassDescription& from, std::vector<Value>::iterator values) {
   const std::string_view name = given.name;
@@ -221,7 +221,7 @@ void Binder::bindParameter(const std::vector<ParameterSpec>& specs, const Parame
 
 namespace {
 
-// What the user gave, for a message.
+// Describes for a message what the user gave.
 std::string describeGiven(const ParameterDescription& given, const SymbolTable& symbols) {
   switch (given.type) {
     case json::Value::Type::Bool:
@@ -235,7 +235,7 @@ std::string describeGiven(const ParameterDescription& given, const SymbolTable& 
   }
 }
 
-// Command-line text as a number or flag; leaves what cannot be read a text.
+// Reads command-line text as a number or flag; text that cannot be read stays text.
 ParameterDescription parseTyped(ParameterDescription given, std::string_view text, ParameterSpec::Type type) {
   const char* end = text.data() + text.size();
   if (type == ParameterSpec::Type::Bool &&
@@ -265,7 +265,7 @@ std::string rangeText(const ParameterSpec& spec) {
 
 }  // namespace
 
-// A text from the command line, or a mistake.
+// Handles text from the command line, and mistakes.
 void Binder::readOther(const ParameterSpec& spec, const ParameterDescription& given,
                        const PassDescription& pass, Value& out) {
   const bool typed = given.fromCommandLine && given.type == json::Value::Type::String;
@@ -364,7 +364,7 @@ void Binder::makeAccesses() {
 inline void Binder::addAccesses(BoundPass& pass, const PortState& port) {
   const PortSpec& spec = *port.spec;
   const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
-  const bool reads = input || inout || spec.lifetime != Lifetime::Transient;  // what was there before matters
+  const bool reads = input || inout || spec.lifetime != Lifetime::Transient;  // previous contents matter
   history_ |= port.previous;
   uint16_t m = 0;
   for (const MemberSpec& member : spec.members) {
@@ -380,7 +380,7 @@ inline void Binder::addAccesses(BoundPass& pass, const PortState& port) {
       version = 0;
     else if (input)
       version = versionSeen(port, r);
-    else if (inout && port.firstVersion != kNone)  // else part of a cycle, which has been reported
+    else if (inout && port.firstVersion != kNone)  // otherwise part of a cycle that has been reported
       version = versions_[port.firstVersion + (r - port.value.first)];
     const uint32_t slot = resource.firstSlot + (port.previous ? resource.versions + 1 : version);
     pass.accesses.emplace_back(r, port.index, m++, member.usage, reads, !input, port.previous, version, slot);

@@ -1,5 +1,5 @@
-// Inside bind: flat tables over the ports of all passes. Names were turned into numbers by resolve, so
-// binding is a few walks over arrays; texts are only put together for a message.
+// Internal to bind: flat tables over the ports of all passes. Names were turned into numbers by resolve, so binding is
+// a few walks over arrays; texts are only put together for messages.
 #pragma once
 
 #include <span>
@@ -12,12 +12,12 @@
 
 namespace fovea::graph::detail {
 
-// What a port carries: consecutive resources, made by one output port or given by the caller.
+// The value of a port: consecutive resources that an output port makes or the caller provides.
 struct PortValue {
   uint32_t first = kNone;  // kNone: nothing, or a mistake that has been reported
   uint32_t count = 0;
   const PortSpec* origin = nullptr;  // nullptr: external
-  uint32_t member = kNone;           // one member of a bundle, as a plain value
+  uint32_t member = kNone;           // a single member of a bundle, as a plain value
   uint32_t external = kNone;
 };
 
@@ -32,21 +32,22 @@ struct PortState {
   uint32_t wire = kNone;    // Description::wires
   uint32_t source = kNone;  // producing port
   PortValue value;
-  uint32_t firstVersion = kNone;  // producing ports: versions_, one per resource of the value
+  uint32_t firstVersion = kNone;  // producing ports: index into versions_, one entry per resource
 };
 
-// Whose members are resources of their own.
+// Whether the members of the port are resources of their own.
 inline bool makes(const PortSpec& spec) {
   return spec.direction == Direction::Output || spec.direction == Direction::Scratch;
 }
 
-// Hidden, for nobody outside the library calls it: its functions call each other directly or are inlined.
-// What is rare or reports a mistake is not, so that what is called for each pass stays short.
+// Hidden because nothing outside the library calls it; its functions then call each other directly or are
+// inlined. Functions that are rarely called or report a mistake are kept out of line, so that the code that runs
+// for each pass stays short.
 class [[gnu::visibility("hidden")]] Binder;
 
 class Binder {
  public:
-  // `graph`: an empty one, to be filled.
+  // `graph` must be empty; it is filled in.
   Binder(const Description& description, const Environment& environment, Diagnostics& diagnostics,
          BoundGraph& graph);
   void run();
@@ -95,7 +96,7 @@ class Binder {
   void reportUnwired(const PortState& port, const PortSpec& spec);
   [[gnu::noinline]] void reportMisfit(const PortState& port, const PortSpec& spec, uint32_t m);
   std::string describeMisfit(const PortState& port, const MemberSpec& wanted, uint32_t m) const;
-  // The resource that member `m` of this port stands for; kNone when it has none.
+  // The resource that member `m` of this port stands for, or kNone.
   uint32_t resourceOf(const PortState& port, uint32_t m) const {
     const PortValue& value = port.value;
     if (value.count == 1 && port.spec->bundle.empty()) return value.first;
@@ -107,7 +108,7 @@ class Binder {
   std::string describeValue(const PortValue& value) const;
   std::string describeWanted(const PortSpec& spec) const;
 
-  // order.cpp: order, versions, hazards that no order can avoid
+  // order.cpp: order, versions, and hazards that no order can avoid
   void orderPasses();
   void reportCycle(std::span<const uint32_t> waiting);
   void makeVersions();
@@ -149,23 +150,23 @@ class Binder {
   Diagnostics& diagnostics_;
   const Registry& registry_;
   BoundGraph& graph_;
-  // Of all passes; whole before anyone reads it.
+  // Values of all passes; complete before anyone reads them.
   std::shared_ptr<std::vector<Value>> values_ = std::make_shared<std::vector<Value>>();
   Scratch scratch_;
   std::span<uint32_t> passBySymbol_;
-  std::span<uint32_t> firstPort_;  // per pass, and one past the last
+  std::span<uint32_t> firstPort_;  // per pass, and the end of the last one
   ScratchVector<PortState> ports_{scratch_};
   ScratchVector<uint32_t> versions_{scratch_};
   ScratchVector<uint32_t> order_{scratch_};          // passes, producers first; incomplete after a cycle
   ScratchVector<uint32_t> externalFirst_{scratch_};  // first resource of each external
   ScratchVector<VkExtent2D> viewExtents_{scratch_};  // per BoundGraph::views
-  ScratchVector<uint32_t> resourcePass_{scratch_};   // producing pass, kNone for externals
-  ScratchVector<const MemberSpec*> resourceSpec_{scratch_};  // as its producer declares it
-  ScratchVector<uint32_t> chain_{scratch_};                  // followValue's
-  std::span<uint8_t> sized_;  // per pass: 0 not yet, 1 being done, 2 done, 3 failed
-  size_t resourceCount_ = 0;  // made by passes
+  ScratchVector<uint32_t> resourcePass_{scratch_};   // producing pass; kNone for externals
+  ScratchVector<const MemberSpec*> resourceSpec_{scratch_};  // as declared by its producer
+  ScratchVector<uint32_t> chain_{scratch_};                  // used by followValue
+  std::span<uint8_t> sized_;  // per pass: 0 pending, 1 in progress, 2 done, 3 failed
+  size_t resourceCount_ = 0;  // number of resources made by passes
   bool inPlace_ = false, history_ = false;
-  bool inOrder_ = true;  // all passes are declared after those that they wait for
+  bool inOrder_ = true;  // all passes are declared after those they wait for
 };
 
 // "image rgba16f", "buffer of Vpl (64 bytes each)"

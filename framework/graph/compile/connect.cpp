@@ -1,4 +1,4 @@
-// Bind, wires: every wired port gets the resources it stands for, and types are compared.
+// Bind, wires: assigns to every wired port the resources that it stands for, and compares types.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ void Binder::assignWires() {
     if (!declaration) continue;
     const std::vector<PortSpec>& specs = declaration->ports;
     const size_t count = specs.size();
-    // Inputs are mostly wired in the order of the declaration: start looking where the last one was found.
+    // Inputs are mostly wired in the order of declaration, so the search starts where the last one was found.
     size_t guess = 0;
     for (uint32_t i = 0; i < from.inputCount; ++i) {
       const WireDescription& wire = description_.wires[from.firstInput + i];
@@ -118,13 +118,13 @@ void Binder::assignWires() {
   }
 }
 
-// The port of `pass` that the wire names; false when there is none.
+// Finds the port of `pass` that the wire names; false if there is none.
 inline bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member) {
   const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
   Symbol memberName = wire.member;
   port = wire.port == kNone ? onlyOutput(specs) : outputNamed(specs, text(wire.port));
   if (port == kNone && wire.port != kNone && wire.member == kNone) {
-    port = onlyOutput(specs);  // "gbuffer.position": a member of the only output
+    port = onlyOutput(specs);  // "surface.position": a member of the only output
     memberName = wire.port;
   }
   member = kNone;
@@ -137,7 +137,7 @@ bool Binder::selectMember(const PortSpec& spec, Symbol name, uint32_t& member) c
   return member != kNone;
 }
 
-// The value of the port's source, or the member of it that the wire names.
+// Takes the value of the port's source, or the member of it that the wire names.
 inline void Binder::takeValue(PortState& port) {
   const uint32_t member = port.value.member;
   port.state = 2;
@@ -158,7 +158,7 @@ void Binder::connectWire(PortState& port, const WireDescription& wire) {
   port.source = firstPort_[pass] + index;
   port.value.member = member;
   inOrder_ &= port.previous || pass < port.pass;
-  if (ports_[port.source].state == 2) takeValue(port);  // else when its value is followed
+  if (ports_[port.source].state == 2) takeValue(port);  // otherwise when its value is followed
 }
 
 void Binder::connectExternal(PortState& port, const WireDescription& wire) {
@@ -197,7 +197,7 @@ void Binder::reportNoOutput(PortState& port, const WireDescription& wire, uint32
                                                : fmt::format("there is: {}", fmt::join(names, ", ")));
 }
 
-// Where a wire of a pass or of the graph's outputs is written.
+// The place where a wire of a pass or of the graph's outputs is written.
 std::string Binder::connectedPath(const PortState& port, const WireDescription& wire) const {
   return port.pass == kNone ? json::joinPath("outputs", wire.target) : wirePath(port);
 }
@@ -207,12 +207,12 @@ std::string Binder::connectedPath(const PortState& port, const WireDescription& 
 void Binder::followValues() {
   for (PortState& port : ports_)
     if (port.wire != kNone) connectWire(port, description_.wires[port.wire]);
-  if (!inPlace_) return;  // the sources of all were outputs
+  if (!inPlace_) return;  // all sources were outputs
   for (uint32_t i = 0; i < ports_.size(); ++i)
     if (ports_[i].state == 0) followValue(i);
 }
 
-// An in-out port offers what it is wired to: walk up to a port whose value is known, then down again.
+// An in-out port offers what it is wired to: walks up to a port whose value is known, then down again.
 void Binder::followValue(uint32_t port) {
   ScratchVector<uint32_t>& chain = chain_;
   chain.clear();
@@ -281,7 +281,7 @@ void Binder::reportUnwired(const PortState& port, const PortSpec& spec) {
         missingRemedy(spec));
 }
 
-// The bundle that a value is as a whole; "" for plain ones and for members.
+// The bundle type of a whole value; "" for plain values and for members.
 std::string_view Binder::bundleOf(const PortValue& value) const {
   if (value.member != kNone) return {};
   if (value.origin) return value.origin->bundle;
@@ -305,7 +305,7 @@ void Binder::checkPort(PortState& port, const PortSpec& spec) {
   }
 }
 
-// `m`: the first member that does not fit, kNone when the value as a whole does not.
+// `m` is the first member that does not fit, or kNone if the value as a whole does not.
 void Binder::reportMisfit(const PortState& port, const PortSpec& spec, uint32_t m) {
   const std::string why = m == kNone ? std::string() : describeMisfit(port, spec.members[m], m);
   const WireDescription& wire = description_.wires[port.wire];
@@ -323,7 +323,7 @@ void Binder::reportMisfit(const PortState& port, const PortSpec& spec, uint32_t 
         remedy);
 }
 
-// Sizes are evaluated later, so declarations are compared.
+// Sizes are evaluated later, so only declarations are compared.
 bool Binder::fits(const MemberSpec& wanted, uint32_t resource) const {
   const ResourceSpec& want = wanted.resource;
   const auto compare = [&](const auto& have) {
@@ -337,7 +337,7 @@ bool Binder::fits(const MemberSpec& wanted, uint32_t resource) const {
   return made ? compare(made->resource) : compare(graph_.resources[resource].desc);
 }
 
-// "" where the value as a whole says it.
+// "" if the description of the value as a whole is enough.
 std::string Binder::describeMisfit(const PortState& port, const MemberSpec& wanted, uint32_t m) const {
   const uint32_t resource = resourceOf(port, m);
   if (resource == kNone) return fmt::format("it lacks the member `{}`", wanted.name);

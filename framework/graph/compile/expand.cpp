@@ -1,4 +1,4 @@
-// Resolve, structure: scopes, parameters, overrides and sub-graphs become one flat list of passes.
+// Resolve, structure: turns scopes, parameters, overrides and sub-graphs into one flat list of passes.
 #include "framework/graph/compile/expand.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ Expander::Expander(Description& description, const LoadOptions& options, Diagnos
 
 void Expander::error(const json::Position& where, const Trail& path, std::string message,
                      std::string remedy) {
-  // A wire through a sub-graph's output is looked at once for the output and once for each reader.
+  // A wire through a sub-graph's output is visited once for the output and once for each reader.
   for (const Diagnostic& d : diagnostics_.list())
     if (d.where.line == where.line && d.where.column == where.column && d.message == message &&
         d.where.file == (where.file ? *where.file : std::string()))
@@ -116,7 +116,7 @@ void Expander::readParameters(Scope& scope, const json::Value* given, const Trai
       }
       if (readScalar(scope, v, path, parameter.value)) {
         parameter.value.keyPlace = place(member.keyWhere);
-        scope.parameters.push_back(std::move(parameter));
+        scope.parameters.push_back(parameter);
       }
     }
   }
@@ -162,7 +162,7 @@ void Expander::overrideParameters(Scope& scope) {
   }
 }
 
-// The override read as the type of the value it replaces.
+// Reads the override as the type of the value that it replaces.
 ParameterDescription Expander::overrideValue(const ParameterDescription& current, const Override& source) {
   json::Position where;
   where.file = std::make_shared<const std::string>(fmt::format("--set {}={}", source.name, source.value));
@@ -226,7 +226,7 @@ bool Expander::readScalar(Scope& scope, const json::Value& value, const Trail& p
   parameter->used = true;
   const Place here = out.place;
   out = parameter->value;
-  // A wrong value is reported where it was typed on the command line, else where it is used.
+  // A wrong value is reported where it was typed if it comes from the command line, otherwise where it is used.
   if (!out.fromCommandLine) out.place = here;
   return true;
 }
@@ -399,7 +399,7 @@ void Expander::expandInstance(Scope& parent, const Member& member, const json::V
   expandScope(scope);
 }
 
-// Is this the file of the scope, or of one that it lies in? Also when they lie in each other too deep.
+// Whether this is the file of the scope or of one around it, or whether scopes are nested too deeply.
 bool Expander::containsItself(const Scope& scope, const std::filesystem::path& file) {
   int depth = 0;
   for (const Scope* at = &scope; at; at = at->parent)

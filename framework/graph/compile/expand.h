@@ -1,4 +1,4 @@
-// Inside resolve: scopes (the graph itself and each instance of a sub-graph) and what expanding them needs.
+// Internal to resolve: scopes (the graph itself and each instance of a sub-graph) and the state needed to expand them.
 #pragma once
 
 #include <filesystem>
@@ -17,10 +17,11 @@
 
 namespace fovea::graph::detail {
 
-// Letters, digits, _ and -: what passes, parameters and inputs may be called.
+// Names of passes, parameters and inputs consist of letters, digits, _ and -.
 bool isName(std::string_view name);
 
-// A place inside a document, "passes.a.inputs.b", that only messages put together. Refers to its parts.
+// A place inside a document, such as "passes.a.inputs.b", whose text is only put together for messages. It refers to
+// its parts and does not own them.
 class Trail {
  public:
   Trail() = default;
@@ -45,15 +46,15 @@ struct Scope {
     std::string name;
     bool optional = false;
     bool used = false;
-    const json::Value* wire = nullptr;  // what the parent wired, in the parent's words
-    uint32_t external = kNone;          // of the whole graph
+    const json::Value* wire = nullptr;  // what the parent wired, in the spelling of the parent's document
+    uint32_t external = kNone;          // index of the input among those of the whole graph
     Place place;
   };
 
   explicit Scope(Scratch& scratch) : parameters(scratch) {}
 
   std::string prefix;       // "" or "left/"
-  std::string path;         // in the parent's document: "passes.left"
+  std::string path;         // in the parent's document, e.g. "passes.left"
   Scope* parent = nullptr;  // nullptr for the whole graph
   std::string file;
   const json::Value* document = nullptr;
@@ -70,12 +71,12 @@ struct Scope {
   Input* findInput(std::string_view name);
 };
 
-// "pass.port.member@previous", split.
+// "pass.port.member@previous", split into its parts.
 struct WireParts {
   std::string_view names[3];
-  uint32_t count = 0;     // 4: more than three
-  bool open = false;      // some name is empty
-  std::string_view rest;  // from the '@' on
+  uint32_t count = 0;     // 4 if there are more than three
+  bool open = false;      // a name is empty
+  std::string_view rest;  // everything from the '@' on
 
   std::string_view pass() const { return names[0]; }
   std::string_view port() const { return names[1]; }
@@ -84,13 +85,13 @@ struct WireParts {
 
 struct RawWire {
   Scope* scope;
-  std::string_view pass;  // as its document calls it
+  std::string_view pass;  // name in its document
   std::string_view target;
   const json::Value* value;
   Place keyPlace;
 };
 
-// Hidden, for nobody outside the library calls it: its functions call each other directly or are inlined.
+// Hidden because nothing outside the library calls it; its functions then call each other directly or are inlined.
 class [[gnu::visibility("hidden")]] Expander;
 
 class Expander {
@@ -106,7 +107,7 @@ class Expander {
 
  private:
   struct PendingOverride {
-    std::string target, name;  // "left/deferred", "kernel"; target "" for a parameter of the graph
+    std::string target, name;  // "left/blur", "radius"; target is "" for a parameter of the graph
     const Override* source = nullptr;
     bool used = false;
   };
@@ -162,18 +163,18 @@ class Expander {
   const LoadOptions& options_;
   Diagnostics& diagnostics_;
   Scratch scratch_;
-  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};                 // they are pointed to,
-  std::list<json::Value, ScratchAllocator<json::Value>> documents_{scratch_};  // so are those of sub-graphs
+  std::list<Scope, ScratchAllocator<Scope>> scopes_{scratch_};                 // pointed to, as are
+  std::list<json::Value, ScratchAllocator<json::Value>> documents_{scratch_};  // the documents of sub-graphs
   ScratchVector<RawWire> rawWires_{scratch_};
   ScratchVector<uint32_t> rawFirst_{scratch_};  // per pass
   std::vector<PendingOverride> overrides_;
-  // Files met and their numbers; held, so that no address is used again.
+  // Files met so far and their numbers. They are held so that no address is reused.
   ScratchVector<std::pair<std::shared_ptr<const std::string>, uint32_t>> files_{scratch_};
-  const std::string noFile_;                  // where latestFile_ points before any file is met
-  const std::string* latestFile_ = &noFile_;  // of place(), and its index
+  const std::string noFile_;                  // latestFile_ points here before any file is met
+  const std::string* latestFile_ = &noFile_;  // file of the latest place(), and its index
   uint32_t latestIndex_ = kNone;
-  std::span<uint8_t> isPass_;  // by symbol
-  size_t made_ = 0;            // passes and scopes
+  std::span<uint8_t> isPass_;  // indexed by symbol
+  size_t made_ = 0;            // number of passes and scopes
   bool full_ = false;
 };
 

@@ -1,4 +1,4 @@
-// A running 64-bit hash over small things: cheap enough to hash a whole graph when it is bound.
+// A running 64-bit hash of small values, cheap enough to hash a whole graph whenever it is bound.
 #pragma once
 
 #include <bit>
@@ -13,8 +13,8 @@ namespace fovea::graph::detail {
 
 class Hasher {
  public:
-  // Multiply, fold, rotate (as in wyhash): every input bit reaches every output bit within two rounds. Two
-  // numbers at a time cost no more than one.
+  // Multiply, fold and rotate, as in wyhash: every input bit reaches every output bit within two rounds. Adding two
+  // numbers at a time costs no more than adding one.
   template <std::integral T>
   void add(T number, uint64_t other = 0) {
     const auto v = static_cast<uint64_t>(number);

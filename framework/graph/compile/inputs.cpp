@@ -1,5 +1,4 @@
-// Resolve, inputs: those of the whole graph are the caller's memory, those of a sub-graph are wired by its
-// parent.
+// Resolve, inputs: those of the whole graph are the caller's memory, those of a sub-graph are wired by its parent.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,7 +63,7 @@ ResourceDesc Expander::readResource(Scope& scope, json::ObjectReader& reader) {
   if (!reader.has("element")) {
     error(reader.value().where, reader.path(),
           "an input needs a `format` (image), an `element` (buffer) or a `bundle`");
-    // One message is enough: what else is there may well belong to it.
+    // One message is enough, because the other members may well belong to this one.
     for (const char* key : {"format", "bundle", "members", "width", "height", "depth", "layers", "mips"})
       reader.find(key);
   }
@@ -142,7 +141,7 @@ void Expander::readInputs(Scope& scope, const json::Value* wires) {
       } else if (!member.value.isString()) {
         error(member.value.where, path,
               fmt::format("expected a wire such as \"pass.port\", found {}", member.value.describe()));
-        input->optional = true;  // said once is enough
+        input->optional = true;  // one message is enough
       } else {
         input->wire = &member.value;
       }

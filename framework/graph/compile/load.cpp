@@ -1,4 +1,4 @@
-// The front door: from a name to a description.
+// Entry points of the compiler: from a name to a description.
 #include <fmt/format.h>
 
 #include "framework/graph/compile/compile.h"

@@ -10,7 +10,7 @@ namespace {
 
 using json::Member;
 
-// Does the patch make another kind of pass out of this one? Then no setting of the old kind may linger.
+// Whether the patch turns the pass into one of another kind, in which case no old setting may remain.
 bool replacesWhole(const json::Value& base, const json::Value& patch) {
   for (const char* key : {"type", "graph"}) {
     const json::Value* now = patch.find(key);
@@ -25,7 +25,7 @@ class Merger {
  public:
   explicit Merger(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-  // depth 0: the document, 1: e.g. its "passes", 2: one pass.
+  // depth 0 is the document, 1 for instance its "passes", 2 one pass.
   void merge(json::Value& base, const json::Value& patch, const std::string& path, int depth, bool inPasses) {
     if (!patch.isObject()) {
       base = patch;

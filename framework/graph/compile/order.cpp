@@ -9,7 +9,7 @@
 
 namespace fovea::graph::detail {
 
-// The declaration's order where it has producers first, as in most graphs; else Kahn's algorithm.
+// Uses the order of declaration if it has producers first, as in most graphs, and Kahn's algorithm otherwise.
 void Binder::orderPasses() {
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
   if (inOrder_) {
@@ -35,7 +35,7 @@ void Binder::orderPasses() {
   if (order_.size() < count) reportCycle(waits);
 }
 
-// Every pass that still waits has a producer that still waits: walking up must come round.
+// Every waiting pass has a waiting producer, so walking up must return to a pass already visited.
 void Binder::reportCycle(std::span<const uint32_t> waits) {
   std::vector<uint32_t> producer(graph_.passes.size(), kNone), wire(graph_.passes.size(), kNone);
   for (const PortState& port : ports_) {
@@ -55,7 +55,7 @@ void Binder::reportCycle(std::span<const uint32_t> waits) {
       at = producer[at];
     }
     const auto round = std::find(walk.begin(), walk.end(), at);
-    if (at == kNone || round == walk.end()) continue;  // joins a circle that has been reported
+    if (at == kNone || round == walk.end()) continue;  // leads into a cycle that has been reported
     std::vector<uint32_t> circle(round, walk.end());
     std::rotate(circle.begin(), std::min_element(circle.begin(), circle.end()), circle.end());
     std::string names;
@@ -67,8 +67,8 @@ void Binder::reportCycle(std::span<const uint32_t> waits) {
   }
 }
 
-// Outputs made version 1, each update in place makes the next one. Two updates of the same version have no
-// order.
+// Outputs make version 1, and each update in place makes the next version. Two updates of the same
+// version have no defined order.
 void Binder::makeVersions() {
   if (inPlace_) updateInPlace();
   for (BoundResource& r : graph_.resources) {
@@ -105,7 +105,7 @@ void Binder::updateInPlace() {
   }
 }
 
-// With updates in place a reader of version v must run before the update to v + 1. Is there an order at all?
+// With updates in place, a reader of version v must run before the update to v + 1. Checks that such an order exists.
 void Binder::checkInPlace() {
   if (order_.size() < graph_.passes.size()) return;
   const uint32_t count = static_cast<uint32_t>(graph_.passes.size());
@@ -135,7 +135,7 @@ void Binder::checkInPlace() {
     for (uint32_t e = first[ready[i]]; e < first[ready[i] + 1]; ++e)
       if (--waits[next[e]] == 0) ready.push_back(next[e]);
   if (ready.size() == count) return;
-  // Name a reader that waits although its value is about to be overwritten.
+  // Reports a reader that waits although its value is about to be overwritten.
   for (const PortState& port : ports_) {
     if (waits[port.pass] == 0 || port.wire == kNone || port.previous || port.value.first == kNone) continue;
     const PortSpec& spec = *port.spec;
@@ -163,7 +163,7 @@ void Binder::checkInPlace() {
   error(description_.passes[0].place, {}, "updates in place leave no order in which these passes could run");
 }
 
-// One layout per pass and image, and one for all readers of a version, so that a level never wants two.
+// Chooses one layout per pass and image, and one for all readers of a version, so that a level never needs two.
 void Binder::chooseLayouts() {
   struct Seen {
     uint32_t pass = kNone;
@@ -175,7 +175,7 @@ void Binder::chooseLayouts() {
   const auto isImage = [&](const Access& a) {
     return graph_.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
   };
-  bool mixed = false;  // some version's readers want different layouts
+  bool mixed = false;  // readers of a version want different layouts
   for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
     for (const Access& a : graph_.passes[p].accesses) {
       Seen& s = seen[a.resource * 2 + a.previous];

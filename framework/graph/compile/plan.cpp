@@ -41,7 +41,7 @@ VkImageLayout accessLayout(Usage usage, bool reads, bool writes) {
   if (only(Usage::Sampled)) return VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   if (only(Usage::ColorAttachment)) return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   if (only(Usage::DepthAttachment) && writes) return VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-  // Tested against and sampled at once, but written by nobody.
+  // Depth that is tested against and sampled at the same time, but not written.
   if (only(Usage::DepthAttachment | Usage::Sampled) && !writes)
     return VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
   if (only(Usage::TransferRead | Usage::HostRead)) return VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
@@ -73,7 +73,7 @@ AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes) {
       VK_ACCESS_2_TRANSFER_READ_BIT);
   add(Usage::TransferWrite | Usage::HostWrite, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
       VK_ACCESS_2_TRANSFER_WRITE_BIT);
-  // A host pass that updates in place also copies the old contents out.
+  // A host pass that updates in place also copies out the old contents.
   if (any(usage, Usage::HostWrite) && reads) scope.access |= VK_ACCESS_2_TRANSFER_READ_BIT;
   scope.layout = accessLayout(usage, reads, writes);
   return scope;

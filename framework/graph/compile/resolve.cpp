@@ -1,6 +1,6 @@
 #include "framework/graph/compile/resolve.h"
 
-#define XXH_INLINE_ALL  // names are short: calling the library would cost more than the hash
+#define XXH_INLINE_ALL  // names are short, so a call of the library would cost more than the hash
 #include <xxhash.h>
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace fovea::graph {
 namespace {
 
-constexpr size_t kShort = 16;  // bytes that are hashed and compared without a call
+constexpr size_t kShort = 16;  // texts up to this many bytes are hashed and compared without a call
 
 inline uint64_t hashOf(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
 
-// As file.stem(), which would take the path apart first.
+// The same as file.stem(), which would first split the path.
 std::string stemOf(const std::filesystem::path& file) {
   std::string_view name = file.native();
   name.remove_prefix(name.rfind('/') + 1);
@@ -77,7 +77,7 @@ Symbol SymbolTable::internAny(std::string_view text) {
 
 Symbol SymbolTable::findLong(std::string_view text) const { return findHere(text); }
 
-// A text that is not there yet, at the free slot where it belongs.
+// Adds a new text at the free slot where it belongs.
 Symbol SymbolTable::add(std::string_view text, uint64_t hash, size_t slot) {
   if (slots_.size() < 2 * (entries_.size() + 1)) {
     reserve(2 * entries_.size());
@@ -85,7 +85,7 @@ Symbol SymbolTable::add(std::string_view text, uint64_t hash, size_t slot) {
   }
   const auto symbol = static_cast<Symbol>(entries_.size());
   slots_[slot] = {tagOf(hash), symbol};
-  entries_.emplace_back(keep(text), hash);
+  entries_.push_back({keep(text), hash});
   return symbol;
 }
 

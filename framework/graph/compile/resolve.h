@@ -1,5 +1,5 @@
-// From JSON to a description: `extends` merged, sub-graphs instanced under their prefix, parameters and
-// overrides put in. Names are interned, wires are split; nothing is known about pass types yet.
+// Resolves JSON to a description: merges `extends`, instances sub-graphs under their prefixes and applies parameters
+// and overrides. Names are interned and wires are split; pass types are not considered yet.
 #pragma once
 
 #include <algorithm>
@@ -28,17 +28,17 @@ struct LoadOptions {
   std::vector<std::filesystem::path> searchPaths;
 };
 
-// Strings numbered densely, so that later phases look things up in arrays.
+// Densely numbered strings, so that later phases can index arrays.
 using Symbol = uint32_t;
 
 class SymbolTable {
  public:
   Symbol intern(std::string_view text);
   Symbol find(std::string_view text) const;  // kNone when unknown
-  // Stays where it is while others are added and the table is moved.
+  // The text keeps its address while others are added and when the table is moved.
   std::string_view operator[](Symbol symbol) const { return entries_[symbol].text; }
   size_t size() const { return entries_.size(); }
-  // A copy that lives as long as the table, of what nobody looks up.
+  // Copies a text that nobody looks up; the copy lives as long as the table.
   std::string_view keep(std::string_view text) {
     if (blocks_.empty() || blocks_.back().size - blocks_.back().used < text.size()) addBlock(text.size());
     Block& block = blocks_.back();
@@ -56,7 +56,7 @@ class SymbolTable {
 
   Symbol internHere(std::string_view text);
   Symbol findHere(std::string_view text) const;
-  // Rare, so that what is not rare calls nothing.
+  // These are rare and kept out of line, so that the frequent cases make no calls.
   [[gnu::noinline]] Symbol internAny(std::string_view text);
   [[gnu::noinline]] Symbol findLong(std::string_view text) const;
   [[gnu::noinline]] void addBlock(size_t least);
@@ -71,27 +71,28 @@ class SymbolTable {
     std::unique_ptr<char[]> characters;
     size_t size = 0, used = 0;
   };
-  std::vector<Block> blocks_;  // the texts themselves
+  std::vector<Block> blocks_;  // storage of the texts
   struct Slot {
     uint32_t tag = 0;  // upper half of the hash
     Symbol symbol = kNone;
   };
-  std::vector<Slot> slots_;  // open addressing, a power of two and at most half full; kNone: free
+  std::vector<Slot> slots_;  // open addressing; the size is a power of two, at most half used; kNone is free
 };
 
-// Where something stands in the files, for messages only.
+// A position in the files, for messages only.
 struct Place {
   uint32_t file = 0;  // Description::files
   int line = 0, column = 0;
 };
 
-// "pass.port.member@previous", split. "inputs.x" of a sub-graph has been replaced by what the parent wired.
+// "pass.port.member@previous", split into its parts. "inputs.x" of a sub-graph has been replaced
+// by what the parent wired.
 struct WireDescription {
   std::string_view target;    // input port of the reading pass, or name of the graph's output
   std::string_view written;   // for messages; both are kept by Description::symbols
-  Symbol pass = kNone;        // kNone with `external`
-  Symbol port = kNone;        // kNone: the only output
-  Symbol member = kNone;      // kNone: the whole port
+  Symbol pass = kNone;        // kNone if `external` is set
+  Symbol port = kNone;        // kNone for the only output
+  Symbol member = kNone;      // kNone for the whole port
   uint32_t external = kNone;  // index into Description::externals
   bool previous = false;
   Place keyPlace, place;
@@ -100,7 +101,7 @@ struct WireDescription {
 struct ParameterDescription {
   std::string_view name;  // kept by Description::symbols
   json::Value::Type type = json::Value::Type::Null;
-  bool fromCommandLine = false;  // String: still to be read as the parameter's own type
+  bool fromCommandLine = false;  // String: yet to be read as the parameter's own type
   int64_t integer = 0;           // Int, Bool
   double real = 0;
   Symbol text = kNone;
@@ -108,21 +109,21 @@ struct ParameterDescription {
 };
 
 struct PassDescription {
-  Symbol name = kNone;  // with prefix: "left/deferred"
+  Symbol name = kNone;  // with its prefix: "left/blur"
   Symbol type = kNone;
-  Symbol view = kNone;                              // explicit or inherited; kNone: the default view
-  bool ownView = false;                             // written at the pass itself
+  Symbol view = kNone;                              // explicit or inherited; kNone for the default view
+  bool ownView = false;                             // set at the pass itself
   uint32_t firstInput = 0, inputCount = 0;          // Description::wires
   uint32_t firstParameter = 0, parameterCount = 0;  // Description::parameters
   Place place, typePlace, viewPlace;
 };
 
-// An input of the whole graph: the caller's memory.
+// An input of the whole graph, in the caller's memory.
 struct ExternalDescription {
   Symbol name = kNone;
   Symbol bundle = kNone;
-  std::vector<Symbol> members;          // "" for a plain one
-  std::vector<ResourceDesc> resources;  // width 0: size of the default view
+  std::vector<Symbol> members;          // "" for a plain input
+  std::vector<ResourceDesc> resources;  // width 0 stands for the size of the default view
   Place place;
 };
 
@@ -138,27 +139,27 @@ struct Description {
   std::vector<ExternalDescription> externals;
 
   SourceLocation location(const Place& place) const { return {files[place.file], place.line, place.column}; }
-  // "deferred" of "left/deferred": what the pass is called inside its document.
+  // The name of a pass inside its document: "blur" for "left/blur".
   std::string_view localName(const PassDescription& pass) const {
     const std::string_view name = symbols[pass.name];
     return name.substr(name.rfind('/') + 1);
   }
 };
 
-// Merges `patch` over `base` as RFC 7396, base keys first; an object under "passes" whose "type" or "graph"
-// differs replaces the base's. A null that removes nothing is an error. Exposed for tests.
+// Merges `patch` over `base` as in RFC 7396, keys of the base first. An object under "passes" whose "type" or "graph"
+// differs replaces that of the base. A null that removes nothing is an error. Exposed for tests.
 json::Value mergeDocuments(json::Value base, const json::Value& patch, Diagnostics& diagnostics);
 
-// The document with everything it extends merged in: itself when it extends nothing, else `merged`.
+// The document with everything it extends merged in: `document` itself if it extends nothing, otherwise `merged`.
 const json::Value& mergeExtends(const json::Value& document, const std::filesystem::path& file,
                                 const LoadOptions& options, Diagnostics& diagnostics, json::Value& merged);
 
-// `name` relative to the folder of `from`, else in the search paths, with or without ".json"; empty when not
-// found.
+// Looks for `name`, with or without ".json", relative to the folder of `from` and then in the search paths. Empty if
+// it is not found.
 std::filesystem::path findGraphFile(const std::string& name, const std::filesystem::path& from,
                                     const std::vector<std::filesystem::path>& searchPaths);
 
-// What a graph file may hold. More is refused, so that a file cannot exhaust the memory.
+// Limits of a graph file, so that a file cannot exhaust memory.
 inline constexpr size_t kMaxPasses = 10000;
 inline constexpr int kMaxInstanceDepth = 16;
 

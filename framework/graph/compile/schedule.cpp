@@ -76,13 +76,13 @@ class Scheduler {
 
   bool live(uint32_t pass) const { return pass != kNone && result_.passLive[pass]; }
 
-  // Most graphs declare each pass after those it waits for: then one walk finds the levels. False: not so.
+  // In most graphs each pass is declared after those it waits for, and one walk finds the levels. Otherwise false.
   bool levelsAsDeclared() {
     std::vector<uint32_t>& level = result_.level;
     level.assign(passCount_, kNone);
     for (uint32_t p = 0; p < passCount_; ++p) {
       if (!result_.passLive[p]) continue;
-      uint32_t own = level[p] == kNone ? 0 : level[p];  // what a reader of what it overwrites asks for
+      uint32_t own = level[p] == kNone ? 0 : level[p];  // required by readers of what it overwrites
       for (const Access& a : graph_.passes[p].accesses) {
         const uint32_t before = a.previous ? kNone : writers_[a.writes ? a.slot - 1 : a.slot];
         if (!live(before)) continue;
@@ -166,7 +166,7 @@ class Scheduler {
         if (--waits_[edges_[e]] == 0) ready.push_back(edges_[e]);
       }
     }
-    // A level skipped by the draw would be an empty one.
+    // Levels that the random draw skipped would be empty, so they are removed.
     std::vector<uint32_t> used;
     for (const uint32_t l : result_.level)
       if (l != kNone) used.push_back(l);
@@ -202,7 +202,7 @@ class Scheduler {
   std::span<uint32_t> edgeFirst_, edges_, waits_;
   std::span<uint8_t> allWriters_;
   detail::ScratchVector<uint32_t> work_{scratch_};
-  bool updates_ = false;  // some resource is written more than once, or over what the caller put there
+  bool updates_ = false;  // a resource is written more than once, or over the caller's contents
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Memory of one phase of the compiler: taken piece by piece, given back all at once. A phase needs a dozen
-// short arrays, and asking for each of them would cost a small graph as much as the work itself.
+// Memory of one compiler phase, which is taken piece by piece and given back all at once. A phase needs a dozen short
+// arrays; allocating each of them would cost a small graph as much as the work itself.
 #pragma once
 
 #include <algorithm>
@@ -30,11 +30,11 @@ class Scratch {
     return taken;
   }
 
-  // So many elements, alike. What grows is a ScratchVector.
+  // An array of `count` equal elements. Arrays that grow are ScratchVectors.
   template <class T>
   std::span<T> array(size_t count, const T& value = T()) {
     static_assert(alignof(T) <= kAlignment && std::is_trivially_destructible_v<T>);
-    T* const first = static_cast<T*>(take(count * sizeof(T)));
+    T* const first = static_cast<T*>(take(count * sizeof(T)));  // NOLINT(bugprone-sizeof-expression)
     std::uninitialized_fill_n(first, count, value);
     return {first, count};
   }
@@ -47,8 +47,8 @@ class Scratch {
     size_t bytes;
   };
 
-  // What larger graphs need on top is kept for the next phase: fresh pages cost more than what is put into
-  // them.
+  // Memory that larger graphs need in addition is kept for the next phase, because obtaining fresh pages costs more
+  // than filling them.
   static std::pmr::memory_resource& kept() {
     thread_local std::pmr::unsynchronized_pool_resource pool({1, 1 << 20});
     return pool;
@@ -68,12 +68,12 @@ class Scratch {
 template <class T>
 struct ScratchAllocator {
   using value_type = T;
-  ScratchAllocator(Scratch& from) : scratch(&from) {}  // NOLINT: vectors are made with it: foo_{scratch_}
+  ScratchAllocator(Scratch& from) : scratch(&from) {}  // NOLINT: implicit, for members foo_{scratch_}
   template <class U>
   ScratchAllocator(const ScratchAllocator<U>& other) : scratch(other.scratch) {}  // NOLINT
   T* allocate(size_t count) {
     static_assert(alignof(T) <= Scratch::kAlignment);
-    return static_cast<T*>(scratch->take(count * sizeof(T)));
+    return static_cast<T*>(scratch->take(count * sizeof(T)));  // NOLINT(bugprone-sizeof-expression)
   }
   void deallocate(T*, size_t) {}
   template <class U>

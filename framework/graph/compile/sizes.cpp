@@ -1,4 +1,4 @@
-// Bind, sizes: size expressions over views, parameters and inputs, and the device's limits.
+// Bind, sizes: evaluates size expressions over views, parameters and inputs, and checks the device's limits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,11 +11,11 @@ namespace fovea::graph::detail {
 
 namespace {
 
-constexpr double kMaxBytes =
-    1099511627776.0;             // 1 TiB: no device has it, and byte counts below never overflow
-constexpr int kMaxDepth = 2000;  // passes whose sizes hang on each other through history edges
+// 1 TiB. No device has as much, and byte counts below this limit never overflow.
+constexpr double kMaxBytes = 1099511627776.0;
+constexpr int kMaxDepth = 2000;  // passes whose sizes depend on each other through history edges
 
-// At most: every texel as large as the largest, and all mips as large as the first two.
+// An upper bound: every texel has the size of the largest format, and all mips together twice that of the first.
 double bytesOf(const ResourceDesc& d) {
   if (d.kind == ResourceKind::Buffer) return static_cast<double>(d.count) * d.stride;
   return 32.0 * d.width * d.height * d.depth * d.layers;
@@ -26,7 +26,7 @@ struct Stack {
   int size = 0;
 };
 
-// False on overflow, division by zero or an expression too deep.
+// False on overflow, on division by zero, and if an expression is too deep.
 bool apply(SizeExpr::Op op, Stack& stack) {
   using Op = SizeExpr::Op;
   if (stack.size < 2) return false;
@@ -52,7 +52,7 @@ bool apply(SizeExpr::Op op, Stack& stack) {
   }
 }
 
-// Most sizes are a number or the view's; 0: not one of these.
+// Most sizes are a number or a size of the view; returns 0 for all others.
 inline int64_t sizeAtOnce(const SizeExpr& size, VkExtent2D view) {
   if (size.terms().size() != 1) return 0;
   const SizeExpr::Term& term = size.terms()[0];
@@ -110,7 +110,7 @@ inline bool Binder::evaluateResource(uint32_t p, const PortSpec& spec, const Mem
   if (from.volume) good = size(from.depth, "the depth", kMaxExtent, desc.depth) && good;
   if (from.array) good = size(from.layers, "the number of layers", kMaxExtent, desc.layers) && good;
   good = size(from.mips, "the number of mip levels", 32, desc.mips) && good;
-  // More levels than the size has would be refused by the device; expressions may ask for "enough".
+  // The device would refuse more levels than the size has; expressions may ask for "enough" of them.
   desc.mips = std::min(desc.mips, uint32_t(std::bit_width(std::max({desc.width, desc.height, desc.depth}))));
   return good;
 }
@@ -119,7 +119,7 @@ inline bool Binder::withinLimits(const MemberSpec& member, const ResourceDesc& d
   if (bytesOf(d) > kMaxBytes) return false;
   if (d.kind == ResourceKind::Buffer) {
     const uint64_t limit = environment_.maxStorageBufferRange;
-    // Uniform buffers may be larger than the device's range: passes bind them page by page.
+    // Uniform buffers may exceed the device's range, because passes bind them page by page.
     return limit == 0 || d.count * d.stride <= limit ||
            !any(member.usage, Usage::StorageRead | Usage::StorageWrite);
   }
@@ -151,7 +151,7 @@ bool Binder::evaluatePass(uint32_t p, int depth) {
   return good;
 }
 
-// One size of a resource, from 1 to `limit`; false, and a message, when it is not.
+// Evaluates one size of a resource, from 1 to `limit`. False, with a message, if it is not in this range.
 bool Binder::evaluateSize(uint32_t p, const PortSpec& spec, const MemberSpec& member, const SizeExpr& size,
                           const char* what, int64_t limit, int64_t& out, int depth) {
   std::string why;
@@ -303,8 +303,7 @@ void Binder::reportLimits(uint32_t p, const PortSpec& spec, const MemberSpec& me
                          : fmt::format("lower what it follows from: {}", names));
 }
 
-// "set shadow-atlas.layout to `tiled`": where a size hangs on a choice, another choice is the way out of a
-// limit.
+// "set edge-filter.layout to `tiled`": if a size depends on a choice, another choice may avoid exceeding a limit.
 std::string Binder::otherChoices(uint32_t p, const ResourceSpec& spec) const {
   const BoundPass& pass = graph_.passes[p];
   std::string remedy;

@@ -1,4 +1,4 @@
-// Resolve, wires: "pass.port@previous" in the words of its own document becomes a wire between flat passes.
+// Resolve, wires: turns "pass.port@previous", as spelled in its own document, into a wire between flat passes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,14 +89,14 @@ void Expander::resolveOutputs() {
   }
 }
 
-// The pass that a document calls `name`; kNone when there is none.
+// The pass that a document calls `name`; kNone if there is none.
 inline Symbol Expander::findPass(const Scope& scope, std::string_view name) const {
   const SymbolTable& symbols = description_.symbols;
   const Symbol pass = scope.prefix.empty() ? symbols.find(name) : findJoined(symbols, scope.prefix, name);
   return pass < isPass_.size() && isPass_[pass] ? pass : kNone;
 }
 
-// False: there is nothing to wire, because of a mistake (reported) or because an optional input is open.
+// False if there is nothing to wire, because of a mistake (which is reported) or because an optional input is open.
 bool Expander::resolveWire(Scope& scope, const json::Value& value, const Trail& path, WireDescription& wire,
                            int depth) {
   if (depth > kMaxHops)
@@ -185,7 +185,7 @@ bool Expander::resolveInstance(Scope& child, const json::Value& value, const Tra
   return resolveWire(child, found->value, json::joinPath("outputs", found->key), wire, depth + 1);
 }
 
-// What is written after a sub-graph's name applies to what that stands for.
+// What is written after the name of a sub-graph's output applies to the value that it stands for.
 bool Expander::combine(const json::Value& value, const Trail& path, std::string_view member, bool previous,
                        WireDescription& wire) {
   if (!member.empty()) {

@@ -103,7 +103,7 @@ namespace {
 
 struct Printed {
   std::string text;
-  int strength;  // 3 leaf or call, 2 product, 1 sum
+  int strength;  // 3 for a leaf or call, 2 for a product, 1 for a sum
 };
 
 Printed printLeaf(const SizeExpr::Term& term) {

@@ -50,8 +50,7 @@ std::vector<std::string> Registry::types() const {
 
 namespace {
 
-// Registrations run before main() or inside dlopen(), where nobody can catch: the first failure is kept
-// instead.
+// Registrations run before main() or inside dlopen(), where no exception can be caught, so failures are kept instead.
 std::vector<Diagnostic>& failedRegistrations() {
   static std::vector<Diagnostic> failures;
   return failures;
@@ -78,7 +77,7 @@ void Registry::loadPlugin(const std::filesystem::path& file) {
     throw Error(ExitCode::BadInput, fmt::format("plug-in {} does not exist", file.string()));
   const size_t failuresBefore = failedRegistrations().size();
   const size_t typesBefore = entries_.size();
-  // Never closed: factories and declarations point into it.
+  // The library is never closed, because factories and declarations point into it.
   if (!dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
     const char* reason = dlerror();
     throw Error(ExitCode::BadInput,

@@ -1,4 +1,4 @@
-// All pass types known to the process: linked in, or loaded from plug-ins.
+// All pass types known to the process, whether linked in or loaded from plug-ins.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ class Registry {
   using Factory = std::unique_ptr<Pass> (*)();
   static Registry& global();
 
-  // Throws Error(Internal) on a second registration of a type or on a declaration that contradicts itself
-  // (duplicate names, a default out of range, a size over an unknown parameter or port, ...).
+  // Throws Error(Internal) if the type is already registered or if the declaration contradicts itself (duplicate
+  // names, a default out of range, a size that names an unknown parameter or port, ...).
   void add(PassDeclaration declaration, Factory factory);
   const PassDeclaration* find(std::string_view type) const;
   std::unique_ptr<Pass> create(std::string_view type) const;
@@ -28,8 +28,8 @@ class Registry {
   void loadPlugin(const std::filesystem::path& file);
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
 
-  // FOVEA_PASS registrations run where nobody can catch; what went wrong in them is thrown here, as Error(Internal).
-  // Call it once at the start of a program.
+  // FOVEA_PASS registrations run where no exception can be caught. Their errors are kept and thrown here as
+  // Error(Internal). Call this once at the start of a program.
   static void throwIfRegistrationsFailed();
 
  private:

@@ -141,7 +141,7 @@ class Validator {
     const bool attachment = any(m.usage, Usage::ColorAttachment | Usage::DepthAttachment);
     if (attachment && d_.kind == PassKind::Compute)
       wrong(fmt::format("port `{}`: a compute pass has no attachments", path));
-    // A depth attachment on an input is tested, not written.
+    // A depth attachment that is an input is tested but not written.
     const Usage written = port.direction == Direction::Input
                               ? Usage(uint32_t(kWriteUsages) & ~uint32_t(Usage::DepthAttachment))
                               : kWriteUsages;

@@ -1,12 +1,11 @@
-// Checks a declaration against itself when it is registered, so that a graph never meets a contradictory
-// pass.
+// Checks a declaration for consistency when it is registered, so that a graph never meets a contradictory pass.
 #pragma once
 
 #include "fovea/pass.h"
 
 namespace fovea::graph {
 
-// Throws Error(Internal) with everything that is wrong.
+// Throws Error(Internal) listing every mistake.
 void validateDeclaration(const PassDeclaration& declaration);
 
 inline constexpr Usage kWriteUsages = Usage::StorageWrite | Usage::ColorAttachment | Usage::DepthAttachment |
@@ -21,7 +20,7 @@ inline constexpr Usage kBufferUsages = Usage::StorageRead | Usage::StorageWrite 
                                        Usage::TransferWrite | Usage::HostRead | Usage::HostWrite;
 inline constexpr Usage kHostUsages = Usage::HostRead | Usage::HostWrite;
 
-// Both depth-only and depth-stencil formats.
+// True for depth-only and for depth-stencil formats.
 bool isDepthFormat(VkFormat format);
 bool isIntegerFormat(VkFormat format);
 

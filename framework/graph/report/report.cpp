@@ -89,7 +89,7 @@ void addBatch(std::string& text, const BarrierBatch& batch, const BoundGraph& gr
                         join(b.srcStage, kStageNames), join(b.dstStage, kStageNames));
 }
 
-// Level of each pass; kNone when culled.
+// The level of each pass; kNone if it is culled.
 std::vector<uint32_t> levelsOf(const Plan& plan) {
   std::vector<uint32_t> level(plan.graph->passes.size(), kNone);
   for (uint32_t l = 0; l < plan.levels.size(); ++l)

@@ -1,4 +1,4 @@
-// A plan for people and tools: text, Graphviz and JSON.
+// Formats a plan for people and tools: as text, for Graphviz, and as JSON.
 #pragma once
 
 #include <string>
@@ -7,11 +7,12 @@
 
 namespace fovea::graph {
 
-// Levels with their barriers and passes, every resource with its size, life and place, and the memory totals.
+// Text: levels with their barriers and passes, every resource with its size, lifetime and placement, and memory totals.
 std::string planText(const Plan& plan);
-// Graphviz: passes as boxes (culled ones dashed), edges labelled with what flows, history edges dashed.
+// Graphviz: passes as boxes (culled ones dashed), edges labelled with the resources that they
+// carry, history edges dashed.
 std::string planDot(const Plan& plan);
-// The same facts for programs; layout in the README.
+// The same facts as JSON, for programs.
 std::string planJson(const Plan& plan);
 
 // "64x32 rgba16f", "128x128x1000 d32f (array)", "1000 x 64 B Vpl"

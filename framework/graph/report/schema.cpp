@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "$name" stands for a graph parameter everywhere a value stands; null removes what `extends` brought in.
+// "$name" refers to a graph parameter wherever a value is allowed; null removes what `extends` brought in.
 Json orParameter(Json value) {
   return {{"anyOf",
            Json::array({std::move(value), {{"type", "string"}, {"pattern", "^\\$"}}, {{"type", "null"}}})}};

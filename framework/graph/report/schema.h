@@ -1,5 +1,5 @@
-// JSON schema of graph files, generated from the pass registry: an editor completes pass types, ports and
-// parameters and shows their docs, defaults and ranges.
+// The JSON schema of graph files, generated from the pass registry. With it, an editor completes pass types, ports
+// and parameters and shows their documentation, defaults and ranges.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace fovea::graph {
 
-// Draft 7, as editors know it. It describes single files: what `extends` brings in is not seen, so nothing
-// but the shape of what is there can be required.
+// JSON Schema draft 7, which editors support. The schema describes single files and cannot see what `extends` brings
+// in, so it constrains only the shape of the members that are present.
 std::string generateSchema(const Registry& registry);
 
 }  // namespace fovea::graph

@@ -1,4 +1,4 @@
-// The contexts through which passes see the graph: names in, resources and commands out.
+// The contexts through which passes see the graph, with resources and commands looked up by name.
 #include <algorithm>
 #include <cstring>
 #include <tuple>
@@ -62,7 +62,7 @@ const Access& PassInstance::access(std::string_view path) const {
 gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
 const Parameters& PrepareContext::parameters() const { return pass_.bound->parameters; }
 
-// A bundle is wired when one of its members is.
+// A bundle is wired if one of its members is.
 static bool portWired(const PassInstance& pass, std::string_view port) {
   if (pass.findAccess(port)) return true;
   return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(),
@@ -102,7 +102,7 @@ bool RecordContext::has(std::string_view port) const { return portWired(pass_, p
 bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
-// As errors start: `act` is what the pass does, "fills `sums`".
+// The beginning of an error message; `act` is what the pass does, e.g. "fills `sums`".
 static std::string passDoes(const PassInstance& pass, const std::string& act) {
   return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
 }
@@ -179,7 +179,7 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   vkCmdEndRendering(cmd_);
 }
 
-// `act()` is what the pass does, put together only for a message.
+// `act()` is what the pass does; the text is only put together for a message.
 template <class Act>
 static void requireTransfer(const PassInstance& pass, const Access& access, std::string_view port,
                             ResourceKind kind, Usage usage, const Act& act) {

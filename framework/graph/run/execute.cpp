@@ -1,4 +1,4 @@
-// The frame loop: barriers of the plan, commands of the passes, timestamps, staging for host passes.
+// The frame loop: barriers of the plan, commands of the passes, timestamps, and staging for host passes.
 #include "framework/graph/run/execute.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Executor::Impl {
   scene::FrameDescriptors& descriptors;
   ExecutorOptions options;
   ExecutorState state;
-  PassInstances passes;  // the live ones, in order of execution
+  PassInstances passes;  // the live passes in order of execution
   std::optional<gpu::TimestampRing> timestamps;
   std::deque<FrameSlot> slots;
   std::deque<uint32_t> inFlight;  // slots, oldest first
@@ -45,7 +45,7 @@ struct Executor::Impl {
   void submitSegment(FrameSlot& slot, bool last);
   void emitBarriers(const BarrierBatch& batch);
   void runPass(FrameSlot& slot, PassInstance& pass, const scene::Frame& frame, RecordedPass& recorded);
-  // Milliseconds spent on waiting for the device; nothing when the pass reads nothing of it.
+  // Milliseconds spent waiting for the device; nullopt if the pass reads nothing that the device wrote.
   std::optional<double> runHostPass(FrameSlot& slot, PassInstance& pass, const scene::Frame& frame);
   void bindViews(const scene::Frame& frame);
   void finish(uint32_t slotIndex);
@@ -168,8 +168,8 @@ void Executor::Impl::emitBarriers(const BarrierBatch& batch) {
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
     barrier.srcStageMask = b.srcStage;
     barrier.srcAccessMask = b.srcAccess;
-    // What the memory's last occupant wrote may have been flushed levels ago. Naming it again costs nothing
-    // and lets validation follow, which takes an overlap for one resource.
+    // The writes of the memory's last occupant may have been flushed many levels ago. Naming them again costs nothing
+    // and helps the validation layer, which takes overlapping resources for one.
     if (b.oldLayout == VK_IMAGE_LAYOUT_UNDEFINED) barrier.srcAccessMask |= VK_ACCESS_2_MEMORY_WRITE_BIT;
     barrier.dstStageMask = b.dstStage;
     barrier.dstAccessMask = b.dstAccess;
@@ -219,8 +219,8 @@ std::optional<double> Executor::Impl::runHostPass(FrameSlot& slot, PassInstance&
 
 void Executor::Impl::timestamp() { timestamps->write(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT); }
 
-// Lavapipe takes a timestamp at the next flush, but dispatches at once: without a flush in between (an empty
-// barrier is one) a pass of dispatches alone would start after its own work.
+// Lavapipe takes a timestamp at the next flush but executes dispatches at once. Without a flush in between (an empty
+// barrier causes one), a pass that only dispatches would appear to start after its own work.
 void Executor::Impl::flushTimestamp() {
   if (!device.isCpu()) return;
   const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
@@ -266,7 +266,7 @@ bool Executor::Impl::isFinished(uint32_t slotIndex) const {
   return vkGetFenceStatus(device.handle(), slots[slotIndex].fence) == VK_SUCCESS;
 }
 
-// Waits for the slot's frame and keeps what it brought.
+// Waits for the slot's frame and keeps its results.
 void Executor::Impl::finish(uint32_t slotIndex) {
   FrameSlot& slot = slots[slotIndex];
   gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a frame");

@@ -1,4 +1,4 @@
-// Internal to the executor: what passes, kernels and resources look like while a plan runs.
+// Internal to the executor: the state of passes, kernels and resources while a plan runs.
 #pragma once
 
 #include <array>
@@ -18,14 +18,13 @@
 
 namespace fovea::graph {
 
-// The memory behind one BoundResource. History has two copies that change places every frame; others use [0]
-// only.
+// The memory behind one BoundResource. A history resource has two copies that swap every frame; others use only [0].
 struct PhysicalResource {
   std::array<gpu::Image, 2> images;
   std::array<gpu::Buffer, 2> buffers;
 };
 
-// Mapped memory through which a host pass reads or writes one of its resources; one a frame in flight.
+// Mapped memory through which a host pass reads or writes one of its resources; one buffer per frame in flight.
 struct HostStaging {
   std::vector<gpu::Buffer> slots;
 };
@@ -37,7 +36,7 @@ struct StringHash {
 template <class T>
 using NameMap = std::unordered_map<std::string, T, StringHash, std::equal_to<>>;
 
-// What every pass of one executor shares.
+// State that all passes of an executor share.
 struct ExecutorState {
   gpu::Device* device = nullptr;
   const Plan* plan = nullptr;
@@ -48,7 +47,7 @@ struct ExecutorState {
   std::vector<VkDeviceMemory> heaps;
   HostProgress hostProgress;
 
-  // This frame.
+  // State of the current frame.
   VkDescriptorSet sharedSet = VK_NULL_HANDLE;
   uint32_t slot = 0;
   uint32_t parity = 0;
@@ -83,7 +82,7 @@ struct KernelState {
   gpu::Pipeline pipeline;
   std::vector<KernelBinding> bindings;
   std::vector<KernelConstant> constants;
-  // Set by Commands::bind and ::range for the command being put together.
+  // Set by Commands::bind and Commands::range for the command under construction.
   struct Override {
     uint32_t binding = kNone;
     VkImageView view = VK_NULL_HANDLE;
@@ -91,7 +90,7 @@ struct KernelState {
     uint64_t offset = 0, range = VK_WHOLE_SIZE;
   };
   std::vector<Override> overrides;
-  std::vector<Attachment> covers;  // what a full-screen kernel writes
+  std::vector<Attachment> covers;  // attachments that a full-screen kernel writes
 };
 
 struct PassInstance {
@@ -99,15 +98,15 @@ struct PassInstance {
   const BoundPass* bound = nullptr;
   uint32_t index = 0;  // in BoundGraph::passes
   std::unique_ptr<Pass> pass;
-  NameMap<uint32_t> accessByPath;    // "radiance", "gbuffer.position"
-  NameMap<uint32_t> accessByShader;  // "radiance", "gbufferPosition"
+  NameMap<uint32_t> accessByPath;    // "radiance", "surface.position"
+  NameMap<uint32_t> accessByShader;  // "radiance", "surfacePosition"
   NameMap<uint32_t> counterByName;
   std::deque<KernelState> kernels;    // stable addresses
   std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
-  std::vector<HostStaging> staging;  // host passes: one an access
-  uint32_t viewIndex = 0;            // into Frame::views, this frame
+  std::vector<HostStaging> staging;  // host passes: one per access
+  uint32_t viewIndex = 0;            // index into Frame::views, this frame
   uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
 
   PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation);
@@ -117,17 +116,17 @@ struct PassInstance {
   std::vector<std::string> paths() const;
 };
 
-// memory.cpp: everything a plan needs on the device.
+// Defined in memory.cpp: everything that a plan needs on the device.
 gpu::BufferDesc bufferDesc(const BoundResource& resource);
 gpu::ImageDesc imageDesc(const BoundResource& resource);
 void allocateResources(ExecutorState& state);
 void freeResources(ExecutorState& state);
-uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, all layers
-// Zeroes kept and history resources whose lifetime is at least `view` (all of them when `scene`), leaving
-// images in the layout the plan expects at the start of a frame.
+uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, each with all layers
+// Zeroes kept and history resources, those of the scene's lifetime only if `scene`. Leaves images in the layout that
+// the plan expects at the start of a frame.
 void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene);
 VkImageSubresourceRange wholeImage(const gpu::Image& image);
-// Copies between an image (all mips, all layers) and a tightly packed buffer.
+// Regions that copy between an image (all mips and layers) and a tightly packed buffer.
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image);
 
 }  // namespace fovea::graph

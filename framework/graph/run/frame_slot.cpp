@@ -20,7 +20,7 @@ uint32_t outputResource(const BoundGraph& graph, const std::string& name) {
               nearest.empty() ? "" : "did you mean `" + nearest + "`?");
 }
 
-// A segment for the start and one for each host pass that has to wait for the GPU.
+// One segment for the start, and one for each host pass that has to wait for the GPU.
 uint32_t segmentCount(const PassInstances& instances) {
   return uint32_t(1 + std::count_if(instances.begin(), instances.end(), [](const auto& instance) {
                     const BoundPass& pass = *instance->bound;

@@ -23,7 +23,6 @@ const char* kindName(gpu::BindingKind kind) {
     case gpu::BindingKind::StorageTexelBuffer:
       return "a storage texel buffer";
     case gpu::BindingKind::SampledImage:
-      return "a sampled image";
     case gpu::BindingKind::CombinedImageSampler:
       return "a sampled image";
     case gpu::BindingKind::StorageImage:
@@ -34,7 +33,7 @@ const char* kindName(gpu::BindingKind kind) {
   return "unknown";
 }
 
-// The usage a port must declare for a shader to bind it this way.
+// The usage that a port must declare for a shader to bind it in this way.
 Usage requiredUsage(const gpu::ReflectedBinding& b) {
   switch (b.kind) {
     case gpu::BindingKind::UniformBuffer:
@@ -104,7 +103,7 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
   return binding;
 }
 
-// A block without an instance name is known by the block's own, which starts with a capital: `buffer Total {...};`.
+// A block without an instance name goes by the name of the block, which starts with a capital: `buffer Total {...};`.
 std::string portSpelling(const std::string& binding) {
   std::string name = binding;
   if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
@@ -132,7 +131,8 @@ KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, gpu:
     binding.source = KernelBinding::Source::Counters;
     return binding;
   }
-  // Bound by hand in record(): an image view of one mip level, say. Only checked when the command is flushed.
+  // Bound by hand in record(), for instance as an image view of one mip level; checked only
+  // when the command is flushed.
   binding.source = KernelBinding::Source::Manual;
   if (b.kind == gpu::BindingKind::CombinedImageSampler)
     binding.sampler =
@@ -166,7 +166,7 @@ KernelState& makeKernel(PassInstance& pass, std::string name, gpu::Pipeline pipe
   return kernel;
 }
 
-// A parameter as the 32-bit word its constant wants; a choice is its index.
+// A parameter as the 32-bit word that its constant expects; a choice is represented by its index.
 uint32_t parameterWord(const PassInstance& pass, const KernelConstant& constant) {
   const ParameterSpec& spec = pass.bound->declaration->parameters[constant.parameter];
   const Parameters& p = pass.bound->parameters;
@@ -311,7 +311,8 @@ static void fillImage(const KernelBinding& b, VkImageView view, Descriptor& d) {
                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
-// How a texel buffer is read: elements of whole 16 bytes as four components a texel, of 8 bytes as two, else one.
+// The texel format of a buffer: four components per texel if its stride is a multiple of 16 bytes, two if it is a
+// multiple of 8, otherwise one.
 static VkFormat texelFormat(uint32_t stride, bool integer) {
   if (stride % 16 == 0) return integer ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
   if (stride % 8 == 0) return integer ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32_SFLOAT;
@@ -369,13 +370,13 @@ void Commands::checkConstants() const {
 }
 
 void Commands::flush() {
-  constexpr size_t kMaxBindings = 32;  // what every device with push descriptors can take
+  constexpr size_t kMaxBindings = 32;  // the number that every device with push descriptors supports
   const size_t count = kernel_.bindings.size();
   if (count > kMaxBindings)
     throw Error(ExitCode::Internal, "shader " + kernel_.name + " has more than 32 bindings in set 0");
   checkConstants();
   std::array<Descriptor, kMaxBindings> descriptors;
-  std::array<VkWriteDescriptorSet, kMaxBindings> writes;
+  std::array<VkWriteDescriptorSet, kMaxBindings> writes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (uint32_t i = 0; i < count; ++i) {
     fillDescriptor(context_.pass_, kernel_, i, descriptors[i]);
     writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};

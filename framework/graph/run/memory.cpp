@@ -1,4 +1,4 @@
-// Device memory of a plan: aliased heaps for transients, memory of their own for everything else.
+// Device memory of a plan: aliased heaps for transient resources, separate memory for all others.
 #include <algorithm>
 
 #include "fovea/error.h"
@@ -100,7 +100,7 @@ uint64_t resourceBytes(const ResourceDesc& d) {
 gpu::BufferDesc bufferDesc(const BoundResource& resource) {
   gpu::BufferDesc desc;
   desc.name = resource.name;
-  // Never empty, and a multiple of 4, so that vkCmdFillBuffer reaches all of it.
+  // The size is never 0 and always a multiple of 4, so that vkCmdFillBuffer reaches the whole buffer.
   desc.bytes = std::max<uint64_t>(16, (resourceBytes(resource.desc) + 3) / 4 * 4);
   desc.usage = kShaderBufferUsage;
   if (has(resource.usage, Usage::Uniform)) desc.usage |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;

@@ -16,7 +16,7 @@ using namespace checker;
 
 struct UsageRule {
   Usage usage;
-  VkPipelineStageFlags2 stages;  // 0: the shader stages of the pass
+  VkPipelineStageFlags2 stages;  // 0 means the shader stages of the pass
   VkAccessFlags2 read, write;
   std::vector<VkImageLayout> layouts;
 };
@@ -94,11 +94,11 @@ std::vector<Need> needsOf(PassKind kind, const Access& access) {
 
 // ---- Memory ------------------------------------------------------------------------------------------
 
-// What a piece of memory holds.
+// The contents of a piece of memory.
 struct Contents {
   bool valid = false;
   uint32_t version = 0;
-  int64_t frame = -1;  // -1: as it was zeroed or uploaded before the first frame
+  int64_t frame = -1;  // -1 means as zeroed or uploaded before the first frame
 };
 
 struct Copy {
@@ -107,7 +107,7 @@ struct Copy {
   VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   std::vector<Event> events;
   std::vector<uint32_t> overlaps;  // other copies in the same memory
-  int64_t takenInFrame = -1;       // transient: when its memory was last taken
+  int64_t takenInFrame = -1;       // transient: the frame in which its memory was last taken
 };
 
 class Checker {
@@ -176,7 +176,7 @@ void Checker::checkPasses() {
     if (runs[p] != (plan_.passLive[p] ? 1u : 0u))
       problem("pass `{}` runs {} times but is {}", graph_.passes[p].name, runs[p],
               plan_.passLive[p] ? "live" : "culled");
-  // Nothing that matters may be culled.
+  // Nothing that has an effect may be culled.
   for (size_t p = 0; p < runs.size(); ++p) {
     bool matters = graph_.passes[p].declaration->sideEffects;
     for (const Access& a : graph_.passes[p].accesses) {
@@ -259,7 +259,7 @@ void Checker::checkStart() {
 
 void Checker::playBarriers(const BarrierBatch& batch) {
   const Scope all{stageSet(batch.srcStage), stageSet(batch.dstStage), batch.srcAccess, batch.dstAccess};
-  // The barriers of one command do not wait for each other: look at all before anything changes.
+  // The barriers of one command do not wait for each other, so all are examined before anything changes.
   for (const ImageBarrier& b : batch.images) playTransition(b, batch);
   for (Copy& copy : copies_)
     for (Event& event : copy.events) applyBarrier(event, all);
@@ -267,7 +267,7 @@ void Checker::playBarriers(const BarrierBatch& batch) {
     const Scope scope{stageSet(b.srcStage), stageSet(b.dstStage), b.srcAccess, b.dstAccess};
     Copy& copy = copyOf(b.resource, b.previous);
     copy.layout = b.newLayout;
-    // The change of layout has waited for everything before it; now everything waits for it.
+    // The layout change has waited for everything before it; now everything waits for it.
     Event event;
     event.write = event.available = true;
     event.after = scope.dst;
@@ -314,7 +314,7 @@ void Checker::playTransition(const ImageBarrier& b, const BarrierBatch& batch) {
 
 void Checker::playPass(uint32_t p) {
   const BoundPass& pass = graph_.passes[p];
-  // The ports of one pass that reach the same copy are one access to the outside.
+  // Ports of one pass that refer to the same copy are one access to the outside.
   std::vector<uint32_t> order;
   for (const Access& a : pass.accesses) {
     const uint32_t copy = a.resource * 2 + (a.previous ? 1 : 0);
@@ -358,11 +358,11 @@ void Checker::touch(uint32_t p, Copy& copy, const std::vector<const Access*>& ac
     checkWaits(pass.name.c_str(), copy, copy.events, need);
     for (Event& event : eventsOf(need)) fresh.push_back(event);
   }
-  // A pass that declares only writes still discards nothing it updates in place: its writes must see what
-  // they change.
+  // A pass that declares only writes still discards nothing that it updates in place: its writes
+  // must see what they change.
   if (writes) {
     copy.contents = {true, made, frame_};
-    copy.events.clear();  // all were waited for: waiting for this write waits for them
+    copy.events.clear();  // all were waited for, so waiting for this write waits for them, too
   }
   copy.events.insert(copy.events.end(), fresh.begin(), fresh.end());
 }
@@ -381,7 +381,7 @@ void Checker::checkWaits(const char* who, const Copy& copy, const std::vector<Ev
   }
 }
 
-// The first write of a frame to a transient buffer: whatever else lived in this memory is gone.
+// The first write of a frame to a transient buffer invalidates everything else that used this memory.
 void Checker::take(const char* who, Copy& copy, const std::vector<Need>& needs) {
   if (image(copy.resource)) problem("`{}` uses `{}` before it has a layout", who, name(copy.resource));
   copy.takenInFrame = frame_;
@@ -411,7 +411,7 @@ void Checker::checkContents(uint32_t p, const Copy& copy, const Access& access) 
   const Contents& is = copy.contents;
   Contents should{true, access.writes ? access.version - 1 : access.version, frame_};
   if (access.previous || should.version == 0) {
-    // Last frame's last version, or what was there before the first frame.
+    // The last version of the last frame, or what was there before the first frame.
     should.frame = frame_ - 1;
     should.version = frame_ == 0 ? 0 : lastVersion_[r];
     if (lastVersion_[r] == 0) should = {true, 0, -1};

@@ -1,4 +1,4 @@
-// Inside the checker: accesses that have happened, and what barriers have done to them since.
+// Internal to the checker: past accesses, and what barriers have done to them since.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace fovea::graph::checker {
 
-// Single stages, so that "all stages are covered" is a plain mask test.
+// Single stages, so that testing whether all stages are covered is a plain mask test.
 inline constexpr VkPipelineStageFlags2 kStages[] = {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                                                     VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                                                     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
@@ -28,14 +28,14 @@ inline constexpr int kStageCount = static_cast<int>(std::size(kStages));
 using StageSet = uint32_t;
 StageSet stageSet(VkPipelineStageFlags2 stages);
 
-// One access in one stage that later accesses may have to wait for.
+// An access in one stage that later accesses may have to wait for.
 struct Event {
-  StageSet stage = 0;  // one bit; 0: a change of layout
+  StageSet stage = 0;  // a single bit; 0 for a layout change
   VkAccessFlags2 access = 0;
   bool write = false;
-  bool available = false;                          // writes: flushed
-  StageSet after = 0;                              // what is ordered after it
-  std::array<VkAccessFlags2, kStageCount> seen{};  // writes: what sees it
+  bool available = false;                          // writes: flushed by a barrier
+  StageSet after = 0;                              // stages that are ordered after it
+  std::array<VkAccessFlags2, kStageCount> seen{};  // writes: accesses that see it, per stage
 };
 
 struct Scope {
@@ -43,9 +43,9 @@ struct Scope {
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
 };
 
-// Is the event in the barrier's first scope, itself or through an earlier barrier?
+// Whether the event is in the first scope of the barrier, directly or through an earlier barrier.
 bool inFirstScope(const Event& event, const Scope& scope);
-// Would its write be available after this barrier?
+// Whether the event's write is available after this barrier.
 bool flushed(const Event& event, const Scope& scope);
 void applyBarrier(Event& event, const Scope& scope);
 
@@ -54,10 +54,10 @@ struct Need {
   StageSet stages = 0;
   VkAccessFlags2 access = 0;
   bool write = false;
-  bool contents = false;  // reads what was there before, not only what the pass itself has written
+  bool contents = false;  // reads what was there before the pass, not only what it has written itself
 };
 
-// Everything that `need` waits for: ordered in all its stages; what it sees: visible in all of them.
+// ordered() tells whether all stages of `need` wait for the event, visible() whether all of them see its write.
 bool ordered(const Event& event, const Need& need);
 bool visible(const Event& event, const Need& need);
 std::vector<Event> eventsOf(const Need& need);

@@ -16,7 +16,7 @@ void NullDevice::play(const BarrierBatch& batch) {
   }
   for (const ImageBarrier& barrier : batch.images) {
     ++counters_.imageBarriers;
-    // The copies of a history resource change places every frame.
+    // The copies of a history resource swap every frame.
     const bool history = plan_.graph->resources[barrier.resource].history;
     const uint32_t copy =
         history ? static_cast<uint32_t>((counters_.frames + (barrier.previous ? 1 : 0)) % 2) : 0;

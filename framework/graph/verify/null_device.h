@@ -1,5 +1,5 @@
-// Replays plans without a device: what would be recorded, in order, and how much of it. Shows the executor's
-// order of things to tests, and to people who wonder what a graph does.
+// Replays plans without a device and logs which commands would be recorded, and in which order. Used by tests, and to
+// see what a graph does.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +26,13 @@ struct NullCounters {
 
 class NullDevice {
  public:
-  // `log`: keep every event, else only count.
+  // If `log` is false, events are counted but not kept.
   explicit NullDevice(const Plan& plan, bool log = true) : plan_(plan), log_(log) {}
 
   void frame();
   const std::vector<NullEvent>& events() const { return events_; }
   const NullCounters& counters() const { return counters_; }
-  // One line an event: "frame 0", "  barrier memory", "  barrier a.image[0]", "  pass blur".
+  // One line per event: "frame 0", "  barrier memory", "  barrier a.image[0]", "  pass blur".
   std::string print() const;
 
  private:

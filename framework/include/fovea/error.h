@@ -1,4 +1,4 @@
-// Errors as data: one type from the JSON parser to the command line.
+// Errors as data: one type serves everything from the JSON parser to the command line.
 #pragma once
 
 #include <exception>
@@ -22,7 +22,7 @@ enum class ExitCode : int {
   Interrupted = 130,  // Ctrl-C
 };
 
-// Where in a text file something stands. line and column count from 1; 0 means unknown.
+// A position in a text file. Line and column count from 1; 0 means unknown.
 struct SourceLocation {
   std::string file;
   int line = 0;
@@ -31,19 +31,20 @@ struct SourceLocation {
 
 enum class Severity { Note, Warning, Error };
 
-// One message to the user: what is wrong, where, and what to do about it.
+// A message to the user: what is wrong, where, and what to do about it.
 struct Diagnostic {
   Severity severity = Severity::Error;
   SourceLocation where;
-  std::string path;     // place inside the document, e.g. "passes.deferred.params.kernel"
-  std::string message;  // what is wrong, naming the thing and the limit
+  std::string path;     // place inside the document, e.g. "passes.blur.params.radius"
+  std::string message;  // what is wrong, naming the object and the limit
   std::string remedy;   // what the user can do; may be empty
 
-  // "file:12:7: error: message (at passes.deferred) - remedy"
+  // "file.json:12:7: error: message (at passes.blur)"; the remedy follows on a line of its own.
   std::string format() const;
 };
 
-// All messages of one phase. Phases append and go on, so that every mistake of a file is reported at once.
+// All messages of one phase. A phase adds its messages and continues, so that every mistake of a
+// file is reported at once.
 class Diagnostics {
  public:
   void add(Diagnostic d) { list_.push_back(std::move(d)); }
@@ -53,15 +54,15 @@ class Diagnostics {
                              std::string remedy = {});
   bool hasErrors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
-  std::string format() const;  // one line each
-  // Throws Error(code) when there is an error.
+  std::string format() const;  // one message per line
+  // Throws Error(code) if there is an error among the messages.
   void throwIfErrors(ExitCode code = ExitCode::BadInput) const;
 
  private:
   std::vector<Diagnostic> list_;
 };
 
-// The one exception type. what() is the formatted diagnostics.
+// The exception type of fovea. what() returns the formatted diagnostics.
 class Error : public std::exception {
  public:
   Error(ExitCode code, std::string message, std::string remedy = {});
@@ -76,7 +77,8 @@ class Error : public std::exception {
   std::string text_;
 };
 
-// The candidate nearest to `word` by edit distance, or "" when none is close enough to be a likely typo.
+// The candidate nearest to `word` by edit distance, or "" if none is close enough for `word`
+// to be a likely misspelling.
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace fovea

@@ -1,6 +1,6 @@
-// Graphs for programs: a graph file run over a scene on a device, frame after frame, and what comes out of it.
+// Runs a graph file over a scene on a device, frame after frame.
 //
-//   scene::Scene scene = scene::load("atrium", messages);
+//   scene::Scene scene = scene::load("my_scene.json", messages);
 //   graph::Session session("ir_1000", scene, {.size = {512, 512}, .set = {"vpl_count=500"}});
 //   graph::FrameResult frame = session.render(0);
 //   image::Image picture = session.picture(frame, "radiance");
@@ -28,20 +28,20 @@ struct Scene;
 
 namespace fovea::graph {
 
-// A resource with its sizes evaluated.
+// A resource whose sizes have been evaluated.
 struct ResourceDesc {
   ResourceKind kind = ResourceKind::Image;
   VkFormat format = VK_FORMAT_UNDEFINED;
   bool volume = false, array = false;
   uint32_t width = 1, height = 1, depth = 1, layers = 1, mips = 1;
   uint32_t stride = 0;
-  uint64_t count = 0;   // bytes = stride * count
-  std::string element;  // buffers
+  uint64_t count = 0;   // a buffer has stride * count bytes
+  std::string element;  // element type of a buffer
 };
 
-// Milliseconds. `gpuMs` lies between the timestamps around the pass; `cpuMs` is spent on recording it, or on executing
-// it if it is a host pass. While a host pass executes between two parts of a frame, the device waits for it, and it has
-// waited for the device: neither counts twice.
+// Times in milliseconds. `gpuMs` is the time between the timestamps around the pass; `cpuMs` is the time spent on
+// recording the pass or, for a host pass, on executing it. A host pass between two parts of a frame waits for the
+// device, and the device then waits for the pass; neither wait is counted.
 struct PassTiming {
   uint32_t pass = 0;  // index into the passes of the graph, in the order of the file; see Session::passName
   double gpuMs = 0, cpuMs = 0;
@@ -49,45 +49,46 @@ struct PassTiming {
 
 struct OutputData {
   ResourceDesc desc;
-  std::vector<std::byte> bytes;  // tightly packed, layer after layer, then further mips
+  std::vector<std::byte> bytes;  // tightly packed, layer after layer, then the further mips
 };
 
 struct FrameResult {
   uint64_t frame = 0;       // Frame::index
   double gpuMs = 0;         // from the first timestamp to the last
-  double animateMs = 0;     // the part of gpuMs that moves vertices, before the passes
-  double animateCpuMs = 0;  // the part of cpuMs that prepares this
+  double animateMs = 0;     // the part of gpuMs that moves vertices before the first pass
+  double animateCpuMs = 0;  // the part of cpuMs that prepares these vertices
   double cpuMs = 0;         // recording, and executing host passes
-  double wallMs = 0;        // since the previous frame was finished; for the first one since it was submitted
+  double wallMs = 0;        // since the previous frame finished or, for the first one, since submission
   std::vector<PassTiming> passes;                        // in order of execution
-  std::vector<std::pair<std::string, double>> counters;  // "deferred.shaded_pixels"
-  std::map<std::string, OutputData> outputs;             // only where they were asked for
+  std::vector<std::pair<std::string, double>> counters;  // "blur.shaded_pixels"
+  std::map<std::string, OutputData> outputs;             // only those that were requested
 };
 
-// Loads a shared library whose FOVEA_PASS registrations join the passes that the process knows. Its shaders are looked up
-// in a folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+// Loads a shared library whose FOVEA_PASS registrations add pass types to the process. Its shaders are looked up in a
+// folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
 void loadPlugin(const std::filesystem::path& file);
 
 struct SessionOptions {
-  std::string device;         // number or part of the name; "": the best one
+  std::string device;         // number or part of the name; "" selects the best device
   bool validation = false;    // run under the Vulkan validation layers
   glm::uvec2 size{512, 512};  // pixels
   uint32_t seed = 1;
-  double frameRate = 42;             // frames a second of the scene's time
-  std::vector<std::string> set;      // "vpl_count=500", "deferred.kernel=disc"
-  std::vector<std::string> outputs;  // what is read back; empty: every output of the graph
+  double frameRate = 42;             // frames per second of scene time
+  std::vector<std::string> set;      // parameter values: "vpl_count=500", "blur.radius=3"
+  std::vector<std::string> outputs;  // graph outputs to read back; empty for all of them
 };
 
 class Session {
  public:
-  // `graph` is a file or a bare name. The scene must outlive the session. Throws Error(BadInput) with every mistake of the
-  // graph, Error(NoDevice), Error(OutOfMemory).
+  // `graph` is a file or a bare name. The scene must outlive the session. Throws Error(BadInput) with every mistake
+  // of the graph, Error(NoDevice) or Error(OutOfMemory).
   Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options = {});
   ~Session();
 
-  // Renders frame `index` of the scene's time and waits for it.
+  // Renders frame `index` of the scene's time and waits until it is finished.
   FrameResult render(uint64_t index);
-  // A floating-point or normalised output as a picture. Throws Error(Usage) on a name that was not read back.
+  // A floating-point or normalised output as an image. Throws Error(Usage) for an output that was not read back and
+  // Error(Internal) for an integer format.
   image::Image picture(const FrameResult& frame, const std::string& output) const;
   const std::string& passName(uint32_t pass) const;
   const Diagnostics& warnings() const;

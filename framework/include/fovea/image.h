@@ -1,4 +1,4 @@
-// Images in memory and in files. OpenImageIO, where it is built in, stays behind this interface.
+// Images in memory and in files. The interface does not depend on the image library that fovea was built with.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace fovea::image {
 
-// Float channels, interleaved, rows from the top.
+// Interleaved float channels; rows run from top to bottom.
 struct Image {
   uint32_t width = 0, height = 0, channels = 0;
   std::vector<float> data;  // width * height * channels
@@ -31,32 +31,36 @@ struct File {
   const Image* find(std::string_view layer) const;
 };
 
-// 8-bit RGBA, rows from the top; for glTF textures.
+// 8-bit RGBA for glTF textures; rows run from top to bottom.
 struct Image8 {
   uint32_t width = 0, height = 0;
   std::vector<uint8_t> rgba;
 };
 
-// Which extensions can be written / read in this build ("exr", "png", ...).
+// File extensions that this build can read and write ("exr", "png", ...).
 std::vector<std::string> writableExtensions();
 
-// By extension. EXR: all layers, 32-bit float, channel names "layer.R"; PFM: one 1- or 3-channel layer.
-// PNG: one layer that is display-referred already (values 0..1 become 8 bits, rounded, no transfer curve applied); a
-// pixel with a NaN becomes magenta. EXR and PFM keep NaN and infinity. Layers of one file have one size.
-// EXR and PNG hold the metadata under "fovea.<key>" (UTF-8); entries with an empty value are left out.
-// Written under a temporary name, read back, compared, renamed: an existing file survives every failure.
-// Throws Error(CannotWrite) naming file and reason, Error(BadInput) for an unknown extension.
+// Writes an image in the format that its extension names. All layers of a file have the same size.
+// - EXR holds any number of layers as 32-bit floats, in channels named "layer.R".
+// - PFM holds one layer of 1 or 3 channels.
+// - PNG holds one layer that is already display-referred: values from 0 to 1 are rounded to 8 bits without a transfer
+//   curve, and a pixel that contains NaN becomes magenta.
+// EXR and PFM preserve NaN and infinity. EXR and PNG store metadata under "fovea.<key>" (UTF-8) and omit entries
+// with an empty value. The file is written under a temporary name, read back, compared and renamed, so that an
+// existing file survives every failure. Throws Error(CannotWrite) naming the file and the reason, and
+// Error(BadInput) for an unknown extension.
 void write(const std::filesystem::path& file, const std::vector<Layer>& layers,
            const Metadata& metadata = {});
-// Checks early that a file could be written there: extension known, folder exists and is writable.
+// Checks in advance that a file can be written: the extension is known, and the folder exists and is writable.
 void checkWritable(const std::filesystem::path& file);
 
-// Throws Error(BadInput) naming file and reason. PNG and JPEG come back as stored (no transfer curve removed).
+// These throw Error(BadInput) naming the file and the reason. PNG and JPEG values are returned as stored, without
+// removing a transfer curve.
 File read(const std::filesystem::path& file);
 Image8 read8(const std::filesystem::path& file);
 Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name);  // a PNG or JPEG in memory
 
-// sRGB transfer function (IEC 61966-2-1), scalar, input clamped to [0, 1].
+// The sRGB transfer function (IEC 61966-2-1) of a single value. The input is clamped to [0, 1].
 float srgbEncode(float linear);
 float srgbDecode(float encoded);
 

@@ -1,8 +1,10 @@
-// A pass: a declaration (data), kernels made once, and commands recorded every frame.
+// A pass consists of a declaration (plain data), kernels that are built once per plan, and commands that
+// are recorded every frame.
 //
-// The declaration says what a pass is, once: ports, parameters, counters. Validation, schema, help, allocation, barriers
-// and shader bindings all follow from it. Members that return a type of namespace gpu are meant for the project's own
-// passes; a plug-in does without them.
+// The declaration states once which resources the pass reads and writes and which parameters and counters it
+// has. Validation, the JSON schema, help texts, memory allocation, barriers and shader bindings are all derived
+// from it. Functions whose signatures name types of namespace gpu are meant for the project's own passes;
+// plug-ins do not need them.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -29,7 +31,7 @@ class Pipeline;
 }  // namespace fovea::gpu
 
 namespace fovea::scene {
-struct Frame;  // fovea/scene.h: views, gaze, lights, time and the scene itself
+struct Frame;  // defined in fovea/scene.h
 struct View;
 }  // namespace fovea::scene
 
@@ -41,7 +43,7 @@ using Value = std::variant<bool, int64_t, double, std::string>;
 
 struct ParameterSpec {
   enum class Type { Bool, Int, Real, Choice, Text };
-  std::string name;  // snake_case; a shader sees it as camelCase
+  std::string name;  // snake_case in JSON; shaders see it in camelCase
   std::string doc;
   Type type = Type::Real;
   Value defaultValue;
@@ -57,19 +59,19 @@ ParameterSpec flag(bool defaultValue);
 ParameterSpec choice(std::string defaultValue, std::vector<std::string> choices);
 ParameterSpec text(std::string defaultValue);
 
-// The values of one pass instance, in the order of its declaration. Asking for an unknown name or a wrong type is a
-// defect of the pass and throws Error(Internal).
+// The parameter values of one pass instance, in the order of its declaration. Asking for an unknown name or for a
+// value of the wrong type is a defect of the pass and throws Error(Internal).
 class Parameters {
  public:
   Parameters() = default;
-  // One value for each of `specs`, from `first` on, in an array that the passes of a graph share and the graph owns:
-  // thousands of small ones would cost more than what is in them.
+  // Takes one value per entry of `specs` from `all`, starting at `first`. `all` holds the values of every pass of a
+  // graph and is owned by the graph, because thousands of small arrays would cost more than their contents.
   Parameters(const std::vector<ParameterSpec>* specs, const std::vector<Value>* all, size_t first)
       : specs_(specs), all_(all), first_(first) {}
   int64_t integer(std::string_view name) const;
-  double real(std::string_view name) const;  // an integer converts
+  double real(std::string_view name) const;  // integers are converted
   bool flag(std::string_view name) const;
-  const std::string& text(std::string_view name) const;  // text and choice
+  const std::string& text(std::string_view name) const;  // for both text and choice
   const Value* find(std::string_view name) const;
   const std::vector<ParameterSpec>& specs() const { return *specs_; }
   std::span<const Value> values() const {
@@ -84,7 +86,8 @@ class Parameters {
 
 // ---- Sizes -----------------------------------------------------------------------------------------------------
 
-// Integer expression over the view's size, parameters and the sizes of input ports; evaluated when a graph is bound.
+// An integer expression over the size of the view, parameters and the sizes of input ports. It is evaluated when a
+// graph is bound.
 class SizeExpr {
  public:
   enum class Op : uint8_t {
@@ -107,13 +110,13 @@ class SizeExpr {
   struct Term {
     Op op;
     int64_t constant = 0;
-    std::string name;  // parameter, environment quantity, or "port" / "port.member"
+    std::string name;  // name of a parameter or environment quantity, or "port" or "port.member"
   };
   SizeExpr() : SizeExpr(1) {}
   SizeExpr(int64_t constant) : terms_{{Op::Constant, constant, {}}} {}  // NOLINT: implicit on purpose
   SizeExpr(Op leaf, std::string name) : terms_{{leaf, 0, std::move(name)}} {}
   SizeExpr(const SizeExpr& a, const SizeExpr& b, Op op);
-  const std::vector<Term>& terms() const { return terms_; }  // postfix order
+  const std::vector<Term>& terms() const { return terms_; }  // in postfix order
   std::string print() const;                                 // for help texts, e.g. "view.width / 4"
 
  private:
@@ -132,8 +135,8 @@ SizeExpr widthOf(std::string port);
 SizeExpr heightOf(std::string port);
 SizeExpr layersOf(std::string port);
 SizeExpr countOf(std::string port);
-// A number about the scene, from Environment::quantities: "scene.triangles", "scene.static_triangles", "scene.vertices",
-// "scene.shadow_layers", "scene.lights". At least 1.
+// A number that describes the scene: "scene.triangles", "scene.static_triangles", "scene.vertices",
+// "scene.shadow_layers" or "scene.lights". It is at least 1.
 SizeExpr environment(std::string name);
 
 // ---- Resources -------------------------------------------------------------------------------------------------
@@ -142,28 +145,28 @@ enum class ResourceKind : uint8_t { Image, Buffer };
 
 struct ResourceSpec {
   ResourceKind kind = ResourceKind::Image;
-  // Images. Format VK_FORMAT_UNDEFINED on an input: any format with floating-point reads.
+  // Images. On an input, VK_FORMAT_UNDEFINED accepts any format with floating-point reads.
   VkFormat format = VK_FORMAT_UNDEFINED;
-  bool volume = false;  // 3D
-  bool array = false;   // layers matter, also when there is one
+  bool volume = false;  // 3D image
+  bool array = false;   // array image, even with a single layer
   SizeExpr width, height, depth, layers, mips;
-  // Buffers: `count` elements of `stride` bytes. The element name is the type that ports are matched by.
+  // Buffers of `count` elements of `stride` bytes each. Ports are matched by the name of the element type.
   std::string element;
   uint32_t stride = 0;
   SizeExpr count;
 };
 
 ResourceSpec image2D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr mips = 1);
-ResourceSpec image2D(
-    VkFormat format = VK_FORMAT_UNDEFINED);  // inputs; an output of this form has the view's size
+// For inputs. An output declared this way has the size of the view.
+ResourceSpec image2D(VkFormat format = VK_FORMAT_UNDEFINED);
 ResourceSpec image2DArray(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr layers);
 ResourceSpec image3D(VkFormat format, SizeExpr width, SizeExpr height, SizeExpr depth, SizeExpr mips = 1);
 ResourceSpec buffer(std::string element, uint32_t stride, SizeExpr count = 1);
 
-// How a pass touches a resource. Stages follow from the pass kind.
+// How a pass accesses a resource. The pipeline stages follow from the kind of pass.
 enum class Usage : uint32_t {
   None = 0,
-  Sampled = 1 << 0,      // texelFetch or sampler
+  Sampled = 1 << 0,      // read with texelFetch or through a sampler
   StorageRead = 1 << 1,  // storage image or buffer
   StorageWrite = 1 << 2,
   ColorAttachment = 1 << 3,
@@ -173,7 +176,7 @@ enum class Usage : uint32_t {
   Indirect = 1 << 7,
   TransferRead = 1 << 8,
   TransferWrite = 1 << 9,
-  HostRead = 1 << 10,  // host passes
+  HostRead = 1 << 10,  // host passes only
   HostWrite = 1 << 11,
 };
 constexpr Usage operator|(Usage a, Usage b) { return Usage(uint32_t(a) | uint32_t(b)); }
@@ -184,12 +187,12 @@ constexpr bool any(Usage a, Usage b) { return (uint32_t(a) & uint32_t(b)) != 0; 
 enum class Direction : uint8_t {
   Input,
   Output,
-  InOut,  // wired like an input; the pass updates it in place and offers the new version under the same name
-  Scratch,  // an output nobody can wire: memory of the pass for one frame
+  InOut,    // wired like an input, updated in place and offered as a new version under the same name
+  Scratch,  // memory of the pass for one frame; cannot be wired
 };
 
 enum class Lifetime : uint8_t {
-  Transient,  // this frame only; its memory is shared with others
+  Transient,  // for one frame; its memory is shared with other resources
   View,       // kept from frame to frame; zeroed at the first frame, on a camera cut and on a resize
   Scene,      // kept while the scene stays loaded; zeroed at the first frame
 };
@@ -205,12 +208,12 @@ struct PortSpec {
   std::string name;
   std::string doc;
   Direction direction = Direction::Input;
-  std::string bundle;  // type name of the bundle, "" for a plain port
+  std::string bundle;  // type name of the bundle; "" for a plain port
   std::vector<MemberSpec> members;
-  Lifetime lifetime = Lifetime::Transient;  // outputs and scratch
-  bool optional = false;                    // inputs
+  Lifetime lifetime = Lifetime::Transient;  // for outputs and scratch
+  bool optional = false;                    // for inputs
 
-  // In place, so that declarations read as a chain: d.output(...).keep(Lifetime::View)
+  // These change the port in place, so that calls can be chained: d.output(...).keep(Lifetime::View)
   PortSpec& keep(Lifetime l) {
     lifetime = l;
     return *this;
@@ -231,10 +234,10 @@ struct PassDeclaration {
   PassDeclaration(std::string typeName, std::string docText, PassKind passKind = PassKind::Compute)
       : type(std::move(typeName)), doc(std::move(docText)), kind(passKind) {}
 
-  std::string type;  // "shadow-atlas": the folder's name
+  std::string type;  // name of the pass type and of its folder, e.g. "edge-filter"
   std::string doc;   // one line
   PassKind kind;
-  bool usesView = false;     // looks through a camera: takes `view` in the graph file
+  bool usesView = false;     // renders from a camera, which `view` in the graph file selects
   bool sideEffects = false;  // never culled
   std::vector<PortSpec> ports;
   std::vector<ParameterSpec> parameters;
@@ -259,19 +262,19 @@ struct PassDeclaration {
 
 MemberSpec member(std::string name, ResourceSpec resource, Usage usage, std::string doc = {});
 
-// The one naming rule between JSON and shaders: snake_case and dotted paths become camelCase.
-// "gbuffer.position" -> "gbufferPosition", "vpl_count" -> "vplCount".
+// The only naming rule between JSON and shaders: snake_case and dotted paths become camelCase.
+// "surface.position" -> "surfacePosition", "vpl_count" -> "vplCount".
 std::string shaderName(std::string_view path);
 
 // ---- Kernels and contexts --------------------------------------------------------------------------------------
 
-// Macros that a shader is compiled with.
+// Preprocessor macros with which a shader is compiled.
 using Defines = std::map<std::string, std::string>;
 
 struct PassInstance;  // private to the executor
 struct KernelState;
 
-// A pipeline with its bindings resolved by name against the pass's ports. Cheap to copy.
+// A pipeline whose bindings are resolved by name against the ports of the pass. Cheap to copy.
 class Kernel {
  public:
   explicit operator bool() const { return state_ != nullptr; }
@@ -287,7 +290,7 @@ struct GraphicsKernelDesc {
   std::string vertex, fragment;  // shader files; fragment may be empty
   Defines defines;
   std::vector<std::string> colors;  // ports or members, in the order of the fragment outputs
-  std::string depth;                // port or member, "" for none
+  std::string depth;                // port or member; "" for none
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   VkCompareOp depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
@@ -296,25 +299,27 @@ struct GraphicsKernelDesc {
   float depthBiasConstant = 0, depthBiasSlope = 0;
 };
 
-// Once per plan: make kernels here, so that the frame loop compiles nothing.
+// Passed to Pass::prepare() once per plan. All kernels are built here, so that the frame loop compiles nothing.
 class PrepareContext {
  public:
   explicit PrepareContext(PassInstance& pass) : pass_(pass) {}
   gpu::Device& device() const;
   const Parameters& parameters() const;
-  bool has(std::string_view port) const;  // an optional input is wired
-  // An output, or a member of one, is read by another pass, in this frame or the next, or is an output of the graph.
-  // Nothing need be written to one that is not.
+  bool has(std::string_view port) const;  // whether an optional input is wired
+  // Whether an output, or a member of one, is read by another pass or in the next frame, or is an output of the
+  // graph. If it is not, the pass need not write it.
   bool isRead(std::string_view path) const;
   VkExtent3D extent(std::string_view port) const;
   uint32_t layers(std::string_view port) const;
-  uint64_t count(std::string_view port) const;  // elements of a buffer
-  // Every binding of set 0 must be a port ("radiance"), a member ("gbuffer.position" as gbufferPosition), `counters`,
-  // or be bound by hand in record(). Throws Error(BadInput) naming shader, binding and the nearest port.
+  uint64_t count(std::string_view port) const;  // number of elements in a buffer
+  // Every binding of set 0 must be a port ("radiance"), a member ("surface.position", bound as surfacePosition), a
+  // sampler (linearClamp, linearRepeat, nearestClamp or nearestRepeat) or `counters`, or be bound by hand in
+  // record(). Throws Error(BadInput) naming the shader, the binding and, where one is similar, the nearest port.
   Kernel compute(const std::string& shader, Defines defines = {});
   Kernel graphics(const GraphicsKernelDesc& desc);
-  // A fragment shader that writes every pixel of images of one size (ports or members, Usage::ColorAttachment, in the
-  // order of its outputs). On a CPU device a store to an image costs several times as much as such an output.
+  // A fragment shader that writes every pixel of images of one size (ports or members declared with
+  // Usage::ColorAttachment, in the order of the shader's outputs). On a CPU device, a store to a storage image costs
+  // several times as much as such an output.
   Kernel fullscreen(const std::string& fragment, const std::vector<std::string>& colors,
                     Defines defines = {});
 
@@ -324,24 +329,26 @@ class PrepareContext {
 
 class RecordContext;
 
-// One dispatch or draw being put together: ctx.use(kernel).constant("count", n).dispatchThreads(n);
-// Push constants that carry the name of a parameter (camelCase), `frameIndex` or `seed` fill themselves.
-// A constant or binding that stays unset throws Error(Internal) naming it.
+// One dispatch or draw under construction:
+//   ctx.use(kernel).constant("count", n).dispatchThreads(n);
+// Push constants that bear the name of a parameter (in camelCase), `frameIndex` and `seed` are filled in
+// automatically. A push constant that is left unset throws Error(Internal) naming it, an unresolved binding
+// throws Error(BadInput).
 class Commands {
  public:
   template <class T>
   Commands& constant(std::string_view name, const T& value) {
     return constantBytes(name, &value, sizeof(T));
   }
-  Commands& bind(std::string_view name, VkImageView view);  // e.g. one mip level; layout as the port's
+  Commands& bind(std::string_view name, VkImageView view);  // e.g. one mip level, in the layout of the port
   Commands& bind(std::string_view name, const gpu::Buffer& buffer, uint64_t offset, uint64_t range);
-  // A page of a buffer port: for uniform buffers past the device's range.
+  // Binds part of a buffer port, for uniform buffers that exceed the device's maximum range.
   Commands& range(std::string_view port, uint64_t offset, uint64_t bytes);
   void dispatch(uint32_t groupsX, uint32_t groupsY = 1, uint32_t groupsZ = 1);
-  void dispatchThreads(uint32_t x, uint32_t y = 1, uint32_t z = 1);  // rounded up to whole groups
-  void dispatchOver(std::string_view imagePort);  // one thread a texel (and layer or slice)
+  void dispatchThreads(uint32_t x, uint32_t y = 1, uint32_t z = 1);  // rounded up to whole workgroups
+  void dispatchOver(std::string_view imagePort);  // one thread per texel of every layer or slice
   void dispatchIndirect(std::string_view bufferPort, uint64_t offset = 0);
-  void drawFullscreen();  // of PrepareContext::fullscreen
+  void drawFullscreen();  // for kernels made by PrepareContext::fullscreen
   void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstInstance = 0);
   void drawIndexed(VkBuffer indices32, uint32_t count, uint32_t first = 0, uint32_t instances = 1,
                    uint32_t firstInstance = 0);
@@ -356,7 +363,7 @@ class Commands {
   RecordContext& context_;
   KernelState& kernel_;
   std::byte constants_[128]{};
-  uint64_t constantsSet_ = 0;  // bit per member
+  uint64_t constantsSet_ = 0;  // one bit per constant
 };
 
 struct Attachment {
@@ -365,7 +372,7 @@ struct Attachment {
   VkClearValue clear{};
 };
 
-// Once per frame. All look-ups are by the names of the declaration.
+// Passed to Pass::record() once per frame. All look-ups use the names of the declaration.
 class RecordContext {
  public:
   RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame, uint64_t frameNumber);
@@ -373,29 +380,32 @@ class RecordContext {
   gpu::Device& device() const;
   const Parameters& parameters() const;
   const scene::Frame& frame() const { return frame_; }
-  const scene::View& view() const;  // the view the graph file gave this pass
+  const scene::View& view() const;  // the view that the graph file assigns to this pass
   uint64_t frameNumber() const { return frameNumber_; }
   bool has(std::string_view port) const;
   bool firstFrame() const;                         // kept and history resources were just zeroed
-  gpu::Image& image(std::string_view port) const;  // "radiance" or "gbuffer.position"
+  gpu::Image& image(std::string_view port) const;  // "radiance" or "surface.position"
   gpu::Buffer& buffer(std::string_view port) const;
   VkExtent3D extent(std::string_view port) const;
-  uint64_t count(std::string_view port) const;  // elements of a buffer
+  uint64_t count(std::string_view port) const;  // number of elements in a buffer
 
   Commands use(Kernel kernel);
-  // Dynamic rendering over whole images (all layers when `layers` > 1).
+  // Dynamic rendering into whole images, or into `area` of them, to which viewport and scissor are set. `layers` is
+  // the number of array layers.
   void render(const std::vector<Attachment>& colors, const Attachment* depth,
               const std::function<void()>& body, uint32_t layers = 1);
   void render(const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
               const std::function<void()>& body, uint32_t layers = 1);
-  void fill(std::string_view bufferPort, uint32_t word);  // TransferWrite; whole buffer
-  void clear(std::string_view imagePort,
-             VkClearColorValue value);  // TransferWrite or StorageWrite; whole image
-  // TransferRead to TransferWrite; whole colour images of one size and format, without mips.
+  void fill(std::string_view bufferPort, uint32_t word);  // whole buffer; needs TransferWrite
+  // Clears a whole image. Needs TransferWrite.
+  void clear(std::string_view imagePort, VkClearColorValue value);
+  // Copies whole colour images of equal size and format without mips. Needs TransferRead on the source and
+  // TransferWrite on the destination.
   void copy(std::string_view imageFrom, std::string_view imageTo);
-  // Between commands of this pass that depend on each other: everything before is visible to everything after.
+  // Separates commands of this pass that depend on each other: everything recorded before is
+  // visible to everything after.
   void barrier();
-  // A counter the CPU knows. Counters written on the GPU: `uint counters[]` in set 0, in declared order.
+  // Sets a counter from the CPU. Shaders count through `uint counters[]` in set 0, in the order of declaration.
   void counter(std::string_view name, double value);
 
  private:
@@ -406,7 +416,8 @@ class RecordContext {
   uint64_t frameNumber_;
 };
 
-// Host passes: inputs and outputs as plain memory (images tightly packed, layer after layer).
+// Passed to Pass::execute() of host passes once per frame. Inputs and outputs are plain memory; images are tightly
+// packed, layer after layer.
 class HostContext {
  public:
   HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t frameNumber);
@@ -431,8 +442,9 @@ class HostContext {
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
   void counter(std::string_view name, double value);
-  // For passes that take long, now and then and on the thread of execute(): the share that is done, 0 to 1. False: nobody
-  // wants to wait any longer; end soon, with outputs as good as they are by then.
+  // For passes that run long: reports the completed share of the work, from 0 to 1. Call it from time to time on the
+  // thread of execute(). If it returns false, nobody is waiting any longer: finish soon, with the outputs as good as
+  // they are by then.
   bool progress(double share) const;
 
  private:
@@ -445,20 +457,21 @@ class Pass {
  public:
   virtual ~Pass() = default;
   virtual void prepare(PrepareContext&) {}
-  virtual void record(RecordContext&) {}  // Compute and Graphics
-  virtual void execute(HostContext&) {}   // Host
+  virtual void record(RecordContext&) {}  // for compute and graphics passes
+  virtual void execute(HostContext&) {}   // for host passes
 };
 
 // ---- Registration ----------------------------------------------------------------------------------------------
 
-// Adds a type of pass to those that the process knows; what is wrong with it is reported when the program starts.
+// Adds a pass type to those known to the process. An invalid declaration is reported when the program starts.
 struct Registration {
   Registration(PassDeclaration declaration, std::unique_ptr<Pass> (*factory)());
 };
 
 }  // namespace fovea::graph
 
-// At namespace scope in the pass's source file. The class has `static fovea::graph::PassDeclaration declaration()`.
+// Use this at namespace scope in the source file of the pass. The class provides `static
+// fovea::graph::PassDeclaration declaration()`.
 #define FOVEA_PASS(Class)                                         \
   static const ::fovea::graph::Registration registration_##Class( \
       Class::declaration(),                                       \

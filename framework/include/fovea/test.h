@@ -1,6 +1,6 @@
-// The test kit. It runs one pass alone: inputs are uploaded from arrays, the pass is executed through the real compiler and
-// executor, and its outputs are read back. Validation layers are on. It works with any test framework, since what fails
-// is thrown.
+// The test kit runs one pass alone: it uploads the inputs from arrays, executes the pass through the actual compiler
+// and executor with validation layers enabled, and reads back the outputs. Failures are thrown as exceptions, so it
+// works with any test framework.
 #pragma once
 
 #include <cstddef>
@@ -27,36 +27,36 @@ class PassTest {
   PassTest& param(const std::string& name, double value);
   PassTest& param(const std::string& name, const char* value);
   PassTest& viewSize(uint32_t width, uint32_t height);
-  PassTest& scene(scene::Scene scene);  // default: empty, with a default camera
+  PassTest& scene(scene::Scene scene);  // by default empty, with a default camera
   PassTest& seed(uint32_t seed);
-  // Called before every frame: to move things, cut the camera, or change an input with
-  // setImage()/setBuffer().
+  // Called before every frame, for instance to move objects, to cut the camera or to change an input with set().
   PassTest& beforeFrame(std::function<void(PassTest&, scene::Frame&)> hook);
 
-  // `port` is "radiance", or "gbuffer.position" for a member of a bundle. Texels tightly packed, layer after
-  // layer (or slice after slice).
+  // `port` is a name such as "radiance", or "surface.position" for a member of a bundle. Texels are tightly packed,
+  // layer after layer.
   template <class T>
   PassTest& image(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t layers,
                   const std::vector<T>& texels) {
     return imageBytes(port, format, width, height, layers, false, toBytes(texels));
   }
+  // Texels are tightly packed, slice after slice and mip after mip.
   template <class T>
   PassTest& volume(const std::string& port, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
-                   const std::vector<T>& texels, uint32_t mips = 1) {  // mip after mip
+                   const std::vector<T>& texels, uint32_t mips = 1) {
     return imageBytes(port, format, width, height, depth, true, toBytes(texels), mips);
   }
   template <class T>
   PassTest& buffer(const std::string& port, const std::vector<T>& values, const std::string& element) {
     return bufferBytes(port, element, sizeof(T), values.size(), toBytes(values));
   }
-  // Another content of the same size, from the next frame on.
+  // Replaces the contents of an input from the next frame on; the size must stay the same.
   template <class T>
   void set(const std::string& port, const std::vector<T>& values) {
     setBytes(port, toBytes(values));
   }
 
-  // Builds the graph on first use, runs `frames` frames and reads all outputs of the last one. Throws Error(BadInput) on
-  // inputs that do not fit the declaration, std::runtime_error on a message of the validation layers.
+  // Builds the graph on first use, runs `frames` frames and reads back all outputs of the last one. Throws
+  // Error(BadInput) if the inputs do not fit the declaration and std::runtime_error if the validation layers object.
   void run(uint32_t frames = 1);
 
   const std::vector<std::byte>& bytes(const std::string& port) const;
@@ -68,11 +68,12 @@ class PassTest {
     std::memcpy(result.data(), raw.data(), result.size() * sizeof(T));
     return result;
   }
-  // Image texels as floats, channels interleaved (half, unorm, snorm and float formats; unorm to [0, 1]).
+  // Texels of an image as floats with interleaved channels, for half, unorm, snorm and float formats. Unorm values
+  // map to [0, 1].
   std::vector<float> floats(const std::string& port) const;
   double counter(const std::string& name) const;
   const graph::PassDeclaration& declaration() const;
-  double gpuMs() const;  // of the pass, last frame
+  double gpuMs() const;  // GPU time of the pass in the last frame, milliseconds
   const scene::Frame& lastFrame() const;
   const scene::Geometry& geometry() const;
 

@@ -27,7 +27,7 @@ struct Constants {
   uint32_t count, vertices, firstVertex, firstPose, firstJoint, firstWeight;
 };
 
-constexpr uint32_t kMostGroups = 32768;  // in a row of a dispatch
+constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
 constexpr uint32_t kObjectTexels = 4, kJointTexels = 3;
 
 // The tables of animate.comp.
@@ -64,7 +64,7 @@ struct Shapes {
       }
   }
 
-  // Vertices that stencils make.
+  // Number of vertices that stencils make.
   void skip(uint32_t count, uint32_t index) {
     const float number = float(shapes.size() / 2);
     shapes.emplace_back(0, 0, 0, index);
@@ -84,24 +84,24 @@ void storeRows(glm::vec4* texels, const glm::mat4& m) {
 
 struct Animator::Impl {
   gpu::Device& device;
-  const uint32_t firstVertex, vertices;  // what moves
+  const uint32_t firstVertex, vertices;  // the vertices that move
   uint32_t sources = 0, objectCount = 0, jointCount = 0, weightCount = 0;
   ObjectPoses still;  // at time 0
   gpu::Pipeline pipeline;
   gpu::Buffer rest, shapes, skinJoints, skinWeights, targets, points;
-  std::vector<gpu::Buffer> poses;      // one a slot: this frame's, then last frame's
-  std::vector<glm::vec4> now, before;  // of the frame at hand
-  std::vector<glm::vec4> last;         // what the vertices in the buffers are made of, once `known`
+  std::vector<gpu::Buffer> poses;  // one per slot: the poses of this frame, then those of the previous one
+  std::vector<glm::vec4> now, before;  // of the current frame
+  std::vector<glm::vec4> last;         // poses of the vertices in the buffers, once `known`
   bool known = false;
   std::optional<Subdivider> subdivider;
   struct Surface {
     Subdivider::Surface surface;
-    uint32_t object, joint;
-    bool bent;  // by joints
+    uint32_t object = 0, joint = 0;
+    bool bent = false;  // bent by joints
   };
   std::vector<Surface> caged;
   struct Slot {
-    bool follows = false;  // last frame's vertices are those in the buffers
+    bool follows = false;  // the buffers hold the vertices of the previous frame
     std::vector<Subdivider::Surface> now, before;
   };
   std::vector<Slot> slots;
@@ -261,7 +261,7 @@ void Animator::update(const Frame& frame, uint32_t slot) {
   auto* mapped = static_cast<glm::vec4*>(s.poses[slot].mapped());
   std::copy(s.now.begin(), s.now.end(), mapped);
   std::copy(s.before.begin(), s.before.end(), mapped + texels);
-  // Which side of a cage is out: as mirrored() of deform.h tells it.
+  // Whether a cage is turned inside out, as mirrored() of deform.h defines it.
   const auto mirrored = [&](const glm::vec4* texel) {
     return glm::dot(glm::vec3(texel[0]), glm::cross(glm::vec3(texel[1]), glm::vec3(texel[2]))) < 0.0f;
   };

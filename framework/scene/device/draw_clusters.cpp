@@ -16,7 +16,7 @@ DrawCluster makeCluster(const Geometry& geometry, DrawKind kind, uint32_t first,
   return {0.5f * (low + high), 0.5f * glm::length(high - low), first, count, kind};
 }
 
-// Normals point into the view volume; unit.
+// Unit normals that point into the view volume.
 std::array<glm::vec4, 6> viewPlanes(const glm::mat4& worldToClip) {
   const glm::mat4 rows = glm::transpose(worldToClip);
   std::array<glm::vec4, 6> planes{rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],

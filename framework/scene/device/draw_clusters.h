@@ -1,5 +1,5 @@
-// Neighbouring triangles of a draw run under one bounding sphere, so that what lies outside a view is not
-// drawn.
+// Clusters of neighbouring triangles of a draw run, each with a bounding sphere, so that what lies outside a view
+// is not drawn.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ struct DrawCluster {
   DrawKind kind = DrawKind::Tested;
 };
 
-// All triangles of the runs that never move, at most `size` in a cluster, in their order.
+// Clusters of all static triangles of the runs, in their order, with at most `size` triangles each.
 std::vector<DrawCluster> drawClusters(const std::vector<DrawRun>& runs, const Geometry& geometry,
                                       uint32_t size = 128);
 
-// The clusters that may show in a view, joined to runs; then the triangles that move. `visible` is
-// overwritten, without an allocation once it has had room for all of them.
+// Collects the clusters that may be visible in a view, joined to runs, followed by the triangles that move. `visible`
+// is overwritten; nothing is allocated once it has had room for all runs.
 void visibleRuns(const std::vector<DrawCluster>& clusters, const std::vector<DrawRun>& runs,
                  uint32_t staticTriangles, const glm::mat4& worldToClip, std::vector<DrawRun>& visible);
 

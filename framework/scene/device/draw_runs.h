@@ -1,4 +1,5 @@
-// Triangles in runs that one draw can take, so that only those draws test materials in a shader that need to.
+// Groups triangles into runs of one draw each, so that a fragment shader tests materials only in the draws
+// that need it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@ namespace fovea::scene {
 enum class DrawKind : uint8_t {
   DoubleSided,  // opaque, both sides
   SingleSided,  // opaque, the front only
-  Tested,       // alpha-masked, or a mixture: look the material up for every fragment
+  Tested,       // alpha-masked, or mixed: the material is looked up for every fragment
 };
 
 struct DrawRun {
@@ -19,11 +20,11 @@ struct DrawRun {
   uint32_t firstTriangle = 0, triangleCount = 0;
 };
 
-// Geometry where materials change all the time would take more draws than it saves tests.
+// Where materials change too often, more draws would cost more than the tests that they save.
 inline constexpr size_t kMaxDrawRuns = 256;
 
-// In the order of the triangles, covering all of them; one `Tested` run when there would be more than
-// kMaxDrawRuns.
+// Runs in the order of the triangles, covering all of them; a single `Tested` run if there would be
+// more than kMaxDrawRuns.
 std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry);
 
 }  // namespace fovea::scene

@@ -16,8 +16,7 @@ namespace fovea::scene {
 
 namespace {
 
-// ---- The blocks of shaders/common/scene.glsl, std140
-// ---------------------------------------------------------------
+// ---- The blocks of shaders/common/scene.glsl, std140 ----
 
 struct FrameBlock {
   uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
@@ -40,18 +39,18 @@ struct LightBlock {
 };
 static_assert(sizeof(LightBlock) == 64 * kMaxLights);
 
-// One vec4 a texel; the shader's kObjectTexels of them.
+// One vec4 per texel; kObjectTexels in the shader is their number.
 struct ObjectTexels {
   glm::vec4 toWorld[3], previous[3], toObject[3], flags;
 };
 static_assert(sizeof(ObjectTexels) == 10 * sizeof(glm::vec4));
 
-// One vec4 a texel; the shader's kMaterialTexels of them.
+// One vec4 per texel; kMaterialTexels in the shader is their number.
 struct TextureTexels {
   glm::vec4 place{-1, 0, 0, 0}, extent{0}, axes{0};
 };
 struct MaterialTexels {
-  glm::vec4 color, emission;
+  glm::vec4 color{0}, emission{0};
   TextureTexels colorTexture, emissionTexture;
 };
 static_assert(sizeof(MaterialTexels) == 8 * sizeof(glm::vec4));
@@ -70,7 +69,7 @@ glm::vec2 octEncode(glm::vec3 n) {
 constexpr VkBufferUsageFlags kTexelUsage =
     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
-// A buffer with at least one (zero) element: empty ones do not exist in Vulkan.
+// A buffer with at least one (zero) element, because Vulkan has no empty buffers.
 template <class T>
 gpu::Buffer makeBuffer(gpu::Device& device, const char* name, std::vector<T> data, VkBufferUsageFlags usage) {
   if (data.empty()) data.emplace_back();
@@ -115,7 +114,7 @@ void checkCount(const char* what, size_t count, size_t limit) {
 }
 
 ObjectTexels objectEntry(const ObjectTransform& o) {
-  ObjectTexels texels;
+  ObjectTexels texels{};
   const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld),
                             glm::transpose(o.toObject)};
   for (int i = 0; i < 3; ++i)
@@ -150,8 +149,8 @@ struct GpuScene::Impl {
   uint32_t staticVertices, firstMovingLight;
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
-  std::vector<gpu::Buffer> objects;    // one a slot
-  std::unique_ptr<Animator> animator;  // null: nothing moves
+  std::vector<gpu::Buffer> objects;    // one per slot
+  std::unique_ptr<Animator> animator;  // null if nothing moves
   GpuTextures textures;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -248,7 +247,7 @@ void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t s
   }
 }
 
-// Objects that the frame says nothing about stay where their vertices are.
+// Objects for which the frame has no pose stay where their vertices are.
 void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
   auto* entries = static_cast<ObjectTexels*>(objects[slot].mapped());
   for (uint32_t i = 0; i < objectCount; ++i)

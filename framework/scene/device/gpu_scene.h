@@ -19,18 +19,18 @@ namespace fovea::scene {
 inline constexpr uint32_t kMaxLights = 64;
 inline constexpr uint32_t kMaxViews = 8;
 
-// Works for a scene without triangles, lights or textures too.
+// A scene may have no triangles, lights or textures.
 class GpuScene : public FrameDescriptors {
  public:
-  // Uploads everything; waits. Throws Error(OutOfMemory) naming what did not fit, Error(BadInput) on more
-  // than kMaxLights or a texture larger than the device takes.
+  // Uploads everything and waits for the upload. Throws Error(OutOfMemory) naming what did not fit, and
+  // Error(BadInput) if there are more than kMaxLights lights or a texture is larger than the device supports.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
   ~GpuScene() override;
 
-  // Frame::geometry is not read. Throws Error(BadInput) on more than kMaxViews or kMaxLights.
+  // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views or kMaxLights lights.
   void update(const Frame& frame, uint32_t slot) override;
-  // Brings positions() and attributes() to that frame on the device, and last frame's positions of what moves
-  // into binding 10.
+  // Records the commands that bring positions() and attributes() to that frame and write the previous frame's
+  // positions of moving vertices, which binding 9 shows.
   void recordMoves(VkCommandBuffer cmd, uint32_t slot) const override;
   bool moves() const override;
 
@@ -38,14 +38,15 @@ class GpuScene : public FrameDescriptors {
   VkDescriptorSet set(uint32_t slot) const override;
   uint32_t viewOffset(uint32_t view) const override;
 
-  gpu::Buffer& indices() const;  // uint32, 3 a triangle, for indexed draws
-  // What bindings 3 to 6 show. Also usable as storage buffers, so that passes can move vertices on the
-  // device.
-  // uvec4: 3 vertices, material | object << 16; Geometry::lightTriangles behind those of the picture.
+  gpu::Buffer& indices() const;  // uint32, 3 per triangle, for indexed draws
+  // The buffers behind bindings 3 to 6. They are also usable as storage buffers, so that passes can move vertices on
+  // the device.
+  // uvec4 per triangle: 3 vertices, then material | object << 16; Geometry::lightTriangles follow those of the
+  // picture.
   gpu::Buffer& triangles() const;
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
-  gpu::Buffer& previous() const;    // vec4: last frame's positions of the vertices that move
+  gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
   gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;

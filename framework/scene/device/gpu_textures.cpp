@@ -10,7 +10,7 @@ namespace fovea::scene {
 
 namespace {
 
-// Of all layers of the array, before (toCopy) or after the copies.
+// Barrier for all layers of the array, before (toCopy) or after the copies.
 void changeLayout(VkCommandBuffer cmd, VkImage image, bool toCopy) {
   VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
   const VkImageLayout copying = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -71,7 +71,7 @@ GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene) : index_(scene
   upload(device, scene, textures);
 }
 
-// Page by page, so that staging takes no more than one. Texels outside of all textures are never read.
+// Uploads page by page, so that the staging buffer holds only one. Texels outside all textures are never read.
 void GpuTextures::upload(gpu::Device& device, const Scene& scene, const std::vector<uint32_t>& textures) {
   const size_t rowBytes = size_t(pages_.side) * 4;
   const gpu::Buffer staging(

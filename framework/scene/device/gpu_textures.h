@@ -1,4 +1,4 @@
-// The textures of a scene in pages of an array image.
+// Stores the textures of a scene in the pages of an array image.
 #pragma once
 
 #include <vector>
@@ -9,19 +9,19 @@
 
 namespace fovea::scene {
 
-// Those textures that materials use, 8-bit RGBA as stored; without any, one white texel.
+// The textures that materials use, as 8-bit RGBA in their stored encoding; a single white texel if there are none.
 class GpuTextures {
  public:
-  // Throws Error(BadInput) naming a texture too large for the device, Error(OutOfMemory).
+  // Throws Error(BadInput) naming a texture that is too large for the device, and Error(OutOfMemory).
   GpuTextures(gpu::Device& device, const Scene& scene);
-  // Null when the texture is not among them.
+  // Null if no material uses the texture.
   const TexturePages::Place* find(uint32_t texture) const;
   gpu::Image& image() { return image_; }  // in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
 
  private:
   void upload(gpu::Device& device, const Scene& scene, const std::vector<uint32_t>& textures);
   TexturePages pages_;
-  std::vector<int32_t> index_;  // texture -> place, -1: none
+  std::vector<int32_t> index_;  // texture -> place; -1 if none
   gpu::Image image_;
 };
 

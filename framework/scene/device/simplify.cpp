@@ -10,7 +10,7 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kMaxIndex = 1u << 24;  // whole numbers a float holds
+constexpr uint32_t kMaxIndex = 1u << 24;  // whole numbers up to this are exact in a float
 
 bool isMasked(const Scene& scene, const Triangle& t) {
   return t.material() < scene.materials.size() && scene.materials[t.material()].masked;

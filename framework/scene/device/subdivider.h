@@ -1,5 +1,5 @@
-// Subdivision surfaces that deform, on the device: stencil tables and the kernel that applies them every
-// frame (shaders/subdivide/subdivide.comp).
+// Evaluates subdivision surfaces that deform on the device: stencil tables and the kernel that applies them
+// every frame (shaders/subdivide/subdivide.comp).
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -19,23 +19,23 @@ namespace fovea::scene {
 
 class Subdivider {
  public:
-  // Uploads the tables, which keep their order; waits. Throws Error(OutOfMemory) naming what did not fit,
-  // also when the tables exceed the device's maxTexelBufferElements.
+  // Uploads the tables, whose order is kept, and waits for the upload. Throws Error(OutOfMemory) naming what did not
+  // fit, also if the tables exceed the device's maxTexelBufferElements.
   Subdivider(gpu::Device& device, std::span<const Stencils> tables);
   ~Subdivider();
 
-  // One surface of a frame. Several may use the same table.
+  // One surface of a frame. Several surfaces may share a table.
   struct Surface {
     uint32_t table = 0;
     uint32_t firstPoint = 0;   // its Stencils::pointCount() cage points in `points`
     uint32_t firstVertex = 0;  // its Stencils::vertexCount() vertices in `positions` and `attributes`
     bool mirrored = false;     // the points went through a transform of negative determinant
   };
-  // points: vec4 a point, xyz, read as a uniform texel buffer. positions: vec4 a vertex, xyz and 1.
-  // attributes: vec4 a vertex, of which xy becomes the octahedral normal. Both are storage buffers, in the
-  // space of the points. Push descriptors and constants; no allocation (but for the first use of a buffer's
-  // texel view), no barriers: the caller puts one before (compute reads what wrote the points) and one after
-  // (compute writes).
+  // points: one vec4 per point (xyz), read as a uniform texel buffer. positions: one vec4 per vertex (xyz and 1).
+  // attributes: one vec4 per vertex, of which xy becomes the octahedral normal. Both are storage buffers, in the
+  // space of the points. Uses push descriptors and push constants. Allocates nothing, except on the first use of a
+  // buffer for its texel view, and records no barriers: the caller records one before (the points must be visible to
+  // compute) and one after (compute writes).
   void record(VkCommandBuffer cmd, gpu::Buffer& points, gpu::Buffer& positions, gpu::Buffer& attributes,
               std::span<const Surface> surfaces) const;
 

@@ -10,7 +10,7 @@ namespace fovea::scene {
 
 namespace {
 
-constexpr uint32_t kFewPages = 4;  // larger pages waste more at their ends, many pages waste more altogether
+constexpr uint32_t kFewPages = 4;      // larger pages waste more at their ends, many pages more in all
 constexpr uint32_t kLargePage = 8192;  // texels; 256 MiB of RGBA8
 
 TexturePages packInto(const std::vector<glm::uvec2>& sizes, const std::vector<uint32_t>& order,
@@ -20,7 +20,7 @@ TexturePages packInto(const std::vector<glm::uvec2>& sizes, const std::vector<ui
   };
   TexturePages result{side, 0, std::vector<TexturePages::Place>(sizes.size())};
   std::vector<Shelf> shelves;
-  std::vector<uint32_t> filled;  // height of each page that shelves take
+  std::vector<uint32_t> filled;  // height of each page that shelves occupy
   for (uint32_t i : order) {
     const glm::uvec2 size = sizes[i];
     auto shelf = std::find_if(shelves.begin(), shelves.end(),

@@ -1,5 +1,5 @@
-// What both exporters write: names that any file system takes, whole files, textures. Private to
-// framework/scene.
+// Helpers that both exporters share: names that any file system accepts, files written as a whole, and textures.
+// Private to framework/scene.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,11 @@
 
 namespace fovea::scene {
 
-// Letters, digits, `-` and `_` of `name`, everything else as `_`; never empty. Safe as a URI, too.
+// Keeps letters, digits, `-` and `_` of `name` and replaces everything else by `_`; never empty. The result is also
+// safe in a URI.
 std::string safeFileName(const std::string& name);
 
-// "name", "name 2", "name 3": names under which a reader can find each thing again.
+// Makes names unique ("name", "name 2", "name 3"), so that a reader can find each thing again.
 class UniqueNames {
  public:
   explicit UniqueNames(std::string separator = " ") : separator_(std::move(separator)) {}
@@ -25,17 +26,17 @@ class UniqueNames {
   std::map<std::string, uint32_t> seen_;
 };
 
-// The double with the fewest digits that is this float again: what JSON should say, 0.42 and not
-// 0.41999998688697815.
+// The double with the fewest digits that converts back to this float, so that JSON has 0.42
+// rather than 0.41999998688697815.
 double shortest(float value);
 
-// Makes the folder where it is missing. Throws Error(CannotWrite).
+// Creates the folder if it is missing. Throws Error(CannotWrite).
 void makeFolder(const std::filesystem::path& folder);
 
-// Under a temporary name first. Throws Error(CannotWrite) naming file and reason.
+// Writes under a temporary name and renames. Throws Error(CannotWrite) naming the file and the reason.
 void writeWholeFile(const std::filesystem::path& file, const std::string& bytes);
 
-// 8-bit texels as an image of 3 or 4 channels; they come back bit for bit from a PNG.
+// Converts 8-bit texels to an image of 3 or 4 channels; a PNG of it gives them back bit for bit.
 image::Image texelImage(const Texture& texture, uint32_t channels);
 
 }  // namespace fovea::scene

@@ -65,10 +65,10 @@ class GltfWriter {
 
   struct Layout {
     const char* type;
-    int component, components, target;  // target 0: none
+    int component, components, target;  // target 0 if none
   };
 
-  // The index of a new accessor of `count` elements.
+  // Returns the index of a new accessor of `count` elements.
   size_t accessor(const void* data, size_t bytes, size_t count, const Layout& layout) {
     bin_.resize((bin_.size() + 3) & ~size_t(3));
     Json view = {{"buffer", 0}, {"byteOffset", bin_.size()}, {"byteLength", bytes}};
@@ -96,7 +96,7 @@ class GltfWriter {
     return index;
   }
 
-  // A list of single numbers that accessors and keys need.
+  // Adds a list of single numbers, as accessors and keys need it.
   size_t scalars(const std::vector<float>& list) {
     const size_t index = accessor(list, {"SCALAR", kFloat, 1, 0});
     root_["accessors"][index]["min"] = Json::array({*std::min_element(list.begin(), list.end())});
@@ -131,7 +131,7 @@ class GltfWriter {
     return indexOf("samplers", wanted);
   }
 
-  // Of an equal entry, or of a new one.
+  // Index of an equal entry, or of a new one.
   size_t indexOf(const char* list, const Json& wanted) {
     Json& entries = root_[list];
     for (size_t i = 0; i < entries.size(); ++i)
@@ -140,8 +140,7 @@ class GltfWriter {
     return entries.size() - 1;
   }
 
-  // KHR_texture_transform, the inverse of what the loader builds: columns (c sx, -s sx), (s sy, c sy),
-  // offset.
+  // KHR_texture_transform, the inverse of what the loader builds: columns (c sx, -s sx), (s sy, c sy), offset.
   Json textureUse(const TextureUse& use, const std::string& material) {
     const size_t source = image(use.texture);
     Json out = {
@@ -170,7 +169,7 @@ class GltfWriter {
       if (usable(m.baseColorTexture)) pbr["baseColorTexture"] = textureUse(m.baseColorTexture, m.name);
       Json out = {{"name", m.name}, {"pbrMetallicRoughness", pbr}};
       if (m.emission != glm::vec3(0)) {
-        // Factors end at 1; the strength carries the rest.
+        // Factors are at most 1; the strength carries the rest.
         const double strength =
             std::max({1.0, double(m.emission.x), double(m.emission.y), double(m.emission.z)});
         out["emissiveFactor"] =
@@ -212,8 +211,8 @@ class GltfWriter {
     return out;
   }
 
-  // The morph targets of a cage as those of its refined triangles: limit points are linear in the cage's, so
-  // that positions are exact; normals are so at the ends of each target.
+  // Morph targets of a cage, applied to its refined triangles. Limit points are linear in the points of the cage, so
+  // positions are exact; normals are exact at the ends of each target.
   std::vector<std::vector<MorphTarget>> refinedTargets(const Mesh& mesh) {
     std::vector<std::vector<MorphTarget>> all(mesh.primitives.size());
     const SubdivisionCage& cage = *mesh.cage;
@@ -285,7 +284,7 @@ class GltfWriter {
     for (Json& n : list) root_["nodes"].push_back(std::move(n));
   }
 
-  // A root of its own: lights and cameras of a scene stand in world space.
+  // A separate root, because the lights and cameras of a scene are in world space.
   void addRoot(Json node) {
     roots_.push_back(root_["nodes"].size());
     root_["nodes"].push_back(std::move(node));

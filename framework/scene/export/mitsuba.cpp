@@ -45,18 +45,18 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// The triangles of one material of one object, as PLY wants them.
+// The triangles of one material of one object, as PLY requires them.
 class PlyMesh {
  public:
   PlyMesh(const Geometry& geometry) : geometry_(geometry) {}
 
-  // shift: along the vertex normals, m; turned: the other side is the front.
+  // shift: along the vertex normals, m; turned: whether the other side is the front.
   void add(const Triangle& t, float shift, bool turned) {
     glm::vec3 corners[3];
     for (int k = 0; k < 3; ++k) corners[k] = geometry_.positions[t.v[k]];
     const glm::vec3 face = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (face == glm::vec3(0)) return;
-    // Models exist whose normals point against their winding; the winding decides.
+    // In some models normals contradict the winding; the winding decides.
     bool against = true;
     for (const uint32_t v : t.v) against = against && glm::dot(geometry_.normals[v], face) < 0;
     uint32_t indices[3];
@@ -95,8 +95,7 @@ class PlyMesh {
   uint32_t vertexCount_ = 0, faceCount_ = 0;
 };
 
-// A texture turned into what a repeating or clamped one of Mitsuba can show: there one mode holds for both
-// axes.
+// A texture converted to what Mitsuba can show: there, one wrap mode (repeat or clamp) holds for both axes.
 struct Unfolded {
   Texture texture;
   const char* wrap = "repeat";
@@ -121,10 +120,10 @@ Unfolded unfold(const Texture& t, Wrap u, Wrap v) {
   return out;
 }
 
-constexpr uint32_t kMaskTexels = 4;   // at least so many of the mask image a side, for each texel
-constexpr uint32_t kMaskSide = 1024;  // small textures get more, up to this side, pixels
+constexpr uint32_t kMaskTexels = 4;   // texels of the mask image per side of a texel, at least
+constexpr uint32_t kMaskSide = 1024;  // pixels; small textures get more texels, up to this side
 constexpr uint32_t kMaxMaskSide = 8192;
-constexpr uint32_t kMinFalloff = 256, kMaxFalloff = 4096;  // pixels a side of a spot light's image
+constexpr uint32_t kMinFalloff = 256, kMaxFalloff = 4096;  // pixels per side of a spot light's image
 
 class MitsubaWriter {
  public:
@@ -140,7 +139,7 @@ class MitsubaWriter {
     camera();
     for (const Light& light : lightsAt(scene_, options_.time)) emitter(light);
     if (scene_.environment != glm::vec3(0)) {
-      // Here it is only seen; as a `constant` emitter it would light everything, too.
+      // Here it is only visible; as a `constant` emitter it would also light the scene.
       line("<!-- Where nothing is hit (alpha 0), the scene shows " + triple(scene_.environment) + ". -->");
       warn("environment",
            "the environment is only seen, it lights nothing: add it where the picture's alpha is 0");
@@ -162,7 +161,7 @@ class MitsubaWriter {
 
   void place() {
     geometry_ = flatten(scene_);
-    // Frame 1 of a sequence of frames that long apart.
+    // Frame 1 of a sequence with that interval between frames.
     const Frame frame = options_.time > 0
                             ? makeFrame(scene_, geometry_, options_.size, 1, 1, 1.0 / options_.time)
                             : makeFrame(scene_, geometry_, options_.size, 0, 1);
@@ -231,12 +230,12 @@ class MitsubaWriter {
       spot(light, strength);
   }
 
-  // Mitsuba lets a spot fade linearly in the angle. With its beam as wide as its cone it does not fade at
-  // all, and what it projects does: an image over the plane at distance 1 that holds saturate(..)^2.
+  // In Mitsuba a spot fades linearly in the angle. With its beam as wide as its cone it does not fade at all, and the
+  // image that it projects provides the falloff: an image over the plane at distance 1 that holds saturate(..)^2.
   void spot(const Light& light, const glm::vec3& strength) {
     const SpotCone cone = spotCone(light);
     const float outer = std::acos(cone.cosOuter), inner = std::acos(std::min(cone.cosInner, 1.0f));
-    constexpr float kWidest = 1.48f;  // 85 degrees: an image of a half-space has no end
+    constexpr float kWidest = 1.48f;  // 85 degrees; an image of a half-space would be infinite
     const float cutoff = std::min(outer, kWidest);
     if (cutoff < outer)
       warn("lights", "spot light `" + light.name + "` is wider than 85 degrees to a side: it ends there");
@@ -273,7 +272,7 @@ class MitsubaWriter {
   static std::string toUv(const TextureUse& use, const glm::vec2& scale) {
     const glm::mat3x2& m = use.transform;
     if (m == glm::mat3x2{1, 0, 0, 1, 0, 0} && scale == glm::vec2(1)) return {};
-    // A 4x4 matrix of which Mitsuba takes the first two rows and columns, and the translation in the last.
+    // A 4x4 matrix, of which Mitsuba uses the first two rows and columns, with the translation in the last column.
     return fmt::format(
         "<transform name=\"to_uv\"><matrix value=\"{} {} 0 {}  {} {} 0 {}  0 0 1 0  0 0 0 1\"/></transform>",
         scale.x * m[0].x, scale.x * m[1].x, scale.x * m[2].x, scale.y * m[0].y, scale.y * m[1].y,
@@ -294,8 +293,8 @@ class MitsubaWriter {
     return "textures/" + names_.add(safeFileName(stem.empty() ? "texture" : stem)) + suffix;
   }
 
-  // A colour times a texture. Alone, an sRGB texture stays one of 8 bits, which Mitsuba decodes before it
-  // filters; a factor or linear texels make it linear floats.
+  // A colour times a texture. On its own, an sRGB texture remains an 8-bit image, which Mitsuba decodes before it
+  // filters; with a factor or linear texels it becomes an image of linear floats.
   std::string colour(const char* name, const TextureUse& use, const glm::vec3& factor) {
     if (!textured(use)) return rgb(name, factor);
     const Texture& source = scene_.textures[use.texture];
@@ -303,7 +302,7 @@ class MitsubaWriter {
     const Unfolded from = unfold(source, use.wrapU, use.wrapV);
     if (!from.exact)
       warn("materials", "texture `" + source.name + "` repeats in Mitsuba where it should end");
-    // The same image looked at in other places needs no second file.
+    // The same image with another transform needs no second file.
     const std::string key = fmt::format("{} {} {} {} {}", use.texture, int(use.wrapU), int(use.wrapV), plain,
                                         plain ? "" : triple(factor));
     std::string& file = files_[key];
@@ -341,7 +340,7 @@ class MitsubaWriter {
     return bitmap("opacity", file, true, "nearest", from.wrap, toUv(use, from.scale));
   }
 
-  // The coordinates that the use's transform takes to `uv`.
+  // The coordinates that the transform of `use` maps to `uv`.
   static glm::vec2 straightUv(const glm::vec2& uv, const TextureUse& use) {
     const glm::mat2 axes(use.transform[0], use.transform[1]);
     return glm::inverse(axes) * (uv - use.transform[2]);
@@ -373,7 +372,7 @@ class MitsubaWriter {
       if (m.emission != glm::vec3(0))
         emitter =
             "<emitter type=\"area\">" + colour("radiance", m.emissionTexture, m.emission) + "</emitter>";
-      const bool twice = !emitter.empty() && m.doubleSided;  // Mitsuba's emit from their front
+      const bool twice = !emitter.empty() && m.doubleSided;  // Mitsuba's surfaces emit from their front only
       const float shift = twice ? 0.5e-5f * diagonal : 0.0f;
       for (int side = 0; side < (twice ? 2 : 1); ++side) {
         PlyMesh mesh(geometry_);
@@ -400,7 +399,7 @@ class MitsubaWriter {
   Diagnostics& warnings_;
   Geometry geometry_;
   std::string xml_;
-  std::map<std::string, std::string> files_;  // of textures, by what they hold
+  std::map<std::string, std::string> files_;  // files of textures, by their content
   UniqueNames names_{"_"};
 };
 

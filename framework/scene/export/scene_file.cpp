@@ -77,7 +77,7 @@ Json gazeJson(const std::vector<GazeSample>& gaze) {
   return list;
 }
 
-// Of one that is an object of its own without ever moving: a path of one key, where it is.
+// The path of a mover that is an object of its own without ever moving: one key, at its place.
 Mover resting(const Scene& scene, uint32_t node) {
   return {node, true, Repeat::Once, {{0, scene.nodes[node].translation, scene.nodes[node].rotation, true}}};
 }
@@ -105,7 +105,7 @@ Json moversJson(const Scene& scene, const SceneFileNames& names, Diagnostics& wa
   return list;
 }
 
-// What the model plays; a scene file knows of one animation at a time.
+// The animation that the model plays; a scene file can name only one.
 Json modelJson(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings) {
   Json model = {{"file", names.model}};
   if (scene.animations.empty()) return model;

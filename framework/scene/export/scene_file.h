@@ -1,4 +1,5 @@
-// The scene file beside an exported model: what glTF has no place for. Private to framework/scene.
+// Writes the scene file beside an exported model, with everything that glTF cannot express.
+// Private to framework/scene.
 #pragma once
 
 #include <string>
@@ -11,11 +12,11 @@ namespace fovea::scene {
 
 struct SceneFileNames {
   std::string model;                            // relative to the scene file
-  std::vector<std::string> nodes;               // as the model calls them; no name twice
-  std::vector<std::string> lights, animations;  // likewise; an animation that is not there: ""
+  std::vector<std::string> nodes;               // names in the model, all different
+  std::vector<std::string> lights, animations;  // likewise; "" for an animation that is not in the model
 };
 
-// The text of a scene file (samples/scenes/README.md) that shows `scene` by the exported model.
+// Text of a scene file (samples/scenes/README.md) that shows `scene` through the exported model.
 std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagnostics& warnings);
 
 }  // namespace fovea::scene

@@ -1,4 +1,4 @@
-// Scene files: which of a model's animations plays, how fast, and what comes after its end.
+// The part of scene files that selects which of a model's animations plays, how fast, and what comes after its end.
 #include <algorithm>
 
 #include "framework/scene/file/reader.h"

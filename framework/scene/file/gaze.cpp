@@ -1,4 +1,4 @@
-// Where the eye looks, sample by sample: from a scene file, or from a table as eye trackers write it.
+// Reads gaze samples from a scene file, or from a table as written by eye trackers.
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -35,7 +35,7 @@ std::vector<std::string> cells(const std::string& line) {
 }
 
 const std::vector<std::string> kColumns = {"t", "x", "y", "valid", "left_x", "left_y", "right_x", "right_y"};
-constexpr size_t kMaxMistakes = 20;         // a table of something else has one on every line
+constexpr size_t kMaxMistakes = 20;         // any other table has one on every line
 constexpr uintmax_t kMaxBytes = 64u << 20;  // a day at 40 Hz
 
 class CsvReader {

@@ -1,4 +1,4 @@
-// Scene files, what moves: nodes and meshes along keys, lights along keys.
+// The part of scene files that describes motion: nodes and meshes along keys, lights along keys.
 #include <optional>
 #include <type_traits>
 
@@ -48,7 +48,7 @@ Primitive paperPlane() {
   return p;
 }
 
-// Translation, rotation and scale instead of a matrix; false when it shears.
+// Decomposes a matrix into translation, rotation and scale; false if it shears.
 bool decompose(Node& node) {
   if (!node.matrix) return true;
   const glm::mat4 m = *node.matrix;
@@ -77,7 +77,7 @@ void MotionReader::read(ObjectReader& scene) {
   eachItem(scene, "moving_lights", [&](const Value& v, const std::string& path) { movingLight(v, path); });
 }
 
-// Keys and what is done between and after them.
+// Reads the keys, the interpolation between them and the repetition after them.
 template <class Entry>
 void MotionReader::how(ObjectReader& r, Entry& entry) {
   entry.smooth = r.choice("interpolation", "smooth", {"smooth", "linear"}) != "linear";
@@ -188,7 +188,7 @@ void MotionReader::apply(Scene& scene, const std::filesystem::path& folder, Diag
   errors_.throwIfErrors();
 }
 
-// The node that moves: one of the models', or a new one.
+// Returns the node that moves, either one of a model or a new one.
 uint32_t MotionReader::nodeOf(const MoverEntry& m, Scene& scene, const std::filesystem::path& folder,
                               Diagnostics& warnings) {
   if (!m.node.empty()) {

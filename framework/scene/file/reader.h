@@ -1,4 +1,4 @@
-// What the parts of the scene-file reader share; private to framework/scene.
+// Helpers and types that the parts of the scene-file reader share. Private to framework/scene.
 #pragma once
 
 #include <cmath>
@@ -44,7 +44,7 @@ inline glm::vec3 readDirection(json::ObjectReader& r, std::string_view key, glm:
   return fallback;
 }
 
-// One number or three; never 0.
+// Reads one number or three; a scale of 0 is a mistake.
 inline glm::vec3 readScale(json::ObjectReader& r, std::string_view key, glm::vec3 fallback) {
   const json::Value* v = r.find(key);
   if (!v) return fallback;
@@ -60,37 +60,38 @@ void eachItem(json::ObjectReader& r, std::string_view key, const Visit& visit) {
     visit(list->items[i], itemPath(r.pathOf(key), i));
 }
 
-// A file that a scene file names: beside the scene file (`folder`), then along the search path for models.
+// A file that a scene file names. It is looked for beside the scene file (`folder`), then along the search
+// path for models.
 struct NamedFile {
   std::string what;  // "model"
   std::string file, get;
   SourceLocation where;
-  std::string path;  // within the document
+  std::string path;  // place within the document
 };
 std::filesystem::path findFile(const NamedFile& named, const std::filesystem::path& folder);
 
-// `subdivision` of a model.
+// The entry `subdivision` of a model.
 struct SubdivisionEntry {
   SourceLocation where;
   std::string path;
   uint32_t level = 1;
-  std::optional<uint32_t> lightLevel;  // what voxels and VPL maps see; none: `level`
-  bool loop = true;                    // of meshes that are no cages yet; else Catmull-Clark
-  float creaseDegrees = 180;           // edges sharper than this stay sharp
-  std::vector<std::string> meshes;     // empty: all
+  std::optional<uint32_t> lightLevel;  // level that voxels and VPL maps see; `level` if none
+  bool loop = true;                    // scheme of meshes that are not cages yet; if false, Catmull-Clark
+  float creaseDegrees = 180;           // edges with a larger angle stay sharp
+  std::vector<std::string> meshes;     // if empty, all meshes
 };
 SubdivisionEntry readSubdivision(const json::Value& v, const std::string& path, Diagnostics& errors);
-// Makes cages of the model's meshes and refines them; those that are cages take the level. Throws
-// Error(BadInput).
+// Turns the model's meshes into cages and refines them; meshes that are cages already only take the
+// level. Throws Error(BadInput).
 void applySubdivision(const SubdivisionEntry& entry, Scene& model);
 
-// Samples of the gaze, an array of the scene file; for a table readGazeCsv() (motion.h).
+// Reads gaze samples from an array of the scene file; readGazeCsv() (motion.h) reads a table.
 std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors);
 
-// `animation` of a model: its name or number, or { "name", "speed", "repeat" }.
+// The entry `animation` of a model: its name or number, or { "name", "speed", "repeat" }.
 struct AnimationChoice {
   SourceLocation where;
-  std::string path;  // empty: not said, what the model plays by itself
+  std::string path;  // if empty, not given: the model plays what it plays by default
   std::string name;
   std::optional<int64_t> index;
   bool none = false;
@@ -100,13 +101,13 @@ struct AnimationChoice {
 void readAnimation(json::ObjectReader& model, AnimationChoice& choice);
 void chooseAnimation(Scene& model, const AnimationChoice& choice, Diagnostics& errors);
 
-// `movers` and `moving_lights`: read with the rest of the file, applied once the models are there.
+// Reads `movers` and `moving_lights` with the rest of the file and applies them once the models are loaded.
 class MotionReader {
  public:
   explicit MotionReader(Diagnostics& errors) : errors_(errors) {}
   void read(json::ObjectReader& scene);
-  // Appends what the movers bring along and finds the nodes and lights that they name. Throws
-  // Error(BadInput).
+  // Appends the models and shapes that movers bring, and finds the nodes and lights that they
+  // name. Throws Error(BadInput).
   void apply(Scene& scene, const std::filesystem::path& folder, Diagnostics& warnings);
 
  private:

@@ -1,4 +1,4 @@
-// A scene file: models, lights, camera, exposure and gaze as data (samples/scenes/README.md).
+// Reads a scene file: models, lights, camera, exposure and gaze as data (samples/scenes/README.md).
 #include "framework/scene/file/scene_file.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class Parser {
     eachItem(r, "models", [&](const Value& v, const std::string& path) { model(v, path); });
     if (root_.isObject() && !r.has("models"))
       mistake(r, "models", "the scene has no `models`",
-              R"(add "models": [{"file": "folder/model.gltf"}] or [{"builtin": "cornellbox"}])");
+              R"(add "models": [{"file": "folder/model.gltf"}] or [{"builtin": "NAME"}])");
     eachItem(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
     if (const Value* c = r.find("camera")) camera(*c);
     hasExposure_ = r.has("exposure");
@@ -107,7 +107,7 @@ class Parser {
     ObjectReader r(v, path, errors_);
     Light l;
     const std::string type = r.require("type") ? r.choice("type", "", {"directional", "point", "spot"}) : "";
-    if (type.empty()) return;  // what else it needs depends on the type
+    if (type.empty()) return;  // its other members depend on the type
     l.type = type == "directional" ? LightType::Directional
              : type == "spot"      ? LightType::Spot
                                    : LightType::Point;

@@ -1,4 +1,4 @@
-// Scene files; private to framework/scene. The format is described in samples/scenes/README.md.
+// Reads scene files, whose format samples/scenes/README.md describes. Private to framework/scene.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace fovea::scene {
 
-// Throws Error(BadInput) with every mistake of the file and its place; then what loading its models throws.
+// Throws Error(BadInput) with every mistake in the file and its place, then whatever loading the models throws.
 Scene loadSceneFile(const std::filesystem::path& file, Diagnostics& warnings);
 Scene parseSceneFile(const json::Value& root, const std::filesystem::path& file, Diagnostics& warnings);
 
-// Appends `model` under a new root node with this transform; its lights and cameras move along.
+// Appends `model` under a new root node with this transform, which also applies to its lights and cameras.
 struct Placement {
   std::string name;
   glm::vec3 translation{0};
@@ -23,7 +23,7 @@ struct Placement {
 };
 void appendModel(Scene& scene, Scene&& model, const Placement& placement);
 
-// For models that bring neither: a view of the whole model from its front, and a sun.
+// Defaults for models without a camera or a light: a view of the whole model from its front, and a sun.
 void addDefaultCamera(Scene& scene, const Geometry& geometry);
 void addDefaultLight(Scene& scene);
 

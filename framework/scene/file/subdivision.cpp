@@ -1,4 +1,5 @@
-// `subdivision` of a model in a scene file: its meshes as control cages (samples/scenes/README.md).
+// Reads the entry `subdivision` of a model in a scene file, which makes control cages of
+// its meshes (samples/scenes/README.md).
 #include <algorithm>
 
 #include "framework/scene/file/reader.h"

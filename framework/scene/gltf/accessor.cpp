@@ -1,4 +1,4 @@
-// Accessors to plain arrays: strides, component types, normalised integers, sparse substitution.
+// Converts accessors to plain arrays: strides, component types, normalised integers, sparse substitution.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ T load(const uint8_t* p) {
   return v;
 }
 
-// glTF 2.0, 3.11: f = max(c / 127, -1) and its like for the other types.
+// glTF 2.0, 3.11: f = max(c / 127, -1), and likewise for the other types.
 float component(const uint8_t* p, int type, bool normalized) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE: {
@@ -72,7 +72,7 @@ uint32_t integer(const uint8_t* p, int type) {
   }
 }
 
-// Second line of defence behind checkDocument, on what tinygltf really loaded.
+// Second line of defence after checkDocument, on what tinygltf has actually loaded.
 Span span(const Context& c, int view, size_t offset, size_t count, size_t bytes, bool strided,
           const std::string& path) {
   const tinygltf::BufferView& v = c.model.bufferViews.at(size_t(view));

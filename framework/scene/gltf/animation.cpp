@@ -1,4 +1,4 @@
-// Animations: keys of nodes and of morph weights.
+// Builds animations: keys of nodes and of morph weights.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ class AnimationBuilder {
     }
   }
 
-  // False: there is nothing that it could move.
+  // Returns false if there is nothing to move.
   bool readValues(int accessor, const std::string& at, const Node& node, AnimationChannel& channel) {
     const std::string path = at + ".output, accessors[" + std::to_string(accessor) + "]";
     size_t components = channel.path == Path::Rotation ? 4 : 3;
@@ -104,7 +104,7 @@ class AnimationBuilder {
     return true;
   }
 
-  // Keys of rotations, not the tangents of splines.
+  // Applies to the keys of rotations, not to the tangents of splines.
   void normalize(const std::string& path, size_t groups, AnimationChannel& channel) {
     for (size_t key = 0; key < channel.times.size(); ++key) {
       float* q = &channel.values[4 * (key * groups + (groups == 3 ? 1 : 0))];

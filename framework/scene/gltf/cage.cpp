@@ -1,6 +1,6 @@
-// Control cages in glTF: `extras.fovea_subdivision` of a mesh's primitives. Its triangles are the cage's
-// faces cut into fans, so that other programs show the cage; quads are put together again here
-// (samples/scenes/README.md).
+// Reads control cages from glTF: `extras.fovea_subdivision` of a mesh's primitives. The triangles of the
+// mesh are the faces of the cage cut into fans, so that other programs show the cage; quads are
+// reassembled here (samples/scenes/README.md).
 #include <tiny_gltf.h>
 
 #include "framework/scene/gltf/internal.h"
@@ -88,7 +88,8 @@ class CageReader {
     }
   }
 
-  // `sizes`: absent, all triangles; a number, all alike; or one number a face.
+  // `sizes` gives the number of vertices per face: triangles if absent, one number for all faces, or one
+  // number per face.
   void faces(const Primitive& p, const Value* sizes, const std::string& path) {
     const size_t triangles = p.indices.size() / 3;
     size_t next = 0;  // triangle
@@ -132,7 +133,7 @@ class CageReader {
     float sharpness;
   };
 
-  // `count` vertices of the primitive, and a sharpness.
+  // Reads `count` vertices of the primitive and a sharpness.
   Sharp sharp(const Primitive& p, const Value& v, const std::string& path, size_t count) const {
     bool good = v.isArray() && v.items.size() == count + 1 && v.items[count].isNumber();
     Sharp s{};

@@ -1,5 +1,5 @@
-// Everything about a glTF document that can be told from its JSON: types, indices, sizes, the node graph.
-// Runs before tinygltf sees the file, and reports each mistake with its line.
+// Checks everything about a glTF document that its JSON reveals: types, indices, sizes and the node graph. Runs
+// before tinygltf sees the file, and reports each mistake with its line.
 #include "framework/scene/gltf/check.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class VersionChecker : DocumentReader {
     const Value* asset = root_.find("asset");
     const Value* version = asset && asset->isObject() ? asset->find("version") : nullptr;
     if (!version || !version->isString()) {
-      // glTF 1.0 drafts knew no asset.version but kept their lists as objects.
+      // glTF 1.0 drafts had no asset.version, but their lists were objects.
       const Value* meshes = root_.find("meshes");
       error(asset ? *asset : root_, "asset.version",
             meshes && meshes->isObject()
@@ -113,7 +113,7 @@ void checkDocument(const json::Value& root, const Source& source, Diagnostics& w
     checkContent(root, source, errors);
   }
   if (!errors.hasErrors()) return;
-  // A file of another kind can be wrong in a million places.
+  // A file of another kind can have a million mistakes.
   constexpr size_t kMaxReported = 20;
   std::vector<Diagnostic> list = errors.list();
   if (list.size() > kMaxReported) {

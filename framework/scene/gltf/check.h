@@ -1,4 +1,4 @@
-// The rules of checkDocument, in three parts; private to framework/scene.
+// The rules of checkDocument in three parts. Private to framework/scene.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ inline std::string at(std::string_view array, size_t i) {
   return std::string(array) + "[" + std::to_string(i) + "]";
 }
 
-// What all parts need: lists of objects, indices into other lists, extensions.
+// What all three parts need: access to lists of objects, indices into other lists, and extensions.
 class DocumentReader {
  public:
   using Value = json::Value;
@@ -65,7 +65,7 @@ class DocumentReader {
     return true;
   }
 
-  // -1 when absent or wrong.
+  // -1 if absent or invalid.
   int64_t index(const Value& object, const std::string& path, std::string_view key, std::string_view target,
                 bool required = false) {
     const Value* v = object.find(key);
@@ -93,7 +93,7 @@ class DocumentReader {
     ObjectReader(object, path, errors_).text("name");
   }
 
-  // Extensions of any object: an object of objects.
+  // The extension `name` of an object; null if absent or invalid.
   const Value* extension(const Value& object, const std::string& path, std::string_view name) {
     const Value* all = object.find("extensions");
     if (!all) return nullptr;
@@ -116,11 +116,12 @@ class DocumentReader {
   Diagnostics& errors_;
 };
 
-// Version and extensions. False: nothing else in the file can be trusted to mean what it says.
+// Checks version and extensions. If false, nothing else in the file can be trusted to have its usual meaning.
 bool checkVersion(const json::Value& root, const Source& source, Diagnostics& errors, Diagnostics& warnings);
-// Buffers, views, accessors, images, textures: everything that could reach past the end of something.
+// Checks buffers, views, accessors, images and textures: everything that could cause a read past the
+// end of something.
 void checkData(const json::Value& root, const Source& source, Diagnostics& errors);
-// Materials, meshes, cameras, lights, nodes, skins, animations.
+// Checks materials, meshes, cameras, lights, nodes, skins and animations.
 void checkContent(const json::Value& root, const Source& source, Diagnostics& errors);
 
 }  // namespace fovea::scene::gltf

@@ -1,4 +1,4 @@
-// What a glTF document describes: materials, meshes, cameras, lights, the node tree, skins, animations.
+// Checks what a glTF document describes: materials, meshes, cameras, lights, the node tree, skins, animations.
 #include "framework/scene/gltf/check.h"
 
 namespace fovea::scene::gltf {
@@ -165,7 +165,7 @@ class ContentChecker : DocumentReader {
             "expected an index into the model's " + std::to_string(lightCount_) + " lights");
   }
 
-  // Strict trees (glTF 2.0, 3.5.1): at most one parent each, no cycles.
+  // Nodes form strict trees (glTF 2.0, 3.5.1): each has at most one parent, and there are no cycles.
   void checkNodeTree() {
     const size_t count = sizeOf("nodes");
     std::vector<int64_t> parent(count, -1);
@@ -183,7 +183,7 @@ class ContentChecker : DocumentReader {
         p = int64_t(i);
       }
     }
-    // With one parent each, walking up either ends at a root or runs in a circle.
+    // As each node has at most one parent, walking up ends at a root or in a cycle.
     std::vector<uint8_t> known(count, 0);  // 1: on the current walk, 2: ends at a root or was reported
     for (size_t i = 0; i < count; ++i) {
       std::vector<size_t> walk;
@@ -235,7 +235,7 @@ class ContentChecker : DocumentReader {
     });
   }
 
-  // A list that must not be empty; nullptr when it is not there.
+  // A list that must not be empty; nullptr if it is absent.
   const Value* listOf(const Value& v, const std::string& path, std::string_view key) {
     const Value* list = v.find(key);
     if (list && !(list->isArray() && list->items.empty())) return list;

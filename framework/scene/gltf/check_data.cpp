@@ -1,4 +1,4 @@
-// Sizes and offsets of a glTF document: buffers, views, accessors, images.
+// Checks sizes and offsets in a glTF document: buffers, views, accessors, images.
 #include <algorithm>
 #include <array>
 
@@ -111,7 +111,7 @@ class DataChecker : DocumentReader {
     });
   }
 
-  // A number of another object, whatever its type; that object's own check has reported it if it is wrong.
+  // A number of another object, of any type; the check of that object reports an invalid one.
   int64_t integerAt(std::string_view array, int64_t i, std::string_view key, int64_t fallback) const {
     const Value* v = root_.find(array);
     const Value* member = v->items[size_t(i)].find(key);
@@ -129,7 +129,7 @@ class DataChecker : DocumentReader {
       return error(v, path,
                    "elements of " + std::to_string(bytes) + " bytes overlap: bufferViews[" +
                        std::to_string(view) + "].byteStride is " + std::to_string(stride));
-    // All factors are below 2^31: no overflow in 64 bits.
+    // All factors are below 2^31, so 64 bits do not overflow.
     const int64_t end = offset + (count - 1) * stride + bytes;
     if (end > length)
       error(v, path,

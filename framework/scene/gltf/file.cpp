@@ -1,4 +1,4 @@
-// Reading a .gltf or .glb file and the files beside it, and nothing else.
+// Reads a .gltf or .glb file and the files beside it, and nothing else.
 #include <cstring>
 #include <fstream>
 
@@ -18,8 +18,7 @@ uint32_t readU32(const std::vector<uint8_t>& bytes, size_t offset) {
               "the file is damaged or cut short; export or download it again");
 }
 
-// GLB container, glTF 2.0 section 4: a 12-byte header, the JSON chunk, then at most one BIN chunk that is
-// used.
+// GLB container, glTF 2.0 section 4: a 12-byte header, the JSON chunk, then at most one BIN chunk that is used.
 void splitGlb(Source& s) {
   const std::vector<uint8_t>& b = s.bytes;
   if (b.size() < 12) badGlb(s, "a GLB header has 12 bytes, the file only " + std::to_string(b.size()));
@@ -72,7 +71,7 @@ std::string percentDecode(std::string_view text) {
   return out;
 }
 
-// "http:", "file:", and "c:" of a Windows path.
+// Matches "http:", "file:", and the "c:" of a Windows path.
 bool hasScheme(std::string_view uri) {
   const size_t colon = uri.find(':');
   return colon != std::string_view::npos && uri.substr(0, colon).find('/') == std::string_view::npos;
@@ -84,7 +83,7 @@ std::vector<uint8_t> readFile(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);
   if (!fs::exists(status)) throw Error(ExitCode::BadInput, file.string() + ": there is no such file");
-  // Devices and pipes never end; folders read as nothing.
+  // Devices and pipes may never end, and folders read as empty.
   if (!fs::is_regular_file(status))
     throw Error(ExitCode::BadInput, file.string() + ": is not a regular file");
   const uint64_t size = fs::file_size(file, ec);

@@ -1,4 +1,5 @@
-// loadGltf: a glTF 2.0 model as a Scene. The steps and the reasons for their order are in gltf_internal.h.
+// Implements loadGltf, which loads a glTF 2.0 model as a Scene. gltf/internal.h explains the steps and the reasons
+// for their order.
 #include <tiny_gltf.h>
 
 #include "framework/scene/gltf/internal.h"

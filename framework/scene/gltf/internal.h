@@ -1,15 +1,15 @@
-// The parts of the glTF loader; private to framework/scene.
+// The parts of the glTF loader. Private to framework/scene.
 //
-//   file      bytes -> JSON text and binary chunk, GLB headers checked
-//   check     the project's own JSON parser and every rule that keeps tinygltf and the code below inside
-//   their buffers parse     tinygltf, shut off from the file system except for the buffers that `check`
-//   allowed build     materials, meshes, nodes
+//   file    reads the bytes, checks GLB headers, and finds the JSON text and the binary chunk
+//   check   parses the JSON with the project's own parser and applies every rule that keeps tinygltf and the code
+//           below inside their buffers
+//   parse   calls tinygltf, shut off from the file system except for the buffers that `check` allowed
+//   build   makes materials, meshes, nodes, skins and animations
 //
-// What tinygltf 2.7 does unguarded, measured: it overflows the stack on deep `extras`, throws on image uri
-// ".", opens absolute and ../ paths and files of the working folder, reads past a buffer for an image's
-// bufferView and past the end of a GLB whose BIN chunk lies about its length, truncates large integers, drops
-// primitives and properties of a wrong type silently, and never looks at accessor bounds, node cycles or
-// extensionsRequired.
+// tinygltf 2.7 was found to leave the following unguarded. It overflows the stack on deep `extras`, throws on the image
+// URI ".", opens absolute and ../ paths and files of the working folder, reads past a buffer for an image's bufferView
+// and past the end of a GLB whose BIN chunk gives a wrong length, truncates large integers, silently drops primitives
+// and properties of a wrong type, and never checks accessor bounds, node cycles or extensionsRequired.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@
 #include "framework/base/json.h"
 #include "framework/scene/scene.h"
 
-// tinygltf's header is large: only the .cpp files that need it include it.
+// The header of tinygltf is large, so only the .cpp files that need it include it.
 namespace tinygltf {
 class Model;
 }
 
 namespace fovea::scene::gltf {
 
-// Sums over one model; a few bytes of JSON can claim more than any machine holds.
-inline constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 31) - 1;  // tinygltf counts in int
+// Limits on sums over one model, because a few bytes of JSON can claim more memory than any machine has.
+inline constexpr uint64_t kMaxFileBytes = (uint64_t(1) << 31) - 1;  // tinygltf counts bytes in int
 inline constexpr uint64_t kMaxBufferBytes = uint64_t(1) << 32;
 inline constexpr uint64_t kMaxVertices = uint64_t(1) << 26;
-inline constexpr uint64_t kMaxZeroElements = uint64_t(1) << 22;  // of an accessor without data of its own
+inline constexpr uint64_t kMaxZeroElements = uint64_t(1) << 22;  // in accessors without data of their own
 inline constexpr uint32_t kMaxTextureSize = 16384;
 
 // ---- file ----
@@ -43,24 +43,24 @@ inline constexpr uint32_t kMaxTextureSize = 16384;
 struct Source {
   std::filesystem::path file;
   std::filesystem::path folder;  // absolute; nothing outside it is read
-  std::string name;              // as the user gave it, for messages
+  std::string name;              // as given by the user, for messages
   std::vector<uint8_t> bytes;
   bool binary = false;      // GLB
   std::string_view json;    // inside bytes
-  uint64_t binarySize = 0;  // of the BIN chunk
+  uint64_t binarySize = 0;  // size of the BIN chunk
 };
 
 Source readSource(const std::filesystem::path& file);
 
-// Whole regular file of at most kMaxFileBytes. Throws Error(BadInput) naming it.
+// Reads a whole regular file of at most kMaxFileBytes. Throws Error(BadInput) naming it.
 std::vector<uint8_t> readFile(const std::filesystem::path& file);
 
 bool isDataUri(std::string_view uri);
-// The file a relative URI names, below `folder`; or what is wrong with it. Percent-encoding is decoded.
+// The file below `folder` that a relative URI names, or the problem with the URI. Percent-encoding is decoded.
 struct ResolvedUri {
   std::filesystem::path file;
   std::string decoded;
-  std::string problem;  // empty: fine
+  std::string problem;  // empty if there is none
 };
 ResolvedUri resolveUri(const std::filesystem::path& folder, std::string_view uri);
 
@@ -71,7 +71,7 @@ void checkDocument(const json::Value& root, const Source& source, Diagnostics& w
 
 // ---- parse ----
 
-// Images come back as their encoded bytes (Image::image, as_is), external ones only as their uri.
+// Images are returned as their encoded bytes (Image::image, as_is), external ones only as their URI.
 void parseModel(const Source& source, const json::Value& root, tinygltf::Model& model);
 
 // ---- build ----
@@ -82,10 +82,10 @@ struct Context {
   const tinygltf::Model& model;
   Scene& scene;
   Diagnostics& warnings;
-  // Per glTF material: which TEXCOORD set its textures read.
+  // For each glTF material, the TEXCOORD set that its textures read.
   std::vector<int> texCoordOfMaterial{};
   uint32_t defaultMaterial = kNoIndex;  // made on demand for primitives without one
-  std::vector<uint32_t> sceneNode{};    // of each glTF node; kNoIndex when the scene does not show it
+  std::vector<uint32_t> sceneNode{};    // node in the scene for each glTF node; kNoIndex if it is not shown
   uint64_t vertices = 0;
   uint64_t degenerateTriangles = 0, badNormals = 0;
 
@@ -93,8 +93,8 @@ struct Context {
   [[noreturn]] void fail(std::string path, std::string message, std::string remedy = {}) const;
 };
 
-// `components` floats an element, normalised integers converted, sparse values applied. Finite or not: the
-// caller looks.
+// Reads `components` floats per element, with normalised integers converted and sparse values applied. The caller
+// checks whether they are finite.
 std::vector<float> readFloats(const Context& c, int accessor, int components, const std::string& path);
 std::vector<uint32_t> readIndices(const Context& c, int accessor, const std::string& path);
 
@@ -102,15 +102,15 @@ void buildMaterials(Context& c);
 void buildMeshes(Context& c);
 void buildNodes(Context& c);  // nodes, lights, cameras
 void buildSkins(Context& c);
-void buildAnimations(Context& c);  // the first one plays
+void buildAnimations(Context& c);  // the first animation plays
 
-// `extras.fovea_subdivision` of a mesh's primitives (gltf_cage.cpp).
+// Whether a mesh's primitives have `extras.fovea_subdivision` (gltf/cage.cpp).
 bool hasCage(const json::Value& primitives);
-// The mesh's primitives become its cage. Throws Error(BadInput) with the place of what is wrong.
+// Turns the mesh's primitives into its cage. Throws Error(BadInput) with the place of the problem.
 void buildCage(const json::Value& primitives, const std::string& place, Mesh& mesh);
 void refineCages(Context& c);
 
-// "meshes[3] `floor`"
+// Name for messages, such as "meshes[3] `floor`".
 std::string nameOf(std::string_view array, size_t index, const std::string& name);
 
 }  // namespace fovea::scene::gltf

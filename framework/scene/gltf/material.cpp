@@ -1,5 +1,5 @@
-// Materials and textures. Only images that a diffuse surface needs are decoded: base colour, emission,
-// metalness.
+// Builds materials and textures. Decodes only the images that a diffuse surface needs: base
+// colour, emission, metalness.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -35,9 +35,9 @@ Wrap wrapOf(int mode) {
   }
 }
 
-// KHR_texture_transform: translation * rotation * scale. The listing in the extension's text turns the other
-// way than its sample model and every implementation (KhronosGroup/glTF issue 1563); positive angles turn u
-// towards -v.
+// KHR_texture_transform: translation * rotation * scale. The listing in the text of the extension rotates in the
+// opposite direction to its sample model and to every implementation (KhronosGroup/glTF issue 1563); positive angles
+// turn u towards -v.
 glm::mat3x2 textureTransform(const tinygltf::Value& t) {
   const glm::vec2 offset = pairOr(t, "offset", glm::vec2(0.0f)), scale = pairOr(t, "scale", glm::vec2(1.0f));
   const float angle = float(numberOr(t, "rotation", 0.0));
@@ -81,8 +81,8 @@ class MaterialBuilder {
     return float(std::clamp(v, 0.0, 1.0));
   }
 
-  // glTF's default is 1, a pure metal, which a diffuse renderer shows black. Where nothing in the file says
-  // metal, it is almost always an exporter that wrote no material, not one that meant a mirror.
+  // The default in glTF is 1, a pure metal, which a diffuse renderer shows black. A file that never mentions metal
+  // usually comes from an exporter that wrote no material rather than from one that meant a mirror.
   float metallicFactor(const tinygltf::PbrMetallicRoughness& pbr, size_t index) {
     const json::Value* written = c_.root.find("materials")->items[index].find("pbrMetallicRoughness");
     const bool said = written && (written->find("metallicFactor") || pbr.metallicRoughnessTexture.index >= 0);
@@ -109,7 +109,7 @@ class MaterialBuilder {
     m.alphaCutoff = 0.5f;
   }
 
-  // One metalness a material: the mean of the texture's blue channel.
+  // One metalness per material: the mean of the texture's blue channel.
   void metalness(const tinygltf::PbrMetallicRoughness& pbr, Material& m) {
     const int texture = pbr.metallicRoughnessTexture.index;
     if (texture >= 0 && m.metallic > 0.0f && c_.model.textures[size_t(texture)].source >= 0) {

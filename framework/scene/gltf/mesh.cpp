@@ -1,4 +1,4 @@
-// Meshes: attributes to triangles, with the morph targets and joints that move their vertices.
+// Builds meshes: converts attributes to triangles, with the morph targets and joints that move their vertices.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace {
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// Zero when the triangle has no area. In double: thin slivers of large models are triangles still.
+// Zero if the triangle has no area. In double precision, so that thin slivers of large models count as triangles.
 glm::dvec3 areaVector(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
 }
 
-// Strips and fans as triangles, winding kept (glTF 2.0, 3.7.2.1).
+// Converts strips and fans to triangles and keeps the winding (glTF 2.0, 3.7.2.1).
 std::vector<uint32_t> toTriangles(const std::vector<uint32_t>& in, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) return {in.begin(), in.end() - long(in.size() % 3)};
   std::vector<uint32_t> out;
@@ -142,7 +142,7 @@ class MeshBuilder {
     }
   }
 
-  // Four joints a vertex; further sets are rare and carry little weight.
+  // Four joints per vertex; further sets are rare and carry little weight.
   void readSkin(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
     const auto joints = from.attributes.find("JOINTS_0"), weights = from.attributes.find("WEIGHTS_0");
     if (joints == from.attributes.end() || weights == from.attributes.end()) return;
@@ -159,7 +159,7 @@ class MeshBuilder {
       const glm::vec4 weight = glm::max(glm::make_vec4(&w[4 * i]), 0.0f);
       const float sum = weight.x + weight.y + weight.z + weight.w;
       if (sum > 0.0f && std::isfinite(sum)) out.weights[i] = weight / sum;
-      // What a joint without weight is called does not matter.
+      // The index of a joint without weight does not matter.
       for (int k = 0; k < 4; ++k)
         if (out.weights[i][k] > 0.0f)
           out.joints[i][k] = uint16_t(std::clamp(j[4 * i + size_t(k)], 0.0f, 65535.0f));
@@ -254,7 +254,7 @@ class MeshBuilder {
       bad[i] = !(length > 1e-6f && std::isfinite(length));
       p.normals[i] = bad[i] ? glm::vec3(0, 1, 0) : n / length;
     }
-    // A vertex without a usable normal takes that of the first triangle it belongs to.
+    // A vertex without a usable normal takes that of the first triangle to which it belongs.
     for (size_t i = 0; i + 2 < p.indices.size(); i += 3) {
       const uint32_t* t = &p.indices[i];
       for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// The node tree of the scene to show, and what hangs on it: meshes, cameras, lights.
+// Builds the node tree of the scene that is shown, with its meshes, cameras and lights.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace fovea::scene::gltf {
 namespace {
 
-// The rotation of a world transform, scale and shear removed: where its -Z and +Y point.
+// The rotation of a world transform, that is, the directions of its -Z and +Y, without scale and shear.
 glm::quat orientationOf(const glm::mat4& m) {
   glm::vec3 back(m[2]), up(m[1]);
   if (glm::length(back) <= 0.0f) back = {0, 0, 1};
@@ -29,7 +29,7 @@ class NodeBuilder {
   }
 
   void run() {
-    // Parents before children: an explicit stack, since trees may be as deep as the file is long.
+    // Visits parents before children, with an explicit stack because trees may be as deep as the file is long.
     std::vector<std::pair<int, uint32_t>> stack;
     const std::vector<int> roots = rootNodes();
     for (auto r = roots.rbegin(); r != roots.rend(); ++r) stack.push_back({*r, kNoIndex});
@@ -70,7 +70,7 @@ class NodeBuilder {
       listed[size_t(n)] = true;
       roots.push_back(n);
     }
-    // Some exporters list children too; they come with their parents.
+    // Some exporters also list children, which are visited with their parents.
     const auto underListed = [&](int n) {
       for (int p = parent[size_t(n)]; p >= 0; p = parent[size_t(p)])
         if (listed[size_t(p)]) return true;
@@ -176,7 +176,7 @@ class NodeBuilder {
       light.outerConeAngle = float(from.spot.outerConeAngle);
     }
     light.position = glm::vec3(world[3]);
-    // Along the node's -Z; a node's scale does not touch its light (KHR_lights_punctual).
+    // The light points along the node's -Z; the node's scale does not affect it (KHR_lights_punctual).
     light.direction = orientationOf(world) * glm::vec3(0, 0, -1);
     return light;
   }

@@ -1,5 +1,5 @@
-// The one place that calls tinygltf, with callbacks that reach nothing but the buffers `checkDocument` has
-// seen.
+// The only file that calls tinygltf, with callbacks that can read nothing but the buffers that
+// `checkDocument` has seen.
 #include <tiny_gltf.h>
 
 #include <set>
@@ -9,7 +9,7 @@
 namespace fovea::scene::gltf {
 namespace {
 
-// What the callbacks may read: the path tinygltf will ask for -> the size it must have.
+// What the callbacks may read: the path that tinygltf will request -> the size that it must have.
 struct Allowed {
   std::map<std::string, uint64_t> files;
 };
@@ -39,7 +39,7 @@ bool readWholeFile(std::vector<unsigned char>* out, std::string* err, const std:
              std::to_string(found->second);
     return false;
   }
-  out->resize(found->second);  // longer is legal, tinygltf insists on equal
+  out->resize(found->second);  // a longer file is legal, but tinygltf requires equality
   return true;
 }
 
@@ -62,7 +62,7 @@ Allowed allowedFiles(const Source& source, const json::Value& root) {
   for (const json::Value& b : buffers->items) {
     const json::Value* uri = b.find("uri");
     if (!uri || isDataUri(uri->string)) continue;
-    // Two buffers may cut the same file differently; tinygltf wants both sizes exact, so that is refused.
+    // Two buffers may use different lengths of one file. As tinygltf requires exact sizes, this is refused.
     const std::string name = source.folder.string() + "/" + resolveUri(source.folder, uri->string).decoded;
     const uint64_t size = uint64_t(b.find("byteLength")->integer);
     const auto [at, added] = allowed.files.emplace(name, size);
@@ -74,7 +74,7 @@ Allowed allowedFiles(const Source& source, const json::Value& root) {
   return allowed;
 }
 
-// tinygltf repeats whole data URIs in its messages.
+// Shortens messages, because tinygltf repeats whole data URIs in them.
 std::string shorten(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   constexpr size_t kLimit = 400;

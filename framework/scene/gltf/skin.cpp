@@ -1,4 +1,4 @@
-// Skins: joints, inverse bind matrices, and the nodes whose meshes they bend.
+// Builds skins: joints, inverse bind matrices, and the nodes whose meshes they bend.
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace fovea::scene::gltf {
 namespace {
 
-// Without joints when the scene does not show one of them.
+// Returns a skin without joints if the scene does not show one of them.
 Skin skinOf(const Context& c, size_t index) {
   const tinygltf::Skin& from = c.model.skins[index];
   const std::string place = nameOf("skins", index, from.name);
@@ -50,7 +50,7 @@ void checkJoints(const Context& c, const Mesh& mesh, size_t joints, const std::s
 }  // namespace
 
 void buildSkins(Context& c) {
-  std::vector<uint32_t> known(c.model.skins.size(), kNoIndex);  // in the scene
+  std::vector<uint32_t> known(c.model.skins.size(), kNoIndex);  // index in the scene
   for (size_t i = 0; i < c.model.nodes.size(); ++i) {
     const tinygltf::Node& from = c.model.nodes[i];
     if (from.skin < 0 || from.mesh < 0 || c.sceneNode[i] == kNoIndex) continue;

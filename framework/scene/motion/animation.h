@@ -1,4 +1,4 @@
-// Animations as glTF 2.0 has them: the value of a channel at any time.
+// Evaluates animations as defined by glTF 2.0: the value of a channel at any time.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,19 +8,19 @@
 
 namespace fovea::scene {
 
-// Seconds, of the animation: its last key.
+// Duration in seconds of the animation: the time of its last key.
 float duration(const Animation& animation);
 
-// Where in its keys an animation is at `time` of the scene.
+// Position in its keys, in seconds, at which an animation is at `time` of the scene.
 float animationTime(const Animation& animation, double time);
 
-// Floats that one key holds of each of value and tangents: 3, 4 for rotations, else one a morph target. 0 for
-// a channel that has no keys or whose numbers do not add up.
+// Number of floats that one key holds for each of value and tangents: 4 for rotations, one per morph target for
+// weights, otherwise 3. 0 for a channel that has no keys or whose array sizes are inconsistent.
 size_t componentsOf(const AnimationChannel& channel);
 
-// The value at `time` (s, of the keys; held before the first and after the last one): componentsOf() floats.
-// Rotations are unit quaternions (x, y, z, w), between LINEAR keys by spherical interpolation along the
-// shorter way. glTF 2.0, appendix C.
+// Writes the value at `time` (seconds on the time line of the keys) to componentsOf() floats. The value is constant
+// before the first key and after the last one. Rotations are unit quaternions (x, y, z, w); between LINEAR keys they
+// are interpolated spherically along the shorter arc. glTF 2.0, appendix C.
 void sampleChannel(const AnimationChannel& channel, float time, std::span<float> value);
 
 }  // namespace fovea::scene

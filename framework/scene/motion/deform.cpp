@@ -8,15 +8,15 @@
 namespace fovea::scene {
 namespace {
 
-// The cofactor matrix equals det * inverse transpose: the same direction of normals up to the sign of det,
-// and it exists for flattened (singular) transforms too.
+// The cofactor matrix equals det * inverse transpose. It gives normals the same direction up to the sign of det, and
+// it also exists for flattened (singular) transforms.
 glm::mat3 normalMatrix(const glm::mat4& m) {
   const glm::mat3 a(m);
   const float sign = glm::determinant(a) < 0.0f ? -1.0f : 1.0f;
   return sign * glm::mat3(glm::cross(a[1], a[2]), glm::cross(a[2], a[0]), glm::cross(a[0], a[1]));
 }
 
-// A singular transform can swallow a normal; any unit vector will do for what is then a sliver.
+// A singular transform can make a normal vanish; any unit vector serves for what is then a sliver.
 glm::vec3 unitNormal(const glm::vec3& n) {
   const float length = glm::length(n);
   return length > 0.0f && std::isfinite(length) ? n / length : glm::vec3(0, 1, 0);

@@ -1,5 +1,5 @@
-// Vertices of one object in one frame: morph targets, then joints, then the way into the world; what
-// shaders/animate does on the device.
+// Places the vertices of one object in one frame: morph targets first, then joints, then the transform to world
+// space. shaders/animate does the same on the device.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,30 +11,30 @@
 
 namespace fovea::scene {
 
-// Whether morph targets or joints move the vertices of the node's mesh one by one.
+// Whether morph targets or joints move the vertices of the node's mesh individually.
 bool deforms(const Scene& scene, const Node& node);
-// Whether joints place it: the transform of its own node does not count then.
+// Whether joints place the node's mesh; the transform of the node is ignored then.
 bool skinned(const Scene& scene, const Node& node);
-// Of the mesh of a node; 0: it has none.
+// Number of morph targets; 0 if none.
 size_t morphTargets(const Mesh& mesh);
-// Of a node's morph targets as long as nothing animates them: morphTargets() of them.
+// Weights of a node's morph targets while nothing animates them; morphTargets() values.
 std::vector<float> restWeights(const Scene& scene, const Node& node);
 
 struct ObjectPose {
   glm::mat4 toWorld{1};
-  bool visible = true;  // else: all vertices in one point
+  bool visible = true;  // if false, all vertices collapse to one point
   std::span<const glm::mat4> joints{};
   std::span<const float> weights{};
 };
-// Of one of Geometry::objects; the pose points into the frame.
+// Pose of the object with this index in Geometry::objects. The spans of the pose point into the frame.
 ObjectPose poseOf(const Object& object, size_t index, const Frame& frame);
 
-// Vertices of all primitives of a mesh, one after the other, in the world. `stencils`: of the mesh's cage,
-// when the cage is what deforms; else null. Normals are unit.
+// Places the vertices of all primitives of a mesh, one after the other, in world space. `stencils` are those of the
+// mesh's cage if the cage is what deforms, otherwise null. Normals are unit.
 void placeVertices(const Mesh& mesh, const Stencils* stencils, const ObjectPose& pose, glm::vec3* positions,
                    glm::vec3* normals);
 
-// Bent so that its inside is out: by the transform, or by the joints.
+// Whether the transform or the joints turn the object inside out (negative determinant).
 bool mirrored(const ObjectPose& pose);
 
 }  // namespace fovea::scene

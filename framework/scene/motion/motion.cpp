@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kSweepSteps = 32;        // samples of a path between two keys
 constexpr int kSteps = 4;              // samples of an animation between two keys
-constexpr size_t kMostSamples = 1024;  // of one object
+constexpr size_t kMostSamples = 1024;  // samples of one object
 
-// Catmull-Rom through the four keys around u in [0, 1] between p1 and p2, with the keys' own times (finite
-// differences).
+// Catmull-Rom through the four keys around u in [0, 1] between p1 and p2, with the keys' own
+// times (finite differences).
 template <class V>
 V hermite(const V& p0, const V& p1, const V& p2, const V& p3, float t0, float t1, float t2, float t3,
           float u) {
@@ -53,8 +53,8 @@ Span spanAt(const std::vector<Key>& keys, float time) {
   return s;
 }
 
-// Catmull-Rom that never leaves the interval between two keys (Fritsch and Carlson 1980): where a path rests
-// or turns, it does so in the keys, so that nothing sinks into the floor on which it stands.
+// Catmull-Rom spline that never leaves the interval between two keys (Fritsch and Carlson 1980): a path rests or
+// turns only at keys, so that nothing sinks into the floor on which it stands.
 float monotone(float p0, float p1, float p2, float p3, const Span& s) {
   const auto tangent = [](float before, float after, float mean) {
     if (before * after <= 0) return 0.0f;
@@ -79,7 +79,7 @@ glm::vec3 between(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2, glm::vec3 p3, const 
   return r;
 }
 
-// The same spline on the sphere of rotations (then normalised): no jump of the turning speed at a key.
+// The same spline on the sphere of rotations, normalised afterwards: the angular velocity does not jump at a key.
 glm::quat turn(const glm::quat& k0, const glm::quat& q1, const glm::quat& k2, const glm::quat& k3,
                const Span& s) {
   const glm::quat q2 = sameSide(k2, q1);
@@ -126,7 +126,7 @@ bool anyPlays(const Scene& scene) {
                      [](const Animation& a) { return a.plays; });
 }
 
-// The first camera, where the node that it hangs on is.
+// The first camera, placed by its node.
 Camera carriedCamera(const Scene& scene, double time) {
   Camera camera = scene.cameras.front();
   if (scene.movers.empty() && !anyPlays(scene)) return camera;
@@ -138,7 +138,7 @@ Camera carriedCamera(const Scene& scene, double time) {
   if (!poses.animated(index) && !poses.moverOf(index)) return camera;
   const glm::mat4 toWorld = poses.at(index, time).toWorld;
   camera.position = glm::vec3(toWorld[3]);
-  // A node's scale does not touch its camera; a mirrored one still has its right hand on the right.
+  // A node's scale does not affect its camera; a mirrored camera still has its right side on the right.
   const glm::vec3 back(toWorld[2]), up(toWorld[1]), right = glm::cross(up, back);
   if (glm::length(right) > 1e-12f * glm::length(up) * glm::length(back))
     camera.orientation = glm::quat_cast(
@@ -146,7 +146,7 @@ Camera carriedCamera(const Scene& scene, double time) {
   return camera;
 }
 
-// Lights that hang on nodes of playing animations go where these go.
+// Lights attached to nodes of playing animations move with the nodes.
 void carryLights(const Scene& scene, double time, std::vector<Light>& lights) {
   if (!anyPlays(scene)) return;
   const NodePoses poses(scene);
@@ -274,7 +274,7 @@ glm::mat4 NodePoses::localAt(uint32_t node, double time, bool& visible) const {
   if (mover == kNoIndex && !plays) return localTransform(n);
   Node moved;
   moved.translation = n.translation, moved.rotation = n.rotation, moved.scale = n.scale;
-  bool stands = true;  // where it does: no channel but those of weights
+  bool stands = true;  // no channel moves it; it has channels of weights at most
   for (size_t i = 0; plays && i < channels_[node].size(); ++i) {
     const auto [animation, channel] = channels_[node][i];
     if (channel->path == AnimationChannel::Path::Weights) continue;
@@ -309,7 +309,7 @@ std::vector<float> NodePoses::weightsAt(uint32_t node, double time) const {
   return weights;
 }
 
-// Joints hang on each other: what is above them is worked out once.
+// Joints depend on each other, so the transforms of ancestors are computed once.
 void NodePoses::jointsAt(uint32_t node, double time, std::vector<glm::mat4>& joints) const {
   const Skin& skin = scene_.skins[scene_.nodes[node].skin];
   std::unordered_map<uint32_t, glm::mat4> known;
@@ -343,7 +343,7 @@ std::vector<double> NodePoses::sampleTimes(uint32_t node) const {
       period = std::max(period, double(duration(*animation)) / animation->speed);
     }
   });
-  // The animation is run through again as often as the movers' paths take.
+  // The animation repeats until the movers' paths end.
   const std::set<double> once = keys;
   for (double start = period; period > 0 && start < horizon && keys.size() < kMostSamples / kSteps;
        start += period)
@@ -376,7 +376,7 @@ ObjectPoses objectsAt(const Scene& scene, const Geometry& geometry, double time,
                        now.visible,
                        last.visible,
                        object.deforms};
-    if (object.jointCount > 0 && object.firstJoint == list.joints.size()) {  // else the skin of another one
+    if (object.jointCount > 0 && object.firstJoint == list.joints.size()) {  // else it shares a skin
       poses.jointsAt(object.node, time, list.joints);
       poses.jointsAt(object.node, before, list.previousJoints);
     }
@@ -443,7 +443,7 @@ Bounds sweptBounds(const NodePoses& poses, uint32_t node, const Mover& mover, co
   const std::vector<MotionKey>& keys = mover.keys;
   sample(keys.front().time);
   for (size_t i = 0; i + 1 < keys.size(); ++i) {
-    known = 0;  // speed may jump in a key
+    known = 0;  // the speed may jump at a key
     const double first = keys[i].time, length = keys[i + 1].time - first;
     for (int step = 0; step < kSweepSteps; ++step) sample(first + length * step / kSweepSteps);
     sample(first + length * (1 - 1e-9));  // a loop is back at its first key when it reaches the last

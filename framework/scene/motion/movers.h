@@ -1,4 +1,4 @@
-// Where the things that move are, for passes that keep what they made of the rest.
+// Bounds of everything that moves, for passes that keep what they computed for the rest.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace fovea::scene {
 
-// Of a dynamic object that is visible; around the whole of its animation where it deforms.
+// Bounds of a visible dynamic object in world space; for an object that deforms, those of its whole animation.
 inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
   Bounds box;
   for (int c = 0; c < 8; ++c) {
@@ -24,11 +24,12 @@ inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
   return box;
 }
 
-// Boxes in which all dynamic objects lie, in world space; low > high: unused. An object has one of its own
-// while there are enough; the others share the last. Of a hidden object: where its vertices are gathered.
+// World-space boxes that enclose all dynamic objects; a box with low > high is unused. Each object has a box to
+// itself while there are enough of them, and the others share the last one. A hidden object counts as the point to
+// which its vertices collapse. shaders/common/movers.glsl reads them.
 struct MoverBoxes {
-  static constexpr size_t kCount = 3;  // MOVER_BOXES of the shaders
-  // Low and high of each; w 0.
+  static constexpr size_t kCount = 3;  // MOVER_BOXES in the shaders
+  // Low and high corner of each box; w is 0.
   std::array<glm::vec4, 2 * kCount> corners = [] {
     std::array<glm::vec4, 2 * kCount> none;
     for (size_t i = 0; i < kCount; ++i) {
@@ -42,7 +43,7 @@ struct MoverBoxes {
       if (corners[2 * i].x <= corners[2 * i + 1].x) return false;
     return true;
   }
-  // One around them all; low above high when all are unused.
+  // One box around them all; low > high if all are unused.
   Bounds all() const {
     Bounds box;
     for (size_t i = 0; i < kCount; ++i) {
@@ -76,7 +77,7 @@ inline MoverBoxes moverBoxes(const Frame& frame) {
   return result;
 }
 
-// Each box around both of the same place.
+// Boxes each of which encloses the box of `a` and the box of `b` with the same index.
 inline MoverBoxes around(const MoverBoxes& a, const MoverBoxes& b) {
   MoverBoxes result;
   for (size_t i = 0; i < MoverBoxes::kCount; ++i) {
@@ -86,15 +87,15 @@ inline MoverBoxes around(const MoverBoxes& a, const MoverBoxes& b) {
   return result;
 }
 
-// Spheres in which all visible dynamic objects lie. An object has one of its own while there are enough; the
-// others share the last.
+// Spheres that enclose all visible dynamic objects. Each object has a sphere to itself while there are enough of
+// them, and the others share the last one.
 template <size_t kCount>
 struct MoverSpheres {
-  std::array<glm::vec4, kCount> spheres;  // xyz centre, w radius, below 0: unused
-  std::array<uint32_t, kCount> poses{};   // the same number as long as what lies in the sphere keeps its pose
+  std::array<glm::vec4, kCount> spheres;  // xyz: centre; w: radius, negative if unused
+  std::array<uint32_t, kCount> poses{};   // unchanged while what lies in the sphere keeps its pose
 };
 
-// A hash of where all points of an object are.
+// Hash of everything that determines where the points of an object are.
 inline uint32_t poseHash(const Object& object, size_t index, const Frame& frame) {
   uint32_t hash = uint32_t(index) + 1;
   auto add = [&](const float* values, size_t count) {

@@ -14,7 +14,7 @@
 namespace fovea::scene {
 namespace {
 
-// What a look-up needs of one masked material: the alpha channel on its own, as the scene filters it.
+// What a look-up needs of one masked material: the alpha channel alone, filtered as in the scene.
 struct Mask {
   Scene scene;  // one material with one texture of which only alpha is kept
 };
@@ -30,7 +30,7 @@ Mask makeMask(const Scene& scene, const Material& material) {
   return mask;
 }
 
-// Content, not addresses: a scene that replaces another one may well live where the first one was.
+// Hashes content rather than addresses, because a scene that replaces another one may be at the same address.
 class ContentHash {
  public:
   ContentHash() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
@@ -49,7 +49,7 @@ class ContentHash {
   std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
-// Of everything but the places of vertices that move.
+// Hash of everything but the positions of vertices that move.
 XXH64_hash_t stillKey(const Scene& scene, const Geometry& geometry) {
   ContentHash hash;
   hash.add(geometry.positions.data(), geometry.staticVertices());
@@ -98,7 +98,7 @@ double areaOf(const Geometry& geometry, uint32_t first, uint32_t end) {
 
 }  // namespace
 
-// What stays the same while dynamic objects move: the tracer of all static triangles, and the masks of all.
+// The parts that stay the same while dynamic objects move: the tracer of all static triangles, and all masks.
 struct RayScene::Still {
   std::unique_ptr<RayTracer> tracer;
   // Masked triangles only: three uvs each, found through the triangle's index.
@@ -152,7 +152,7 @@ struct RayScene::Still {
 
 struct RayScene::Impl {
   std::shared_ptr<const Still> still;
-  std::unique_ptr<RayTracer> moving;  // null: there is nothing that moves
+  std::unique_ptr<RayTracer> moving;  // null if nothing moves
   float epsilon = 1e-5f;
   double area = 0;
 };
@@ -237,7 +237,7 @@ SurfaceHit surfaceAt(const TriangleVertices& t, float u, float v) {
   const glm::vec3 m = t.normals[0] * w + t.normals[1] * u + t.normals[2] * v;
   const float shadingLength = glm::length(m);
   if (shadingLength > 1e-12f) s.shadingNormal = m / shadingLength;
-  // Models exist whose normals point against their winding; the winding decides.
+  // In some models normals contradict the winding; the winding decides.
   if (glm::dot(s.shadingNormal, s.geometricNormal) < 0) s.shadingNormal = -s.shadingNormal;
   s.uv = t.uvs[0] * w + t.uvs[1] * u + t.uvs[2] * v;
   const Triangle ids{{0, 0, 0}, t.materialAndObject};

@@ -1,5 +1,5 @@
-// Rays on the CPU against the world-space triangles of one moment, alpha MASK respected (Embree 3 underneath,
-// in portable bundles a small tracer of our own).
+// Traces rays on the CPU against the world-space triangles of one moment and respects alpha MASK. Uses Embree 3 or,
+// in portable bundles, a small tracer of the project.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@ namespace fovea::scene {
 
 struct Ray {
   glm::vec3 origin{0};     // world space, m
-  glm::vec3 direction{0};  // need not be unit: distances count in its length
+  glm::vec3 direction{0};  // need not be unit; distances are multiples of its length
   float near = 0, far = std::numeric_limits<float>::infinity();
 };
 
 struct RayHit {
   uint32_t triangle = kNoIndex;  // index into Geometry::triangles
-  float distance = 0;            // in lengths of the ray's direction
+  float distance = 0;            // in multiples of the length of the ray's direction
   float u = 0, v = 0;            // barycentric weights of the triangle's second and third vertex
   explicit operator bool() const { return triangle != kNoIndex; }
 };
 
-// A surface as light and eye meet it. Normals are as the model has them: not turned towards anything.
+// A surface at a hit. Normals are as in the model: they are not turned towards the ray.
 struct SurfaceHit {
   glm::vec3 position{0};         // world space, m
-  glm::vec3 geometricNormal{0};  // unit, counter-clockwise side
+  glm::vec3 geometricNormal{0};  // unit, on the side seen counter-clockwise
   glm::vec3 shadingNormal{0};    // unit, interpolated; within 90 degrees of the geometric one
   glm::vec2 uv{0};
   uint32_t material = 0, object = 0;
 };
 
-// Immutable after construction; look-ups may run on many threads at once. Copies what it needs of the masked
-// materials: neither scene nor geometry has to outlive it.
+// Immutable after construction, so many threads may trace at once. Copies what it needs of the masked materials:
+// neither scene nor geometry has to outlive it.
 class RayScene {
  public:
   RayScene(const Scene& scene, const Geometry& geometry);
@@ -45,14 +45,13 @@ class RayScene {
   RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
   bool occluded(const Ray& ray) const;
 
-  // The smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's
-  // diagonal.
+  // Smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
   float epsilon() const;
   double surfaceArea() const;  // of all triangles, one side, m^2
 
-  // The acceleration structure of `geometry`, built when its content (or the masks of `scene`) differs from
-  // what was asked for last; the two most recent ones are kept. Where only dynamic objects have moved only
-  // their part is built anew. Thread-safe.
+  // The acceleration structure of `geometry`, rebuilt if its content (or the masks of `scene`) differs from the
+  // last requests; the two most recent structures are kept. If only dynamic objects have moved, only their part
+  // is rebuilt. Thread-safe.
   static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry);
 
  private:
@@ -62,12 +61,13 @@ class RayScene {
   std::unique_ptr<Impl> impl_;
 };
 
-// Attributes at a hit; `geometry` is the one the ray was traced in.
+// Attributes at a hit. `geometry` must be the one in which the ray was traced.
 SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit);
 
-// All that surfaceAt() needs of one triangle side by side: two cache lines instead of ten, for those who look up millions.
+// Everything surfaceAt() needs from one triangle, side by side: two cache lines instead of ten, for callers that look
+// up millions of hits.
 struct alignas(64) TriangleVertices {
-  glm::vec3 positions[3], normals[3];  // normals of length 0 where the geometry has none
+  glm::vec3 positions[3], normals[3];  // normals have length 0 if the geometry has none
   glm::vec2 uvs[3];
   uint32_t materialAndObject;
 };

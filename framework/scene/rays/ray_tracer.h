@@ -1,5 +1,5 @@
-// What RayScene needs of an acceleration structure, and the two there are: Embree where it is built in, and a
-// small one of our own for bundles that have no room for Embree's 44 MB.
+// The acceleration structures behind RayScene: Embree, if it is built in, and a small one of the project for bundles
+// that have no room for Embree's 44 MB.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace fovea::scene {
 
-// Both look-ups may run on many threads at once. Triangles are hit from both sides; no ray slips through a
-// shared edge.
+// Both look-ups may be called from many threads at once. Triangles are hit from both sides, and no ray slips through
+// a shared edge.
 class RayTracer {
  public:
-  // Whether triangle `t` is there at the barycentric weights u, v of its second and third vertex; empty:
-  // always.
+  // Whether triangle `t` is present at the barycentric weights u, v of its second and third vertex. If empty,
+  // it always is.
   using Accepts = std::function<bool(uint32_t t, float u, float v)>;
   virtual ~RayTracer() = default;
   virtual RayHit intersect(const Ray& ray) const = 0;
@@ -26,7 +26,7 @@ struct TriangleRange {
   uint32_t first = 0, end = ~0u;
 };
 
-// Positions and indices are copied. Throw Error(OutOfMemory).
+// Positions and indices are copied. Both throw Error(OutOfMemory).
 std::unique_ptr<RayTracer> makeEmbreeTracer(const Geometry& geometry, RayTracer::Accepts accepts,
                                             TriangleRange range = {});
 std::unique_ptr<RayTracer> makeBvhTracer(const Geometry& geometry, RayTracer::Accepts accepts,

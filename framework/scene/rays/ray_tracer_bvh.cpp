@@ -30,7 +30,7 @@ struct Box {
 struct Node {
   Box box;
   uint32_t first = 0;  // leaf: its first entry in the order; inner node: the first of its two children
-  uint32_t count = 0;  // triangles; 0: inner node
+  uint32_t count = 0;  // number of triangles; 0 for an inner node
 };
 
 class Builder {
@@ -65,7 +65,7 @@ class Builder {
     build(children + 1, middle, end, depth + 1);
   }
 
-  // Orders [begin, end) into two parts and says where the second one begins.
+  // Partitions [begin, end) into two parts and returns the start of the second.
   uint32_t split(uint32_t begin, uint32_t end, const Box& centres, uint32_t depth) {
     const glm::vec3 extent = centres.hi - centres.lo;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -216,7 +216,7 @@ class BvhTracer : public RayTracer {
       }
       std::pair<uint32_t, float> a{node.first, r.enter(nodes_[node.first].box)};
       std::pair<uint32_t, float> b{node.first + 1, r.enter(nodes_[node.first + 1].box)};
-      if (a.second < b.second) std::swap(a, b);  // the nearer one is taken first
+      if (a.second < b.second) std::swap(a, b);  // the nearer child is visited first
       if (a.second < kMiss) stack[size++] = a;
       if (b.second < kMiss) stack[size++] = b;
     }

@@ -42,7 +42,7 @@ class EmbreeTracer : public RayTracer {
     device_.reset(rtcNewDevice(nullptr));
     if (!device_) fail(rtcGetDeviceError(nullptr), "making a device");
     scene_.reset(rtcNewScene(device_.get()));
-    // Robust: no light through the edge that two triangles share.
+    // Robust mode lets no light through the edge that two triangles share.
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     const uint32_t end = std::min(range.end, uint32_t(geometry.triangles.size()));
     if (first_ < end) addTriangles(geometry, end);
@@ -109,7 +109,7 @@ class EmbreeTracer : public RayTracer {
   }
 
   Accepts accepts_;
-  uint32_t first_;  // triangle of the geometry that is Embree's number 0
+  uint32_t first_;  // index in the geometry of Embree's triangle 0
   std::unique_ptr<RTCDeviceTy, DeviceDeleter> device_;
   std::unique_ptr<RTCSceneTy, SceneDeleter> scene_;
 };

@@ -12,7 +12,7 @@ namespace {
 
 uint32_t bitsOf(float v) { return std::bit_cast<uint32_t>(v + 0.0f); }  // -0 is 0
 
-// Twice the area along the normal (Newell), of polygons that need not be flat.
+// Normal times twice the area (Newell) of a polygon that need not be flat.
 glm::dvec3 areaVector(const SubdivisionCage& cage, size_t first, uint32_t size) {
   glm::dvec3 sum(0.0);
   for (uint32_t k = 0; k < size; ++k)
@@ -109,7 +109,7 @@ SubdivisionCage CageBuilder::take() {
 
 void creaseByAngle(SubdivisionCage& cage, float degrees) {
   const double limit = std::cos(glm::radians(double(degrees)));
-  std::unordered_map<uint64_t, glm::dvec3> normals;  // of the face left of each directed edge
+  std::unordered_map<uint64_t, glm::dvec3> normals;  // normal of the face to the left of each directed edge
   size_t first = 0;
   for (size_t f = 0; f < cage.faceSizes.size(); first += cage.faceSizes[f++]) {
     const uint32_t size = cage.faceSizes[f];

@@ -1,4 +1,4 @@
-// Control cages from triangle meshes, whose vertices are split where normals or texture coordinates differ.
+// Builds control cages from triangle meshes, whose vertices are split where normals or texture coordinates differ.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ class ObjectReader;
 
 namespace fovea::scene {
 
-// SubdivisionCage::lightLevel as files give it, beside the picture's `level`; what is wrong goes to the
-// reader's diagnostics.
+// Reads SubdivisionCage::lightLevel from a file that gives it beside the picture's `level`; mistakes go to
+// the reader's diagnostics.
 std::optional<uint32_t> readLightLevel(json::ObjectReader& r, std::string_view key, uint32_t level);
 
-// Vertices in exactly the same place become one point of the cage, with the morph targets and joints of the
-// first of them; texture coordinates join where they are equal. Vertices that no face uses are left out.
+// Vertices in exactly the same place become one point of the cage, which takes the morph targets and joints of the
+// first of them. Equal texture coordinates are merged. Vertices that no face uses are left out.
 class CageBuilder {
  public:
-  // The faces that follow are of this primitive, which must outlive them.
+  // The faces that follow belong to this primitive, which must outlive them.
   void begin(const Primitive& primitive);
-  void face(std::span<const uint32_t> vertices);  // of the primitive
-  // The point that a vertex of the primitive became; kNoIndex when no face uses it.
+  void face(std::span<const uint32_t> vertices);  // vertices of the primitive
+  // The cage point of a vertex of the primitive; kNoIndex if no face uses the vertex.
   uint32_t point(uint32_t vertex) const { return vertex < points_.size() ? points_[vertex] : kNoIndex; }
-  // Everything but scheme, level, creases and corners. Unchecked: checkCage.
+  // Returns the cage without scheme, level, creases and corners. The cage is not checked; see checkCage.
   SubdivisionCage take();
 
  private:
@@ -47,11 +47,11 @@ class CageBuilder {
   const Primitive* primitive_ = nullptr;
   SubdivisionCage cage_;
   std::unordered_map<Key, uint32_t, Hash> known_, knownUvs_;
-  std::vector<uint32_t> points_, uvs_;  // of the primitive's vertices
+  std::vector<uint32_t> points_, uvs_;  // for each vertex of the primitive
 };
 
-// Infinitely sharp creases along the edges whose two faces' planes enclose more than `degrees`. The cage must
-// have passed checkCage.
+// Adds infinitely sharp creases along the edges between two faces whose planes enclose more than `degrees`. The cage
+// must have passed checkCage.
 void creaseByAngle(SubdivisionCage& cage, float degrees);
 
 }  // namespace fovea::scene

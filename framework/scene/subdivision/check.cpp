@@ -1,4 +1,4 @@
-// What a cage must be before OpenSubdiv may see it: that library takes bad topology for a programming error.
+// Checks a cage before it is passed to OpenSubdiv, which treats invalid topology as a programming error.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -139,7 +139,7 @@ class CageChecker {
     if (problems_.empty()) fans();
   }
 
-  // Of the directed edge from `vertex` to `next`.
+  // The corner of a face at the directed edge from `vertex` to `next`; null if there is none.
   const Corner* find(uint32_t vertex, uint32_t next) const {
     const auto found = std::lower_bound(corners_.begin(), corners_.end(), Corner{vertex, next, 0, 0});
     return found != corners_.end() && found->vertex == vertex && found->next == next ? &*found : nullptr;

@@ -1,5 +1,5 @@
-// OpenSubdiv's part of subdivision surfaces: topology, refinement masks, limit masks. The tangents of the
-// sides of sharp features are this file's own: OpenSubdiv gives one side of a crease only.
+// The part of subdivision surfaces that uses OpenSubdiv: topology, refinement masks and limit masks. The tangents of
+// the sides of sharp features are computed here, because OpenSubdiv gives only one side of a crease.
 #include "framework/scene/subdivision/limit.h"
 
 #include "fovea/error.h"
@@ -46,7 +46,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 using Far::ConstIndexArray;
 using Far::TopologyLevel;
 
-// Vectors with the names that OpenSubdiv calls.
+// Vectors with the member names that OpenSubdiv requires.
 template <class Vector>
 struct Sum {
   Vector v{0.0f};
@@ -110,8 +110,8 @@ struct TangentMask {
   void add(int point, double a, double b) { terms.push_back({point, float(a), float(b)}); }
 };
 
-// The faces of `vertex` from one sharp edge to the next, counter-clockwise: k faces, k + 1 edges. A closed
-// ring (a cone's tip) has k edges.
+// The faces of `vertex` from one sharp edge to the next, counter-clockwise: k faces and k + 1 edges. A closed ring,
+// as at the tip of a cone, has k edges.
 struct Sector {
   int vertex = 0;
   std::vector<int> edgePoints;      // the other ends of the edges
@@ -121,7 +121,7 @@ struct Sector {
   bool closed = false;
 };
 
-// The tip of a cone has no tangent plane; these are the lowest harmonics of its ring.
+// The tip of a cone has no tangent plane; the lowest harmonics of its ring are used instead.
 TangentMask ringMask(const Sector& s) {
   TangentMask mask;
   for (size_t i = 0; i < s.faces; ++i) {
@@ -131,8 +131,8 @@ TangentMask ringMask(const Sector& s) {
   return mask;
 }
 
-// A single face between two sharp edges e, e': (e - v) x (e' - v) written as a difference and a sum. Quads
-// whose two edges lie in one line would lose their normal: a ten-thousandth of the diagonal keeps it.
+// A single face between two sharp edges e, e': (e - v) x (e' - v), written as a difference and a sum. A quad whose
+// two edges are collinear would lose its normal; a ten-thousandth of the diagonal preserves it.
 TangentMask singleFaceMask(const Sector& s) {
   const double diagonal = s.diagonalPoints.empty() ? 0.0 : 1e-4;
   TangentMask mask;
@@ -143,9 +143,9 @@ TangentMask singleFaceMask(const Sector& s) {
   return mask;
 }
 
-// More than one face at a corner: in general there is no tangent plane (the eigenvalue of the inner edges is
-// at least that of the sharp ones). The difference of the sharp edges and the sum of the inner ones is a
-// plane for what is flat, also where the corner is straight or concave.
+// With more than one face at a corner there is in general no tangent plane, since the eigenvalue of the inner edges
+// is at least that of the sharp ones. The difference of the sharp edges and the sum of the inner ones span the plane
+// if the faces are flat, also where the corner is straight or concave.
 TangentMask cornerMask(const Sector& s) {
   TangentMask mask;
   const size_t k = s.faces;
@@ -156,8 +156,8 @@ TangentMask cornerMask(const Sector& s) {
   return mask;
 }
 
-// Across a smooth crease or boundary: Biermann, Levin, Zorin 2000, "Piecewise smooth subdivision surfaces
-// with normal control", appendix, with theta = pi / k; for two quads that is the uniform bicubic B-spline's.
+// Tangent across a smooth crease or boundary: Biermann, Levin, Zorin 2000, "Piecewise smooth subdivision surfaces
+// with normal control", appendix, with theta = pi / k; for two quads it is that of the uniform bicubic B-spline.
 TangentMask quadCreaseMask(const Sector& s) {
   const size_t k = s.faces;
   const double theta = std::numbers::pi / double(k);
@@ -214,7 +214,7 @@ struct CageLimit::Refined {
   bool quads = true;
   // The first side of each point; the sides of the corners of all faces of the last level.
   std::vector<uint32_t> firstSide, sideOfCorner;
-  std::vector<SharpSide> sharp;  // the sides that OpenSubdiv's tangents are not for
+  std::vector<SharpSide> sharp;  // the sides to which OpenSubdiv's tangents do not apply
 
   explicit Refined(const SubdivisionCage& cage)
       : refiner(makeRefiner(cage)),
@@ -265,7 +265,7 @@ struct CageLimit::Refined {
       ++sides;
       return;
     }
-    // A boundary's ring has one edge more than faces; a closed one comes back to where it began.
+    // The ring of a boundary vertex has one edge more than faces; a closed ring returns to its first edge.
     if (split) sector.edgePoints.push_back(across(level, edges[(start + faces.size()) % edges.size()], v));
     close();
   }
@@ -326,7 +326,7 @@ struct CageLimit::Refined {
     return out;
   }
 
-  // Where the corner of a face of some level at its point `point` is in the last level: a corner, face *
+  // Finds, in the last level, the corner of a face of some level at its point `point`. A corner is numbered face *
   // corners() + its place in the face.
   size_t lastCorner(int level, int face, int point) const {
     for (; level < refiner->GetMaxLevel(); ++level) {
@@ -362,7 +362,7 @@ struct CageLimit::Refined {
 
 namespace {
 
-// Vertices of one material: a side of a point once for each of its texture coordinates.
+// Vertices of one material: one for each texture coordinate of each side of a point.
 class PartBuilder {
  public:
   explicit PartBuilder(uint32_t sides) : ofSide_(sides, kNoIndex) {}
@@ -421,7 +421,7 @@ CageLimit::CageLimit(const SubdivisionCage& cage) : refined_(std::make_unique<Re
     partOfFace[face] = uint32_t(parts_.size() - 1);
   }
   if (!cage.lightLevel || *cage.lightLevel >= cage.level) return;
-  // A vertex of the coarse level goes to a vertex of the last one, and their limit points are the same.
+  // Each vertex of the coarse level becomes a vertex of the last one, with the same limit point.
   const TopologyLevel& coarse = refined_->refiner->GetLevel(int(*cage.lightLevel));
   std::vector<uint32_t> fan;
   for (int face = 0; face < coarse.GetNumFaces(); ++face) {

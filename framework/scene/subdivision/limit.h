@@ -1,5 +1,5 @@
-// A refined cage: its vertices and triangles, and their limits for points or for weights of cage points.
-// Private to framework/scene; the only header of OpenSubdiv's side.
+// A refined cage: its vertices and triangles, and their limits for points or for weights of cage points. Private to
+// framework/scene. This header is the only interface to the code that uses OpenSubdiv.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,10 +11,10 @@
 
 namespace fovea::scene {
 
-// A weighted sum of cage points, ascending.
+// A weighted sum of cage points, in ascending order of the points.
 struct SparseRow {
   std::vector<std::pair<uint32_t, float>> terms;
-  void Clear() { terms.clear(); }  // the names that OpenSubdiv calls
+  void Clear() { terms.clear(); }  // OpenSubdiv requires these names
   void AddWithWeight(const SparseRow& row, float weight);
 };
 
@@ -24,23 +24,23 @@ class CageLimit {
   explicit CageLimit(const SubdivisionCage& cage);
   ~CageLimit();
 
-  // A point of the last level may have several sides: where creases still run at that level, one between each
-  // two of them, with tangents of its own.
+  // A point of the last level may have several sides. Where creases are still sharp at that level, each side lies
+  // between two of them and has its own tangents.
   struct Vertex {
     uint32_t point, side, uv;
   };
   struct Part {
     uint32_t material = 0;
-    std::vector<Vertex> vertices;        // each once, in the order in which the triangles name them
+    std::vector<Vertex> vertices;        // each once, in the order of first use by the triangles
     std::vector<uint32_t> indices;       // into vertices
-    std::vector<uint32_t> lightIndices;  // likewise, of the cage's lightLevel; empty: none of its own
+    std::vector<uint32_t> lightIndices;  // likewise, at the cage's lightLevel; empty if there is none
   };
   const std::vector<Part>& parts() const { return parts_; }
 
   template <class Value>
   struct Limits {
-    std::vector<Value> positions;             // a point
-    std::vector<Value> tangentsA, tangentsB;  // a side; a x b points outwards
+    std::vector<Value> positions;             // per point
+    std::vector<Value> tangentsA, tangentsB;  // per side; a x b points outwards
   };
   struct Surface : Limits<glm::vec3> {
     std::vector<glm::vec2> uvs;
@@ -50,7 +50,7 @@ class CageLimit {
   Rows rows() const;
 
  private:
-  struct Refined;  // what needs OpenSubdiv's headers
+  struct Refined;  // needs the headers of OpenSubdiv
   std::unique_ptr<Refined> refined_;
   std::vector<Part> parts_;
 };

@@ -1,4 +1,4 @@
-// Uniform refinement and limit surface with OpenSubdiv; see subdivision.h for the rules.
+// Implements uniform refinement and the limit surface with OpenSubdiv; subdivision.h gives the rules.
 #include "framework/scene/subdivision/subdivision.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ std::vector<Primitive> refine(const SubdivisionCage& cage) {
 }
 
 void refineCages(Scene& scene) {
-  // A few bytes of a file can ask for more than any machine holds.
+  // A few bytes of a file can require more memory than any machine has.
   constexpr uint64_t kMaxOfScene = uint64_t(1) << 24;
   uint64_t triangles = 0;
   for (Mesh& mesh : scene.meshes) {
@@ -82,7 +82,7 @@ Stencils::Stencils(const SubdivisionCage& cage) {
   const CageLimit limit(cage);
   const CageLimit::Rows rows = limit.rows();
   std::vector<Range> rangeOfSide(rows.tangentsA.size(), Range{0, 0});
-  // Dense, cleared through the list of what was touched.
+  // A dense array, cleared through the list of touched entries.
   std::vector<glm::vec3> sums(points_, glm::vec3(0.0f));
   std::vector<uint32_t> touched;
   const auto add = [&](const SparseRow& row, int component) {

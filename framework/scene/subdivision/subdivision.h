@@ -1,12 +1,11 @@
-// Subdivision surfaces (OpenSubdiv): control cages, uniformly refined to triangles on the limit surface, and
-// stencil tables that give the same points for cages that deform.
+// Subdivision surfaces (OpenSubdiv): control cages are uniformly refined to triangles on the limit surface, and
+// stencil tables give the same points for cages that deform.
 //
-// Creases and boundaries. A boundary edge is sharp (it follows the boundary's own curve); a boundary vertex
-// of one face is a corner and stays where it is. A crease of sharpness s takes part in floor(s) levels as if
-// it were a boundary and fades out with the fraction (DeRose, Kass, Truong 1998, section 5); >= 10 never
-// fades. Along edges that are still sharp at the last level the surface is split: each side has vertices with
-// the normal of that side. Whoever wants to see the rounding of a crease of sharpness s needs a level above
-// s.
+// Boundary edges are sharp: the surface follows the boundary's own curve. A boundary vertex of a single face is a
+// corner and stays in place. A crease of sharpness s acts as a boundary for floor(s) levels and fades out with the
+// fraction (DeRose, Kass, Truong 1998, section 5); a sharpness of 10 or more never fades. Along edges that are still
+// sharp at the last level the surface is split: each side has vertices with the normal of that side. A level above s
+// is needed to see the rounding of a crease of sharpness s.
 //
 // Texture coordinates are face-varying and smooth where they are continuous ("corners plus 1" of OpenSubdiv).
 #pragma once
@@ -22,8 +21,8 @@
 
 namespace fovea::scene {
 
-// A control mesh in the space of its mesh, faces as they are (quads kept). Every edge has at most two faces,
-// every vertex one fan of faces, neighbouring faces run the same way round.
+// A control mesh in the space of its mesh, with its original faces (quads are kept). Every edge has at most two
+// faces, every vertex has one fan of faces, and neighbouring faces have the same orientation.
 struct SubdivisionCage {
   enum class Scheme : uint8_t { CatmullClark, Loop };  // Loop: triangles only
   struct Crease {
@@ -36,19 +35,19 @@ struct SubdivisionCage {
   };
 
   Scheme scheme = Scheme::CatmullClark;
-  std::vector<glm::vec3> positions;               // each used by a face
+  std::vector<glm::vec3> positions;               // each is used by a face
   std::vector<uint32_t> faceSizes, faceVertices;  // counter-clockwise; sizes 3..kMaxFaceSize
-  std::vector<glm::vec2> uvs;                     // may be empty: all zero
-  std::vector<uint32_t> faceUvs;                  // into uvs, one for each of faceVertices
-  std::vector<Crease> creases;                    // sharpness >= 10: infinite
+  std::vector<glm::vec2> uvs;                     // all zero if empty
+  std::vector<uint32_t> faceUvs;                  // indices into uvs, one for each of faceVertices
+  std::vector<Crease> creases;                    // a sharpness >= 10 is infinite
   std::vector<Corner> corners;
-  std::vector<uint32_t> faceMaterials;  // a face; may be empty: material 0
-  uint32_t level = 2;                   // of uniform refinement, 1..kMaxLevel
-  // What voxels and VPL maps see: triangles between the limit points of the vertices of this level, 0..level.
-  // None: `level`.
+  std::vector<uint32_t> faceMaterials;  // per face; material 0 if empty
+  uint32_t level = 2;                   // levels of uniform refinement, 1..kMaxLevel
+  // Level that voxels and VPL maps see, 0..level: triangles between the limit points of the vertices of this level.
+  // If absent, `level`.
   std::optional<uint32_t> lightLevel;
 
-  // Of a cage that deforms, as of a Primitive, one entry a cage point (normals are not used).
+  // Data of a cage that deforms, as in a Primitive, with one entry per cage point (normals are not used).
   std::vector<MorphTarget> targets;
   std::vector<glm::u16vec4> joints;
   std::vector<glm::vec4> weights;
@@ -57,28 +56,29 @@ struct SubdivisionCage {
   static constexpr uint64_t kMaxTriangles = uint64_t(1) << 22;  // after refinement
 };
 
-// What is wrong with a cage; `place` is inside it: "creases[3]".
+// A problem of a cage; `place` is within it, such as "creases[3]".
 struct CageProblem {
   std::string place, message, remedy;
 };
-// The first few problems; empty for a cage that can be refined.
+// The first few problems; empty if the cage can be refined.
 std::vector<CageProblem> checkCage(const SubdivisionCage& cage);
 
-// Of refine(), without refining: (corners of all faces) * 4^(level-1) * 2, for Loop faces * 4^level.
+// Number of triangles that refine() would make, without refining: (corners of all faces) * 4^(level-1) * 2, or faces
+// * 4^level for Loop.
 uint64_t refinedTriangles(const SubdivisionCage& cage);
 
-// Triangles at cage.level: one primitive a material (ascending), limit positions, unit limit normals; with
-// Primitive::lightIndices where cage.lightLevel is below it.
-// Deterministic: the order depends on the cage's connectivity and materials alone. Throws Error(BadInput) for
-// a bad cage and where fovea was built without OpenSubdiv.
+// Triangles at cage.level: one primitive per material (ascending), with limit positions and unit limit normals, and
+// with Primitive::lightIndices where cage.lightLevel is below it. The order of the result is deterministic: it
+// depends on the cage's connectivity and materials alone. Throws Error(BadInput) for an invalid cage, and always if
+// fovea was built without OpenSubdiv.
 std::vector<Primitive> refine(const SubdivisionCage& cage);
 
-// Makes the primitives of each mesh that has a cage and no primitives yet. Loaders and generators end with
-// it: nothing that draws knows of cages. Throws as refine(), naming the mesh.
+// Makes the primitives of each mesh that has a cage and no primitives yet. Loaders and generators call it last,
+// because the code that draws does not know of cages. Throws as refine() does, naming the mesh.
 void refineCages(Scene& scene);
 
-// The vertices of refine() (all primitives, one after the other) as weighted sums of cage points: limit
-// position p and two limit tangents a, b with normal = normalize(a x b).
+// The vertices of refine() (all primitives, one after the other) as weighted sums of cage points: the limit position
+// p and two limit tangents a, b with normal = normalize(a x b).
 class Stencils {
  public:
   struct Range {
@@ -86,20 +86,21 @@ class Stencils {
   };
   struct Entry {
     float position, tangentA, tangentB;  // weights
-    uint32_t point;                      // of the cage
+    uint32_t point;                      // index of a cage point
   };
 
-  // Throws as refine().
+  // Throws as refine() does.
   explicit Stencils(const SubdivisionCage& cage);
 
   uint32_t pointCount() const { return points_; }                    // of the cage
   uint32_t vertexCount() const { return uint32_t(ranges_.size()); }  // refined
-  // Flat, for texel buffers (rg32ui, rgba32f with the point's index as bits); vertices at a seam share
-  // entries.
+  // Flat arrays for texel buffers (rg32ui, and rgba32f with the point's index as bits); vertices at a
+  // seam share entries.
   const std::vector<Range>& ranges() const { return ranges_; }
   const std::vector<Entry>& entries() const { return entries_; }
 
-  // points: pointCount(); positions, normals: vertexCount(). A normal that vanishes becomes (0, 1, 0).
+  // points: pointCount() entries; positions, normals: vertexCount() entries. A normal that vanishes becomes
+  // (0, 1, 0).
   void evaluate(std::span<const glm::vec3> points, std::span<glm::vec3> positions,
                 std::span<glm::vec3> normals) const;
 

@@ -1,7 +1,7 @@
-// The stand-in for Sponza: an original two-storey courtyard of about 279k triangles. Arcades on columns
-// below, twin arches on slender ones above, groin vaults, a beamed gallery, drapes, orange trees around a
-// well. The sun falls steeply through the open roof onto part of the paving and one side; the rest lives on
-// what those reflect.
+// The stand-in for Sponza: an original two-storey courtyard of about 279k triangles, with arcades on columns
+// below, twin arches on slender columns above, groin vaults, a beamed gallery, drapes, and orange trees around a
+// well. The sun falls steeply through the open roof onto part of the paving and one side; everything else is lit
+// by what these reflect.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -15,7 +15,7 @@ namespace {
 using namespace atrium;
 using namespace model;
 
-// Plan: columns stand on the edges of the court, the galleries lie outside of them.
+// Plan: columns stand on the edges of the court, and the galleries lie outside them.
 constexpr float kBay = 3.0f, kDepth = 3.0f;  // a bay of a gallery is square
 constexpr int kLongBays = 7, kShortBays = 3;
 constexpr float kHalfLong = 0.5f * kBay * kLongBays, kHalfShort = 0.5f * kBay * kShortBays;
@@ -25,7 +25,7 @@ constexpr float kStep = 0.15f, kSpring = 3.2f, kCornice = 5.0f, kUpper = 5.35f, 
                 kUpperSpring = 8.05f, kEaves = 9.25f, kRoof = 9.95f;
 constexpr float kOpening = 2.44f, kUpperOpening = 1.22f;
 
-// One side of the court. Its frame: x along the columns, +z to the court, y = 0 the paving.
+// One side of the court. In its frame, x runs along the columns, +z points to the court, and the paving is at y = 0.
 struct Side {
   glm::mat4 placement;
   int bays;
@@ -37,7 +37,7 @@ const Side kSides[4] = {{at(0, 0, -kHalfShort), kLongBays},
                         {at(-kHalfLong, 0, 0) * turnY(90), kShortBays},
                         {at(kHalfLong, 0, 0) * turnY(-90), kShortBays}};
 
-// Around the court, clockwise from above: the right of the way is the court.
+// The path around the court, clockwise seen from above, so that the court is on the right.
 const std::vector<glm::vec3>& ringPath() {
   static const std::vector<glm::vec3> path = {{-kHalfLong, 0, -kHalfShort},
                                               {kHalfLong, 0, -kHalfShort},
@@ -50,7 +50,7 @@ Shape ring(const Outline& section, float y) {
   return placed(sweep(ringPath(), section, {.closedPath = true, .up = glm::vec3(0, 1, 0)}), at(0, y, 0));
 }
 
-// A wall of arches standing on imposts at y = 0, its middle at z = 0.
+// A wall of arches that stand on imposts at y = 0, with its middle at z = 0.
 Shape arcadeWall(float length, int arches, float opening, float height, float thickness) {
   const float pitch = length / float(arches);
   Shape s;
@@ -61,7 +61,7 @@ Shape arcadeWall(float length, int arches, float opening, float height, float th
   return placed(s, at(0, 0, -0.5f * thickness));
 }
 
-// The moulding around an arch, on the face z = 0, centre of the arch at the origin.
+// The moulding around an arch, on the face z = 0, with the centre of the arch at the origin.
 Shape archivolt(float radius, float width, float relief, int steps) {
   std::vector<glm::vec3> path;
   for (int i = 0; i <= steps; ++i) {
@@ -104,7 +104,7 @@ void addPaving(MeshBuilder& m, const Palette& p) {
   m.add(p.limestone, ring(step, 0));
 }
 
-// What runs around the court without a break.
+// Everything that runs around the court without a break.
 void addCornices(MeshBuilder& m, const Palette& p) {
   Outline lower({-0.225f, 0});
   lower.line(0.225f, 0).line(0.26f, 0).line(0.26f, 0.05f).arc(0.33f, 0.12f, -0.4142f, 4).line(0.33f, 0.15f);
@@ -206,7 +206,7 @@ void addUpperSide(MeshBuilder& m, const Palette& p, const Side& side) {
   const int beams = int(length / 0.75f);
   for (int i = 0; i < beams; ++i)
     m.add(p.wood, beam, at(-half + length * (float(i) + 0.5f) / float(beams), kEaves + 0.10f, 0));
-  // Tiles along the eaves, which catch the light.
+  // Tiles along the eaves, which are in the sun.
   Outline half_({-0.085f, 0});
   half_.arc(0.085f, 0, -1, 4).line(0.068f, 0).arc(-0.068f, 0, 1, 3);
   const Shape tile = sweep({{0, 0, 0.08f}, {0, 0.165f, -0.52f}}, half_, {.up = glm::vec3(0, 1, 0)});
@@ -216,7 +216,7 @@ void addUpperSide(MeshBuilder& m, const Palette& p, const Side& side) {
           at(-half - 0.6f + (length + 1.2f) * (float(i) + 0.5f) / float(tiles), kRoof + 0.045f, 0.74f));
 }
 
-// The wall behind the galleries: doors and niches below, shuttered windows above, sealed by a second layer.
+// The wall behind the galleries, with doors and niches below and shuttered windows above, sealed by a second layer.
 void addBackWall(MeshBuilder& m, const Palette& p, const Side& side, uint32_t seed) {
   const bool isLong = side.bays == kLongBays;
   const float half = 0.5f * side.length() + kDepth + (isLong ? 0.4f : 0.0f), half0 = 0.5f * side.length();
@@ -255,7 +255,7 @@ void addBackWall(MeshBuilder& m, const Palette& p, const Side& side, uint32_t se
 void addGalleries(MeshBuilder& m, const Palette& p) {
   const float x0 = kHalfLong, x1 = kHalfLong + kDepth + 0.3f, z0 = kHalfShort,
               z1 = kHalfShort + kDepth + 0.3f;
-  // Floors below and above, and the ceiling above: four boxes around the court each, mitred by overlap.
+  // The lower and upper floor and the upper ceiling: each is four overlapping boxes around the court.
   const auto around = [&](uint32_t material, float low, float high, float edge) {
     const float a = x0 + edge, b = z0 + edge;
     m.add(material, box({-x1, low, -z1}, {x1, high, -b}));
@@ -304,7 +304,7 @@ void addDrape(MeshBuilder& m, const Palette& p, const Side& side, int bay, float
         side.placement * at(x, y + 0.015f, z));
 }
 
-// A carpet over the balustrade, `drop` long on the court's side.
+// A carpet over the balustrade, which hangs down by `drop` on the side of the court.
 void addCarpet(MeshBuilder& m, const Side& side, float x, uint32_t cloth, float width, float drop) {
   const Sheet s = sheet(12, 24, {width, drop + 0.75f}, [&](float u, float v) {
     const float along = v * (drop + 0.62f) - 0.45f;  // from inside over the rail and down
@@ -372,7 +372,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   b.place("greens", b.mesh("greens", std::move(greens)));
 }
 
-// The curtain that the wind takes: billows, and two waves a quarter of a period apart that make it run.
+// The curtain in the wind: it billows, and two waves a quarter of a period apart make the motion travel.
 void addMovingDrape(SceneBuilder& b, const Palette& p) {
   DrapeForm f;
   f.width = kOpening - 0.12f;

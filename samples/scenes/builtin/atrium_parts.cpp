@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kQuarter = 0.41421356f;  // bulge of a quarter circle
 
-// A leaf of a capital: rises along +y from the origin, leans against +z and curls over at its tip.
+// A leaf of a capital, which rises along +y from the origin, leans against +z and curls over at its tip.
 Shape capitalLeaf(float width, float height, float curl) {
   const Sheet s = sheet(4, 3, {width, height}, [&](float u, float v) {
     const float t = 1 - v, x = 2 * u - 1;
@@ -188,7 +188,7 @@ Shape baluster(float height) {
 
 Shape groinVault(float side, float rise) {
   const float half = 0.5f * side;
-  // A quarter, denser where it rises steeply; the groin runs along the diagonals of its cells.
+  // A quarter of the vault, denser where it is steep; the groin runs along the diagonals of its cells.
   const Sheet quarter = sheet(6, 6, {half, half}, [&](float u, float v) {
     const float a = 0.5f * glm::pi<float>() * u, b = 0.5f * glm::pi<float>() * v;
     return glm::vec3(half * std::sin(a), rise * std::max(std::cos(a), std::cos(b)), half * std::sin(b));
@@ -418,7 +418,7 @@ Shape paperPlane() {
 Sheet drape(const DrapeForm& f, uint32_t columns, uint32_t rows) {
   return sheet(columns, rows, {1.5f * f.width, f.height}, [&](float u, float v) {
     const float pi2 = glm::two_pi<float>();
-    // Gathered on the rod; where it is tied back it is a third as wide.
+    // Gathered on the rod and, where it is tied back, a third as wide.
     const float tied = std::abs(f.drawn) * std::exp(-std::pow((v - 0.60f) / 0.30f, 2.0f));
     const float fall = std::abs(f.drawn) * smoothstep(0.05f, 0.6f, v);
     const float wide = 1 - 0.72f * tied - 0.18f * fall * (1 - tied);

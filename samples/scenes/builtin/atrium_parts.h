@@ -1,12 +1,12 @@
-// The pieces that the atrium is put together from; private to atrium*.cpp. Metres; each stands on y = 0
-// about the origin unless it says otherwise.
+// The pieces of which the atrium is built. Private to atrium*.cpp. Lengths are in metres; each piece stands on y = 0
+// about the origin unless stated otherwise.
 #pragma once
 
 #include "samples/scenes/builtin/modelling/model.h"
 
 namespace fovea::scene::atrium {
 
-// Materials of the scene, as SceneBuilder::material gave them.
+// Materials of the scene, as returned by SceneBuilder::material.
 struct Palette {
   uint32_t limestone, ashlar, plaster, dado, tiles, roofTiles, floorPale, floorWarm, floorDark, mortar, wood,
       door, iron, clay, glaze, white, soil, bark, leaf, darkLeaf, orange, paper;
@@ -15,7 +15,7 @@ struct Palette {
 };
 Palette makePalette(model::SceneBuilder& builder);
 
-// A column with attic base, swelling shaft and a capital of leaves and scrolls; `height` with the abacus.
+// A column with an attic base, a swelling shaft, and a capital of leaves and scrolls. `height` includes the abacus.
 model::MeshBuilder column(uint32_t stone, float height);
 model::MeshBuilder colonnette(uint32_t stone, float height);
 model::Shape baluster(float height);
@@ -31,8 +31,8 @@ model::MeshBuilder bench(uint32_t stone, float width);
 model::MeshBuilder jar(uint32_t clay, float height);
 model::Shape paperPlane();  // flies along -z, wing span 1
 
-// A curtain on a rod from (-width/2, 0) to (width/2, 0), falling to -height; `drawn` -1..1: tied back to the
-// left or right, 0 hangs free. `billow`, `wave`, `phase`: what the wind does with it, m.
+// A curtain on a rod from (-width/2, 0) to (width/2, 0), falling to -height. `drawn` is from -1 to 1: tied back to
+// the left or right; at 0 it hangs free. `billow`, `wave` (m) and `phase` describe the effect of the wind.
 struct DrapeForm {
   float width = 2.4f, height = 2.8f, drawn = 0, billow = 0, wave = 0, phase = 0, folds = 7;
   uint32_t seed = 1;

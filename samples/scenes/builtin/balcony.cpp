@@ -1,7 +1,7 @@
-// A balcony on a first floor by the sea, of about 192k triangles: pale tiles, a balustrade, pots, a bistro
-// table, and an awning of orange canvas whose blind falls at the far end. The sun comes along the street and
-// lights the blind, which colours the floor; the house's side and what the awning shades lives on what they
-// reflect. Houses across the street close the view.
+// A balcony on a first floor by the sea, of about 192k triangles: pale tiles, a balustrade, pots, a bistro table, and
+// an awning of orange canvas whose blind falls at the far end. The sun shines along the street onto the blind, which
+// colours the floor; the side of the house and everything in the shade of the awning is lit by what these reflect.
+// Houses across the street close the view.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -15,7 +15,7 @@ namespace {
 using namespace balcony;
 using namespace model;
 
-// Plan: the house's wall is x = kWall and looks along +x, the balustrade stands on x = kRail and z = kEnd.
+// Plan: the wall of the house is at x = kWall and faces +x; the balustrade stands at x = kRail and z = kEnd.
 constexpr float kWall = -1.7f, kRail = 1.45f, kEnd = -4.9f, kBack = 3.3f;
 constexpr float kStreet = -4.2f, kOpposite = 6.6f, kFar = -10.0f, kNear = 5.2f, kTop = 4.7f;
 constexpr float kAwningFront = -2.95f, kAwningTop = 2.62f, kLanternZ = -2.3f;
@@ -28,7 +28,7 @@ struct Opening {
   bool door = false, balcony = false, flowers = false;
 };
 
-// A wall of a house along x, its face z = 0 looking along +z, sealed by a second layer.
+// A wall of a house along x, with its face at z = 0 towards +z, sealed by a second layer.
 void addHouse(MeshBuilder& m, const Palette& p, float x0, float x1, float top, uint32_t plaster,
               uint32_t wood, const std::vector<Opening>& openings, float fineFrom = 1e9f) {
   std::vector<Outline> holes;
@@ -51,7 +51,7 @@ void addStoreys(MeshBuilder& m, const Palette& p, float x0, float x1, float top)
       .line(0.09f, 0.16f)
       .line(-0.02f, 0.16f);
   const auto along = [&](const Outline& section, float y) {
-    // The way's right is the wall's front.
+    // The front of the wall is to the right of the path.
     m.add(p.stone, sweep({{x0, y, 0}, {x1, y, 0}}, section.scaled({1, 1}), {.up = glm::vec3(0, 1, 0)}));
   };
   along(course, -0.42f);
@@ -78,7 +78,7 @@ void addStreet(MeshBuilder& m, const Palette& p) {
     addStoreys(far, p, x0, x1, kTop + 0.5f);
     m.add(far, at(0, 0, kFar));
   }
-  {  // across the street, its face in the shade; local x is the world's z
+  {  // across the street, its face in the shade; its local x is the world's z
     MeshBuilder across;
     const float x0 = kFar - 0.1f, x1 = kNear + 0.1f, top = 4.0f;
     addHouse(across, p, x0, x1, top, p.ochre, p.brown,
@@ -107,7 +107,7 @@ void addStreet(MeshBuilder& m, const Palette& p) {
         {{-4.2f, 0.3f, 1.0f, 1.5f, Shutters::Closed}, {-4.2f, kStreet + 1.2f, 1.0f, 1.5f, Shutters::Closed}});
     m.add(behind, at(0, 0, kNear) * turnY(180));
   }
-  {  // our own house; local x is the world's -z
+  {  // the house of the balcony; its local x is the world's -z
     MeshBuilder own;
     addHouse(own, p, -kNear - 0.1f, -kFar + 0.1f, kTop + 0.6f, p.limewash, p.blue,
              {{0.45f, 0.012f, 1.25f, 2.3f, Shutters::Open, true},
@@ -150,7 +150,7 @@ void addFloor(MeshBuilder& m, const Palette& p) {
       if (i > 0 && j > 0) lay(p.tileBlue, square, x0 + kCell * float(i), z0 + kCell * float(j), index++);
     }
   const float x1 = x0 + kCell * float(columns), z1 = z0 + kCell * float(rows);
-  // Halves of them along the frame.
+  // Half octagons along the frame.
   const Shape halves[4] = {extrude({{0, -d}, {d, 0}, {0, d}}, 0.03f, chamfered),
                            extrude({{0, d}, {-d, 0}, {0, -d}}, 0.03f, chamfered),
                            extrude({{-d, 0}, {0, -d}, {d, 0}}, 0.03f, chamfered),

@@ -131,7 +131,7 @@ MeshBuilder window(const Palette& p, uint32_t wood, float w, float h, Shutters s
     m.add(leaf, at(0.002f, 0.01f, -0.055f));
     return m;
   }
-  // Thrown back against the wall on their hinges; or standing off it.
+  // Folded back against the wall on their hinges, or standing off it.
   const float angle = shutters == Shutters::Open ? 6.0f : 38.0f;
   m.add(leaf, at(0.5f * w + 0.115f, 0.01f, 0.022f) * turnY(-angle));
   m.add(leaf, at(-0.5f * w - 0.115f, 0.01f, 0.022f) * scaled(-1, 1, 1) * turnY(-0.6f * angle));

@@ -257,7 +257,7 @@ MeshBuilder pot(uint32_t clay, uint32_t soil, PotShape shape, float r, float h) 
 Sheet awning(const AwningForm& f) {
   const float valance = f.valance, total = valance + f.depth + f.drop;
   return sheet(28, 21, {f.width, total}, [&](float u, float row) {
-    // Rows: 2 of the valance, 7 of the roof, 12 of the blind.
+    // Rows of the net: 2 for the valance, 7 for the roof, 12 for the blind.
     const float j = row * 21;
     const float across = 4 * u * (1 - u);  // 0 where it is laced to wall and frame
     const float x = u * f.width, slope = f.slope * u;
@@ -289,7 +289,7 @@ Sheet awning(const AwningForm& f) {
 
 Shape hungCloth(float width, float height, uint32_t seed) {
   return surface(sheet(24, 18, {width, height}, [&](float u, float v) {
-    // Pegs pull the upper edge up; folds run down from them and the hem blows.
+    // Pegs hold the upper edge; folds run down from them, and the hem moves in the wind.
     const float pegs = std::abs(std::sin(3 * kPi * u));
     return glm::vec3((u - 0.5f) * width * (1 - 0.04f * v), -height * v - 0.03f * (1 - v) * pegs - 0.01f,
                      0.035f * std::sin(6 * kPi * u + 2 * noise({u * 3, v * 2}, seed)) * (0.2f + v) +

@@ -1,7 +1,7 @@
-// The paper's Cornell box: 5.5 m a side, about 5.8k triangles, a yellow cube close to the white back wall,
-// and one spot light under the ceiling that reaches only the middle of the floor and the objects, so that
-// walls and ceiling live on indirect light and the cube's yellow on the wall shows. As a scene that moves it
-// has a violet cloth more, which hangs before the back wall and waves.
+// The paper's Cornell box: 5.5 m per side, about 5.8k triangles, a yellow cube close to the white back wall, and one
+// spot light under the ceiling that reaches only the middle of the floor and the objects. Walls and ceiling are hence
+// lit indirectly, and the cube's yellow shows on the wall. The moving version of the scene has a violet cloth as
+// well, which hangs in front of the back wall and waves.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -47,8 +47,8 @@ void addQuad(Primitive& p, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
   for (uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) p.indices.push_back(base + i);
 }
 
-// Inner faces, outer faces and the rim around the open front. Neighbours share exact corners: no light leaks
-// at seams, and the walls are as thick as they look to a voxeliser.
+// Inner faces, outer faces and the rim around the open front. Neighbours share exact corners, so that no light leaks
+// at seams; the walls have the same thickness for a voxeliser as they appear to have.
 Mesh shell() {
   std::vector<Primitive> byMaterial(kMaterialCount);
   for (uint32_t i = 0; i < kMaterialCount; ++i) byMaterial[i].material = i;
@@ -91,8 +91,8 @@ Mesh cube(MaterialIndex material) {
   return {"cube", {std::move(p)}};
 }
 
-// A closed profile (x = radius, y = height) with its normals, turned about the y axis. Points on the axis
-// become poles.
+// A closed profile (x = radius, y = height) with its normals, turned about the y axis. Points on the
+// axis become poles.
 struct ProfilePoint {
   glm::vec2 position, normal;
 };
@@ -146,7 +146,7 @@ Mesh torus(float major, float minor, uint32_t segments, uint32_t sides, Material
   return lathe("ring", profile, segments, material, true);
 }
 
-// A vase with an inside: its wall is a closed solid, so that light enters it only through its mouth.
+// A hollow vase, whose wall is a closed solid, so that light enters it only through its mouth.
 Mesh vase(uint32_t segments, uint32_t steps, MaterialIndex material) {
   constexpr float kHeightOfVase = 1.9f, kWall = 0.06f;
   const auto radius = [](float t) { return 0.42f + 0.20f * std::sin(5.2f * t + 0.3f) - 0.10f * t; };
@@ -240,7 +240,7 @@ static Scene cornellBox() {
   spot.outerConeAngle = glm::radians(40.0f);
   s.lights.push_back(spot);
 
-  // Far enough in front that the opening frames a square picture from edge to edge.
+  // Far enough away that the opening frames a square picture from edge to edge.
   Camera camera;
   camera.name = "front";
   camera.position = {0, 0.5f * kHeight, 9.2f};

@@ -1,6 +1,5 @@
-// A children's room of about 476k triangles. The afternoon sun falls through the one window onto a blue rug
-// with a toy train and onto the foot of a red closet; everything else lives on what those, the floor and the
-// walls reflect.
+// A children's room of about 476k triangles. The afternoon sun falls through the only window onto a blue rug with a
+// toy train and onto the foot of a red closet; everything else is lit by what those, the floor and the walls reflect.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -14,7 +13,7 @@ namespace {
 using namespace room;
 using namespace model;
 
-// The inside of the walls; x is -kX..kX.
+// Inner faces of the walls; x runs from -kX to kX.
 constexpr float kX = 2.5f, kBack = -2.3f, kFront = 2.6f, kHeight = 2.7f, kThick = 0.22f;
 constexpr glm::vec2 kWindow{0.4f, 0.80f};  // middle of its sill
 constexpr float kWindowWidth = 1.8f, kWindowHeight = 1.5f;
@@ -79,7 +78,7 @@ void addFloor(MeshBuilder& m, const Palette& p) {
       Shape plank = box({a + 0.0006f, -0.02f, low + 0.0006f},
                         {a + wide - 0.0006f, random(603, k, -0.0006f, 0.0f), high - 0.0006f},
                         {.bevel = 0.0022f, .bottom = false});
-      // Every plank is another board of the picture.
+      // Each plank shows another board of the picture.
       const glm::vec2 cut(0.14f * float(int(random(604, k) * 4.99f)) - a, random(605, k, 0, 2.4f));
       for (glm::vec2& uv : plank.uvs) uv += cut;
       m.add(p.floor, plank);
@@ -173,7 +172,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   b.place("toys", b.mesh("toys", std::move(toys)));
 }
 
-// The curtains: the left one takes the draught, billows and ripples; the right one is tied back.
+// The curtains: the left one billows and ripples in the draught; the right one is tied back.
 void addCurtains(SceneBuilder& b, const Palette& p) {
   CurtainForm f;
   f.width = 0.52f;

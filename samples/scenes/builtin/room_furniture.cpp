@@ -88,7 +88,7 @@ MeshBuilder garment(const Palette& p, uint32_t cloth, float length, float flare,
   return m;
 }
 
-// A folded jersey about the middle of its foot.
+// A folded jersey; the origin is the middle of its base.
 Shape folded(float width, float depth, float height, uint32_t seed) {
   return bent(
       block(width, height, depth, {.bevel = 0.45f * height, .bevelSteps = 5, .cells = {8, 1, 8}}),
@@ -100,7 +100,7 @@ Shape folded(float width, float depth, float height, uint32_t seed) {
       60);
 }
 
-// A book that stands on y = 0 with its spine towards +z, `wide` along x.
+// A book that stands on y = 0 with its spine towards +z and is `wide` along x.
 void addBook(MeshBuilder& m, const Palette& p, uint32_t cover, glm::vec3 size, const glm::mat4& placement) {
   const float w = 0.5f * size.x, d = size.z, c = 0.0022f;
   // Cover in plan, x and -z: two boards and a spine that bows.
@@ -421,7 +421,7 @@ MeshBuilder pictureFrame(const Palette& p, uint32_t picture, float width, float 
       .line(0.030f, 0.016f)
       .arc(0.020f, 0.024f, 0.4f, 4)
       .curve({0.012f, 0.020f}, {0.006f, 0.014f}, {-0.002f, 0.010f}, 5);
-  // Clockwise as seen from the front with the right of the way outside: counter-clockwise.
+  // The right of the path must be outside, so it runs counter-clockwise seen from the front.
   m.add(p.oak, sweep({{-x, -y, 0}, {x, -y, 0}, {x, y, 0}, {-x, y, 0}}, profile,
                      {.closedPath = true, .up = glm::vec3(0, 0, 1)}));
   m.add(p.paint, box({-x, -y, 0.002f}, {x, y, 0.006f}));

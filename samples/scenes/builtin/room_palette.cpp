@@ -58,7 +58,7 @@ Texture globeMap() {
   });
 }
 
-// What hangs on the walls: hills under a sky, a boat, a sun of crayon.
+// The pictures on the walls: hills under a sky, a boat, and a sun in crayon.
 Texture pictureOf(int kind) {
   const char* names[4] = {"hills", "boat", "balloon", "drawing"};
   return bake(names[kind], 192, 192, [kind](float u, float v) {

@@ -1,12 +1,12 @@
-// The pieces that the room is put together from; private to room*.cpp. Metres; each stands on y = 0 about the
-// origin and looks along +z unless it says otherwise.
+// The pieces of which the room is built. Private to room*.cpp. Lengths are in metres; each piece stands on y = 0
+// about the origin and looks along +z unless stated otherwise.
 #pragma once
 
 #include "samples/scenes/builtin/modelling/model.h"
 
 namespace fovea::scene::room {
 
-// Materials of the scene, as SceneBuilder::material gave them. `..Across`: the grain runs along x.
+// Materials of the scene, as returned by SceneBuilder::material. `..Across` means that the grain runs along x.
 struct Palette {
   uint32_t wall, ceiling, paint, outside, floor, gap, red, redDeep, oak, oakAcross, birch, birchAcross, rug,
       fringe, linen, blanket, curtain, brass, iron, paper, shade, leaf, hedge, soil, clay, bark, plush,
@@ -37,8 +37,8 @@ model::MeshBuilder curtainRod(const Palette& p, float width);                 //
 // A pillow about the origin in the x-y plane, refined from a cage.
 model::Shape cushion(float width, float height, float thickness, uint32_t seed, uint32_t level = 2);
 
-// A curtain on rings from (0, 0) to (width, 0), falling to -height. `gather` 0..1: tied back to its outer
-// edge x = 0; `billow`, `wave`, `phase`: what the draught does with it, m.
+// A curtain on rings from (0, 0) to (width, 0), falling to -height. `gather` (0..1) is how far it is tied back to its
+// outer edge x = 0. `billow`, `wave` (m) and `phase` describe the effect of the draught.
 struct CurtainForm {
   float width = 0.7f, height = 1.8f, gather = 0, billow = 0, wave = 0, phase = 0, folds = 6;
   uint32_t seed = 1;
@@ -62,8 +62,8 @@ model::MeshBuilder pottedPlant(const Palette& p, uint32_t seed);
 model::MeshBuilder openBook(const Palette& p);
 model::MeshBuilder bunting(const Palette& p, float width, float sag);  // from the origin along +x
 
-// The oval of the track: two straights of 2 * kHalfStraight along x, two half circles. `distance` along it
-// from the middle of the straight at +z, which is run through along +x.
+// The oval of the track: two straights of length 2 * kHalfStraight along x and two half circles of radius kBend.
+// `distance` is measured along it from the middle of the straight at +z, which is passed in the direction +x.
 inline constexpr float kHalfStraight = 0.42f, kBend = 0.56f, kRailTop = 0.0162f;
 struct TrackPoint {
   glm::vec3 position;

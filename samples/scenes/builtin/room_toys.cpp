@@ -298,7 +298,7 @@ MeshBuilder globe(const Palette& p) {
 }
 
 MeshBuilder ball(const Palette& p, float r) {
-  // Six gores and two caps, as beach balls have them.
+  // Six gores and two caps, as on a beach ball.
   MeshBuilder m;
   const uint32_t colors[6] = {p.toy[0], p.toy[5], p.toy[1], p.toy[5], p.toy[3], p.toy[5]};
   Outline side;
@@ -362,7 +362,7 @@ MeshBuilder basket(const Palette& p) {
                                     6),
                          0.010f, 8));
   m.add(p.wicker, cylinder(0.175f, 0.012f, 40), at(0, 0.001f, 0));
-  // What is in it: a folded blanket, a ball, rolls of paper.
+  // Its contents: a folded blanket, a ball, and rolls of paper.
   m.add(p.cloth[0], cushion(0.32f, 0.30f, 0.16f, 331), at(0, 0.25f, 0.01f) * turnX(-80) * turnZ(20));
   m.add(ball(p, 0.085f), at(0.055f, 0.29f, -0.055f));
   for (int i = 0; i < 2; ++i) {
@@ -449,7 +449,7 @@ MeshBuilder openBook(const Palette& p) {
   MeshBuilder m;
   for (const float side : {-1.0f, 1.0f}) {
     m.add(p.book[0], box({0, 0, -0.152f}, {0.218f, 0.003f, 0.152f}, {.bevel = 0.001f}), scaled(side, 1, 1));
-    // Half of the pages: a bowed block, and a leaf that will not lie.
+    // Half of the pages: a bowed block, and a leaf that stands up.
     const auto page = [&](float low, float thick) {
       return bent(box({0.001f, low, -0.145f}, {0.210f, low + thick, 0.145f}, {.cells = {14, 1, 1}}),
                   [=](glm::vec3 q) {

@@ -1,6 +1,6 @@
-// The yard behind a house, about 516k triangles: a playground on grass, a flag, and a hole in the paving that
-// orange barriers keep people out of. The low sun comes over the fence; its shadow ends where the barriers
-// stand, so that they shine on pale slabs and a white wall which lie in the shade.
+// The yard behind a house, of about 516k triangles: a playground on grass, a flag, and a hole in the paving
+// surrounded by orange barriers. The low sun comes over the fence; the shadow of the fence ends at the barriers, so
+// that these cast their colour on pale slabs and a white wall, which lie in the shade.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -96,7 +96,7 @@ void addPaving(MeshBuilder& m, const Palette& p) {
         })));
 }
 
-// 0 where the grass is worn off, 1 where it stands thick.
+// 0 where the grass is worn off, 1 where it is dense.
 float grassAt(glm::vec2 q) {
   float g = 1.7f * fractal(q * 0.9f, 821, 3) - 0.28f;
   const auto worn = [&](glm::vec3 c, float radius) {
@@ -158,7 +158,7 @@ void addLawn(MeshBuilder& m, const Palette& p) {
   }
   constexpr uint32_t kTries = 9200;
   for (uint32_t i = 0; i < kTries; ++i) {
-    // Thicker where it is near the middle of the yard than in its far corner behind the viewer.
+    // Denser near the middle of the yard than in its far corner behind the viewer.
     const glm::vec2 q(random(851, i, kLeft + 0.05f, kEdge - 0.07f),
                       kBack + 0.05f + (kFront - kBack - 0.1f) * std::pow(random(852, i), 2.0f));
     const glm::vec2 box = glm::abs(q - glm::vec2(kSandbox.x, kSandbox.z));
@@ -300,7 +300,7 @@ void addMovers(SceneBuilder& b, const Palette& p) {
   round.add(ball(p, 0.11f));
   b.place("ball", b.mesh("ball", std::move(round)), {3.6f, 0.111f, 0.35f}, 0);
 
-  // The flag: a wave that runs to the fly (two, a quarter of a period apart), and gusts that lift it.
+  // The flag: a wave that travels to the fly (made of two waves a quarter of a period apart), and gusts that lift it.
   const auto shape = [](float droop, float wave, float phase, float flutter) {
     return flag({.droop = droop, .wave = wave, .phase = phase, .flutter = flutter}, 28, 14);
   };

@@ -13,7 +13,7 @@ using namespace model;
 
 namespace {
 
-// What is seen in a window: dark, with the curtains drawn back.
+// The view into a window: dark, with the curtains drawn back.
 Texture paneTexture() {
   return bake("pane", 128, 176, [](float u, float v) {
     const float side = std::min(u, 1 - u);
@@ -144,9 +144,9 @@ Palette makePalette(SceneBuilder& b) {
 
 namespace {
 
-constexpr float kSkin = 0.20f;  // of the wall in which the openings are
+constexpr float kSkin = 0.20f;  // thickness of the wall that has the openings
 
-// In an opening of kWindowSize from the origin up; the wall's face is z = 0.
+// Fills an opening of kWindowSize from the origin upwards; the face of the wall is z = 0.
 MeshBuilder windowUnit(const Palette& p, bool shutters) {
   MeshBuilder m;
   const float w = kWindowSize.x, h = kWindowSize.y, z = -0.11f;
@@ -190,7 +190,7 @@ MeshBuilder windowUnit(const Palette& p, bool shutters) {
   return m;
 }
 
-// In an opening 0.98 wide and 2.15 high.
+// Fills an opening 0.98 m wide and 2.15 m high.
 MeshBuilder doorUnit(const Palette& p) {
   MeshBuilder m;
   const BoxOptions soft = {.bevel = 0.008f, .bevelSteps = 2};
@@ -207,7 +207,7 @@ MeshBuilder doorUnit(const Palette& p) {
   return m;
 }
 
-// Rows of rounded tiles that rise along -z: columns along x from 0, each `step` further back.
+// Rows of rounded tiles that rise along -z; columns run along x from 0, and each row is `step` further back.
 Shape tiling(float width, int rows, float rise, float run) {
   Outline half({-0.098f, 0});
   half.arc(0.098f, 0, -0.8f, 5).line(0.084f, -0.004f).arc(-0.084f, -0.004f, 0.8f, 3);

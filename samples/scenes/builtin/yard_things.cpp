@@ -211,7 +211,7 @@ MeshBuilder bicycle(const Palette& p) {
   };
   mudguard(rear, 20, 195);
   mudguard(frontHub, 25, 165);
-  // A rack and a basket on it would hide the wheel: only the rack.
+  // Only a rack, because a basket on it would hide the wheel.
   for (const float s : {-1.0f, 1.0f})
     m.add(p.steel, tube({{-0.24f, 0.76f, s * 0.05f},
                          {-0.45f, 0.765f, s * 0.06f},

@@ -46,7 +46,7 @@ class Model:
         self.nodes.append({"name": name, "mesh": len(self.meshes) - 1, **node})
 
     def quad(self, name, a, u, v, material, **node):
-        """Seen from where u turns to v counter-clockwise."""
+        """The front is the side from which u turns to v counter-clockwise."""
         add = lambda *vs: [sum(c) for c in zip(*vs)]
         n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
         n = [c / math.sqrt(sum(x * x for x in n)) for c in n]
@@ -72,13 +72,13 @@ class Model:
 
 
 def tiles(x, y):
-    """Coarse enough that its filter shows."""
+    """A texture coarse enough for its filter to show."""
     bright = 220 if (x // 2 + y // 2) % 2 else 90
     return [bright, (bright * 3 // 4 + 9 * x) % 256, 60 + 12 * y, 255]
 
 
 def lattice(x, y):
-    """Alpha runs smoothly through the cutoff: round holes."""
+    """Alpha runs smoothly through the cutoff, which gives round holes."""
     alpha = 0.5 + 0.5 * math.cos(math.pi * (x + 0.5) / 4) * math.cos(math.pi * (y + 0.5) / 4)
     return [40 + 8 * x, 150, 40 + 6 * y, round(255 * min(max(alpha, 0), 1))]
 

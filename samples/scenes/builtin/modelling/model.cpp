@@ -11,7 +11,7 @@
 namespace fovea::scene::model {
 namespace {
 
-// Value at a corner of the noise's grid.
+// Value of the noise at a corner of its grid.
 float latticeValue(int x, int y, uint32_t seed, int period) {
   if (period > 0) {
     x = ((x % period) + period) % period;
@@ -37,8 +37,8 @@ struct RingPoint {
   uint32_t index;
 };
 
-// Joins a hole (clockwise) to the ring around it by a bridge: from the hole's rightmost point to the nearest
-// point of the ring that it can see.
+// Joins a hole (clockwise) to the ring around it by a bridge from the hole's rightmost point to the nearest point of
+// the ring that is visible from there.
 void bridge(std::vector<RingPoint>& ring, const std::vector<RingPoint>& hole) {
   size_t start = 0;
   for (size_t i = 1; i < hole.size(); ++i)
@@ -86,7 +86,7 @@ bool isEar(const std::vector<RingPoint>& ring, size_t i) {
   return true;
 }
 
-// The smallest angle of a triangle, as the sine: ears that are not slivers come first.
+// Sine of the smallest angle of a triangle, so that ears that are not slivers are cut first.
 float quality(glm::vec2 a, glm::vec2 b, glm::vec2 c) {
   const float ab = glm::length(b - a), bc = glm::length(c - b), ca = glm::length(a - c);
   return turn(a, b, c) / std::max({ab * bc, bc * ca, ca * ab, 1e-12f});

@@ -9,7 +9,7 @@
 namespace fovea::scene::model {
 namespace {
 
-// A point of a profile or section with the normal of one of its sides; two at one place make an edge.
+// A point of a profile or section with the normal of one of its sides; two at the same place form an edge.
 struct Row {
   glm::vec2 position, normal;
   float length;  // along the outline
@@ -57,15 +57,14 @@ void addVertex(Shape& s, glm::vec3 position, glm::vec3 normal, glm::vec2 uv) {
   s.uvs.push_back(uv);
 }
 
-// Coordinates of a box's face along one axis: where the rounded edge bends from, and the tangent of its
-// angle there.
+// Coordinates of a box's face along one axis: where the rounded edge bends from, and the tangent of its angle there.
 struct BoxLine {
   float inner, tangent;
 };
 
 std::vector<BoxLine> boxLines(float low, float high, float bevel, int steps, int cells) {
   std::vector<BoxLine> lines;
-  const auto tangent = [&](int i) {  // exactly 1 at the box's edge, where two faces meet
+  const auto tangent = [&](int i) {  // exactly 1 at an edge of the box, where two faces meet
     return i == 0 ? 1.0f : std::tan(0.25f * glm::pi<float>() * (1 - float(i) / float(steps)));
   };
   if (bevel > 0)
@@ -81,7 +80,7 @@ struct Frame {
   glm::vec3 tangent, side, up;
 };
 
-// One frame a segment of the path.
+// One frame per segment of the path.
 std::vector<Frame> framesOf(const std::vector<glm::vec3>& path, size_t segments,
                             const std::optional<glm::vec3>& up) {
   std::vector<Frame> frames(segments);
@@ -347,7 +346,7 @@ std::vector<glm::vec2> inset(const std::vector<glm::vec2>& p, float distance) {
   return result;
 }
 
-// The side wall of one closed outline between two heights, `from` and `to` as many points each.
+// The side wall of a closed outline between two heights; `from` and `to` have equally many points.
 void addWall(Shape& s, const std::vector<glm::vec2>& from, const std::vector<glm::vec2>& to, float z0,
              float z1, float creaseDegrees, float tilt) {
   const std::vector<Row> low = rowsOf(from, true, creaseDegrees);

@@ -90,7 +90,7 @@ Shape surface(const Sheet& sheet, float thickness) {
     back.normals[v] = -normals[v];
   }
   for (size_t k = 0; k < back.indices.size(); k += 3) std::swap(back.indices[k + 1], back.indices[k + 2]);
-  // The rim: edges that one triangle only has.
+  // The rim: edges of a single triangle.
   std::unordered_map<uint64_t, uint32_t> edges;
   const auto key = [](uint32_t a, uint32_t b) { return uint64_t(a) << 32 | b; };
   for (size_t k = 0; k < s.indices.size(); ++k) {
@@ -140,7 +140,7 @@ void append(Shape& shape, const Shape& what, const glm::mat4& m) {
   const uint32_t base = uint32_t(shape.positions.size());
   const glm::mat3 linear(m);
   const bool mirrored = glm::determinant(linear) < 0;
-  // The cofactor matrix: the inverse transpose but for a factor.
+  // The cofactor matrix, which is the inverse transpose up to a factor.
   const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                            glm::cross(linear[0], linear[1]));
   for (const glm::vec3& p : what.positions) shape.positions.push_back(glm::vec3(m * glm::vec4(p, 1)));
@@ -173,7 +173,7 @@ void smooth(Shape& s, float creaseDegrees) {
                             s.positions[s.indices[3 * t + 2]]};
     const glm::vec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
     faceNormals[t] = glm::length(n) > 0 ? glm::normalize(n) : glm::vec3(0);
-    for (int k = 0; k < 3; ++k) {  // weighted by the angle: independent of how quads are cut
+    for (int k = 0; k < 3; ++k) {  // weighted by the angle, so independent of how quads are split
       const glm::vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
       const float angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
       cornerNormals[3 * t + size_t(k)] = angle * faceNormals[t];
@@ -198,7 +198,7 @@ void smooth(Shape& s, float creaseDegrees) {
       s.normals[v] = n;
       continue;
     }
-    uint32_t copy = v;  // v itself and what was split off it
+    uint32_t copy = v;  // v itself or a copy split off from it
     while (glm::dot(s.normals[copy], n) < 0.99999f && nextOf[copy] != kNoIndex) copy = nextOf[copy];
     if (glm::dot(s.normals[copy], n) < 0.99999f) {
       nextOf[copy] = uint32_t(s.positions.size());
@@ -299,7 +299,7 @@ uint32_t SceneBuilder::place(const std::string& name, uint32_t mesh, glm::vec3 p
 }
 
 void SceneBuilder::swing(uint32_t node, const std::vector<Swing>& swings, float loopSeconds) {
-  constexpr int kKeys = 48;  // cubic between keys with the sine's own slopes: off by less than 1e-4
+  constexpr int kKeys = 48;  // cubic between keys with the slopes of the sine; error below 1e-4
   AnimationChannel c;
   c.node = node;
   c.path = AnimationChannel::Path::Weights;

@@ -7,7 +7,7 @@
 namespace fovea::scene::model {
 namespace {
 
-// Numbered draws of one plant.
+// The random numbers of one plant.
 class Draws {
  public:
   explicit Draws(uint32_t seed) : seed_(seed) {}
@@ -102,7 +102,7 @@ Plant tree(const TreeForm& f) {
   const Shape blade = leafBlade(f.leaf);
   std::vector<glm::vec3> ends;
   for (int i = 0; i < f.twigs; ++i) {
-    // Evenly over the crown's shell, most of them near its surface, none straight below.
+    // Evenly around the crown, mostly near its surface, and none directly below it.
     const float y = 1 - 1.75f * (float(i) + draw()) / float(f.twigs),
                 r = std::sqrt(std::max(0.0f, 1 - y * y));
     const float a = float(i) * 2.39996f + draw(-0.3f, 0.3f);

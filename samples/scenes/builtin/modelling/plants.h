@@ -1,4 +1,4 @@
-// Plants of the built-in scenes: modelled leaves (give them a double-sided material) on modelled wood.
+// Plants of the built-in scenes: modelled leaves, which need a double-sided material, on modelled wood.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace fovea::scene::model {
 
 struct Leaf {
   float length = 0.10f, width = 0.045f;
-  float fold = 0.3f;   // height of the edges over the rib, of half the width
-  float droop = 0.2f;  // of the length, at the tip
+  float fold = 0.3f;   // height of the edges above the rib, as a share of half the width
+  float droop = 0.2f;  // at the tip, as a share of the length
   int steps = 1;       // 4 triangles each
 };
-// From the origin along +z, upper side +y.
+// A leaf from the origin along +z, with its upper side towards +y.
 Shape leafBlade(const Leaf& leaf);
 
 struct Plant {
@@ -33,22 +33,22 @@ struct TreeForm {
 };
 Plant tree(const TreeForm& form);
 
-// Blades from one root: agave, fern, palm leaves, iris. `spread`: the outermost blades' angle from upright,
-// degrees.
+// Blades from one root, for agaves, ferns, palms and irises. `spreadDegrees`: angle of the outermost blades
+// from the vertical.
 Shape rosette(int blades, const Leaf& leaf, float spreadDegrees, uint32_t seed);
 
 // A low bush without a trunk: stems and leaves in a dome of the given half axes, standing on y = 0.
 Plant bush(glm::vec3 dome, int stems, int leavesPerStem, const Leaf& leaf, uint32_t seed);
 
-// Leaves and stems that hang over an edge, from the origin down to about -length; a climber when turned.
+// Leaves and stems that hang over an edge, from the origin down to about -length; turned upside down, a climber.
 Plant trailing(int strands, float length, float spread, const Leaf& leaf, uint32_t seed);
 
-// A climber along `stem`: twigs to every side of it but most along `out` (the wall's normal), `reach` long,
-// flowers (three bracts each) at the ends of the share `bloom` of them, as `fruits`.
+// A climber along `stem`: twigs `reach` long to all sides, most of them along `out` (the normal of the wall). A share
+// `bloom` of the twigs ends in flowers of three bracts each, which are returned as `fruits`.
 Plant climber(const std::vector<glm::vec3>& stem, glm::vec3 out, float reach, int twigs, int leavesPerTwig,
               const Leaf& leaf, float bloom, uint32_t seed);
 
-// Stems from one root with a ball of petals (`fruits`) on each: geraniums, hydrangeas.
+// Stems from one root, each with a ball of petals (`fruits`), for geraniums and hydrangeas.
 Plant flowers(glm::vec3 dome, int stems, float headRadius, int petals, uint32_t seed);
 
 }  // namespace fovea::scene::model

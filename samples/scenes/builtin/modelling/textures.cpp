@@ -11,7 +11,7 @@
 namespace fovea::scene::model {
 namespace {
 
-// sRGB encoding by table: 8 bits of result from 12 of input.
+// sRGB encoding by a table from 12 bits to 8 bits.
 uint8_t encode(float linear) {
   static const std::array<uint8_t, 4096> table = [] {
     std::array<uint8_t, 4096> t{};
@@ -27,7 +27,7 @@ uint8_t encode(float linear) {
 
 float wrapped(float x) { return x - std::floor(x); }
 
-// Around 1: clouds and grain that repeat with the picture.
+// A factor around 1: clouds and grain that repeat with the picture.
 float mottle(float u, float v, float strength, uint32_t seed) {
   return 1 + strength * (2 * fractal({u * 4, v * 4}, seed, 5, 4) - 1);
 }
@@ -82,7 +82,7 @@ Texture masonry(const std::string& name, const MasonryLook& look, uint32_t width
 
 namespace {
 
-// Where water has run down: narrow, drawn out, here and there.
+// Occasional narrow, elongated streaks where water has run down.
 float streaks(float u, float v, uint32_t seed) {
   const float across = noise({u * 26 + 2 * noise({u * 6, v * 6}, seed + 3, 6), 0}, seed + 4, 26);
   const float place = fractal({u * 5, v * 5}, seed + 5, 2, 5);
@@ -171,7 +171,7 @@ Texture leaf(const std::string& name, glm::vec3 color, uint32_t size, uint32_t s
 
 Texture foliage(const std::string& name, glm::vec3 low, glm::vec3 high, float cover, uint32_t size,
                 uint32_t seed) {
-  // Leaves as ellipses, one a cell and a turned one between cells; the later ones lie on top.
+  // Leaves are ellipses, one per cell and a turned one between cells; later ones lie on top.
   constexpr int kCells = 9;
   return bakeWithAlpha(name, size, size, [&](float u, float v) {
     glm::vec4 c(glm::mix(low, high, 0.3f), 0);
