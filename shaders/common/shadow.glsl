@@ -22,8 +22,9 @@ uint shadowFace(vec3 fromLight) {
   return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
-// Shaders that look up shadows define SHADOW_MAPS, and their passes have an input port `maps` of bundle `shadow-maps`. SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3
-// bilinear ones. SHADOW_LAYER, if defined, is the only layer there is. A CPU device loads indexed data lane by lane.
+// Shaders that look up shadows define SHADOW_MAPS, and their passes have an input port `maps` of bundle `shadow-maps`.
+// SHADOW_FILTER: 0 one comparison, 1 bilinear between four, 2 average of 3x3 bilinear ones. SHADOW_LAYER, if defined, is
+// the only layer there is. A CPU device loads indexed data lane by lane.
 #ifdef SHADOW_MAPS
 #ifndef SHADOW_FILTER
 #define SHADOW_FILTER 1

@@ -312,7 +312,7 @@ void Expander::addPassInputs(Scope& scope, const Member& pass, const std::vector
   const Trail inputsPath(path, "inputs");
   for (const Member& input : inputs) {
     if (input.value.isString())
-      rawWires_.emplace_back(&scope, pass.key, keep(input.key), &input.value, place(input.keyWhere));
+      rawWires_.push_back({&scope, pass.key, keep(input.key), &input.value, place(input.keyWhere)});
     else
       error(input.value.where, {inputsPath, input.key},
             fmt::format("expected a wire such as \"pass.port\", found {}", input.value.describe()));

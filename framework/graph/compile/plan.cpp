@@ -156,7 +156,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
     const MemoryNeed need = options.memory ? options.memory(r) : estimateMemory(resource.desc);
     hash.add(need.bytes, need.alignment << 32 | need.memoryTypeBits);
     if (isTransient(resource))
-      requests.emplace_back(r, intervals[r], need);
+      requests.push_back({r, intervals[r], need});
     else
       plan.bytesKept += need.bytes * (resource.history ? 2 : 1);
   }
