@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <optional>
@@ -49,6 +50,25 @@ glm::vec2 parseGaze(std::string_view text) {
     throw Error(ExitCode::Usage, fmt::format("--gaze `{}` is not X,Y with both from 0 to 1", text),
                 "0,0 is the top left corner of the image and 0.5,0.5 its middle");
   return {*x, *y};
+}
+
+scene::Lens parseLens(std::string_view text) {
+  std::vector<float> angles;
+  for (size_t from = 0; from <= text.size();) {
+    const size_t comma = std::min(text.find(',', from), text.size());
+    const auto angle = parseNumber<float>(text.substr(from, comma - from));
+    // Written so that NaN also fails.
+    angles.push_back(angle && *angle >= scene::kLeastLensAngle && *angle <= scene::kMostLensAngle
+                         ? glm::radians(*angle)
+                         : 0);
+    from = comma + 1;
+  }
+  if (angles.size() != 4 || std::count(angles.begin(), angles.end(), 0.0f) > 0)
+    throw Error(ExitCode::Usage,
+                fmt::format("--lens `{}` is not four angles from {} to {} degrees", text,
+                            scene::kLeastLensAngle, scene::kMostLensAngle),
+                "outwards, inwards, up and down, as in 55,45,50,52");
+  return {angles[0], angles[1], angles[2], angles[3]};
 }
 
 void loadPlugins(const std::vector<std::string>& plugins) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fovea/error.h"
+#include "fovea/scene.h"
 #include "framework/graph/compile/compile.h"
 
 namespace fovea::bench {
@@ -23,6 +24,9 @@ struct GraphOptions {
 glm::uvec2 parseSize(std::string_view text);
 // Parses "0.5,0.4" in normalised image coordinates with the origin at the top left. Throws Error(Usage).
 glm::vec2 parseGaze(std::string_view text);
+
+// Parses "55,45,50,52": degrees outwards, inwards, up and down. Throws Error(Usage).
+scene::Lens parseLens(std::string_view text);
 
 void loadPlugins(const std::vector<std::string>& plugins);
 // Loads the plug-ins, then the graph with its overrides. Mistakes inside the file are collected in `messages`;

@@ -2,23 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <optional>
-
 namespace fovea::cli {
-
-namespace {
-
-template <class T>
-std::optional<T> parseNumber(std::string_view text) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-}  // namespace
 
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                      const std::string& doc) {
@@ -38,25 +22,6 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
           "Override a graph parameter (vpl_count=500) or a pass's (deferred.kernel=disc)")
       ->type_name("NAME=VALUE");
   addPluginOption(command, options.plugins);
-}
-
-scene::Lens parseLens(std::string_view text) {
-  std::vector<float> angles;
-  for (size_t from = 0; from <= text.size();) {
-    const size_t comma = std::min(text.find(',', from), text.size());
-    const auto angle = parseNumber<float>(text.substr(from, comma - from));
-    // Written so that NaN also fails.
-    angles.push_back(angle && *angle >= scene::kLeastLensAngle && *angle <= scene::kMostLensAngle
-                         ? glm::radians(*angle)
-                         : 0);
-    from = comma + 1;
-  }
-  if (angles.size() != 4 || std::count(angles.begin(), angles.end(), 0.0f) > 0)
-    throw Error(ExitCode::Usage,
-                fmt::format("--lens `{}` is not four angles from {} to {} degrees", text,
-                            scene::kLeastLensAngle, scene::kMostLensAngle),
-                "outwards, inwards, up and down, as in 55,45,50,52");
-  return {angles[0], angles[1], angles[2], angles[3]};
 }
 
 CLI::Validator numberBetween(double low, double high) {

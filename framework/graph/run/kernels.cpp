@@ -376,7 +376,7 @@ void Commands::flush() {
     throw Error(ExitCode::Internal, "shader " + kernel_.name + " has more than 32 bindings in set 0");
   checkConstants();
   std::array<Descriptor, kMaxBindings> descriptors;
-  std::array<VkWriteDescriptorSet, kMaxBindings> writes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  std::array<VkWriteDescriptorSet, kMaxBindings> writes;
   for (uint32_t i = 0; i < count; ++i) {
     fillDescriptor(context_.pass_, kernel_, i, descriptors[i]);
     writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
