@@ -341,7 +341,7 @@ MeshBuilder table(const Palette& p) {
   }
   for (int i = 0; i < 4; ++i)
     m.add(p.toy[(i * 2 + 1) % 5], cylinder(0.0045f, 0.09f, 12, 0.001f),
-          at(-0.19f + 0.035f * float(i), h + 0.0045f + (i > 1 ? 0.0f : 0.0f), -0.03f + 0.03f * float(i % 2)) *
+          at(-0.19f + 0.035f * float(i), h + 0.0045f, -0.03f + 0.03f * float(i % 2)) *
               turnY(37.0f * float(i)) * turnZ(90));
   Outline plate({0, 0});
   plate.line(0.045f, 0)
