@@ -75,8 +75,17 @@ void loadPlugins(const std::vector<std::string>& plugins) {
   for (const std::string& plugin : plugins) graph::loadPlugin(plugin);
 }
 
+void loadPassFolders(const std::vector<std::string>& folders) {
+  graph::Registry::global().addFoldersFromEnvironment();
+  for (const std::string& folder : folders) graph::Registry::global().addFolder(folder);
+}
+
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages) {
   loadPlugins(options.plugins);
+  loadPassFolders(options.passes);
+  const std::filesystem::path beside =
+      graph::findGraph(options.graph, dataFolders("graphs")).parent_path() / "passes";
+  if (std::filesystem::is_directory(beside)) graph::Registry::global().addFolder(beside);
   graph::LoadOptions load;
   for (const std::string& text : options.set) load.overrides.push_back(graph::parseOverride(text));
   load.searchPaths = dataFolders("graphs");

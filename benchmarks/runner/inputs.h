@@ -18,6 +18,7 @@ inline constexpr double kFoveaRadius = 0.25;  // image widths, the default
 struct GraphOptions {
   std::string graph;
   std::vector<std::string> set, plugins;
+  std::vector<std::string> passes;  // folders of pass files
 };
 
 // Parses "1024x768". Throws Error(Usage) naming the limits.
@@ -29,7 +30,9 @@ glm::vec2 parseGaze(std::string_view text);
 scene::Lens parseLens(std::string_view text);
 
 void loadPlugins(const std::vector<std::string>& plugins);
-// Loads the plug-ins, then the graph with its overrides. Mistakes inside the file are collected in `messages`;
+// Loads the pass files of the folders that FOVEA_PASSES names and of these.
+void loadPassFolders(const std::vector<std::string>& folders);
+// Loads the plug-ins and passes, among them those of a folder `passes` beside the graph, then the graph with its overrides. Mistakes inside the file are collected in `messages`;
 // bind() throws them.
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages);
 

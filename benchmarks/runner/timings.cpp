@@ -66,7 +66,8 @@ void Timings::add(const graph::FrameResult& result) {
   kept.passes = result.passes;
   kept.counters = result.counters;
   if (kept.animateMs > 0 || kept.animateCpuMs > 0)
-    kept.passes.insert(kept.passes.begin(), {kAnimate, kept.animateMs, kept.animateCpuMs});
+    kept.passes.insert(kept.passes.begin(),
+                       graph::PassTiming{kAnimate, kept.animateMs, kept.animateCpuMs, {}});
 }
 
 std::string Timings::name(uint32_t pass) const {
@@ -90,9 +91,28 @@ std::vector<Timings::Row> Timings::rows() const {
   for (uint32_t index : order) {
     const bool host =
         index != kAnimate && plan_->graph->passes[index].declaration->kind == graph::PassKind::Host;
-    rows.push_back({index, host, spreadOf(values[index].first), spreadOf(values[index].second)});
+    rows.push_back(
+        {index, host, spreadOf(values[index].first), spreadOf(values[index].second), steps(index)});
   }
   return rows;
+}
+
+// A step that did not run in a frame took no time there.
+std::vector<std::pair<std::string, Spread>> Timings::steps(uint32_t pass) const {
+  std::vector<std::pair<std::string, std::vector<double>>> values;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    for (const graph::PassTiming& t : frames_[f].passes)
+      for (const graph::StepTiming& step : t.pass == pass ? t.steps : std::vector<graph::StepTiming>()) {
+        auto known =
+            std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == step.name; });
+        if (known == values.end())
+          known = values.insert(known, {step.name, std::vector<double>(frames_.size())});
+        known->second[f] += step.gpuMs;
+      }
+  std::vector<std::pair<std::string, Spread>> list;
+  for (auto& [name, times] : values) list.emplace_back(name, spreadOf(std::move(times)));
+  if (list.size() == 1) list.clear();
+  return list;
 }
 
 // Totals of the passes of the second eye and of every other separate view, by the time where each pass works. The
@@ -151,6 +171,7 @@ std::string Timings::table() const {
   double total = 0;
   for (const Row& row : all) {
     nameWidth = std::max(nameWidth, name(row.pass).size());
+    for (const auto& [step, time] : row.steps) nameWidth = std::max(nameWidth, step.size() + 2);
     typeWidth = std::max(typeWidth, type(row.pass).size());
     total += row.time();
   }
@@ -166,9 +187,12 @@ std::string Timings::table() const {
   add("pass", "type", {"gpu ms", "min", "p95", "cpu ms"}, "   share");
   const std::string rule = std::string(text.size() - 1, '-') + '\n';
   text += rule;
-  for (const Row& row : all)
+  for (const Row& row : all) {
     add(name(row.pass), type(row.pass), times(row.gpu, row.cpu),
         fmt::format("{:>7.1f}%", total > 0 ? 100 * row.time() / total : 0));
+    for (const auto& [step, time] : row.steps)
+      add("  " + step, "", {formatMs(time.median), formatMs(time.min), formatMs(time.p95), ""}, "");
+  }
   text += rule;
   add("frame", "", times(frameSpread([](const auto& f) { return f.gpuMs; }), frameSpread([](const auto& f) {
                            return f.cpuMs;
@@ -203,11 +227,15 @@ std::string Timings::counterTable() const {
 
 std::string Timings::json(const RunInfo& run) const {
   Json passes = Json::array();
-  for (const Row& row : rows())
-    passes.push_back({{"name", name(row.pass)},
-                      {"type", type(row.pass)},
-                      {"gpu_ms", toJson(row.gpu)},
-                      {"cpu_ms", toJson(row.cpu)}});
+  for (const Row& row : rows()) {
+    Json pass = {{"name", name(row.pass)},
+                 {"type", type(row.pass)},
+                 {"gpu_ms", toJson(row.gpu)},
+                 {"cpu_ms", toJson(row.cpu)}};
+    for (const auto& [step, time] : row.steps)
+      pass["steps"].push_back({{"name", step}, {"gpu_ms", toJson(time)}});
+    passes.push_back(std::move(pass));
+  }
   Json views = Json::object();
   for (const ViewTotal& t : viewTotals()) {
     views[t.view] = {{"passes", t.passes}, {"ms", toJson(t.time)}};

@@ -48,6 +48,7 @@ class Timings {
     uint32_t pass = 0;
     bool host = false;
     Spread gpu, cpu;
+    std::vector<std::pair<std::string, Spread>> steps;              // none if the pass has a single one
     double time() const { return host ? cpu.median : gpu.median; }  // where the pass does its work
   };
   struct ViewTotal {   // total of all passes of one view, ms per frame
@@ -57,6 +58,7 @@ class Timings {
   };
   std::string viewTable() const;
   std::string counterTable() const;
+  std::vector<std::pair<std::string, Spread>> steps(uint32_t pass) const;
   std::vector<Row> rows() const;                                 // in order of execution
   std::vector<ViewTotal> viewTotals() const;                     // empty for graphs with a single view
   std::vector<std::pair<std::string, double>> counters() const;  // medians, in order of first appearance

@@ -10,6 +10,8 @@ namespace fovea::graph {
 
 void loadPlugin(const std::filesystem::path& file) { Registry::global().loadPlugin(file); }
 
+void addPasses(const std::filesystem::path& folder) { Registry::global().addFolder(folder); }
+
 struct Session::Impl {
   std::unique_ptr<gpu::Device> device;
   scene::Geometry geometry;

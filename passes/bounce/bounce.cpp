@@ -30,18 +30,9 @@ class Bounce : public Pass {
     d.output("bounced", buffer("VoxelRadiance", 16, countOf("voxels.surface")), Usage::StorageWrite,
              "rgb: direct + rho E / pi, W/(sr m^2); w: its luminance; 0 for empty sides, undefined beyond "
              "the last voxel");
+    d.step("bounce/bounce.comp").define("HAS_DIRECT", wired("direct")).threads(countOf("voxels.surface"));
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override {
-    kernel_ = ctx.compute("bounce/bounce.comp", {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
-  }
-  void record(RecordContext& ctx) override {
-    ctx.use(kernel_).dispatchThreads(uint32_t(ctx.count("voxels.surface")));
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Bounce);

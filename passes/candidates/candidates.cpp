@@ -55,27 +55,30 @@ class Candidates : public Pass {
     d.counter("escaped", "bounces that left the scene");
     d.counter("background", "attempts whose pixel shows the background");
     d.counter("attempts", "attempts made, equal to `count`");
+    d.step("candidates/candidates.comp")
+        .define("TWO_EYES", wired("gbuffer2"))
+        .define("HAS_RADIANCE", wired("radiance"))
+        .constant("imageShare64ths",
+                  [](const RecordContext& ctx) {
+                    return scene::imageShare64ths(ctx.parameters().real("image_share"));
+                  })
+        .constant("secondGaze",
+                  [](const RecordContext& ctx) {
+                    const scene::View* second = ctx.frame().findView(ctx.parameters().text("second_view"));
+                    return (second ? *second : ctx.view()).gaze;
+                  })
+        .constant("streamFrame",
+                  [](const RecordContext& ctx) {
+                    return ctx.parameters().flag("per_frame") ? uint32_t(ctx.frame().index) : 0u;
+                  })
+        .over("candidates");
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    kernel_ = ctx.compute("candidates/candidates.comp", {{"TWO_EYES", ctx.has("gbuffer2") ? "1" : "0"},
-                                                         {"HAS_RADIANCE", ctx.has("radiance") ? "1" : "0"}});
-  }
-
   void record(RecordContext& ctx) override {
-    const Parameters& p = ctx.parameters();
-    const scene::View* second = ctx.frame().findView(p.text("second_view"));
-    ctx.use(kernel_)
-        .constant("imageShare64ths", scene::imageShare64ths(p.real("image_share")))
-        .constant("secondGaze", (second ? *second : ctx.view()).gaze)
-        .constant("streamFrame", p.flag("per_frame") ? uint32_t(ctx.frame().index) : 0u)
-        .dispatchThreads(uint32_t(p.integer("count")));
-    ctx.counter("attempts", double(p.integer("count")));
+    ctx.runSteps();
+    ctx.counter("attempts", double(ctx.count("candidates")));
   }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Candidates);

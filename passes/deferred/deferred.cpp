@@ -21,12 +21,16 @@ constexpr uint32_t kTileWidth = 16, kTileHeight = 16;
 static_assert(kTileWidth * kTileHeight == 256);
 
 // A smaller subset would be too poor an estimate, and using fewer subsets costs little when there are few VPLs.
-constexpr uint64_t kSmallestSubset = 4;
+constexpr int64_t kSmallestSubset = 4;
 
-uint32_t subsetsPerSide(int64_t wanted, uint64_t vplCount) {
-  uint32_t n = uint32_t(wanted);
-  while (n > 1 && vplCount < kSmallestSubset * n * n) n /= 2;
-  return n;
+// Subsets along a side of a block: as many as `interleave` says, halved until each has enough VPLs. Of 8, 4 and 2 it is
+// the largest that both allow.
+SizeExpr subsets() {
+  const auto enough = [](int64_t n) {  // 1 if there are VPLs for n x n subsets
+    return min(max(countOf("vpls") - SizeExpr(kSmallestSubset * n * n - 1), 0), 1);
+  };
+  const SizeExpr possible = SizeExpr(1) + enough(2) + SizeExpr(2) * enough(4) + SizeExpr(4) * enough(8);
+  return min(parameter("interleave"), possible);
 }
 
 class Deferred : public Pass {
@@ -36,6 +40,7 @@ class Deferred : public Pass {
                       "irradiance from all VPLs on the visible surfaces: each pixel uses one subset of the "
                       "VPLs, and a filter combines the subsets",
                       PassKind::ComputeAndGraphics);
+    d.recorded();
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
@@ -73,6 +78,7 @@ class Deferred : public Pass {
     d.scratch("edge_pixels", buffer("uint", 4, width * height), Usage::StorageWrite | Usage::TexelRead,
               "pixels whose filter window extends beyond their surface: x | y << 16");
     addParameters(d);
+    addSteps(d);
     d.counter("incomplete",
               "pixels for which fewer than half of the subsets have a sample on the same surface nearby");
     d.counter("vpls_per_pixel",
@@ -91,25 +97,13 @@ class Deferred : public Pass {
                   "pass `deferred`: interleave " + std::to_string(interleave) + " is not a power of two",
                   "use 1, 2, 4 or 8");
     count_ = uint32_t(ctx.count("vpls"));
-    side_ = subsetsPerSide(interleave, count_);
+    side_ = uint32_t(ctx.evaluate(subsets()));
     masked_ = ctx.has("shade");
     if (masked_) checkMask(ctx, uint32_t(interleave));
-    Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
-    if (masked_) defines["BLOCK"] = std::to_string(interleave);
-    Defines filter = defines;
-    filter["EDGES"] = "0";
-    if (!masked_) resolve_ = ctx.compute("deferred/resolve.comp", filter);
-    filter["EDGES"] = "1";
-    edges_ = ctx.compute("deferred/resolve.comp", filter);
-    if (ctx.isRead("indirect") || ctx.isRead("radiance"))
-      compose_ = ctx.fullscreen("deferred/compose.frag", {"indirect", "radiance"},
-                                {{"HAS_DIRECT", ctx.has("direct") ? "1" : "0"}});
-    defines["KERNEL_DISC"] = p.text("kernel") == "disc" ? "1" : "0";
-    preparePages(ctx, defines);
+    preparePages(ctx);
   }
 
   void record(RecordContext& ctx) override {
-    const Parameters& p = ctx.parameters();
     const VkExtent3D size = ctx.extent("partial");
     const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
     if (masked_)
@@ -118,7 +112,6 @@ class Deferred : public Pass {
       ctx.fill("edges", 1);
     for (uint32_t page = 0; page < pages_.size(); ++page) {
       const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
-      if (page > 0) ctx.barrier();
       Commands commands = ctx.use(pages_[page]);
       commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
       if (ctx.has("atlas")) commands.constant("firstSlot", first);
@@ -128,21 +121,7 @@ class Deferred : public Pass {
         commands.dispatch(groups(size.width, kTileWidth * side_), groups(size.height, kTileHeight * side_),
                           side_ * side_);
     }
-    ctx.barrier();
-    const float filterCos = std::cos(glm::radians(float(p.real("filter_angle"))));
-    if (masked_) {
-      ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("shade.dispatch");
-    } else {
-      ctx.use(resolve_)
-          .constant("filterCos", filterCos)
-          .dispatch(groups(size.width, kTileWidth), groups(size.height, kTileHeight));
-      ctx.barrier();
-      ctx.use(edges_).constant("filterCos", filterCos).dispatchIndirect("edges");
-    }
-    if (compose_) {
-      ctx.barrier();
-      ctx.use(compose_).drawFullscreen();
-    }
+    ctx.runSteps();
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
@@ -181,6 +160,29 @@ class Deferred : public Pass {
                 "the pixel's distance from the eye");
   }
 
+  static void addSteps(PassDeclaration& d) {
+    const SizeExpr masked = wired("shade");
+    const auto filter = [&](const char* name, bool edges) -> StepSpec& {
+      return d.step("deferred/resolve.comp")
+          .called(name)
+          .define("INTERLEAVE", subsets())
+          .define("MASKED", masked)
+          .define("BLOCK", parameter("interleave"))
+          .define("EDGES", edges)
+          .constant("filterCos", [](const RecordContext& ctx) {
+            return std::cos(glm::radians(float(ctx.parameters().real("filter_angle"))));
+          });
+    };
+    filter("filter", false)
+        .when(!masked)
+        .groups(ceilDiv(widthOf("partial"), kTileWidth), ceilDiv(heightOf("partial"), kTileHeight));
+    filter("filter edges", true).when(!masked).indirect("edges");
+    filter("filter blocks", true).when(masked).indirect("shade.dispatch");
+    d.fullscreen("deferred/compose.frag", {"indirect", "radiance"})
+        .when(isRead("indirect") || isRead("radiance"))
+        .define("HAS_DIRECT", wired("direct"));
+  }
+
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {
     if (!ctx.has("base"))
       throw Error(ExitCode::BadInput,
@@ -202,7 +204,12 @@ class Deferred : public Pass {
                   "give both passes the same `interleave`");
   }
 
-  void preparePages(PrepareContext& ctx, Defines defines) {
+  // The number of VPLs in a page is a constant in the shader, so there is a kernel for each: for a full first page, for
+  // further full pages and for the rest.
+  void preparePages(PrepareContext& ctx) {
+    Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
+    if (masked_) defines["BLOCK"] = std::to_string(ctx.parameters().integer("interleave"));
+    defines["KERNEL_DISC"] = ctx.parameters().text("kernel") == "disc" ? "1" : "0";
     defines["NEAR_FIELD"] = ctx.has("near_field") ? "1" : "0";
     defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
     defines["TILED"] = "0";
@@ -216,8 +223,6 @@ class Deferred : public Pass {
                     "wire the same VPLs to the atlas and to the shading");
       defines["TILED"] = std::to_string(int(perLayer > 1));
     }
-    // The number of VPLs in a page is a constant in the shader, so there is a kernel for each: for a full first page,
-    // for further full pages and for the rest.
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
       defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
       defines["ACCUMULATE"] = std::to_string(int(first > 0));
@@ -230,7 +235,6 @@ class Deferred : public Pass {
   uint32_t count_ = 0, side_ = 1;
   bool masked_ = false;
   std::vector<Kernel> pages_;
-  Kernel resolve_, edges_, compose_;
 };
 
 FOVEA_PASS(Deferred);

@@ -1,5 +1,4 @@
 // Direct lighting: light reflected once on its way from a light to the eye, plus the surfaces' own emission.
-#include <array>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@ class Direct : public Pass {
     PassDeclaration d("direct",
                       "direct lighting: emission plus rho / pi times the unoccluded irradiance of each light",
                       PassKind::Graphics);
+    d.recorded();
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
@@ -38,24 +38,23 @@ class Direct : public Pass {
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow filter: `none` makes one comparison (jagged edges), `bilinear` interpolates four, "
                 "`pcf` averages 3x3 bilinear ones (softer edges)");
+    const auto shade = [&](const char* name, int kind) {
+      d.fullscreen("direct/direct.frag", {"direct"})
+          .called(name)
+          .define("SHADOW_FILTER", parameter("filter"))
+          .define("ONE_LIGHT", kind);
+    };
+    shade("many lights", 0);
+    shade("one light", 1);
+    shade("one map", 2);
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    const std::string& filter = ctx.parameters().text("filter");
-    const char* taps = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
-    for (size_t i = 0; i < kernels_.size(); ++i)
-      kernels_[i] = ctx.fullscreen("direct/direct.frag", {"direct"},
-                                   {{"SHADOW_FILTER", taps}, {"ONE_LIGHT", std::to_string(i)}});
-  }
   void record(RecordContext& ctx) override {
     const std::vector<scene::Light>& lights = ctx.frame().lights;
     const bool oneMap = scene::shadowLayers(lights) == 1;
-    ctx.use(kernels_[lights.size() != 1 ? 0 : oneMap ? 2 : 1]).drawFullscreen();
+    ctx.run(lights.size() != 1 ? "many lights" : oneMap ? "one map" : "one light");
   }
-
- private:
-  std::array<Kernel, 3> kernels_;  // for any number of lights, for one, and for one with one map
 };
 
 FOVEA_PASS(Direct);

@@ -19,6 +19,7 @@ class GBuffer : public Pass {
         "gbuffer",
         "G-buffer of the surfaces visible through the pixel centres, with bilinear texturing at LOD 0",
         PassKind::Graphics);
+    d.recorded();
     d.view();
     d.output("gbuffer", "gbuffer",
              {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
@@ -42,6 +43,11 @@ class GBuffer : public Pass {
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
+    for (const bool textured : {false, true})
+      d.fullscreen("gbuffer/resolve.frag", {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
+                                            "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"})
+          .called(textured ? "resolve with emission textures" : "resolve")
+          .define("EMISSION_TEXTURES", textured);
     return d;
   }
 
@@ -57,11 +63,6 @@ class GBuffer : public Pass {
            .depth = "gbuffer.depth",
            .cull =
                cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
-    for (const bool textured : {false, true})
-      resolve_[textured] = ctx.fullscreen("gbuffer/resolve.frag",
-                                          {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
-                                           "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"},
-                                          {{"EMISSION_TEXTURES", textured ? "1" : "0"}});
   }
 
   void record(RecordContext& ctx) override {
@@ -80,19 +81,17 @@ class GBuffer : public Pass {
     ctx.counter("triangles", double(drawn));
     const auto clear = Attachment::Load::Clear;
     const Attachment depth{"gbuffer.depth", clear, {.depthStencil = {1.0f, 0}}};
-    ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, [&] {
+    ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, draw_, [&] {
       for (const scene::DrawRun& run : visible_)
         ctx.use(draw_[size_t(run.kind)])
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
-    ctx.barrier();
-    ctx.use(resolve_[emissionTextures_]).drawFullscreen();
+    ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
   }
 
  private:
   Kernel draw_[3];
-  Kernel resolve_[2];  // one for scenes without emission textures, one for scenes with them
   bool emissionTextures_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;

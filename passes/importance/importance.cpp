@@ -19,10 +19,6 @@ class Importance : public Pass {
  public:
   static PassDeclaration declaration();
   void prepare(PrepareContext& ctx) override;
-  void record(RecordContext& ctx) override;
-
- private:
-  Kernel candidates_, vpls_;
 };
 
 PassDeclaration Importance::declaration() {
@@ -62,6 +58,18 @@ PassDeclaration Importance::declaration() {
               "if false, the importance of all candidates is 0, for a pass manage whose `placement` does not "
               "need it; Eq. 1 then keeps new VPLs in their second frame");
   d.counter("rays", "rays or cones traced");
+  d.fill("candidate_importance", 0).when(!parameter("rate_candidates"));
+  const auto estimate = [&](const char* name, bool candidates, const char* port) -> StepSpec& {
+    return d.step("importance/estimate.comp")
+        .called(name)
+        .define("CONES", is("method", "cones"))
+        .define("LUMINANCE", parameter("luminance"))
+        .define("CANDIDATES", candidates)
+        .constant("count", countOf(port))
+        .groups(1, ceilDiv(countOf(port), kGroupVpls));
+  };
+  estimate("rate candidates", true, "candidates").when(parameter("rate_candidates"));
+  estimate("rate VPLs", false, "vpls");
   return d;
 }
 
@@ -74,23 +82,6 @@ void Importance::prepare(PrepareContext& ctx) {
   if (cones && !ctx.has("mips"))
     throw Error(ExitCode::BadInput, "pass `importance`: method `cones` needs the input `mips`",
                 "wire `mips` to mipmap, or set method to `rays`");
-  Defines defines{{"CONES", cones ? "1" : "0"}, {"LUMINANCE", luminance ? "1" : "0"}};
-  defines["CANDIDATES"] = "1";
-  if (p.flag("rate_candidates")) candidates_ = ctx.compute("importance/estimate.comp", defines);
-  defines["CANDIDATES"] = "0";
-  vpls_ = ctx.compute("importance/estimate.comp", defines);
-}
-
-void Importance::record(RecordContext& ctx) {
-  const auto estimate = [&](Kernel kernel, const char* port) {
-    const uint32_t count = uint32_t(ctx.count(port));
-    ctx.use(kernel).constant("count", count).dispatch(1, (count + kGroupVpls - 1) / kGroupVpls);
-  };
-  if (ctx.parameters().flag("rate_candidates"))
-    estimate(candidates_, "candidates");
-  else
-    ctx.fill("candidate_importance", 0);
-  estimate(vpls_, "vpls");
 }
 
 FOVEA_PASS(Importance);

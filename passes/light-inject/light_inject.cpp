@@ -28,6 +28,7 @@ class LightInject : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("light-inject",
                       "outgoing radiance of every voxel side: reflected direct light plus emission");
+    d.recorded();
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
@@ -67,22 +68,27 @@ class LightInject : public Pass {
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow filter: `none` makes one comparison, `bilinear` interpolates four, `pcf` averages "
                 "3x3 bilinear ones");
+    const auto step = [&](const char* shader) -> StepSpec& {
+      return d.step(shader)
+          .define("SHADOWED", wired("maps"))
+          .define("MOVER_BOXES", scene::MoverBoxes::kCount);
+    };
+    step("light-inject/covered.comp");
+    for (size_t i = 0; i < kLights.size(); ++i) {
+      const auto lights = static_cast<int64_t>(i);
+      step("light-inject/select.comp")
+          .called("select, " + kLights[i])
+          .define("ONE_LIGHT", lights)
+          .indirect("work", 16);
+      step("light-inject/light_inject.comp")
+          .called("light, " + kLights[i])
+          .define("ONE_LIGHT", lights)
+          .define("SHADOW_FILTER", parameter("filter"))
+          .indirect("work");
+    }
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    Defines defines{{"SHADOWED", ctx.has("maps") ? "1" : "0"},
-                    {"MOVER_BOXES", std::to_string(scene::MoverBoxes::kCount)}};
-    covered_ = ctx.compute("light-inject/covered.comp", defines);
-    const std::string& filter = ctx.parameters().text("filter");
-    for (size_t i = 0; i < select_.size(); ++i) {
-      defines["ONE_LIGHT"] = std::to_string(i);
-      select_[i] = ctx.compute("light-inject/select.comp", defines);
-      Defines filtered = defines;
-      filtered["SHADOW_FILTER"] = filter == "none" ? "0" : filter == "bilinear" ? "1" : "2";
-      kernel_[i] = ctx.compute("light-inject/light_inject.comp", filtered);
-    }
-  }
   void record(RecordContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
     const bool stay = gpu_ == frame.gpu && std::equal(lights_.begin(), lights_.end(), frame.lights.begin(),
@@ -91,29 +97,26 @@ class LightInject : public Pass {
     const scene::MoverBoxes now = scene::moverBoxes(frame), either = scene::around(now, before_);
     const uint32_t layers = scene::shadowLayers(frame.lights);
     const bool moving = !either.empty();
-    Commands cover = ctx.use(covered_);
+    Commands cover = ctx.step("covered");
     if (ctx.has("maps"))
       cover.constant("movers", either.corners).constant("layerCount", moving ? layers : 0u);
     cover.dispatchThreads(std::max(layers, 1u) * uint32_t(scene::MoverBoxes::kCount));
-    ctx.barrier();
-    const size_t lights = frame.lights.size() != 1 ? 0 : layers == 1 ? 2 : 1;
-    ctx.use(select_[lights])
+    const std::string& lights = kLights[frame.lights.size() != 1 ? 0 : layers == 1 ? 2 : 1];
+    ctx.step("select, " + lights)
         .constant("relightAll", uint32_t(all))
         .constant("moving", uint32_t(moving))
         .dispatchIndirect("work", 16);
-    ctx.barrier();
-    ctx.use(kernel_[lights]).dispatchIndirect("work");
+    ctx.run("light, " + lights);
     lights_ = frame.lights;
     gpu_ = frame.gpu;
     before_ = now;
   }
 
  private:
-  Kernel covered_;
-  std::array<Kernel, 3> select_, kernel_;  // for any number of lights, for one, and for one with one map
-  std::vector<scene::Light> lights_;       // lights of the previous frame
-  const scene::GpuScene* gpu_ = nullptr;   // scene of the previous frame
-  scene::MoverBoxes before_;               // bounds of the moving objects in the previous frame
+  static inline const std::array<std::string, 3> kLights = {"many lights", "one light", "one map"};
+  std::vector<scene::Light> lights_;      // lights of the previous frame
+  const scene::GpuScene* gpu_ = nullptr;  // scene of the previous frame
+  scene::MoverBoxes before_;              // bounds of the moving objects in the previous frame
 };
 
 FOVEA_PASS(LightInject);

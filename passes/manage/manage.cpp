@@ -23,12 +23,6 @@ class Manage : public Pass {
  public:
   static PassDeclaration declaration();
   void prepare(PrepareContext& ctx) override;
-  void record(RecordContext& ctx) override;
-
- private:
-  Commands use(RecordContext& ctx, Kernel kernel);
-  bool none_ = false;  // whether `reuse` is `none`
-  Kernel accept_, thin_, reuse_, order_, choose_, refill_, write_;
 };
 
 void addScratch(PassDeclaration& d) {
@@ -47,6 +41,46 @@ void addScratch(PassDeclaration& d) {
   d.scratch("density", buffer("uint", 4, kCells), both | Usage::TransferWrite,
             "number of reused VPLs in each cell");
   d.scratch("segments", buffer("uint", 4, kCells), both, "first of the sorted attempts in each cell");
+}
+
+// Parameters as the shaders want them.
+void setConstants(const RecordContext& ctx, Commands& commands) {
+  const Parameters& p = ctx.parameters();
+  const scene::Geometry& geometry = *ctx.frame().geometry;
+  const bool empty = geometry.empty();
+  const glm::vec3 origin = empty ? glm::vec3(0.0f) : geometry.boundsMin;
+  const float diagonal = empty ? 1.0f : std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
+  const uint32_t slots = uint32_t(ctx.count("list"));
+  const uint32_t limit = p.integer("limit") > 0 ? std::min(uint32_t(p.integer("limit")), slots) : slots;
+  const bool light = p.text("placement") == "light";
+  const uint32_t keep = p.integer("keep") > 0 ? uint32_t(p.integer("keep")) : light ? 0u : limit;
+  commands.constant("gridOrigin", origin)
+      .constant("cellsPerMetre", 1.0f / (float(p.real("cell")) * diagonal))
+      .constant("slots", slots)
+      .constant("candidateCount", uint32_t(ctx.count("candidates")))
+      .constant("listLimit", limit)
+      .constant("keepCount", keep)
+      .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
+      .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
+      .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
+}
+
+void addSteps(PassDeclaration& d) {
+  const SizeExpr none = is("reuse", "none");
+  const auto step = [&](const char* shader) -> StepSpec& {
+    StepSpec& added = d.step(shader);
+    added.frameConstants.emplace_back(setConstants);
+    return added;
+  };
+  d.fill("state", 0);
+  d.fill("density", 0);
+  step("manage/accept.comp").threads(max(countOf("list"), countOf("candidates")));
+  step("manage/refill.comp").when(none).groups(1);
+  step("manage/reuse.comp").when(!none).groups(1);
+  step("manage/thin.comp").when(!none).groups(1);
+  step("manage/order.comp").when(!none).groups(2);
+  step("manage/choose.comp").when(!none).groups(1);
+  step("manage/write.comp").threads(countOf("list"));
 }
 
 PassDeclaration Manage::declaration() {
@@ -106,6 +140,7 @@ PassDeclaration Manage::declaration() {
   d.counter("rejected", "old VPLs that failed the test of Eq. 1");
   d.counter("alive", "VPLs in the list");
   d.counter("dense", "old VPLs and candidates refused because their cell was full");
+  addSteps(d);
   return d;
 }
 
@@ -131,62 +166,6 @@ void Manage::prepare(PrepareContext& ctx) {
   if (!ctx.device().features().shaderInt64)
     throw Error(ExitCode::NoDevice,
                 "pass manage needs 64-bit integers in shaders (shaderInt64), which the device lacks");
-  none_ = ctx.parameters().text("reuse") == "none";
-  accept_ = ctx.compute("manage/accept.comp");
-  write_ = ctx.compute("manage/write.comp");
-  if (none_) {
-    refill_ = ctx.compute("manage/refill.comp");
-    return;
-  }
-  thin_ = ctx.compute("manage/thin.comp");
-  reuse_ = ctx.compute("manage/reuse.comp");
-  order_ = ctx.compute("manage/order.comp");
-  choose_ = ctx.compute("manage/choose.comp");
-}
-
-Commands Manage::use(RecordContext& ctx, Kernel kernel) {
-  const Parameters& p = ctx.parameters();
-  const scene::Geometry& geometry = *ctx.frame().geometry;
-  const bool empty = geometry.empty();
-  const glm::vec3 origin = empty ? glm::vec3(0.0f) : geometry.boundsMin;
-  const float diagonal = empty ? 1.0f : std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
-  const uint32_t slots = uint32_t(ctx.count("list"));
-  const uint32_t limit = p.integer("limit") > 0 ? std::min(uint32_t(p.integer("limit")), slots) : slots;
-  const bool light = p.text("placement") == "light";
-  const uint32_t keep = p.integer("keep") > 0 ? uint32_t(p.integer("keep")) : light ? 0u : limit;
-  Commands commands = ctx.use(kernel);
-  commands.constant("gridOrigin", origin)
-      .constant("cellsPerMetre", 1.0f / (float(p.real("cell")) * diagonal))
-      .constant("slots", slots)
-      .constant("candidateCount", uint32_t(ctx.count("candidates")))
-      .constant("listLimit", limit)
-      .constant("keepCount", keep)
-      .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
-      .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
-      .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
-  return commands;
-}
-
-void Manage::record(RecordContext& ctx) {
-  const uint32_t slots = uint32_t(ctx.count("list")), candidates = uint32_t(ctx.count("candidates"));
-  ctx.fill("state", 0);
-  ctx.fill("density", 0);
-  ctx.barrier();
-  use(ctx, accept_).dispatchThreads(std::max(slots, candidates));
-  ctx.barrier();
-  if (none_) {
-    use(ctx, refill_).dispatch(1);
-  } else {
-    use(ctx, reuse_).dispatch(1);  // both may run together, except with `light`
-    if (ctx.parameters().text("placement") == "light") ctx.barrier();
-    use(ctx, thin_).dispatch(1);
-    ctx.barrier();
-    use(ctx, order_).dispatch(2);
-    ctx.barrier();
-    use(ctx, choose_).dispatch(1);
-  }
-  ctx.barrier();
-  use(ctx, write_).dispatchThreads(slots);
 }
 
 FOVEA_PASS(Manage);

@@ -16,6 +16,7 @@ class Mipmap : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("mipmap", "mip hierarchy of the voxels' light and foveated weight, for cone tracing");
+    d.recorded();
     d.input("voxels", "voxels",
             {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
              member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
@@ -50,41 +51,37 @@ class Mipmap : public Pass {
     d.parameter("directional", flag(true),
                 "whether six volumes are stored side by side, +x -x +y -y +z -z, one for each facing "
                 "direction, so that a thin wall does not show the light of its back");
+    const auto step = [&](const char* shader) -> StepSpec& {
+      return d.step(shader)
+          .define("DIRECTIONAL", parameter("directional"))
+          .define("WEIGHTED", weighted())
+          .define("KEEPS", keeps());
+    };
+    d.fill("dirty", 0).when(keeps());
+    step("mipmap/base.comp")
+        .define("ODD", widthOf("voxels.index") - (ceilDiv(widthOf("voxels.index") - 1, 2) * 2))
+        .define("MOVER_BOXES", scene::MoverBoxes::kCount);
+    step("mipmap/down.comp");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
-    directional_ = ctx.parameters().flag("directional");
-    weighted_ = ctx.has("weights") && ctx.parameters().text("importance") == "cones";
-    keeps_ = ctx.has("changed") && !weighted_;  // the weights differ in every frame
-    const Defines defines{{"DIRECTIONAL", directional_ ? "1" : "0"},
-                          {"WEIGHTED", weighted_ ? "1" : "0"},
-                          {"KEEPS", keeps_ ? "1" : "0"}};
-    Defines base = defines;
-    base["ODD"] = std::to_string(ctx.extent("voxels.index").width % 2);
-    base["MOVER_BOXES"] = std::to_string(scene::MoverBoxes::kCount);
-    base_ = ctx.compute("mipmap/base.comp", base);
-    down_ = ctx.compute("mipmap/down.comp", defines);
+    weighted_ = ctx.evaluate(weighted()) != 0;
+    keeps_ = ctx.evaluate(keeps()) != 0;
   }
 
   void record(RecordContext& ctx) override {
-    gpu::Image& color = ctx.image("mips.color");
-    gpu::Image& weight = ctx.image("mips.weight");
     uint32_t size = ctx.extent("mips.color").height, firstBit = 0;
-    if (keeps_) {
-      ctx.fill("dirty", 0);
-      ctx.barrier();
-    }
+    ctx.run("fill dirty");
     recordBase(ctx, size);
-    for (uint32_t level = 1; level < color.desc().mips && size % 2 == 0; ++level) {
+    for (uint32_t level = 1; level < ctx.mips("mips.color") && size % 2 == 0; ++level) {
       size /= 2;
-      ctx.barrier();
-      Commands down = ctx.use(down_);
-      down.bind("sourceColor", color.mipView(level - 1))
-          .bind("targetColor", color.mipView(level))
+      Commands down = ctx.step("down");
+      down.mip("sourceColor", "mips.color", level - 1)
+          .mip("targetColor", "mips.color", level)
           .constant("size", int32_t(size));
       if (weighted_)
-        down.bind("sourceWeight", weight.mipView(level - 1)).bind("targetWeight", weight.mipView(level));
+        down.mip("sourceWeight", "mips.weight", level - 1).mip("targetWeight", "mips.weight", level);
       if (keeps_) down.constant("firstBit", firstBit);
       down.dispatchThreads(size, size, size);
       firstBit += size * size * size;
@@ -95,9 +92,9 @@ class Mipmap : public Pass {
   static constexpr int64_t kAllMips = 32;  // more than any size needs
 
   void recordBase(RecordContext& ctx, uint32_t size) {
-    Commands base = ctx.use(base_);
-    base.bind("mipsColor", ctx.image("mips.color").mipView(0));
-    if (weighted_) base.bind("mipsWeight", ctx.image("mips.weight").mipView(0));
+    Commands base = ctx.step("base");
+    base.mip("mipsColor", "mips.color", 0);
+    if (weighted_) base.mip("mipsWeight", "mips.weight", 0);
     if (keeps_) {
       const bool all = ctx.firstFrame() || gpu_ != ctx.frame().gpu;
       const scene::MoverBoxes now = scene::moverBoxes(ctx.frame());
@@ -108,10 +105,12 @@ class Mipmap : public Pass {
     base.dispatchThreads(size, size, size);
   }
 
-  bool directional_ = true, weighted_ = false, keeps_ = false;
+  static SizeExpr weighted() { return wired("weights") && is("importance", "cones"); }
+  static SizeExpr keeps() { return wired("changed") && !weighted(); }  // the weights differ in every frame
+
+  bool weighted_ = false, keeps_ = false;
   scene::MoverBoxes before_;              // bounds of the moving objects in the previous frame
   const scene::GpuScene* gpu_ = nullptr;  // scene of the previous frame
-  Kernel base_, down_;
 };
 
 FOVEA_PASS(Mipmap);

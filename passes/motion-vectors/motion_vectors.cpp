@@ -35,20 +35,12 @@ class MotionVectors : public Pass {
                 "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
+    d.fullscreen("motion-vectors/motion_vectors.frag", {"origin"})
+        .constant("leastCos", [](const RecordContext& ctx) {
+          return std::cos(glm::radians(float(ctx.parameters().real("normal_angle"))));
+        });
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override {
-    kernel_ = ctx.fullscreen("motion-vectors/motion_vectors.frag", {"origin"});
-  }
-  void record(RecordContext& ctx) override {
-    ctx.use(kernel_)
-        .constant("leastCos", std::cos(glm::radians(float(ctx.parameters().real("normal_angle")))))
-        .drawFullscreen();
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(MotionVectors);

@@ -32,23 +32,18 @@ class Radiance : public Pass {
     d.parameter("terms", choice("both", {"both", "direct", "cones"}),
                 "light to include: `direct` only light that comes straight from the lights, `cones` only "
                 "light by way of another surface (the second bounce)");
+    d.step("radiance/radiance.comp")
+        .define("CONES", !is("terms", "direct"))
+        .constant("count", countOf("vpls"))
+        .over("vpls");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
-    const bool direct = ctx.parameters().text("terms") == "direct";
-    if (!direct && !ctx.has("mips"))
+    if (ctx.parameters().text("terms") != "direct" && !ctx.has("mips"))
       throw Error(ExitCode::BadInput, "pass `radiance`: the cones need the input `mips`",
                   "wire `mips` to mipmap, or set terms to `direct`");
-    kernel_ = ctx.compute("radiance/radiance.comp", {{"CONES", direct ? "0" : "1"}});
   }
-  void record(RecordContext& ctx) override {
-    const uint32_t count = uint32_t(ctx.count("vpls"));
-    ctx.use(kernel_).constant("count", count).dispatchThreads(count);
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Radiance);

@@ -68,6 +68,7 @@ class Reproject : public Pass {
     d.counter(
         "shaded_pixels",
         "pixels with a surface in blocks that contain a pixel with neither a source nor light from nearby");
+    addSteps(d);
     return d;
   }
 
@@ -77,38 +78,35 @@ class Reproject : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
                   "use 1, 2, 4 or 8, the same as for the shading");
-    const Defines defines{{"INTERLEAVE", std::to_string(n)}};
-    Defines filling = defines;
-    filling["FILL"] = std::to_string(ctx.parameters().integer("fill"));
-    warp_ = ctx.compute("reproject/warp.comp");
-    fill_ = ctx.compute("reproject/fill.comp", filling);
-    scan_ = ctx.compute("reproject/scan.comp", defines);
-    compact_ = ctx.compute("reproject/compact.comp", defines);
-  }
-
-  void record(RecordContext& ctx) override {
-    const Parameters& p = ctx.parameters();
-    const auto tiles = uint32_t(ctx.count("tile_blocks"));
-    const VkExtent3D size = ctx.extent("irradiance");
-    const auto groups = [](uint32_t pixels, uint32_t each) { return (pixels + each - 1) / each; };
-    const float leastCos = std::cos(glm::radians(float(p.real("normal_angle"))));
-    ctx.clear("shade.mask", {});
-    ctx.fill("tile_blocks", 0);
-    ctx.fill("open_tiles", 1);
-    ctx.barrier();
-    ctx.use(warp_)
-        .constant("sourceWorldToClip", sourceView(ctx).worldToClip)
-        .constant("leastCos", leastCos)
-        .dispatch(groups(size.width, kRowWidth), groups(size.height, kRows));
-    ctx.barrier();
-    ctx.use(fill_).constant("leastCos", leastCos).dispatchIndirect("open_tiles");
-    ctx.barrier();
-    ctx.use(scan_).constant("tiles", tiles).dispatch(1);
-    ctx.barrier();
-    ctx.use(compact_).constant("tiles", tiles).dispatchThreads(tiles);
   }
 
  private:
+  static void addSteps(PassDeclaration& d) {
+    const auto leastCos = [](const RecordContext& ctx) {
+      return std::cos(glm::radians(float(ctx.parameters().real("normal_angle"))));
+    };
+    d.clear("shade.mask", 0);
+    d.fill("tile_blocks", 0);
+    d.fill("open_tiles", 1);
+    d.step("reproject/warp.comp")
+        .constant("sourceWorldToClip", [](const RecordContext& ctx) { return sourceView(ctx).worldToClip; })
+        .constant("leastCos", leastCos)
+        .groups(ceilDiv(widthOf("irradiance"), kRowWidth), ceilDiv(heightOf("irradiance"), kRows));
+    d.step("reproject/fill.comp")
+        .define("INTERLEAVE", parameter("interleave"))
+        .define("FILL", parameter("fill"))
+        .constant("leastCos", leastCos)
+        .indirect("open_tiles");
+    d.step("reproject/scan.comp")
+        .define("INTERLEAVE", parameter("interleave"))
+        .constant("tiles", countOf("tile_blocks"))
+        .groups(1);
+    d.step("reproject/compact.comp")
+        .define("INTERLEAVE", parameter("interleave"))
+        .constant("tiles", countOf("tile_blocks"))
+        .threads(countOf("tile_blocks"));
+  }
+
   static void addParameters(PassDeclaration& d) {
     d.parameter("source_view", text("left"), "view in which the source was rendered");
     d.parameter("interleave", integer(4, 1, 8),
@@ -128,7 +126,7 @@ class Reproject : public Pass {
                 "pixel's surface");
   }
 
-  static const scene::View& sourceView(RecordContext& ctx) {
+  static const scene::View& sourceView(const RecordContext& ctx) {
     const std::string& name = ctx.parameters().text("source_view");
     if (const scene::View* view = ctx.frame().findView(name)) return *view;
     std::string known;
@@ -136,8 +134,6 @@ class Reproject : public Pass {
     throw Error(ExitCode::BadInput, "pass `reproject`: source_view `" + name + "` is no view of the frame",
                 "there is: " + known);
   }
-
-  Kernel warp_, fill_, scan_, compact_;
 };
 
 FOVEA_PASS(Reproject);

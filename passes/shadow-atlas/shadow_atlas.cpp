@@ -221,7 +221,7 @@ void ShadowAtlas::simplifyScene(RecordContext& ctx) {
   std::memcpy(staging_.mapped(), mesh.corners.data(), bytes);
   const VkBufferCopy copy{0, 0, bytes};
   vkCmdCopyBuffer(ctx.cmd(), staging_.handle(), ctx.buffer("simplified").handle(), 1, &copy);
-  ctx.barrier();
+  ctx.barrier();  // this copy is no command that the framework knows
 }
 
 ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
@@ -260,10 +260,10 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
   Commands cull = use(range.kernels->cull);
   cull.constant("firstTriangle", range.first).constant("triangleCount", range.count);
   dispatch(cull, 0);
-  ctx.barrier();
 
   const Kernel lists[] = {range.kernels->small, range.kernels->large, range.kernels->maskedSmall,
                           range.kernels->maskedLarge};
+  // Each keeps the smallest distances by integer atomics, so they may run in any order.
   for (uint32_t list = 0; list < 4 && lists[list]; ++list) {
     const bool large = list % 2 == 1;
     const uint32_t slices = large ? (size * size + kSliceTexels - 1) / kSliceTexels : 1;
@@ -271,10 +271,10 @@ void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, 
       Commands raster = use(lists[list]);
       raster.constant("planeEpsilon", range.planeEpsilon);
       if (large) raster.constant("slice", slice).constant("slices", slices);
+      if (list > 0 || slice > 0) raster.together();
       dispatch(raster, 1 + list);
     }
   }
-  ctx.barrier();
 }
 
 // A sphere around everything that moves; its radius is negative if nothing does.
@@ -295,13 +295,11 @@ void ShadowAtlas::chooseSlots(RecordContext& ctx) {
         .constant("movers", movers.spheres)
         .constant("poses", movers.poses)
         .dispatch(columns, rows);
-    ctx.barrier();
   }
   Commands choose = ctx.use(choose_);
   choose.constant("slots", slots).constant("frameNumber", uint32_t(ctx.frameNumber()));
   if (hasState_) choose.constant("movers", moversOf(ctx.frame()));
   choose.dispatch(1);
-  ctx.barrier();
   Commands clear = ctx.use(clear_);
   clear.constant("slots", slots);
   if (hasState_) clear.constant("movers", movers.spheres).constant("poses", movers.poses);
@@ -314,7 +312,6 @@ void ShadowAtlas::record(RecordContext& ctx) {
     VkClearColorValue nothing{};
     nothing.uint32[0] = scene::kParaboloidEmpty;
     ctx.clear("atlas", nothing);
-    ctx.barrier();
   }
   chooseSlots(ctx);
 
@@ -335,13 +332,11 @@ void ShadowAtlas::record(RecordContext& ctx) {
       .constant("allGroups", groups(triangles.all))
       .constant("overlayGroups", groups(triangles.overlay))
       .dispatch(1);
-  ctx.barrier();
   for (uint32_t batch = 0; batch < batches; ++batch)
     for (uint32_t i = 0; i < all; ++i) recordStep(ctx, batch, batch * steps + i, triangles.all[i]);
   if (!staticMaps_) return;
   const uint32_t columns = std::min(slots, kGroupsPerRow), rows = (slots + kGroupsPerRow - 1) / kGroupsPerRow;
   ctx.use(compose_).constant("slots", slots).dispatch(columns, rows);
-  ctx.barrier();
   for (uint32_t batch = 0; batch < batches; ++batch)
     for (uint32_t i = all; i < steps; ++i)
       recordStep(ctx, batch, batch * steps + i, triangles.overlay[i - all]);

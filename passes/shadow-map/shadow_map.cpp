@@ -24,6 +24,7 @@ class ShadowMap : public Pass {
         "shadow-map",
         "shadow maps of all lights, with one layer for a directional or spot light and six for a point light",
         PassKind::ComputeAndGraphics);
+    d.recorded();
     d.output(
          "maps", "shadow-maps",
          {member("depth",
@@ -43,11 +44,11 @@ class ShadowMap : public Pass {
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
     d.parameter("size", size, "width and height of a map");
+    d.step("shadow-map/views.comp").groups(1);
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
-    views_ = ctx.compute("shadow-map/views.comp");
     for (const bool tested : {false, true})
       draw_[tested] = ctx.graphics({.vertex = "shadow-map/depth.vert",
                                     .fragment = tested ? "shadow-map/depth.frag" : "",
@@ -57,8 +58,7 @@ class ShadowMap : public Pass {
   }
 
   void record(RecordContext& ctx) override {
-    ctx.use(views_).dispatch(1);
-    ctx.barrier();
+    ctx.run("views");
     const scene::Geometry& geometry = *ctx.frame().geometry;
     const uint32_t all = uint32_t(geometry.triangles.size()), fixed = std::min(geometry.staticTriangles, all);
     const bool moves = fixed < all;
@@ -67,9 +67,7 @@ class ShadowMap : public Pass {
     lights_ = ctx.frame().lights;
     gpu_ = ctx.frame().gpu;
     if (!moves) return;
-    ctx.barrier();
-    copyStill(ctx);
-    ctx.barrier();
+    ctx.copy("still", "maps.depth");
     draw(ctx, "maps.depth", Attachment::Load::Keep, fixed, all);
   }
 
@@ -84,27 +82,18 @@ class ShadowMap : public Pass {
                       });
   }
 
-  static void copyStill(RecordContext& ctx) {
-    const gpu::Image& still = ctx.image("still");
-    VkImageCopy copy{};
-    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, still.desc().layers};
-    copy.extent = ctx.extent("still");
-    vkCmdCopyImage(ctx.cmd(), still.handle(), VK_IMAGE_LAYOUT_GENERAL, ctx.image("maps.depth").handle(),
-                   VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
-  }
-
   // Draws triangles [first, end) into all layers.
   void draw(RecordContext& ctx, const char* target, Attachment::Load load, uint32_t first,
             uint32_t end) const {
     const Attachment depth{target, load, {.depthStencil = {0.0f, 0}}};
     const uint32_t layers = scene::shadowLayers(ctx.frame().lights);
     ctx.render(
-        {}, &depth,
+        {}, &depth, draw_,
         [&] {
           if (layers > 0)
             for (const scene::DrawRun& run : ctx.frame().gpu->drawRuns()) draw(ctx, run, layers, first, end);
         },
-        ctx.image(target).desc().layers);
+        ctx.layers(target));
   }
 
   void draw(RecordContext& ctx, const scene::DrawRun& run, uint32_t layers, uint32_t first,
@@ -120,7 +109,7 @@ class ShadowMap : public Pass {
 
   std::vector<scene::Light> lights_;      // lights for which `still` is drawn
   const scene::GpuScene* gpu_ = nullptr;  // scene of which `still` is drawn
-  Kernel views_, draw_[2];
+  Kernel draw_[2];
 };
 
 FOVEA_PASS(ShadowMap);

@@ -44,29 +44,25 @@ class TemporalAccumulation : public Pass {
                 "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
+    // Samples are for blocks if a texel of them covers several pixels.
+    const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1);
+    d.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"}).define("BLOCKS", blocks);
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
-    shift_ = int32_t(std::bit_width((pixels + texels - 1) / texels - 1));
-    kernel_ = ctx.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"},
-                             {{"BLOCKS", shift_ > 0 ? "1" : "0"}});
-  }
   void record(RecordContext& ctx) override {
     const Parameters& p = ctx.parameters();
-    Commands commands = ctx.use(kernel_);
+    const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
+    const auto shift =
+        int32_t(std::bit_width((pixels + texels - 1) / texels - 1));  // a texel is 2^shift pixels wide
+    Commands commands = ctx.step("temporal_accumulation");
     commands.constant("weight", ctx.firstFrame() ? float(p.integer("first_samples")) : 1.0f)
         .constant("frames", float(p.real("frames")));
-    if (shift_ > 0)
+    if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
-          .constant("shift", shift_);
+          .constant("shift", shift);
     commands.drawFullscreen();
   }
-
- private:
-  int32_t shift_ = 0;  // a texel of `samples` is 2^shift pixels wide
-  Kernel kernel_;
 };
 
 FOVEA_PASS(TemporalAccumulation);

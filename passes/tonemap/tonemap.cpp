@@ -23,21 +23,14 @@ class Tonemap : public Pass {
                 "curve before encoding: `clamp` clamps to 1 (used by every measure), `reinhard` is x / (1 + "
                 "luminance)");
     d.counter("non_finite", "pixels whose radiance holds a NaN (shown black) or an infinity");
+    d.fullscreen("tonemap/tonemap.frag", {"image"})
+        .define("REINHARD", is("operator", "reinhard"))
+        .constant("exposure", [](const RecordContext& ctx) {
+          const float exposure = float(ctx.parameters().real("exposure"));
+          return exposure > 0 ? exposure : ctx.frame().exposure;
+        });
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override {
-    const bool reinhard = ctx.parameters().text("operator") == "reinhard";
-    kernel_ = ctx.fullscreen("tonemap/tonemap.frag", {"image"}, {{"REINHARD", reinhard ? "1" : "0"}});
-  }
-
-  void record(RecordContext& ctx) override {
-    const float exposure = float(ctx.parameters().real("exposure"));
-    ctx.use(kernel_).constant("exposure", exposure > 0 ? exposure : ctx.frame().exposure).drawFullscreen();
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Tonemap);

@@ -28,22 +28,17 @@ class ViewAtlas : public Pass {
     d.parameter("tile", tile, "width and height of a map in the image (nearest texel)");
     d.parameter("range", real(0, 0, 1e9, "m"),
                 "distance at which grey has halved; 0 uses an eighth of the scene's diagonal");
+    d.step("view-atlas/view_atlas.comp")
+        .constant("range",
+                  [](const RecordContext& ctx) {
+                    const scene::Geometry& g = *ctx.frame().geometry;
+                    const float range = float(ctx.parameters().real("range")),
+                                diagonal = g.empty() ? 0.0f : glm::length(g.boundsMax - g.boundsMin);
+                    return range > 0 ? range : std::max(0.125f * diagonal, 1e-6f);
+                  })
+        .over("image");
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("view-atlas/view_atlas.comp"); }
-
-  void record(RecordContext& ctx) override {
-    const scene::Geometry& g = *ctx.frame().geometry;
-    const float range = float(ctx.parameters().real("range")),
-                diagonal = g.empty() ? 0.0f : glm::length(g.boundsMax - g.boundsMin);
-    ctx.use(kernel_)
-        .constant("range", range > 0 ? range : std::max(0.125f * diagonal, 1e-6f))
-        .dispatchOver("image");
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(ViewAtlas);

@@ -29,6 +29,11 @@ class ViewVoxels : public Pass {
     d.parameter("show", choice("albedo", {"albedo", "radiance", "weight", "normal"}),
                 "quantity to show: reflectance, outgoing radiance, foveated weight (violet 0, yellow 1) or "
                 "normal (0.5 + 0.5 n)");
+    d.step("view-voxels/view_voxels.comp")
+        .define("RADIANCE", is("show", "radiance"))
+        .define("WEIGHT", is("show", "weight"))
+        .define("NORMAL", is("show", "normal"))
+        .over("image");
     return d;
   }
 
@@ -39,16 +44,7 @@ class ViewVoxels : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
                   std::string("wire `") + wanted + "` or show something else");
-    const Defines defines = show == "radiance" ? Defines{{"RADIANCE", "1"}}
-                            : show == "weight" ? Defines{{"WEIGHT", "1"}}
-                            : show == "normal" ? Defines{{"NORMAL", "1"}}
-                                               : Defines{};
-    kernel_ = ctx.compute("view-voxels/view_voxels.comp", defines);
   }
-  void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("image"); }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(ViewVoxels);

@@ -43,12 +43,32 @@ class ViewVpls : public Pass {
         "range", real(0, 0, 1e9),
         "value shown as the last colour; 0 uses 1 for importance, 60 frames for age, 1 W/sr for luminance");
     d.parameter("radius", real(3, 0.5, 64, "px"), "radius of a disc");
+    const SizeExpr row = min(countOf("state"), 1024);
+    d.fill("keys", 0xffffffffu);
+    d.step("view-vpls/splat.comp")
+        .define("DEPTH_TEST", wired("gbuffer"))
+        .constant("size",
+                  [](const RecordContext& ctx) {
+                    const VkExtent3D size = ctx.extent("image");
+                    return glm::ivec2(size.width, size.height);
+                  })
+        .groups(row, ceilDiv(countOf("state"), row));
+    d.step("view-vpls/view_vpls.comp")
+        .define("PICTURE", wired("picture"))
+        .define("AGE", is("show", "age"))
+        .define("LUMINANCE", is("show", "luminance"))
+        .constant("scale",
+                  [](const RecordContext& ctx) {
+                    const Parameters& p = ctx.parameters();
+                    const double range = p.real("range");
+                    return float(1.0 / (range > 0 ? range : p.text("show") == "age" ? 60.0 : 1.0));
+                  })
+        .over("image");
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
-    const std::string& show = ctx.parameters().text("show");
-    if (show == "luminance" && !ctx.has("vpls"))
+    if (ctx.parameters().text("show") == "luminance" && !ctx.has("vpls"))
       throw Error(ExitCode::BadInput, "pass `view-vpls`: show `luminance` needs the input `vpls`",
                   "wire the VPLs that the shading reads, or show something else");
     if (ctx.count("state") > kMostSlots)
@@ -56,31 +76,7 @@ class ViewVpls : public Pass {
           ExitCode::BadInput,
           "pass `view-vpls`: " + std::to_string(ctx.count("state")) + " VPLs; at most 65536 can be drawn",
           "use fewer");
-    Defines depth, defines;
-    if (ctx.has("gbuffer")) depth["DEPTH_TEST"] = "1";
-    if (ctx.has("picture")) defines["PICTURE"] = "1";
-    if (show == "age") defines["AGE"] = "1";
-    if (show == "luminance") defines["LUMINANCE"] = "1";
-    splat_ = ctx.compute("view-vpls/splat.comp", depth);
-    view_ = ctx.compute("view-vpls/view_vpls.comp", defines);
   }
-
-  void record(RecordContext& ctx) override {
-    const VkExtent3D size = ctx.extent("image");
-    ctx.fill("keys", 0xffffffffu);
-    ctx.barrier();
-    const uint32_t slots = uint32_t(ctx.count("state")), row = std::min(slots, 1024u);
-    ctx.use(splat_)
-        .constant("size", glm::ivec2(size.width, size.height))
-        .dispatch(row, (slots + row - 1) / row);
-    ctx.barrier();
-    const Parameters& p = ctx.parameters();
-    const double range = p.real("range") > 0 ? p.real("range") : p.text("show") == "age" ? 60.0 : 1.0;
-    ctx.use(view_).constant("scale", float(1.0 / range)).dispatchOver("image");
-  }
-
- private:
-  Kernel splat_, view_;
 };
 
 FOVEA_PASS(ViewVpls);

@@ -30,25 +30,19 @@ enum Phase : uint32_t { Static = 0, Dynamic = 1 };
 class Voxelize : public Pass {
  public:
   static PassDeclaration declaration();
-  void prepare(PrepareContext& ctx) override;
   void record(RecordContext& ctx) override;
 
  private:
   struct Triangles {
     uint32_t first, count;
   };
-  struct Visit {
-    Kernel small, large;
-  };
-  Commands useVisit(RecordContext& ctx, Kernel kernel, Triangles triangles);
+  static void addSteps(PassDeclaration& d);
+  Commands visit(RecordContext& ctx, const char* step, Triangles triangles);
   void recordMarks(RecordContext& ctx, Triangles triangles);
   void recordAssignment(RecordContext& ctx, Phase phase);
   void recordSums(RecordContext& ctx, Phase phase, Triangles triangles, uint32_t first);
   void recordPhase(RecordContext& ctx, Phase phase, Triangles triangles);
 
-  Visit mark_, accumulate_;
-  Kernel chunkBlocks_, chunkTops_, chunkOffsets_, markBlocks_, markTops_, assign_, clear_, resolve_, restore_,
-      count_;
   bool voxelized_ = false;  // whether the static scene has been voxelised
 };
 
@@ -56,6 +50,7 @@ PassDeclaration Voxelize::declaration() {
   PassDeclaration d(
       "voxelize",
       "surface voxels of the scene, with averages for both sides of every cell that contains surface");
+  d.recorded();
   const SizeExpr r = parameter("resolution");
   const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
   d.output("voxels", "voxels",
@@ -95,24 +90,32 @@ PassDeclaration Voxelize::declaration() {
   d.counter("voxels", "voxels in the list");
   d.counter("static_voxels", "voxels of static surfaces");
   d.counter("overflow", "cells with surface for which there was no room");
+  addSteps(d);
   return d;
 }
 
-void Voxelize::prepare(PrepareContext& ctx) {
-  const Defines accumulate{{"ACCUMULATE", "1"}}, marks{{"MARKS", "1"}};
-  mark_ = {ctx.compute("voxelize/small.comp"), ctx.compute("voxelize/large.comp")};
-  accumulate_ = {ctx.compute("voxelize/small.comp", accumulate),
-                 ctx.compute("voxelize/large.comp", accumulate)};
-  chunkBlocks_ = ctx.compute("voxelize/scan_blocks.comp");
-  chunkTops_ = ctx.compute("voxelize/scan_tops.comp");
-  chunkOffsets_ = ctx.compute("voxelize/scan_chunks.comp");
-  markBlocks_ = ctx.compute("voxelize/scan_blocks.comp", marks);
-  markTops_ = ctx.compute("voxelize/scan_tops.comp", marks);
-  assign_ = ctx.compute("voxelize/assign.comp");
-  clear_ = ctx.compute("voxelize/clear.comp");
-  resolve_ = ctx.compute("voxelize/resolve.comp");
-  restore_ = ctx.compute("voxelize/restore.comp");
-  count_ = ctx.compute("voxelize/count.comp");
+void Voxelize::addSteps(PassDeclaration& d) {
+  const auto step = [&](const char* shader, const char* name) -> StepSpec& {
+    return d.step(shader).called(name);
+  };
+  step("voxelize/small.comp", "mark small").define("ACCUMULATE", 0);
+  step("voxelize/scan_blocks.comp", "chunk blocks").define("MARKS", 0);
+  step("voxelize/scan_tops.comp", "chunk tops").define("MARKS", 0).groups(1);
+  step("voxelize/scan_chunks.comp", "chunk offsets");
+  step("voxelize/large.comp", "mark large").define("ACCUMULATE", 0).indirect("state", kChunkGroupsOffset);
+  step("voxelize/scan_blocks.comp", "mark blocks").define("MARKS", 1);
+  step("voxelize/scan_tops.comp", "mark tops").define("MARKS", 1).groups(1);
+  step("voxelize/assign.comp", "assign");
+  step("voxelize/clear.comp", "clear");
+  step("voxelize/small.comp", "sum small").define("ACCUMULATE", 1);
+  // Sums are added by integer atomics, in any order.
+  step("voxelize/large.comp", "sum large")
+      .define("ACCUMULATE", 1)
+      .indirect("state", kChunkGroupsOffset)
+      .runTogether();
+  step("voxelize/resolve.comp", "resolve");
+  step("voxelize/restore.comp", "restore").indirect("state", kPhaseOffset + Dynamic * kPhaseBytes);
+  step("voxelize/count.comp", "count").groups(1);
 }
 
 uint32_t blocksOf(uint32_t count, uint32_t size) { return (count + size - 1) / size; }
@@ -122,68 +125,49 @@ void dispatchGroups(Commands commands, uint32_t groups) {
   if (groups > 0) commands.dispatch(std::min(groups, kRow), blocksOf(groups, kRow));
 }
 
-Commands Voxelize::useVisit(RecordContext& ctx, Kernel kernel, Triangles triangles) {
-  Commands commands = ctx.use(kernel);
+Commands Voxelize::visit(RecordContext& ctx, const char* step, Triangles triangles) {
+  Commands commands = ctx.step(step);
   commands.constant("firstTriangle", triangles.first).constant("triangleCount", triangles.count);
   return commands;
 }
 
 void Voxelize::recordMarks(RecordContext& ctx, Triangles triangles) {
   if (triangles.count == 0) return;
-  dispatchGroups(useVisit(ctx, mark_.small, triangles), blocksOf(triangles.count, 64));
-  ctx.barrier();
   const uint32_t blocks = blocksOf(triangles.count, kScanBlock);
-  dispatchGroups(ctx.use(chunkBlocks_).constant("count", triangles.count), blocks);
-  ctx.barrier();
-  ctx.use(chunkTops_).constant("count", blocks).dispatch(1);
-  ctx.barrier();
-  dispatchGroups(ctx.use(chunkOffsets_).constant("count", triangles.count), blocks);
-  ctx.barrier();
-  useVisit(ctx, mark_.large, triangles).dispatchIndirect("state", kChunkGroupsOffset);
-  ctx.barrier();
+  dispatchGroups(visit(ctx, "mark small", triangles), blocksOf(triangles.count, 64));
+  dispatchGroups(ctx.step("chunk blocks").constant("count", triangles.count), blocks);
+  ctx.step("chunk tops").constant("count", blocks).dispatch(1);
+  dispatchGroups(ctx.step("chunk offsets").constant("count", triangles.count), blocks);
+  visit(ctx, "mark large", triangles).dispatchIndirect("state", kChunkGroupsOffset);
 }
 
 void Voxelize::recordAssignment(RecordContext& ctx, Phase phase) {
   const uint32_t words = uint32_t(ctx.count("marks")), blocks = blocksOf(words, kScanBlock);
-  dispatchGroups(ctx.use(markBlocks_).constant("count", words), blocks);
-  ctx.barrier();
-  ctx.use(markTops_)
+  dispatchGroups(ctx.step("mark blocks").constant("count", words), blocks);
+  ctx.step("mark tops")
       .constant("count", blocks)
       .constant("phase", uint32_t(phase))
       .constant("room", uint32_t(ctx.count("cells")))
       .dispatch(1);
-  ctx.barrier();
-  dispatchGroups(ctx.use(assign_)
+  dispatchGroups(ctx.step("assign")
                      .constant("count", words)
                      .constant("blockCount", blocks)
                      .constant("phase", uint32_t(phase)),
                  blocks);
-  ctx.barrier();
 }
 
 void Voxelize::recordSums(RecordContext& ctx, Phase phase, Triangles triangles, uint32_t first) {
-  const uint32_t batch = uint32_t(ctx.count("sums") / (2 * kSumWords));
   const uint64_t groups = kPhaseOffset + phase * kPhaseBytes;
-  ctx.use(clear_)
-      .constant("phase", uint32_t(phase))
-      .constant("base", first)
-      .constant("batch", batch)
-      .dispatchIndirect("state", groups);
-  ctx.barrier();
-  auto visit = [&](Kernel kernel) {
-    Commands commands = useVisit(ctx, kernel, triangles);
-    commands.constant("phase", uint32_t(phase)).constant("base", first).constant("batch", batch);
+  const auto place = [&](Commands commands) {
+    commands.constant("phase", uint32_t(phase))
+        .constant("base", first)
+        .constant("batch", uint32_t(ctx.count("sums") / (2 * kSumWords)));
     return commands;
   };
-  dispatchGroups(visit(accumulate_.small), blocksOf(triangles.count, 64));
-  visit(accumulate_.large).dispatchIndirect("state", kChunkGroupsOffset);
-  ctx.barrier();
-  ctx.use(resolve_)
-      .constant("phase", uint32_t(phase))
-      .constant("base", first)
-      .constant("batch", batch)
-      .dispatchIndirect("state", groups);
-  ctx.barrier();
+  place(ctx.step("clear")).dispatchIndirect("state", groups);
+  dispatchGroups(place(visit(ctx, "sum small", triangles)), blocksOf(triangles.count, 64));
+  place(visit(ctx, "sum large", triangles)).dispatchIndirect("state", kChunkGroupsOffset);
+  place(ctx.step("resolve")).dispatchIndirect("state", groups);
 }
 
 void Voxelize::recordPhase(RecordContext& ctx, Phase phase, Triangles triangles) {
@@ -199,17 +183,13 @@ void Voxelize::record(RecordContext& ctx) {
   const bool dynamic = triangles.firstMoving < triangles.end;
   if (!voxelized_) {
     recordPhase(ctx, Static, {triangles.first, triangles.firstMoving - triangles.first});
-    if (dynamic) {
-      ctx.fill("marks", 0);
-      ctx.barrier();
-    }
+    if (dynamic) ctx.fill("marks", 0);
     voxelized_ = true;
   } else if (dynamic) {
-    ctx.use(restore_).dispatchIndirect("state", kPhaseOffset + Dynamic * kPhaseBytes);
-    ctx.barrier();
+    ctx.run("restore");
   }
   if (dynamic) recordPhase(ctx, Dynamic, {triangles.firstMoving, triangles.end - triangles.firstMoving});
-  ctx.use(count_).dispatch(1);
+  ctx.run("count");
 }
 
 FOVEA_PASS(Voxelize);

@@ -31,19 +31,15 @@ class Update : public Pass {
                 "voxel; beyond it the VPL is dropped");
     d.counter("alive", "VPLs kept");
     d.counter("deleted", "VPLs dropped");
+    // Slightly more than the angle, so that 0 keeps VPLs that have not turned.
+    d.step("vpl-motion/vpl_motion.comp")
+        .constant("turnCos",
+                  [](const RecordContext& ctx) {
+                    return std::cos(glm::radians(float(ctx.parameters().real("max_turn")))) - 1e-5f;
+                  })
+        .over("previous");
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("vpl-motion/vpl_motion.comp"); }
-
-  void record(RecordContext& ctx) override {
-    // Slightly more than the angle, so that 0 keeps VPLs that have not turned.
-    const float turnCos = std::cos(glm::radians(float(ctx.parameters().real("max_turn")))) - 1e-5f;
-    ctx.use(kernel_).constant("turnCos", turnCos).dispatchThreads(uint32_t(ctx.count("previous")));
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Update);

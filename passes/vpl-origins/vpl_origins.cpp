@@ -33,18 +33,9 @@ class Place : public Pass {
     d.parameter("least", real(0, 0, 1e6, "W/sr"),
                 "least intensity of a VPL; a VPL of intensity 0 gets no shadow map, but one without light of "
                 "its own needs a map when pass vpl-intensity assigns light to it");
+    d.step("vpl-origins/vpl_origins.comp").constant("vplCount", countOf("vpls")).over("vpls");
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("vpl-origins/vpl_origins.comp"); }
-
-  void record(RecordContext& ctx) override {
-    const uint32_t count = uint32_t(ctx.count("vpls"));
-    ctx.use(kernel_).constant("vplCount", count).dispatchThreads(count);
-  }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Place);

@@ -34,24 +34,13 @@ class WeightMap : public Pass {
                 "radius r_f of the fovea: the weight is 1 inside and r_f / r at distance r from the gaze");
     d.counter("visible", "sides with a weight above 0");
     d.counter("unassigned", "pixels that show a surface for which the grid has no side facing the eye");
+    const SizeExpr tile = kBlock * kGroup;
+    d.fill("weights", 0);
+    d.step("weight-map/scatter.comp")
+        .define("WHOLE_IMAGE", is("region", "image"))
+        .groups(ceilDiv(widthOf("gbuffer.position"), tile), ceilDiv(heightOf("gbuffer.position"), tile));
     return d;
   }
-
-  void prepare(PrepareContext& ctx) override {
-    const bool image = ctx.parameters().text("region") == "image";
-    scatter_ = ctx.compute("weight-map/scatter.comp", {{"WHOLE_IMAGE", image ? "1" : "0"}});
-  }
-
-  void record(RecordContext& ctx) override {
-    const VkExtent3D size = ctx.extent("gbuffer.position");
-    ctx.fill("weights", 0);
-    ctx.barrier();
-    const uint32_t tile = kBlock * kGroup;
-    ctx.use(scatter_).dispatch((size.width + tile - 1) / tile, (size.height + tile - 1) / tile);
-  }
-
- private:
-  Kernel scatter_;
 };
 
 FOVEA_PASS(WeightMap);

@@ -14,6 +14,11 @@ void addPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
       ->type_name("FILE.so");
 }
 
+void addPassesOption(CLI::App& command, std::vector<std::string>& folders) {
+  addList(command, "--passes", folders, "Folder with passes in files (NAME.pass.json); may be repeated")
+      ->type_name("DIR");
+}
+
 void addGraphOptions(CLI::App& command, GraphOptions& options) {
   command.add_option("GRAPH", options.graph, "Graph: a file, or the bare name of a stock graph (ir_1000)")
       ->required()
@@ -22,6 +27,7 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
           "Override a graph parameter (vpl_count=500) or a pass's (deferred.kernel=disc)")
       ->type_name("NAME=VALUE");
   addPluginOption(command, options.plugins);
+  addPassesOption(command, options.passes);
 }
 
 CLI::Validator numberBetween(double low, double high) {

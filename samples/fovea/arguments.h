@@ -13,7 +13,8 @@ namespace fovea::cli {
 using namespace bench;  // NOLINT(google-build-using-namespace): the program is a shell around that library
 
 void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
-// GRAPH, --set, --plugin
+void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
+// GRAPH, --set, --plugin, --passes
 void addGraphOptions(CLI::App& command, GraphOptions& options);
 // --gaze, --radius, --layer, --exposure, --json
 void addCompareOptions(CLI::App& command, CompareOptions& options);

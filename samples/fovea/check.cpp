@@ -5,6 +5,7 @@
 
 #include "framework/base/json.h"
 #include "framework/base/paths.h"
+#include "framework/gpu/shader/disk_cache.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/scene.h"
@@ -30,7 +31,13 @@ ExitCode check(const CheckOptions& options) {
   const graph::Description description = loadGraph(options.graph, messages);
   auto bound = std::make_shared<const graph::BoundGraph>(
       graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, size), messages));
-  const graph::Plan plan = graph::compile(bound);
+  gpu::ShaderCompiler compiler(gpu::defaultCacheDirectory());
+  graph::addShaderFolders(compiler, graph::Registry::global());
+  graph::CompileOptions compileOptions;
+  compileOptions.shaders = [&](const std::string& file, const gpu::Defines& defines) {
+    return compiler.compile(file, defines);
+  };
+  const graph::Plan plan = graph::compile(bound, compileOptions);
   graph::warnAboutPlan(plan, messages);
   printWarnings(messages);
   if (options.merged) {

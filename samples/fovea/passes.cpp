@@ -118,6 +118,11 @@ std::string describe(const ParameterSpec& p) {
                              : fmt::format("{} ({:g} to {:g})", text, p.min, p.max);
 }
 
+Row describe(const StepSpec& step) {
+  const std::string condition = step.condition.print();
+  return {step.name, step.shader, condition == "1" ? "" : "if " + condition};
+}
+
 ExitCode listTypes() {
   size_t width = 0;
   for (const std::string& type : Registry::global().types()) width = std::max(width, type.size());
@@ -146,12 +151,15 @@ ExitCode showType(const std::string& type) {
   rows.clear();
   for (const CounterSpec& c : pass->counters) rows.push_back({c.name, "", c.doc});
   printRows("counters", rows);
+  rows.clear();
+  for (const StepSpec& step : pass->steps) rows.push_back(describe(step));
+  printRows("steps", rows);
   return ExitCode::Ok;
 }
 
 struct PassesOptions {
   std::string type;
-  std::vector<std::string> plugins;
+  std::vector<std::string> plugins, folders;
 };
 
 }  // namespace
@@ -162,9 +170,11 @@ void addPasses(CLI::App& program, Action& action) {
   command->add_option("TYPE", options->type, "Show this type's ports, parameters and counters")
       ->type_name("");
   addPluginOption(*command, options->plugins);
+  addPassesOption(*command, options->folders);
   command->callback([options, &action] {
     action = [options] {
       loadPlugins(options->plugins);
+      loadPassFolders(options->folders);
       return options->type.empty() ? listTypes() : showType(options->type);
     };
   });

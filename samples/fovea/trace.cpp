@@ -41,6 +41,13 @@ void addTrack(Json& events, const Timings& timings, const graph::FrameResult& fr
     if (time(t) <= 0) continue;
     events.push_back(
         slice(timings.name(t.pass), "pass", track, start, time(t), {{"type", timings.type(t.pass)}}));
+    double stepStart = start;
+    for (const graph::StepTiming& step : t.steps) {
+      if (track != kGpuTrack || t.steps.size() == 1) break;
+      events.push_back(
+          slice(step.name, "step", track, stepStart, step.gpuMs, {{"pass", timings.name(t.pass)}}));
+      stepStart += step.gpuMs;
+    }
     start += time(t);
   }
 }

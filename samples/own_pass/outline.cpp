@@ -3,8 +3,7 @@
 
 using namespace fovea::graph;
 
-class Outline : public Pass {
- public:
+struct Outline : Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("outline", "Draws dark lines where the surface turns or jumps.");
     d.input("picture", image2D(), Usage::Sampled, "the picture to draw on");
@@ -13,13 +12,9 @@ class Outline : public Pass {
             "the surfaces that the eye sees");
     d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM), Usage::StorageWrite, "the picture with lines");
     d.parameter("strength", real(0.8, 0, 1), "0 draws no lines, 1 draws black ones");
+    d.step("outline/outline.comp").over("image");
     return d;
   }
-  void prepare(PrepareContext& ctx) override { kernel_ = ctx.compute("outline/outline.comp"); }
-  void record(RecordContext& ctx) override { ctx.use(kernel_).dispatchOver("image"); }
-
- private:
-  Kernel kernel_;
 };
 
 FOVEA_PASS(Outline);

@@ -6,19 +6,19 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(rgba16f) uniform writeonly image2D image;
-#ifdef RADIANCE
+#if RADIANCE
 uniform samplerBuffer radiance;
 #endif
-#ifdef WEIGHT
+#if WEIGHT
 uniform samplerBuffer weights;
 #endif
 
 vec3 colourOf(uint side) {
-#if defined(RADIANCE)
+#if RADIANCE
   return texelFetch(radiance, int(side)).rgb;
-#elif defined(WEIGHT)
+#elif WEIGHT
   return displayColour(colourMap(texelFetch(weights, int(side)).r));
-#elif defined(NORMAL)
+#elif NORMAL
   return displayColour(0.5 + 0.5 * loadSide(side).normal);
 #else
   return displayColour(pow(loadSide(side).reflectance, vec3(1.0 / 2.2)));
@@ -32,7 +32,7 @@ void main() {
   vec3 inView = vec3((ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]), -1.0);
   vec3 direction = normalize(transpose(mat3(view.worldToView)) * inView);
   VoxelHit hit = traceVoxels(voxelsGrid(), view.eye.xyz, direction, direction);
-#ifdef RADIANCE
+#if RADIANCE
   vec3 colour = frame.environment.rgb;
 #else
   vec3 colour = vec3(0.0);

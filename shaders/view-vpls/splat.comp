@@ -4,7 +4,7 @@
 layout(local_size_x = 64) in;
 
 uniform samplerBuffer state;  // VplState
-#ifdef DEPTH_TEST
+#if DEPTH_TEST
 uniform texture2D gbufferPosition;
 #endif
 layout(std430) buffer KeysBlock { uint pixel[]; } keys;
@@ -26,7 +26,7 @@ void main() {
   vec2 centre = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
   if (!(all(greaterThanEqual(centre, vec2(0.0))) && all(lessThan(centre, vec2(size))))) return;
   float distance = length(position - view.eye.xyz);
-#ifdef DEPTH_TEST
+#if DEPTH_TEST
   // Draws the VPL if it is in front of the surface seen at its centre, or on it; the tolerance allows
   // for a voxel's size.
   vec4 seen = texelFetch(gbufferPosition, ivec2(centre), 0);

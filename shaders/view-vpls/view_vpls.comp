@@ -5,10 +5,10 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform samplerBuffer state;  // VplState
-#ifdef LUMINANCE
+#if LUMINANCE
 uniform samplerBuffer vpls;  // Vpl
 #endif
-#ifdef PICTURE
+#if PICTURE
 uniform texture2D picture;
 #endif
 layout(std430) readonly buffer KeysBlock { uint pixel[]; } keys;
@@ -17,9 +17,9 @@ layout(rgba16f) uniform writeonly image2D image;
 layout(push_constant) uniform Constants { float scale; };  // 1 / value shown as the last colour
 
 float valueOf(int slot) {
-#if defined(LUMINANCE)
+#if LUMINANCE
   return dot(texelFetch(vpls, slot * 3 + 2).rgb, vec3(0.2126, 0.7152, 0.0722));
-#elif defined(AGE)
+#elif AGE
   return texelFetch(state, slot * 5 + 1).w;
 #else
   return texelFetch(state, slot * 5).w;
@@ -31,7 +31,7 @@ void main() {
   if (any(greaterThanEqual(p, size))) return;
   uint key = keys.pixel[p.y * size.x + p.x];
   vec3 colour = vec3(0.0);
-#ifdef PICTURE
+#if PICTURE
   if (all(lessThan(p, textureSize(picture, 0)))) colour = texelFetch(picture, p, 0).rgb;
 #endif
   if (key != 0xffffffffu) colour = displayColour(colourMap(valueOf(int(key & 0xffffu)) * scale));

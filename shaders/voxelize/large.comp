@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 
 layout(std430) readonly buffer ChunksBlock { uint list[]; } chunks;  // exclusive prefix sums
-#ifndef ACCUMULATE
+#if !ACCUMULATE
 layout(std430) readonly buffer StateBlock { State value; } state;
 #endif
 

@@ -3,7 +3,7 @@
 
 layout(local_size_x = 256) in;
 
-#ifdef MARKS
+#if MARKS
 layout(std430) readonly buffer MarksBlock { uint words[]; } marks;
 #else
 layout(std430) readonly buffer ChunksBlock { uint list[]; } chunks;
@@ -18,7 +18,7 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) sum = 0u;
   barrier();
   uint block = groupIndex(), i = block * kScanBlock + gl_LocalInvocationIndex;
-#ifdef MARKS
+#if MARKS
   uint value = i < count ? uint(bitCount(marks.words[i])) : 0u;
 #else
   uint value = i < count ? chunks.list[i] : 0u;

@@ -8,13 +8,13 @@ layout(local_size_x = 256) in;
 
 layout(std430) buffer BlocksBlock { uint sums[]; } blocks;
 layout(std430) buffer StateBlock { State value; } state;
-#ifdef MARKS
+#if MARKS
 layout(std430) buffer VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 #endif
 
 layout(push_constant) uniform Constants {
   uint count;  // blocks
-#ifdef MARKS
+#if MARKS
   uint resolution;
   uint phase;
   uint room;  // room in the list, for both phases
@@ -30,7 +30,7 @@ void main() {
     before += total;
   }
   if (gl_LocalInvocationIndex != 0u) return;
-#ifdef MARKS
+#if MARKS
   uint first = phase == 0u ? 0u : state.value.phases[0].voxels;
   uint voxels = min(before, room - first), overflow = before - voxels;
   state.value.phases[phase] = Phase(uint[3]((2u * voxels + 63u) / 64u, 1u, 1u), voxels, first, overflow, 0u, 0u);

@@ -4,7 +4,7 @@
 
 layout(local_size_x = 64) in;
 
-#ifndef ACCUMULATE
+#if !ACCUMULATE
 layout(std430) writeonly buffer ChunksBlock { uint list[]; } chunks;
 #endif
 
@@ -15,7 +15,7 @@ void main() {
   CellTriangle t = loadCellTriangle(voxelGrid(constants.resolution), indices);
   uint columns = columnCount(t);
   bool large = columns > kSmallColumns;
-#ifndef ACCUMULATE
+#if !ACCUMULATE
   chunks.list[i] = large ? (columns + kChunkColumns - 1u) / kChunkColumns : 0u;
 #endif
   if (large) return;

@@ -5,7 +5,7 @@
 #include "voxelize/state.glsl"
 #include "voxelize/triangle.glsl"
 
-#ifdef ACCUMULATE
+#if ACCUMULATE
 layout(std430) readonly buffer StateBlock { State value; } state;
 layout(r32ui) uniform readonly uimage3D voxelsIndex;
 layout(std430) buffer SumsBlock { uint words[]; } sums;
@@ -16,7 +16,7 @@ layout(std430) buffer MarksBlock { uint words[]; } marks;
 layout(push_constant) uniform Constants {
   uint resolution;
   uint firstTriangle, triangleCount;
-#ifdef ACCUMULATE
+#if ACCUMULATE
   uint phase;
   uint base;   // first voxel of the batch that `sums` has room for, within the phase
   uint batch;  // voxels
@@ -29,7 +29,7 @@ float fixedPoint(float x) {
   return y;
 }
 
-#ifdef ACCUMULATE
+#if ACCUMULATE
 void addTo(uint word, float x) {
   precise float y = fixedPoint(x);
   precise float high = floor(y * (1.0 / 4294967296.0));
@@ -76,7 +76,7 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   precise vec3 c = t.c - place;
   if (!overlapsCell(t, a, b, c)) return;
   uvec3 cell = uvec3(turnBack(place, t.axis));
-#ifndef ACCUMULATE
+#if !ACCUMULATE
   uint linear = cell.x + constants.resolution * (cell.y + constants.resolution * cell.z), bit = 1u << (linear % 32u);
   if ((marks.words[linear / 32u] & bit) != 0u) return;  // a race with another invocation that sets it only costs time
 #else
@@ -87,7 +87,7 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   Piece piece;
   if (!crossesCell(t, a, b, c, piece)) piece = clipToCell(t, a, b, c);
   if (fixedPoint(piece.area) < 1.0) return;
-#ifdef ACCUMULATE
+#if ACCUMULATE
   SurfacePoint surface = surfaceAt(materialOf(indices), cellUv(t, indices, a, piece.centre));
   if (material.alphaCutoff > 0.0 && surface.alpha < material.alphaCutoff) return;
   piece.centre = turnBack(piece.centre, t.axis);

@@ -14,7 +14,7 @@ layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 #if NEAR
 uniform samplerBuffer spread;  // x: area, m^2
 #endif
-layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
+layout(std430) buffer CountersBlock { uint alive; } counters;
 
 #if GAINS
 layout(std430) readonly buffer GainsBlock { float list[]; } gains;

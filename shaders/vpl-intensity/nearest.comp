@@ -11,7 +11,7 @@ uniform usamplerBuffer masks;
 layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer SumsBlock { uvec2 list[]; } sums;
-layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
+layout(std430) buffer CountersBlock { uint alive, givenSides; } counters;
 
 layout(push_constant) uniform Constants {
   uint vplCount;

@@ -21,7 +21,7 @@ layout(std430) readonly buffer KeptBlock { float total, median; } kept;
 #if SHARED
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 #endif
-layout(std430) buffer CountersBlock { uint alive, unseen, capped, givenSides; } counters;
+layout(std430) buffer CountersBlock { uint alive, unseen, capped; } counters;
 
 layout(push_constant) uniform Constants {
   uint vplCount;

@@ -170,7 +170,7 @@ TEST(Weights, TheShareOfANewVplGrows) {
   std::vector<double> grown;
   for (int life = 1; life <= 10; ++life) {
     for (size_t i = 0; i < in.vpls.size(); i += 20) in.vpls[i].life = float(life);
-    PassTest test("vpl-intensity");
+    PassTest test("vpl-intensity-importance-area");
     wire(test, in, "importance-area", {});
     test.param("fade_frames", 8);
     test.run();
@@ -215,7 +215,7 @@ std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector
 std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& points,
                                     const std::vector<passes::EyePathEnd>& ends,
                                     const WeightSettings& settings, float nearArea) {
-  PassTest test("vpl-intensity");
+  PassTest test("vpl-intensity-importance-area");
   wire(test, in, "importance-area", settings);
   std::vector<passes::EyePathStart> starts;
   for (const Seen& s : points)
@@ -267,7 +267,7 @@ TEST(Weights, SpreadNeedsPathsAndDiscs) {
   const auto points = screenPoints(room, settings);
   const auto ends = colouredEnds(room, points, 256);
   for (const bool traced : {false, true}) try {
-      PassTest test("vpl-intensity");
+      PassTest test("vpl-intensity-importance-area");
       settings.clamp = traced ? 1.5f : 0;
       wire(test, in, "importance-area", settings);
       test.buffer("spread", std::vector<glm::vec4>{{0.1f, 0, 0, 0}}, "VplSpread");

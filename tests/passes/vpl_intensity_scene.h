@@ -104,16 +104,19 @@ inline void wire(PassTest& test, const Inputs& in, const char* strategy, const W
     for (const float x : {oct.x, oct.y}) face.push_back(int16_t(std::lround(32767 * x)));
   }
   const auto w = uint32_t(room.size.x), h = uint32_t(room.size.y);
-  test.param("strategy", strategy)
-      .param("region", settings.region == scene::kRegionMixed   ? "mixed"
+  const std::string chosen = strategy;
+  test.param("region", settings.region == scene::kRegionMixed   ? "mixed"
                        : settings.region == scene::kRegionImage ? "image"
                                                                 : "fovea");
-  test.param("image_share", settings.imageShare);
-  test.param("fovea_radius", double(settings.foveaRadius)).param("points", int(settings.points));
-  test.param("area_cap", settings.areaCap).param("normal_weight", settings.normalWeight);
-  test.param("sides", settings.litOnly ? "lit" : "all");
-  test.param("kernel", settings.clamp > 0 ? "clamp" : "disc");
-  if (settings.clamp > 0) test.param("clamp_distance", settings.clamp);
+  test.param("fovea_radius", double(settings.foveaRadius));
+  if (chosen != "area")
+    test.param("image_share", settings.imageShare)
+        .param("points", int(settings.points))
+        .param("area_cap", settings.areaCap);
+  if (chosen == "area") test.param("sides", settings.litOnly ? "lit" : "all");
+  if (chosen == "area" || chosen == "importance-area") test.param("normal_weight", settings.normalWeight);
+  if (chosen == "importance-area") test.param("kernel", settings.clamp > 0 ? "clamp" : "disc");
+  if (chosen == "importance-area" && settings.clamp > 0) test.param("clamp_distance", settings.clamp);
   test.viewSize(w, h).scene(room.scene);
   test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
@@ -128,7 +131,7 @@ inline void wire(PassTest& test, const Inputs& in, const char* strategy, const W
 
 inline std::vector<scene::Vpl> weigh(const Inputs& in, const char* strategy,
                                      const WeightSettings& settings = {}) {
-  PassTest test("vpl-intensity");
+  PassTest test(std::string("vpl-intensity-") + strategy);
   wire(test, in, strategy, settings);
   if (settings.gaze != glm::vec2(0.5f))
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = settings.gaze; });

@@ -131,7 +131,7 @@ TEST(Weights, AConstantStaysWhatTheFirstFrameMadeIt) {
   }
   const double total = double(in.vpls.size()) * flux / sum;
 
-  PassTest test("vpl-intensity");
+  PassTest test("vpl-intensity-constant");
   wire(test, in, "constant", settings);
   uint32_t frame = 0;
   test.beforeFrame([&](PassTest& t, scene::Frame&) {

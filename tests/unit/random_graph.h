@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -72,7 +73,10 @@ struct RandomType {
 };
 
 // Forty types with up to four inputs, in-out ports, kept outputs, scratch, host passes and side effects.
-inline std::vector<RandomType> addRandomTypes(Registry& registry, uint32_t seed, uint32_t count = 40) {
+// `finish` may add to a type before it is registered.
+inline std::vector<RandomType> addRandomTypes(
+    Registry& registry, uint32_t seed, uint32_t count = 40,
+    const std::function<void(PassDeclaration&)>& finish = [](PassDeclaration&) {}) {
   std::vector<RandomType> types;
   Dice dice(seed);
   for (uint32_t t = 0; t < count; ++t) {
@@ -114,6 +118,7 @@ inline std::vector<RandomType> addRandomTypes(Registry& registry, uint32_t seed,
     if (dice.chance(30))
       d.scratch("own", randomResource(kRandomBuffer, true),
                 d.kind == PassKind::Host ? Usage::HostWrite : Usage::StorageWrite, "scratch");
+    finish(d);
     registry.add(d, nullptr);
     types.push_back(type);
   }

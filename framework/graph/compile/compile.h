@@ -23,6 +23,7 @@
 #include "fovea/error.h"
 #include "framework/graph/compile/plan.h"
 #include "framework/graph/compile/resolve.h"
+#include "framework/graph/compile/steps.h"
 #include "framework/graph/pass/registry.h"
 
 namespace fovea::graph {
@@ -74,6 +75,7 @@ struct CompileOptions {
   uint64_t granularity = 1;             // bufferImageGranularity
   bool alias = true;                    // if false, no two resources share memory
   std::optional<uint32_t> randomOrder;  // tests: seed of a random legal order
+  ShaderLookup shaders;                 // if empty, the plan says nothing about steps
 };
 
 // Schedules, places and synchronises. Never fails on a graph that bind() accepted.

@@ -300,11 +300,25 @@ PassDescription& Expander::addPass(Scope& scope, const Member& member, const Tra
   if (!type) return pass;
   pass.typePlace = place(type->where);
   if (type->isString())
-    pass.type = intern(type->string);
+    pass.type = readType(scope, *type, {path, "type"});
   else
     error(type->where, {path, "type"},
           fmt::format("expected the name of a pass type, found {}", type->describe()));
   return pass;
+}
+
+// A type may end in a graph parameter: "vpl-intensity-$intensity".
+Symbol Expander::readType(Scope& scope, const json::Value& type, const Trail& path) {
+  const size_t dollar = type.string.find('$');
+  if (dollar == std::string::npos) return intern(type.string);
+  json::Value reference = type;
+  reference.string.erase(0, dollar);
+  ParameterDescription ending;
+  if (!readScalar(scope, reference, path, ending)) return kNone;
+  if (ending.type == Type::String)
+    return intern(type.string.substr(0, dollar) + std::string(description_.symbols[ending.text]));
+  error(type.where, path, fmt::format("`{}` is not a text, so it names no pass type", reference.string));
+  return kNone;
 }
 
 void Expander::addPassInputs(Scope& scope, const Member& pass, const std::vector<Member>& inputs,

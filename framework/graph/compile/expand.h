@@ -129,6 +129,7 @@ class Expander {
   ResourceDesc readResource(Scope& scope, json::ObjectReader& reader);
   int64_t readSize(Scope& scope, json::ObjectReader& reader, const char* key, int64_t fallback);
   Symbol readView(Scope& scope, const json::Value& value, const Trail& path);
+  Symbol readType(Scope& scope, const json::Value& type, const Trail& path);
   // A literal or "$name".
   bool readScalar(Scope& scope, const json::Value& value, const Trail& path, ParameterDescription& out);
   [[gnu::noinline]] void reportNoScalar(const json::Value& value, const Trail& path);

@@ -6,14 +6,6 @@
 
 namespace fovea::graph {
 
-// A dependency between commands, as one global memory barrier expresses it. Empty if nothing has to be waited for.
-struct Dependency {
-  VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
-  VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  explicit operator bool() const { return srcStage != 0; }
-  Dependency& operator|=(const Dependency& other);
-};
-
 // What has been done to one copy of a resource so far, as far as later accesses have to wait for it.
 struct AccessHistory {
   VkPipelineStageFlags2 pendingStage = 0;  // a write that nothing has waited for yet
@@ -23,6 +15,9 @@ struct AccessHistory {
   VkPipelineStageFlags2 readStage = 0;  // readers since then
   VkPipelineStageFlags2 seenStage = 0;  // where the contents are visible
   VkAccessFlags2 seenAccess = 0;
+  // Stages that barriers have ordered after the last write, and after all readers since then; see settle().
+  VkPipelineStageFlags2 afterWrite = 0, afterReads = 0;
+  bool flushed = false;  // whether one of these barriers has made the write available
 };
 
 // Both return what has to be waited for before the access, and enter the access into the history. `scope` holds the
@@ -30,5 +25,7 @@ struct AccessHistory {
 Dependency beforeRead(AccessHistory& history, const AccessScope& scope);
 // `reads` is true if the access also reads what was there before.
 Dependency beforeWrite(AccessHistory& history, const AccessScope& scope, bool reads);
+// Tells a history of a barrier, which may have been placed for other resources.
+void settle(AccessHistory& history, const Dependency& barrier);
 
 }  // namespace fovea::graph

@@ -168,6 +168,10 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
   plan.bytesAliased = placed.bytesAliased;
   plan.bytesUnaliased = placed.bytesUnaliased;
   placeBarriers(*graph, order, intervals, plan);
+  if (options.shaders)
+    for (uint32_t p = 0; p < graph->passes.size(); ++p)
+      plan.steps.push_back(order.passLive[p] ? planSteps(*graph, graph->passes[p], options.shaders)
+                                             : std::vector<PlannedStep>());
   plan.passLive = std::move(order.passLive);
   plan.resourceLive = std::move(order.resourceLive);
   plan.hash = hash.value();

@@ -59,6 +59,10 @@ struct BoundPass {
   SmallVector<Access, 4> accesses;  // declaration order
 };
 
+// The access through which the pass reaches a port or a member ("surface.position"). Throws Error(Internal) with the
+// nearest name if the pass has none that is wired.
+uint32_t accessOf(const BoundPass& pass, std::string_view path);
+
 struct BoundOutput {
   std::string name;
   uint32_t resource = kNone;
@@ -98,6 +102,29 @@ struct Level {
   SmallVector<uint32_t, 2> passes;  // indices into BoundGraph::passes, without hazards among them
 };
 
+// A dependency between commands, as one global memory barrier expresses it. Empty if nothing has to be waited for.
+struct Dependency {
+  VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
+  VkAccessFlags2 srcAccess = 0, dstAccess = 0;
+  explicit operator bool() const { return srcStage != 0; }
+  Dependency& operator|=(const Dependency& other);
+};
+
+// What one step of a pass does to one of its resources.
+struct StepAccess {
+  uint32_t access = kNone;  // BoundPass::accesses
+  VkPipelineStageFlags2 stage = 0;
+  VkAccessFlags2 mask = 0;
+  bool reads = false, writes = false;
+};
+
+// A step that takes part in a plan, and what it waits for.
+struct PlannedStep {
+  uint32_t step = kNone;  // PassDeclaration::steps
+  Dependency before;
+  std::vector<StepAccess> accesses;
+};
+
 // The place of a transient resource in its heap.
 struct Placement {
   uint32_t resource = kNone;
@@ -108,7 +135,9 @@ struct Placement {
 struct Plan {
   std::shared_ptr<const BoundGraph> graph;
   std::vector<Level> levels;
-  BarrierBatch end;                   // makes the outputs readable by transfer
+  BarrierBatch end;  // makes the outputs readable by transfer
+  // For each pass, its declared steps in order; empty where the plan was made without shaders.
+  std::vector<std::vector<PlannedStep>> steps;
   std::vector<Placement> placements;  // live transient resources
   struct Heap {
     uint64_t bytes = 0;

@@ -1,4 +1,4 @@
-#include "fovea/pass.h"
+#include "fovea/declaration.h"
 
 #include <fmt/format.h>
 
@@ -123,6 +123,12 @@ Printed printLeaf(const SizeExpr::Term& term) {
       return {term.name + ".layers", 3};
     case Op::PortCount:
       return {term.name + ".count", 3};
+    case Op::Wired:
+      return {"wired(" + term.name + ")", 3};
+    case Op::Read:
+      return {"read(" + term.name + ")", 3};
+    case Op::ParameterIs:
+      return {term.name + " == " + term.choice, 0};
     default:
       return {term.name, 3};
   }
@@ -177,6 +183,15 @@ SizeExpr heightOf(std::string port) { return {SizeExpr::Op::PortHeight, std::mov
 SizeExpr layersOf(std::string port) { return {SizeExpr::Op::PortLayers, std::move(port)}; }
 SizeExpr countOf(std::string port) { return {SizeExpr::Op::PortCount, std::move(port)}; }
 SizeExpr environment(std::string name) { return {SizeExpr::Op::Environment, std::move(name)}; }
+SizeExpr wired(std::string port) { return {SizeExpr::Op::Wired, std::move(port)}; }
+SizeExpr isRead(std::string path) { return {SizeExpr::Op::Read, std::move(path)}; }
+SizeExpr is(std::string parameter, std::string choice) {
+  return SizeExpr(
+      std::vector<SizeExpr::Term>{{SizeExpr::Op::ParameterIs, 0, std::move(parameter), std::move(choice)}});
+}
+SizeExpr operator!(const SizeExpr& a) { return SizeExpr(1) - a; }
+SizeExpr operator&&(const SizeExpr& a, const SizeExpr& b) { return a * b; }
+SizeExpr operator||(const SizeExpr& a, const SizeExpr& b) { return max(a, b); }
 
 // ---- Resources ---------------------------------------------------------------------------------------
 
@@ -286,6 +301,116 @@ PassDeclaration& PassDeclaration::parameter(std::string name, ParameterSpec spec
 PassDeclaration& PassDeclaration::counter(std::string name, std::string doc) {
   counters.push_back({std::move(name), std::move(doc)});
   return *this;
+}
+
+// ---- Steps -------------------------------------------------------------------------------------------
+
+StepSpec& StepSpec::called(std::string stepName) {
+  name = std::move(stepName);
+  return *this;
+}
+
+StepSpec& StepSpec::when(SizeExpr isTrue) {
+  condition = std::move(isTrue);
+  return *this;
+}
+
+StepSpec& StepSpec::runTogether() {
+  together = true;
+  return *this;
+}
+
+StepSpec& StepSpec::define(std::string macro, SizeExpr value) {
+  defines.emplace_back(std::move(macro), std::move(value));
+  return *this;
+}
+
+StepSpec& StepSpec::constant(std::string constant, SizeExpr value) {
+  constants.emplace_back(std::move(constant), std::move(value));
+  return *this;
+}
+
+StepSpec& StepSpec::groups(SizeExpr x, SizeExpr y, SizeExpr z) {
+  sizing = Size::Groups;
+  size[0] = std::move(x), size[1] = std::move(y), size[2] = std::move(z);
+  return *this;
+}
+
+StepSpec& StepSpec::threads(SizeExpr x, SizeExpr y, SizeExpr z) {
+  groups(std::move(x), std::move(y), std::move(z));
+  sizing = Size::Threads;
+  return *this;
+}
+
+StepSpec& StepSpec::over(std::string port) {
+  sizing = Size::Over;
+  sizePort = std::move(port);
+  return *this;
+}
+
+StepSpec& StepSpec::indirect(std::string buffer, uint64_t byteOffset) {
+  sizing = Size::Indirect;
+  sizePort = std::move(buffer);
+  offset = byteOffset;
+  return *this;
+}
+
+namespace {
+
+// "blur/rows.comp" -> "rows"
+std::string stemOf(const std::string& shader) {
+  const size_t slash = shader.rfind('/'), begin = slash == std::string::npos ? 0 : slash + 1;
+  return shader.substr(begin, shader.rfind('.') - begin);
+}
+
+StepSpec& addStep(PassDeclaration& d, StepSpec::Action action, std::string name) {
+  StepSpec step;
+  step.action = action;
+  step.name = std::move(name);
+  return d.steps.emplace_back(std::move(step));
+}
+
+}  // namespace
+
+StepSpec& PassDeclaration::step(std::string computeShader) {
+  StepSpec& step = addStep(*this, StepSpec::Action::Dispatch, stemOf(computeShader));
+  step.shader = std::move(computeShader);
+  return step;
+}
+
+StepSpec& PassDeclaration::fullscreen(std::string fragmentShader, std::vector<std::string> images) {
+  StepSpec& step = addStep(*this, StepSpec::Action::Fullscreen, stemOf(fragmentShader));
+  step.shader = std::move(fragmentShader);
+  step.targets = std::move(images);
+  return step;
+}
+
+StepSpec& PassDeclaration::fill(std::string buffer, uint32_t word) {
+  StepSpec& step = addStep(*this, StepSpec::Action::Fill, "fill " + buffer);
+  step.targets = {std::move(buffer)};
+  step.word = word;
+  return step;
+}
+
+StepSpec& PassDeclaration::clear(std::string image, uint32_t word) {
+  StepSpec& step = addStep(*this, StepSpec::Action::Clear, "clear " + image);
+  step.targets = {std::move(image)};
+  step.word = word;
+  return step;
+}
+
+StepSpec& PassDeclaration::copy(std::string imageFrom, std::string imageTo) {
+  StepSpec& step = addStep(*this, StepSpec::Action::Copy, "copy " + imageFrom);
+  step.source = std::move(imageFrom);
+  step.targets = {std::move(imageTo)};
+  return step;
+}
+
+SourceLocation PassDeclaration::placeOf(const std::string& path) const {
+  if (!places) return {};
+  auto found = places->find(path);
+  if (found == places->end()) found = places->find("");
+  return found == places->end() ? SourceLocation() : found->second;
 }
 
 const PortSpec* PassDeclaration::findPort(std::string_view name) const {

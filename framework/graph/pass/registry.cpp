@@ -5,16 +5,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "fovea/error.h"
-#include "framework/gpu/format.h"
+#include "framework/base/paths.h"
+#include "framework/graph/pass/pass_file.h"
 #include "framework/graph/pass/validate.h"
 
 namespace fovea::graph {
+namespace {
 
-Registry& Registry::global() {
+// Registrations run before main() or inside dlopen(), where no exception can be caught, so failures are kept instead.
+std::vector<Diagnostic>& failedRegistrations() {
+  static std::vector<Diagnostic> failures;
+  return failures;
+}
+
+// For passes that their steps describe in full.
+std::unique_ptr<Pass> makePlainPass() { return std::make_unique<Pass>(); }
+
+}  // namespace
+
+Registry& Registry::ofProcess() {
   static Registry registry;
   return registry;
+}
+
+Registry& Registry::global() {
+  static const bool stocked = [] {
+    ofProcess().addStock();
+    return true;
+  }();
+  (void)stocked;
+  return ofProcess();
+}
+
+// The first of several data folders that declare a type counts, as for shaders and graphs.
+void Registry::addStock() {
+  for (const std::filesystem::path& folder : dataFolders("passes")) {
+    for (const std::filesystem::path& file : findPassFiles(folder)) {
+      try {
+        PassDeclaration declaration = loadPassFile(file);
+        if (!find(declaration.type)) add(std::move(declaration), makePlainPass);
+      } catch (const Error& error) {
+        for (const Diagnostic& d : error.diagnostics()) failedRegistrations().push_back(d);
+      }
+    }
+  }
 }
 
 void Registry::add(PassDeclaration declaration, Factory factory) {
@@ -48,19 +85,9 @@ std::vector<std::string> Registry::types() const {
   return names;
 }
 
-namespace {
-
-// Registrations run before main() or inside dlopen(), where no exception can be caught, so failures are kept instead.
-std::vector<Diagnostic>& failedRegistrations() {
-  static std::vector<Diagnostic> failures;
-  return failures;
-}
-
-}  // namespace
-
 Registration::Registration(PassDeclaration declaration, std::unique_ptr<Pass> (*factory)()) {
   try {
-    Registry::global().add(std::move(declaration), factory);
+    Registry::ofProcess().add(std::move(declaration), factory);
   } catch (const Error& error) {
     for (const Diagnostic& d : error.diagnostics()) failedRegistrations().push_back(d);
   }
@@ -99,6 +126,36 @@ void Registry::loadPlugin(const std::filesystem::path& file) {
     throw Error(ExitCode::BadInput, fmt::format("plug-in {} registers no pass", file.string()),
                 "put FOVEA_PASS(YourPass) at namespace scope in one of its sources");
   if (!loaded(path)) plugins_.push_back(path);
+}
+
+void Registry::addFolder(const std::filesystem::path& folder) {
+  Diagnostics mistakes;
+  for (const std::filesystem::path& file : findPassFiles(folder)) {
+    const std::filesystem::path known = std::filesystem::canonical(file);
+    if (std::find(passFiles_.begin(), passFiles_.end(), known) != passFiles_.end()) continue;
+    try {
+      PassDeclaration declaration = loadPassFile(file);
+      if (find(declaration.type))
+        throw Error(ExitCode::BadInput, {{Severity::Error, declaration.placeOf(""), "",
+                                          fmt::format("there already is a pass type `{}`", declaration.type),
+                                          "give the file another name"}});
+      add(std::move(declaration), makePlainPass);
+      passFiles_.push_back(known);
+    } catch (const Error& error) {
+      for (const Diagnostic& d : error.diagnostics()) mistakes.add(d);
+    }
+  }
+  mistakes.throwIfErrors();
+}
+
+void Registry::addFoldersFromEnvironment() {
+  const char* variable = std::getenv("FOVEA_PASSES");
+  const std::string text = variable ? variable : "";
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(':', begin), text.size());
+    if (end > begin) addFolder(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
 }
 
 bool Registry::loaded(const std::filesystem::path& plugin) const {

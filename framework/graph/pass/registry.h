@@ -14,6 +14,7 @@ namespace fovea::graph {
 class Registry {
  public:
   using Factory = std::unique_ptr<Pass> (*)();
+  // With the passes that are linked in and those that the project declares in files.
   static Registry& global();
 
   // Throws Error(Internal) if the type is already registered or if the declaration contradicts itself (duplicate
@@ -26,6 +27,11 @@ class Registry {
   // Loads a shared library whose static FOVEA_PASS registrations join this registry. Its shaders are looked up in a
   // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
   void loadPlugin(const std::filesystem::path& file);
+  // Adds the passes of all pass files in a folder (see pass_file.h). A folder may be named again. Throws Error(BadInput)
+  // with every mistake of every file.
+  void addFolder(const std::filesystem::path& folder);
+  // Adds the passes of the folders that the environment variable FOVEA_PASSES names, separated by colons.
+  void addFoldersFromEnvironment();
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
 
   // FOVEA_PASS registrations run where no exception can be caught. Their errors are kept and thrown here as
@@ -33,6 +39,9 @@ class Registry {
   static void throwIfRegistrationsFailed();
 
  private:
+  friend struct Registration;
+  static Registry& ofProcess();  // while it is filled, before main()
+  void addStock();
   bool loaded(const std::filesystem::path& plugin) const;
   struct Entry {
     std::unique_ptr<PassDeclaration> declaration;  // stable address
@@ -41,6 +50,7 @@ class Registry {
   std::vector<Entry> entries_;  // sorted by type
   std::vector<std::filesystem::path> pluginShaderPaths_;
   std::vector<std::filesystem::path> plugins_;
+  std::vector<std::filesystem::path> passFiles_;
 };
 
 }  // namespace fovea::graph

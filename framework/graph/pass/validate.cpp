@@ -47,7 +47,7 @@ namespace {
 
 class Validator {
  public:
-  explicit Validator(const PassDeclaration& d) : d_(d) {}
+  Validator(const PassDeclaration& d, Diagnostics& found) : d_(d), found_(found) {}
 
   void run() {
     checkName(d_.type, "type", false);
@@ -55,24 +55,31 @@ class Validator {
     std::set<std::string> names;
     for (const ParameterSpec& p : d_.parameters) {
       if (!names.insert(p.name).second) wrong(fmt::format("parameter `{}` is declared twice", p.name));
+      path_ = "params." + p.name;
       checkParameter(p);
     }
     names.clear();
     for (const PortSpec& port : d_.ports) {
       if (!names.insert(port.name).second) wrong(fmt::format("port `{}` is declared twice", port.name));
+      path_ = "ports." + port.name;
       checkPort(port);
     }
+    path_.clear();
     names.clear();
     for (const CounterSpec& c : d_.counters)
       if (!names.insert(c.name).second) wrong(fmt::format("counter `{}` is declared twice", c.name));
-    finish();
+    names.clear();
+    for (const StepSpec& step : d_.steps) {
+      if (!names.insert(step.name).second) wrong(fmt::format("step `{}` is declared twice", step.name));
+      path_ = "steps." + step.name;
+      checkStep(step);
+    }
   }
 
  private:
   void wrong(const std::string& what) {
-    found_.error({}, {}, fmt::format("pass type `{}`: {}", d_.type, what));
+    found_.error(d_.placeOf(path_), d_.places ? path_ : "", fmt::format("pass type `{}`: {}", d_.type, what));
   }
-  void finish() { found_.throwIfErrors(ExitCode::Internal); }
 
   void checkName(const std::string& name, const char* what, bool snake) {
     const bool good =
@@ -176,6 +183,9 @@ class Validator {
               size.print(), term.name));
       } else if (term.op >= Op::PortWidth && term.op <= Op::PortCount) {
         checkSizePort(size, term, path);
+      } else if (term.op >= Op::Wired && term.op <= Op::ParameterIs) {
+        wrong(fmt::format("port `{}`: size `{}` is over a condition, which only steps know", path,
+                          size.print()));
       }
     }
   }
@@ -197,13 +207,95 @@ class Validator {
                         term.name, wantsBuffer ? "an image" : "a buffer"));
   }
 
+  // The member that a step names; null after a report if there is none.
+  const MemberSpec* stepPort(const StepSpec& step, const std::string& path) {
+    const size_t dot = path.find('.');
+    std::vector<std::string> known;
+    for (const PortSpec& port : d_.ports)
+      for (const MemberSpec& m : port.members) {
+        const std::string name = m.name.empty() ? port.name : port.name + "." + m.name;
+        if (name == path) return &m;
+        known.push_back(name);
+        // The name of a whole bundle serves to ask whether it is wired.
+        if (dot == std::string::npos && port.name == path) return &port.members[0];
+      }
+    const std::string nearest = nearestName(path, known);
+    wrong(fmt::format("step `{}`: no port `{}`{}", step.name, path,
+                      nearest.empty() ? "" : fmt::format("; did you mean `{}`?", nearest)));
+    return nullptr;
+  }
+
+  void checkTarget(const StepSpec& step, const std::string& path, ResourceKind kind, Usage usage,
+                   const char* usageName) {
+    const MemberSpec* m = stepPort(step, path);
+    if (!m) return;
+    if (m->resource.kind != kind)
+      wrong(fmt::format("step `{}`: `{}` is {}", step.name, path,
+                        kind == ResourceKind::Image ? "a buffer, not an image" : "an image, not a buffer"));
+    else if (!any(m->usage, usage))
+      wrong(fmt::format("step `{}`: port `{}` does not declare the usage {}", step.name, path, usageName));
+  }
+
+  void checkStep(const StepSpec& step) {
+    using Action = StepSpec::Action;
+    if (step.name.empty()) wrong("a step has no name");
+    for (const std::string& target : step.targets) {
+      if (step.action == Action::Fullscreen)
+        checkTarget(step, target, ResourceKind::Image, Usage::ColorAttachment, "ColorAttachment");
+      else
+        checkTarget(step, target, step.action == Action::Fill ? ResourceKind::Buffer : ResourceKind::Image,
+                    Usage::TransferWrite, "TransferWrite");
+    }
+    if (step.action == Action::Copy)
+      checkTarget(step, step.source, ResourceKind::Image, Usage::TransferRead, "TransferRead");
+    if (step.sizing == StepSpec::Size::Indirect)
+      checkTarget(step, step.sizePort, ResourceKind::Buffer, Usage::Indirect, "Indirect");
+    if (step.sizing == StepSpec::Size::Over) stepPort(step, step.sizePort);
+    checkExpression(step, step.condition);
+    for (const auto& [name, value] : step.defines) checkExpression(step, value);
+    for (const auto& [name, value] : step.constants) checkExpression(step, value);
+    for (const SizeExpr& size : step.size) checkExpression(step, size);
+  }
+
+  void checkExpression(const StepSpec& step, const SizeExpr& expression) {
+    using Op = SizeExpr::Op;
+    for (const SizeExpr::Term& term : expression.terms()) {
+      const auto refuse = [&](const char* why) {
+        wrong(fmt::format("step `{}`: `{}` {}", step.name, expression.print(), why));
+      };
+      if (term.op == Op::ViewWidth || term.op == Op::ViewHeight || term.op == Op::Environment)
+        refuse("is over something that only sizes of ports know");
+      if ((term.op >= Op::PortWidth && term.op <= Op::PortCount) || term.op == Op::Wired ||
+          term.op == Op::Read)
+        stepPort(step, term.name);
+      if (term.op != Op::Parameter && term.op != Op::ParameterIs) continue;
+      const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
+                                  [&](const ParameterSpec& s) { return s.name == term.name; });
+      using Type = ParameterSpec::Type;
+      if (p == d_.parameters.end() || p->type == Type::Real || p->type == Type::Text)
+        refuse("is over no whole-number parameter, choice or flag");
+      else if (term.op == Op::ParameterIs &&
+               std::find(p->choices.begin(), p->choices.end(), term.choice) == p->choices.end())
+        refuse("compares with something that is none of the choices");
+    }
+  }
+
   const PassDeclaration& d_;
-  Diagnostics found_;
+  Diagnostics& found_;
+  std::string path_;  // of what is being checked, as PassDeclaration::places knows it
   std::set<std::string> shaderNames_;
 };
 
 }  // namespace
 
-void validateDeclaration(const PassDeclaration& declaration) { Validator(declaration).run(); }
+void validateDeclaration(const PassDeclaration& declaration, Diagnostics& diagnostics) {
+  Validator(declaration, diagnostics).run();
+}
+
+void validateDeclaration(const PassDeclaration& declaration) {
+  Diagnostics found;
+  validateDeclaration(declaration, found);
+  found.throwIfErrors(ExitCode::Internal);
+}
 
 }  // namespace fovea::graph

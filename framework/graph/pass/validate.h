@@ -7,6 +7,8 @@ namespace fovea::graph {
 
 // Throws Error(Internal) listing every mistake.
 void validateDeclaration(const PassDeclaration& declaration);
+// Adds every mistake, at its place in the pass's file.
+void validateDeclaration(const PassDeclaration& declaration, Diagnostics& diagnostics);
 
 inline constexpr Usage kWriteUsages = Usage::StorageWrite | Usage::ColorAttachment | Usage::DepthAttachment |
                                       Usage::TransferWrite | Usage::HostWrite;

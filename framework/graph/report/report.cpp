@@ -89,6 +89,24 @@ void addBatch(std::string& text, const BarrierBatch& batch, const BoundGraph& gr
                         join(b.srcStage, kStageNames), join(b.dstStage, kStageNames));
 }
 
+std::string printWait(const Dependency& wait) {
+  return fmt::format("{} -> {}{}", join(wait.srcStage, kStageNames), join(wait.dstStage, kStageNames),
+                     wait.srcAccess ? "" : " (order only)");
+}
+
+void addSteps(std::string& text, const Plan& plan, uint32_t pass) {
+  if (plan.steps.empty()) return;
+  const PassDeclaration& declaration = *plan.graph->passes[pass].declaration;
+  if (declaration.stepsByFrame && !plan.steps[pass].empty())
+    text += "      of these, as the frame needs them\n";
+  for (const PlannedStep& step : plan.steps[pass]) {
+    const StepSpec& spec = declaration.steps[step.step];
+    if (step.before) text += fmt::format("      wait    {}\n", printWait(step.before));
+    text += fmt::format("      step    {}{}\n", spec.name,
+                        spec.shader.empty() ? "" : fmt::format(" ({})", spec.shader));
+  }
+}
+
 // The level of each pass; kNone if it is culled.
 std::vector<uint32_t> levelsOf(const Plan& plan) {
   std::vector<uint32_t> level(plan.graph->passes.size(), kNone);
@@ -166,6 +184,7 @@ std::string planText(const Plan& plan) {
                           pass.declaration->kind == PassKind::Host ? ", on the host" : "");
       if (pass.view != 0) text += fmt::format(", view {}", graph.views[pass.view]);
       text += '\n';
+      addSteps(text, plan, p);
     }
   }
   text += "  end\n";
@@ -265,6 +284,27 @@ nlohmann::ordered_json batchJson(const BarrierBatch& batch, const BoundGraph& gr
 
 }  // namespace
 
+static nlohmann::ordered_json stepsJson(const Plan& plan, uint32_t pass) {
+  const BoundPass& bound = plan.graph->passes[pass];
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const PlannedStep& step : plan.steps[pass]) {
+    const StepSpec& spec = bound.declaration->steps[step.step];
+    nlohmann::ordered_json entry{{"name", spec.name}};
+    if (!spec.shader.empty()) entry["shader"] = spec.shader;
+    if (step.before)
+      entry["wait"] = {{"from", join(step.before.srcStage, kStageNames)},
+                       {"to", join(step.before.dstStage, kStageNames)},
+                       {"flush", step.before.srcAccess != 0}};
+    for (const StepAccess& a : step.accesses) {
+      const std::string& resource = plan.graph->resources[bound.accesses[a.access].resource].name;
+      if (a.reads) entry["reads"].push_back(resource);
+      if (a.writes) entry["writes"].push_back(resource);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 std::string planJson(const Plan& plan) {
   using Json = nlohmann::ordered_json;
   const BoundGraph& graph = *plan.graph;
@@ -272,11 +312,13 @@ std::string planJson(const Plan& plan) {
   json["levels"] = Json::array();
   for (const Level& level : plan.levels) {
     Json passes = Json::array();
-    for (const uint32_t p : level.passes)
+    for (const uint32_t p : level.passes) {
       passes.push_back({{"name", graph.passes[p].name},
                         {"type", graph.passes[p].declaration->type},
                         {"view", graph.views[graph.passes[p].view]},
                         {"host", graph.passes[p].declaration->kind == PassKind::Host}});
+      if (!plan.steps.empty() && !plan.steps[p].empty()) passes.back()["steps"] = stepsJson(plan, p);
+    }
     json["levels"].push_back({{"barriers", batchJson(level.before, graph)}, {"passes", std::move(passes)}});
   }
   json["end"] = batchJson(plan.end, graph);

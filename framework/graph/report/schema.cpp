@@ -122,6 +122,8 @@ Json passSchema(const Registry& registry, const std::vector<std::string>& types,
          {"then", {{"$ref", "#/definitions/pass-" + type}}}});
   }
   Json pass{{"type", Json::array({"object", "null"})}, {"additionalProperties", false}};
+  choices.push_back(
+      {{"type", "string"}, {"pattern", "\\$"}, {"description", "a type that ends in a graph parameter"}});
   pass["properties"] = {
       {"type", {{"description", "What the pass does"}, {"oneOf", std::move(choices)}}},
       {"graph",
@@ -170,6 +172,105 @@ std::string generateSchema(const Registry& registry) {
         {"additionalProperties",
          {{"anyOf", Json::array({{{"$ref", "#/definitions/wire"}}, {{"type", "null"}}})}}}}}};
   schema["definitions"] = std::move(definitions);
+  return schema.dump(2) + "\n";
+}
+
+namespace {
+
+Json described(const char* description, Json schema) {
+  schema["description"] = description;
+  return schema;
+}
+
+Json objectOf(Json properties) {
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+}
+
+Json mapOf(Json values) { return {{"type", "object"}, {"additionalProperties", std::move(values)}}; }
+
+Json anyOf(std::initializer_list<Json> choices) { return {{"anyOf", Json(choices)}}; }
+
+Json resourceProperties() {
+  Json formats = Json::array();
+  for (const gpu::FormatInfo& info : gpu::formats()) formats.push_back(info.name);
+  const Json expression = {{"$ref", "#/definitions/expression"}};
+  Json properties{{"doc", {{"type", "string"}}},
+                  {"format", {{"enum", std::move(formats)}}},
+                  {"element", described("element type of a buffer", {{"type", "string"}})},
+                  {"stride", described("bytes of an element", {{"type", "integer"}, {"minimum", 1}})},
+                  {"usage", described("ways to use it, instead of those that follow from the steps",
+                                      {{"type", "array"}, {"items", {{"type", "string"}}}})}};
+  for (const char* key : {"width", "height", "depth", "layers", "mips", "count"})
+    properties[key] = expression;
+  return properties;
+}
+
+Json portSchema(const char* key, Json value) {
+  Json properties = resourceProperties();
+  properties[key] = std::move(value);
+  properties["bundle"] = {{"type", "string"}};
+  properties["members"] =
+      anyOf({described("names of images of any format", {{"type", "array"}, {"items", {{"type", "string"}}}}),
+             mapOf(objectOf(resourceProperties()))});
+  return mapOf(anyOf({described("an image; the text is its documentation", {{"type", "string"}}),
+                      objectOf(std::move(properties))}));
+}
+
+Json stepSchema() {
+  const Json text = {{"type", "string"}}, expression = {{"$ref", "#/definitions/expression"}},
+             expressions = {{"type", "array"}, {"items", expression}, {"minItems", 1}, {"maxItems", 3}},
+             word = {{"type", "integer"}, {"minimum", 0}, {"maximum", 0xffffffffu}};
+  return objectOf(
+      {{"name", text},
+       {"shader", described("a .comp file, or with `colors` a .frag file, beside this file", text)},
+       {"colors",
+        described("images of which the shader writes every pixel", {{"type", "array"}, {"items", text}})},
+       {"define", described("preprocessor macros", mapOf(expression))},
+       {"constant", described("push constants", mapOf(expression))},
+       {"over", described("one thread for each texel or element of this port", text)},
+       {"threads", described("threads along x, y and z", expressions)},
+       {"groups", described("work groups along x, y and z", expressions)},
+       {"indirect", described("buffer that holds the numbers of work groups", text)},
+       {"offset", described("of `indirect`, in bytes", {{"type", "integer"}, {"minimum", 0}})},
+       {"fill", described("buffer to fill with `word`", text)},
+       {"clear", described("image to clear to `word`", text)},
+       {"word", word},
+       {"copy", described("image to copy to the image `to`", text)},
+       {"to", text},
+       {"when", described("the step runs if this is not 0", expression)},
+       {"together", described("may run at the same time as the step before", {{"type", "boolean"}})}});
+}
+
+}  // namespace
+
+std::string passFileSchema() {
+  const Json text = {{"type", "string"}}, keep = {{"enum", {"frame", "view", "scene"}}},
+             optional = {{"type", "boolean"}};
+  const Json parameter = objectOf({{"doc", text},
+                                   {"default", {{"type", Json::array({"boolean", "number", "string"})}}},
+                                   {"min", {{"type", "number"}}},
+                                   {"max", {{"type", "number"}}},
+                                   {"unit", text},
+                                   {"choices", {{"type", "array"}, {"items", text}}}});
+  Json schema = objectOf({{"$schema", text},
+                          {"doc", described("what the pass does, in one line", text)},
+                          {"view", described("whether it renders from a camera", {{"type", "boolean"}})},
+                          {"inputs", portSchema("optional", optional)},
+                          {"updated", portSchema("optional", optional)},
+                          {"outputs", portSchema("keep", keep)},
+                          {"scratch", portSchema("keep", keep)},
+                          {"params", mapOf(parameter)},
+                          {"counters", mapOf(text)},
+                          {"steps", {{"type", "array"}, {"minItems", 1}, {"items", stepSchema()}}}});
+  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
+  schema["title"] = "fovea pass";
+  schema["required"] = {"doc", "steps"};
+  schema["definitions"]["expression"] = {
+      {"anyOf", Json::array({{{"type", "integer"}}, {{"type", "boolean"}}, text})},
+      {"description",
+       "a whole number, or an expression over parameters, view.width, PORT.width, PORT.count, wired(PORT), + "
+       "- * / (rounds "
+       "up), min, max, ==, !=, !, && and ||"}};
   return schema.dump(2) + "\n";
 }
 

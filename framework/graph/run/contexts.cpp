@@ -23,7 +23,8 @@ PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
     : state(&executorState),
       bound(&executorState.plan->graph->passes[passIndex]),
       index(passIndex),
-      pass(std::move(implementation)) {
+      pass(std::move(implementation)),
+      tracker(*bound) {
   for (uint32_t i = 0; i < bound->accesses.size(); ++i) {
     const Access& a = bound->accesses[i];
     const PortSpec& port = bound->declaration->ports[a.port];
@@ -35,6 +36,7 @@ PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
   for (uint32_t i = 0; i < counters.size(); ++i) counterByName.emplace(counters[i].name, i);
   counterValues.resize(counters.size());
   counterSet.resize(counters.size());
+  transferLabels.resize(bound->accesses.size(), {kNone, kNone, kNone});
 }
 
 std::vector<std::string> PassInstance::paths() const {
@@ -57,16 +59,33 @@ const Access& PassInstance::access(std::string_view path) const {
   throw Error(ExitCode::Internal, message, nearest.empty() ? "" : "did you mean `" + nearest + "`?");
 }
 
-// ---- PrepareContext --------------------------------------------------------------------------------------------
+Label PassInstance::label(std::string_view name) {
+  for (Label i = 0; i < labels.size(); ++i)
+    if (labels[i] == name) return i;
+  labels.emplace_back(name);
+  return static_cast<Label>(labels.size() - 1);
+}
 
-gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
-const Parameters& PrepareContext::parameters() const { return pass_.bound->parameters; }
+void PassInstance::beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
+                                bool together) {
+  if (begun.empty()) throw Error(ExitCode::Internal, "a command outside of a pass");
+  if (begun.size() == 1 && begun.back().label == kNone) begun.back().label = of;
+  if (begun.back().label != of && state->stepTimestamps > 0) {
+    --state->stepTimestamps;
+    begun.push_back({of, writeTimestamp(*state, cmd)});
+  }
+  if (const Dependency wait = tracker.before(accesses, together))
+    gpu::memoryBarrier(cmd, wait.srcStage, wait.srcAccess, wait.dstStage, wait.dstAccess);
+}
 
-// A bundle is wired if one of its members is.
-static bool portWired(const PassInstance& pass, std::string_view port) {
-  if (pass.findAccess(port)) return true;
-  return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(),
-                     [&](const Access& a) { return pass.bound->declaration->ports[a.port].name == port; });
+// Lavapipe takes a timestamp at the next flush but executes dispatches at once. Without a flush in between (an empty
+// barrier causes one), commands that only dispatch would appear to start after their own work.
+uint32_t writeTimestamp(ExecutorState& state, VkCommandBuffer cmd) {
+  const uint32_t index = state.timestamps->write(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  if (!state.device->isCpu()) return index;
+  const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  vkCmdPipelineBarrier2(cmd, &nothing);
+  return index;
 }
 
 static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
@@ -74,20 +93,12 @@ static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
   return {d.width, d.height, d.depth};
 }
 
-bool PrepareContext::has(std::string_view port) const { return portWired(pass_, port); }
-bool PrepareContext::isRead(std::string_view path) const {
-  const BoundGraph& graph = *pass_.state->plan->graph;
-  const uint32_t index = pass_.access(path).resource;
-  if (graph.resources[index].output || graph.resources[index].history) return true;
-  return std::any_of(graph.passes.begin(), graph.passes.end(), [&](const BoundPass& pass) {
-    return &pass != pass_.bound &&
-           std::any_of(pass.accesses.begin(), pass.accesses.end(),
-                       [&](const Access& a) { return a.resource == index && a.reads; });
-  });
+// A bundle is wired if one of its members is.
+static bool portWired(const PassInstance& pass, std::string_view port) {
+  if (pass.findAccess(port)) return true;
+  return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(),
+                     [&](const Access& a) { return pass.bound->declaration->ports[a.port].name == port; });
 }
-VkExtent3D PrepareContext::extent(std::string_view port) const { return extentOf(pass_, port); }
-uint32_t PrepareContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
-uint64_t PrepareContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
 
 // ---- RecordContext ---------------------------------------------------------------------------------------------
 
@@ -126,7 +137,79 @@ gpu::Buffer& RecordContext::buffer(std::string_view port) const {
   return pass_.state->buffer(access);
 }
 VkExtent3D RecordContext::extent(std::string_view port) const { return extentOf(pass_, port); }
+uint32_t RecordContext::mips(std::string_view port) const { return pass_.desc(pass_.access(port)).mips; }
+uint32_t RecordContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
 uint64_t RecordContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
+
+// ---- Steps and kernels -----------------------------------------------------------------------------------------
+
+static uint32_t stepIndex(const PassInstance& pass, std::string_view name) {
+  if (const auto found = pass.stepByName.find(name); found != pass.stepByName.end()) return found->second;
+  throw Error(ExitCode::Internal, "pass type `" + pass.bound->declaration->type + "` declares no step `" +
+                                      std::string(name) + "`");
+}
+
+Commands RecordContext::step(std::string_view name) {
+  const uint32_t index = stepIndex(pass_, name);
+  if (index == kNone || !pass_.steps[index].kernel)
+    throw Error(ExitCode::Internal,
+                "pass `" + pass_.bound->name + "` runs step `" + std::string(name) +
+                    "`, which has no kernel in this plan",
+                "ask for the same condition as the declaration");
+  return start(index);
+}
+
+Commands RecordContext::start(uint32_t index) {
+  StepInstance& step = pass_.steps[index];
+  step.kernel->overrides.clear();
+  Commands commands(*this, *step.kernel);
+  for (const auto& [name, word] : step.constants) commands.constant(name, word);
+  for (const auto& set : step.spec->frameConstants) set(*this, commands);
+  if (step.spec->together) commands.together();
+  return commands;
+}
+
+void RecordContext::run(std::string_view name) {
+  if (const uint32_t index = stepIndex(pass_, name); index != kNone) runStep(index);
+}
+
+void RecordContext::runSteps() {
+  for (uint32_t i = 0; i < pass_.steps.size(); ++i) runStep(i);
+}
+
+void RecordContext::runStep(uint32_t index) {
+  const StepInstance& step = pass_.steps[index];
+  const StepSpec& spec = *step.spec;
+  const auto [x, y, z] = step.size;
+  VkClearColorValue color{};
+  switch (spec.action) {
+    case StepSpec::Action::Fill:
+      return fill(spec.targets[0], spec.word);
+    case StepSpec::Action::Clear:
+      std::fill(std::begin(color.uint32), std::end(color.uint32), spec.word);
+      return clear(spec.targets[0], color);
+    case StepSpec::Action::Copy:
+      return copy(spec.source, spec.targets[0]);
+    case StepSpec::Action::Fullscreen:
+      return start(index).drawFullscreen();
+    case StepSpec::Action::Dispatch:
+      break;
+  }
+  switch (spec.sizing) {
+    case StepSpec::Size::Groups:
+      return start(index).dispatch(x, y, z);
+    case StepSpec::Size::Threads:
+      return start(index).dispatchThreads(x, y, z);
+    case StepSpec::Size::Over:
+      return start(index).dispatchOver(spec.sizePort);
+    case StepSpec::Size::Indirect:
+      return start(index).dispatchIndirect(spec.sizePort, spec.offset);
+    case StepSpec::Size::Manual:
+      break;
+  }
+  throw Error(ExitCode::Internal,
+              "step `" + spec.name + "` of pass type `" + pass_.bound->declaration->type + "` has no size");
+}
 
 Commands RecordContext::use(Kernel kernel) {
   if (!kernel.state_)
@@ -137,13 +220,26 @@ Commands RecordContext::use(Kernel kernel) {
 }
 
 void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
-                           const std::function<void()>& body, uint32_t layers) {
+                           std::span<const Kernel> kernels, const std::function<void()>& body,
+                           uint32_t layers) {
   const VkExtent3D e = extent(colors.empty() ? depth->port : colors.front().port);
-  render(colors, depth, VkRect2D{{0, 0}, {e.width, e.height}}, body, layers);
+  render(colors, depth, kernels, VkRect2D{{0, 0}, {e.width, e.height}}, body, layers);
 }
 
-void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
-                           const std::function<void()>& body, uint32_t layers) {
+void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
+                           std::span<const Kernel> kernels, VkRect2D area, const std::function<void()>& body,
+                           uint32_t layers) {
+  std::vector<StepAccess>& touched = pass_.touched;
+  touched.clear();
+  const auto attach = [&](const Attachment& a, Usage usage) {
+    const uint32_t access = static_cast<uint32_t>(&pass_.access(a.port) - pass_.bound->accesses.data());
+    touched.push_back(portAccess(*pass_.bound, access, usage, PassKind::Graphics));
+  };
+  for (const Attachment& a : colors) attach(a, Usage::ColorAttachment);
+  if (depth) attach(*depth, Usage::DepthAttachment);
+  for (const Kernel& kernel : kernels)
+    touched.insert(touched.end(), kernel.state_->accesses.begin(), kernel.state_->accesses.end());
+  pass_.beginCommand(cmd_, kernels.empty() ? pass_.label("clear") : kernels.front().state_->label, touched);
   auto describe = [&](const Attachment& a) {
     const Access& access = pass_.access(a.port);
     VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
@@ -175,7 +271,10 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
                             1.0f};
   vkCmdSetViewport(cmd_, 0, 1, &viewport);
   vkCmdSetScissor(cmd_, 0, 1, &area);
+  pass_.rendering = true;
+  pass_.renderKernels = kernels;
   body();
+  pass_.rendering = false;
   vkCmdEndRendering(cmd_);
 }
 
@@ -190,10 +289,40 @@ static void requireTransfer(const PassInstance& pass, const Access& access, std:
               passDoes(pass, act()) + " without declaring Usage::" + name + " on " + quoted(port));
 }
 
+namespace {
+
+enum class Transfer : uint8_t { Fill, Clear, Copy };
+
+struct TransferAccess {
+  const Access* access;
+  Usage usage;
+};
+
+}  // namespace
+
+// The label of a transfer names its first port; it is made once, in the first frame.
+static void beginTransfer(PassInstance& pass, VkCommandBuffer cmd, Transfer kind,
+                          std::initializer_list<TransferAccess> accesses) {
+  pass.touched.clear();
+  for (const TransferAccess& a : accesses)
+    pass.touched.push_back(portAccess(*pass.bound,
+                                      static_cast<uint32_t>(a.access - pass.bound->accesses.data()), a.usage,
+                                      PassKind::Compute));
+  Label& label = pass.transferLabels[pass.touched.front().access][static_cast<size_t>(kind)];
+  if (label == kNone) {
+    const Access& first = *accesses.begin()->access;
+    const PortSpec& port = pass.bound->declaration->ports[first.port];
+    constexpr const char* kVerbs[] = {"fill ", "clear ", "copy "};
+    label = pass.label(kVerbs[static_cast<size_t>(kind)] + memberPath(port, port.members[first.member]));
+  }
+  pass.beginCommand(cmd, label, pass.touched);
+}
+
 void RecordContext::fill(std::string_view bufferPort, uint32_t word) {
   const Access& access = pass_.access(bufferPort);
   requireTransfer(pass_, access, bufferPort, ResourceKind::Buffer, Usage::TransferWrite,
                   [&] { return "fills " + quoted(bufferPort); });
+  beginTransfer(pass_, cmd_, Transfer::Fill, {{&access, Usage::TransferWrite}});
   vkCmdFillBuffer(cmd_, pass_.state->buffer(access).handle(), 0, VK_WHOLE_SIZE, word);
 }
 
@@ -203,6 +332,7 @@ void RecordContext::clear(std::string_view imagePort, VkClearColorValue value) {
                   [&] { return "clears " + quoted(imagePort); });
   gpu::Image& target = pass_.state->image(access);
   const VkImageSubresourceRange range = wholeImage(target);
+  beginTransfer(pass_, cmd_, Transfer::Clear, {{&access, Usage::TransferWrite}});
   vkCmdClearColorImage(cmd_, target.handle(), access.layout, &value, 1, &range);
 }
 
@@ -227,13 +357,15 @@ void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
                 passDoes(pass_, act()) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
                     quoted(imageTo) + " is " + sizeText(d),
                 "wire images of one size and format, without mips");
-  const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, d.layers};
+  beginTransfer(pass_, cmd_, Transfer::Copy, {{&from, Usage::TransferRead}, {&to, Usage::TransferWrite}});
+  const VkImageSubresourceLayers layers{wholeImage(pass_.state->image(from)).aspectMask, 0, 0, d.layers};
   const VkImageCopy region{layers, {0, 0, 0}, layers, {0, 0, 0}, {d.width, d.height, d.depth}};
   vkCmdCopyImage(cmd_, pass_.state->image(from).handle(), from.layout, pass_.state->image(to).handle(),
                  to.layout, 1, &region);
 }
 
 void RecordContext::barrier() {
+  pass_.tracker.reset();
   constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   gpu::memoryBarrier(cmd_, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kAll,
                      VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);

@@ -15,6 +15,9 @@
 
 namespace fovea::graph {
 
+// Boundaries between steps that a frame can time; the time of further steps counts for the one before.
+constexpr uint32_t kStepTimestamps = 2048;
+
 struct Executor::Impl {
   gpu::Device& device;
   std::shared_ptr<const Plan> plan;
@@ -22,7 +25,6 @@ struct Executor::Impl {
   ExecutorOptions options;
   ExecutorState state;
   PassInstances passes;  // the live passes in order of execution
-  std::optional<gpu::TimestampRing> timestamps;
   std::deque<FrameSlot> slots;
   std::deque<uint32_t> inFlight;  // slots, oldest first
   std::deque<FrameResult> finished;
@@ -51,8 +53,6 @@ struct Executor::Impl {
   void finish(uint32_t slotIndex);
   bool isFinished(uint32_t slotIndex) const;
   void recordMoves(FrameSlot& slot);
-  void timestamp();
-  void flushTimestamp();
 };
 
 Executor::Impl::~Impl() {
@@ -71,13 +71,12 @@ void Executor::Impl::build(const Registry& registry) {
   allocateResources(state);
   buildPasses(registry);
   const uint32_t frames = std::max(1u, options.framesInFlight);
-  timestamps.emplace(device, uint32_t(4 + 2 * passes.size()), frames);
+  state.timestamps.emplace(device, uint32_t(4 + 2 * passes.size()) + kStepTimestamps, frames);
   for (uint32_t i = 0; i < frames; ++i) slots.emplace_back(state, passes, options.readback);
 }
 
 void Executor::Impl::buildPasses(const Registry& registry) {
-  for (const auto& path : dataFolders("shaders")) device.shaders().addSearchPath(path);
-  for (const auto& path : registry.pluginShaderPaths()) device.shaders().addSearchPath(path);
+  addShaderFolders(device.shaders(), registry);
   uint64_t counterBytes = 0;
   const uint64_t alignment = std::max<uint64_t>(device.limits().minStorageBufferOffsetAlignment, 4);
   for (const Level& level : plan->levels) {
@@ -98,6 +97,7 @@ void Executor::Impl::buildPasses(const Registry& registry) {
     if (pass->bound->declaration->kind == PassKind::Host) buildStaging(*pass);
     PrepareContext context(*pass);
     pass->pass->prepare(context);
+    buildSteps(*pass, plan->steps[pass->index]);
   }
 }
 
@@ -217,25 +217,13 @@ std::optional<double> Executor::Impl::runHostPass(FrameSlot& slot, PassInstance&
   return waited;
 }
 
-void Executor::Impl::timestamp() { timestamps->write(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT); }
-
-// Lavapipe takes a timestamp at the next flush but executes dispatches at once. Without a flush in between (an empty
-// barrier causes one), a pass that only dispatches would appear to start after its own work.
-void Executor::Impl::flushTimestamp() {
-  if (!device.isCpu()) return;
-  const VkDependencyInfo nothing{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  vkCmdPipelineBarrier2(cmd, &nothing);
-}
-
 void Executor::Impl::recordMoves(FrameSlot& slot) {
   slot.moves = descriptors.moves();
   if (!slot.moves) return;
   device.beginLabel(cmd, "animate");
-  timestamp();
-  flushTimestamp();
+  writeTimestamp(state, cmd);
   descriptors.recordMoves(cmd, state.slot);
-  flushTimestamp();
-  timestamp();
+  slot.animateEnd = writeTimestamp(state, cmd);
   device.endLabel(cmd);
 }
 
@@ -245,8 +233,9 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   std::optional<double> waited;
   std::fill(pass.counterSet.begin(), pass.counterSet.end(), false);
   device.beginLabel(cmd, pass.bound->name.c_str());
-  timestamp();
-  flushTimestamp();
+  recorded.begin = writeTimestamp(state, cmd);
+  pass.begun.assign(1, {kNone, recorded.begin});
+  pass.tracker.reset();
   if (pass.bound->declaration->kind == PassKind::Host) {
     device.endLabel(cmd);  // a label cannot span two command buffers
     waited = runHostPass(slot, pass, frame);
@@ -255,7 +244,8 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
     pass.pass->record(context);
     device.endLabel(cmd);
   }
-  timestamp();
+  recorded.end = writeTimestamp(state, cmd);
+  recorded.steps = pass.begun;
   recorded.cpuMs = millisecondsSince(start) - waited.value_or(0);
   recorded.hostMs = waited ? recorded.cpuMs : 0;
   recorded.counterValues = pass.counterValues;
@@ -271,7 +261,7 @@ void Executor::Impl::finish(uint32_t slotIndex) {
   FrameSlot& slot = slots[slotIndex];
   gpu::check(vkWaitForFences(device.handle(), 1, &slot.fence, VK_TRUE, UINT64_MAX), "waiting for a frame");
   const auto now = Clock::now();
-  const auto times = timestamps->results(slot.number);
+  const auto times = state.timestamps->results(slot.number);
   if (!times) throw Error(ExitCode::Internal, "a finished frame has no timestamps");
   FrameResult result = slot.result(*times, passes);
   const auto since = lastFinish.value_or(slot.submitted);
@@ -335,8 +325,9 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
 
   e.segment = 0;
   e.beginSegment(slot);
-  e.timestamps->beginFrame(e.cmd, slot.number);
-  e.timestamp();
+  e.state.timestamps->beginFrame(e.cmd, slot.number);
+  e.state.stepTimestamps = kStepTimestamps;
+  writeTimestamp(e.state, e.cmd);
   constexpr VkPipelineStageFlags2 kFirst =
       VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   constexpr VkAccessFlags2 kAny = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -352,7 +343,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
       e.runPass(slot, *e.passes[position], frame, slot.passes[position]);
   }
   e.emitBarriers(e.plan->end);
-  e.timestamp();
+  writeTimestamp(e.state, e.cmd);
   slot.recordReadback(e.cmd);
   e.submitSegment(slot, true);
   slot.cpuMs = millisecondsSince(start);

@@ -18,7 +18,8 @@
 
 namespace fovea::gpu {
 class Device;
-}
+class ShaderCompiler;
+}  // namespace fovea::gpu
 namespace fovea::scene {
 struct Frame;
 class FrameDescriptors;
@@ -40,6 +41,9 @@ struct ExecutorOptions {
 
 // The device memory that a bound resource needs; input to the aliasing phase.
 MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
+
+// Adds the folders in which the shaders of the project's passes and of plug-ins lie.
+void addShaderFolders(gpu::ShaderCompiler& compiler, const Registry& registry);
 
 // Options of compile() for a device, with resource sizes as its driver reports them.
 CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph);

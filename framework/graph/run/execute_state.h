@@ -5,6 +5,8 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -13,7 +15,9 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
+#include "framework/gpu/timestamps.h"
 #include "framework/graph/compile/plan.h"
+#include "framework/graph/compile/steps.h"
 #include "framework/graph/run/execute.h"
 
 namespace fovea::graph {
@@ -46,12 +50,14 @@ struct ExecutorState {
   gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
   std::vector<VkDeviceMemory> heaps;
   HostProgress hostProgress;
+  std::optional<gpu::TimestampRing> timestamps;
 
   // State of the current frame.
   VkDescriptorSet sharedSet = VK_NULL_HANDLE;
   uint32_t slot = 0;
   uint32_t parity = 0;
   bool viewReset = false, sceneReset = false;
+  uint32_t stepTimestamps = 0;  // left for boundaries between steps
 
   uint32_t copyIndex(const Access& access) const {
     if (!plan->graph->resources[access.resource].history) return 0;
@@ -65,10 +71,12 @@ struct KernelBinding {
   enum class Source { Port, Counters, Sampler, Manual } source = Source::Manual;
   gpu::ReflectedBinding reflected;
   uint32_t access = kNone;  // index into BoundPass::accesses
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkSampler sampler = VK_NULL_HANDLE;
   std::string port;  // for messages
 };
+
+// A row of the timings: a step, or commands that a pass records by itself.
+using Label = uint32_t;  // PassInstance::labels
 
 struct KernelConstant {
   gpu::ReflectedConstant reflected;
@@ -79,18 +87,36 @@ struct KernelConstant {
 struct KernelState {
   PassInstance* pass = nullptr;
   std::string name;
+  Label label = 0;
   gpu::Pipeline pipeline;
+  std::vector<StepAccess> accesses;  // through its bindings, except those made by hand
   std::vector<KernelBinding> bindings;
   std::vector<KernelConstant> constants;
   // Set by Commands::bind and Commands::range for the command under construction.
   struct Override {
     uint32_t binding = kNone;
+    uint32_t access = kNone;
     VkImageView view = VK_NULL_HANDLE;
     VkBuffer buffer = VK_NULL_HANDLE;
     uint64_t offset = 0, range = VK_WHOLE_SIZE;
   };
   std::vector<Override> overrides;
   std::vector<Attachment> covers;  // attachments that a full-screen kernel writes
+};
+
+// A declared step that takes part in the plan, with everything that no frame changes.
+struct StepInstance {
+  const PlannedStep* planned = nullptr;
+  const StepSpec* spec = nullptr;
+  KernelState* kernel = nullptr;  // null for transfers
+  std::array<uint32_t, 3> size{};
+  std::vector<std::pair<std::string, uint32_t>> constants;
+};
+
+// Where the time of a step begins; it ends where that of the next one begins, or with the pass.
+struct StepBegin {
+  Label label = 0;
+  uint32_t timestamp = 0;  // index into the frame's timestamps
 };
 
 struct PassInstance {
@@ -101,7 +127,16 @@ struct PassInstance {
   NameMap<uint32_t> accessByPath;    // "radiance", "surface.position"
   NameMap<uint32_t> accessByShader;  // "radiance", "surfacePosition"
   NameMap<uint32_t> counterByName;
-  std::deque<KernelState> kernels;    // stable addresses
+  std::deque<KernelState> kernels;  // stable addresses
+  std::vector<StepInstance> steps;  // those of the plan
+  NameMap<uint32_t> stepByName;     // kNone for declared steps that are not in the plan
+  std::vector<std::string> labels;
+  std::vector<std::array<Label, 3>> transferLabels;  // per access: of its fills, clears and copies
+  StepTracker tracker;
+  std::vector<StepBegin> begun;           // this frame
+  std::vector<StepAccess> touched;        // by the command under construction
+  std::span<const Kernel> renderKernels;  // with which the current rendering may draw
+  bool rendering = false;
   std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
@@ -114,7 +149,22 @@ struct PassInstance {
   const Access* findAccess(std::string_view path) const;
   const ResourceDesc& desc(const Access& a) const { return state->plan->graph->resources[a.resource].desc; }
   std::vector<std::string> paths() const;
+  Label label(std::string_view name);
+  // Begins the time of a step, unless it is that of the command before, and waits for what the accesses depend on.
+  void beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
+                    bool together = false);
 };
+
+// Writes a timestamp between the commands before and after. Returns its index in the frame.
+uint32_t writeTimestamp(ExecutorState& state, VkCommandBuffer cmd);
+
+// Defined in kernels.cpp.
+bool isImageBinding(gpu::BindingKind kind);
+PassKind stagesOf(const KernelState& kernel);
+[[noreturn]] void bindingError(const PassInstance& pass, const std::string& shader,
+                               const std::string& message, const std::string& remedy);
+// Kernels and sizes of the declared steps.
+void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned);
 
 // Defined in memory.cpp: everything that a plan needs on the device.
 gpu::BufferDesc bufferDesc(const BoundResource& resource);

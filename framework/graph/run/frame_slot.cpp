@@ -30,6 +30,13 @@ uint32_t segmentCount(const PassInstances& instances) {
                   }));
 }
 
+// The entry of this name; it is added if there is none.
+StepTiming& stepTiming(std::vector<StepTiming>& steps, const std::string& name) {
+  for (StepTiming& step : steps)
+    if (step.name == name) return step;
+  return steps.emplace_back(StepTiming{name, 0});
+}
+
 }  // namespace
 
 FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instances,
@@ -84,19 +91,28 @@ void FrameSlot::recordReadback(VkCommandBuffer cmd) {
 }
 
 FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInstances& instances) const {
-  const auto milliseconds = [&](size_t from) { return (timestamps[from + 1] - timestamps[from]) * 1e-6; };
+  const auto milliseconds = [&](size_t from, size_t to) {
+    return std::max(0.0, (timestamps[to] - timestamps[from]) * 1e-6);
+  };
   FrameResult result;
   result.frame = frame;
   result.cpuMs = cpuMs;
   result.gpuMs = timestamps.back() * 1e-6;
-  result.animateMs = moves ? milliseconds(1) : 0;
+  result.animateMs = moves ? milliseconds(animateEnd - 1, animateEnd) : 0;
   result.animateCpuMs = animateCpuMs;
   const auto* gpuCounters = static_cast<const std::byte*>(counters.mapped());
   for (size_t i = 0; i < instances.size(); ++i) {
     const PassInstance& pass = *instances[i];
     const RecordedPass& recorded = passes[i];
-    const double gpuMs = milliseconds((moves ? 3 : 1) + 2 * i) - recorded.hostMs;
-    result.passes.push_back({pass.index, std::max(gpuMs, 0.0), recorded.cpuMs});
+    const double gpuMs = milliseconds(recorded.begin, recorded.end) - recorded.hostMs;
+    PassTiming& timing = result.passes.emplace_back(
+        PassTiming{pass.index, std::max(gpuMs, 0.0), recorded.cpuMs, std::vector<StepTiming>()});
+    for (size_t s = 0; s < recorded.steps.size(); ++s) {
+      const StepBegin& step = recorded.steps[s];
+      if (step.label == kNone) continue;  // the pass recorded nothing
+      const uint32_t end = s + 1 < recorded.steps.size() ? recorded.steps[s + 1].timestamp : recorded.end;
+      stepTiming(timing.steps, pass.labels[step.label]).gpuMs += milliseconds(step.timestamp, end);
+    }
     const auto& declared = pass.bound->declaration->counters;
     for (size_t c = 0; c < declared.size(); ++c) {
       uint32_t counted;

@@ -21,8 +21,10 @@ using PassInstances = std::vector<std::unique_ptr<PassInstance>>;  // in order o
 
 // The CPU time that recording a pass took, and the counters that it set.
 struct RecordedPass {
-  double cpuMs = 0;   // excludes waiting for the device
-  double hostMs = 0;  // the part of cpuMs during which the device waits in the middle of the pass
+  double cpuMs = 0;              // excludes waiting for the device
+  double hostMs = 0;             // the part of cpuMs during which the device waits in the middle of the pass
+  uint32_t begin = 0, end = 0;   // indices of the timestamps around the pass
+  std::vector<StepBegin> steps;  // in order; a step may begin more than once
   std::vector<double> counterValues;
   std::vector<bool> counterSet;
 };
@@ -45,6 +47,7 @@ struct FrameSlot {
   uint64_t number = 0;  // number of the frame since the executor was created
   uint64_t frame = 0;   // Frame::index
   double cpuMs = 0, animateCpuMs = 0;
+  uint32_t animateEnd = 0;  // index of the timestamp after the animation of vertices
   Clock::time_point submitted;
 
   // `readback` names graph outputs. Throws Error(BadInput) for names that the graph does not have.
@@ -56,8 +59,7 @@ struct FrameSlot {
 
   // Copies the counters and, if requested, the outputs into memory that the host can read.
   void recordReadback(VkCommandBuffer cmd);
-  // The result without the wall time; call it after the fence has signalled. `timestamps`, in ns: the first of the
-  // frame, two around the animation of vertices if anything moves, two per pass, and the last of the frame.
+  // The result without the wall time; call it after the fence has signalled. `timestamps` are in ns.
   FrameResult result(std::span<const double> timestamps, const PassInstances& instances) const;
 
  private:

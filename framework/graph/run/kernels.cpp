@@ -1,15 +1,32 @@
-// Kernels: pipelines whose bindings are found by name, and the commands that use them.
+// Kernels: pipelines whose bindings are found by name.
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstring>
+#include <filesystem>
 
 #include "fovea/error.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/execute_state.h"
-#include "framework/scene/frame.h"
 
 namespace fovea::graph {
+
+bool isImageBinding(gpu::BindingKind kind) {
+  return kind == gpu::BindingKind::SampledImage || kind == gpu::BindingKind::CombinedImageSampler ||
+         kind == gpu::BindingKind::StorageImage;
+}
+
+[[noreturn]] void bindingError(const PassInstance& pass, const std::string& shader,
+                               const std::string& message, const std::string& remedy) {
+  throw Error(ExitCode::BadInput,
+              "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + "), shader " + shader +
+                  ": " + message,
+              remedy);
+}
+
+PassKind stagesOf(const KernelState& kernel) {
+  return kernel.pipeline.bindPoint() == VK_PIPELINE_BIND_POINT_COMPUTE ? PassKind::Compute
+                                                                       : PassKind::Graphics;
+}
+
 namespace {
 
 const char* kindName(gpu::BindingKind kind) {
@@ -48,19 +65,6 @@ Usage requiredUsage(const gpu::ReflectedBinding& b) {
   }
 }
 
-bool isImageBinding(gpu::BindingKind kind) {
-  return kind == gpu::BindingKind::SampledImage || kind == gpu::BindingKind::CombinedImageSampler ||
-         kind == gpu::BindingKind::StorageImage;
-}
-
-[[noreturn]] void bindingError(const PassInstance& pass, const std::string& shader,
-                               const std::string& message, const std::string& remedy) {
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + "), shader " + shader +
-                  ": " + message,
-              remedy);
-}
-
 VkSampler samplerByName(gpu::Device& device, const std::string& name) {
   if (name == "linearClamp")
     return gpu::sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
@@ -95,7 +99,6 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
   binding.source = KernelBinding::Source::Port;
   binding.reflected = b;
   binding.access = accessIndex;
-  binding.layout = access.layout;
   binding.port = port.name;
   if (b.kind == gpu::BindingKind::CombinedImageSampler)
     binding.sampler =
@@ -154,54 +157,37 @@ KernelConstant resolveConstant(const PassInstance& pass, const gpu::ReflectedCon
   return constant;
 }
 
-KernelState& makeKernel(PassInstance& pass, std::string name, gpu::Pipeline pipeline) {
+// "blur/rows.comp" -> "rows"
+std::string stemOf(const std::string& shader) { return std::filesystem::path(shader).stem().string(); }
+
+KernelState& makeKernel(PassInstance& pass, std::string name, const std::string& label,
+                        gpu::Pipeline pipeline) {
   KernelState& kernel = pass.kernels.emplace_back();
   kernel.pass = &pass;
   kernel.name = std::move(name);
+  kernel.label = pass.label(label);
   kernel.pipeline = std::move(pipeline);
   for (const gpu::ReflectedBinding& b : kernel.pipeline.interface().bindings)
     kernel.bindings.push_back(resolveBinding(pass, kernel.name, b));
   for (const gpu::ReflectedConstant& c : kernel.pipeline.interface().constants)
     kernel.constants.push_back(resolveConstant(pass, c));
+  kernel.accesses = shaderAccesses(*pass.bound, kernel.pipeline.interface().bindings, stagesOf(kernel));
   return kernel;
 }
 
-// A parameter as the 32-bit word that its constant expects; a choice is represented by its index.
-uint32_t parameterWord(const PassInstance& pass, const KernelConstant& constant) {
-  const ParameterSpec& spec = pass.bound->declaration->parameters[constant.parameter];
-  const Parameters& p = pass.bound->parameters;
-  if (constant.reflected.type == gpu::ReflectedConstant::Type::Float) {
-    const float value = static_cast<float>(p.real(spec.name));
-    uint32_t word;
-    std::memcpy(&word, &value, sizeof(word));
-    return word;
-  }
-  switch (spec.type) {
-    case ParameterSpec::Type::Bool:
-      return p.flag(spec.name) ? 1u : 0u;
-    case ParameterSpec::Type::Int:
-      return static_cast<uint32_t>(p.integer(spec.name));
-    case ParameterSpec::Type::Choice: {
-      const auto& choices = spec.choices;
-      return static_cast<uint32_t>(std::find(choices.begin(), choices.end(), p.text(spec.name)) -
-                                   choices.begin());
-    }
-    default:
-      break;
-  }
-  throw Error(ExitCode::Internal, "pass `" + pass.bound->declaration->type + "`: push constant `" +
-                                      constant.reflected.name + "` cannot hold parameter `" + spec.name +
-                                      "`");
-}
-
 }  // namespace
+
+PrepareContext::PrepareContext(PassInstance& pass)
+    : PassContext(*pass.state->plan->graph, *pass.bound), pass_(pass) {}
+
+gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
 
 Kernel PrepareContext::compute(const std::string& shader, gpu::Defines defines) {
   gpu::ComputePipelineDesc desc;
   desc.shader = device().shaders().compile(shader, defines);
   desc.sharedSet = pass_.state->sharedLayout;
   Kernel kernel;
-  kernel.state_ = &makeKernel(pass_, shader, gpu::Pipeline(device(), desc));
+  kernel.state_ = &makeKernel(pass_, shader, stemOf(shader), gpu::Pipeline(device(), desc));
   return kernel;
 }
 
@@ -223,7 +209,8 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   desc.depthBiasSlope = d.depthBiasSlope;
   Kernel kernel;
   const std::string name = d.fragment.empty() ? d.vertex : d.vertex + " + " + d.fragment;
-  kernel.state_ = &makeKernel(pass_, name, gpu::Pipeline(device(), desc));
+  kernel.state_ = &makeKernel(pass_, name, stemOf(d.fragment.empty() ? d.vertex : d.fragment),
+                              gpu::Pipeline(device(), desc));
   return kernel;
 }
 
@@ -237,208 +224,27 @@ Kernel PrepareContext::fullscreen(const std::string& fragment, const std::vector
   return kernel;
 }
 
-// ---- Commands --------------------------------------------------------------------------------------------------
-
-Commands::Commands(RecordContext& context, KernelState& kernel) : context_(context), kernel_(kernel) {
-  for (size_t i = 0; i < kernel_.constants.size(); ++i) {
-    const KernelConstant& c = kernel_.constants[i];
-    uint32_t word = 0;
-    switch (c.source) {
-      case KernelConstant::Source::Manual:
-        continue;
-      case KernelConstant::Source::Parameter:
-        word = parameterWord(context_.pass_, c);
-        break;
-      case KernelConstant::Source::FrameIndex:
-        word = static_cast<uint32_t>(context_.frame_.index);
-        break;
-      case KernelConstant::Source::Seed:
-        word = context_.frame_.seed;
-        break;
-    }
-    std::memcpy(constants_ + c.reflected.offset, &word, sizeof(word));
-    constantsSet_ |= uint64_t(1) << i;
+void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
+  PrepareContext context(pass);
+  const std::vector<StepSpec>& specs = pass.bound->declaration->steps;
+  for (const StepSpec& spec : specs) pass.stepByName.emplace(spec.name, kNone);
+  for (const PlannedStep& plan : planned) {
+    const StepSpec& spec = specs[plan.step];
+    StepInstance step{&plan, &spec, nullptr, {}, {}};
+    for (size_t i = 0; i < step.size.size(); ++i)
+      step.size[i] = static_cast<uint32_t>(context.evaluate(spec.size[i]));
+    for (const auto& [name, value] : spec.constants)
+      step.constants.emplace_back(name, static_cast<uint32_t>(context.evaluate(value)));
+    Kernel kernel;
+    if (spec.action == StepSpec::Action::Dispatch)
+      kernel = context.compute(spec.shader, stepDefines(spec, context));
+    if (spec.action == StepSpec::Action::Fullscreen)
+      kernel = context.fullscreen(spec.shader, spec.targets, stepDefines(spec, context));
+    step.kernel = kernel.state_;
+    if (step.kernel) step.kernel->label = pass.label(spec.name);
+    pass.stepByName[spec.name] = static_cast<uint32_t>(pass.steps.size());
+    pass.steps.push_back(std::move(step));
   }
-}
-
-Commands& Commands::constantBytes(std::string_view name, const void* data, size_t bytes) {
-  for (size_t i = 0; i < kernel_.constants.size(); ++i) {
-    const gpu::ReflectedConstant& c = kernel_.constants[i].reflected;
-    if (c.name != name) continue;
-    if (bytes != c.bytes)
-      throw Error(ExitCode::Internal, "shader " + kernel_.name + ": push constant `" + c.name + "` has " +
-                                          std::to_string(c.bytes) + " bytes, not " + std::to_string(bytes));
-    std::memcpy(constants_ + c.offset, data, bytes);
-    constantsSet_ |= uint64_t(1) << i;
-    return *this;
-  }
-  throw Error(ExitCode::Internal,
-              "shader " + kernel_.name + " has no push constant `" + std::string(name) + "`");
-}
-
-static uint32_t bindingIndex(const KernelState& kernel, std::string_view name) {
-  for (uint32_t i = 0; i < kernel.bindings.size(); ++i)
-    if (kernel.bindings[i].reflected.name == name) return i;
-  throw Error(ExitCode::Internal, "shader " + kernel.name + " has no binding `" + std::string(name) + "`");
-}
-
-Commands& Commands::bind(std::string_view name, VkImageView view) {
-  kernel_.overrides.push_back({bindingIndex(kernel_, name), view, VK_NULL_HANDLE, 0, VK_WHOLE_SIZE});
-  return *this;
-}
-
-Commands& Commands::bind(std::string_view name, const gpu::Buffer& buffer, uint64_t offset, uint64_t range) {
-  kernel_.overrides.push_back({bindingIndex(kernel_, name), VK_NULL_HANDLE, buffer.handle(), offset, range});
-  return *this;
-}
-
-Commands& Commands::range(std::string_view port, uint64_t offset, uint64_t bytes) {
-  return bind(shaderName(port), context_.buffer(port), offset, bytes);
-}
-
-// One descriptor of set 0: a wired port, an override of this command, the counters or a sampler.
-struct Descriptor {
-  VkDescriptorImageInfo image{};
-  VkDescriptorBufferInfo buffer{};
-  VkBufferView texels = VK_NULL_HANDLE;
-};
-
-static void fillImage(const KernelBinding& b, VkImageView view, Descriptor& d) {
-  const bool storage = b.reflected.kind == gpu::BindingKind::StorageImage;
-  d.image = {b.sampler, view,
-             b.layout != VK_IMAGE_LAYOUT_UNDEFINED ? b.layout
-             : storage                             ? VK_IMAGE_LAYOUT_GENERAL
-                                                   : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-}
-
-// The texel format of a buffer: four components per texel if its stride is a multiple of 16 bytes, two if it is a
-// multiple of 8, otherwise one.
-static VkFormat texelFormat(uint32_t stride, bool integer) {
-  if (stride % 16 == 0) return integer ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
-  if (stride % 8 == 0) return integer ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32_SFLOAT;
-  return integer ? VK_FORMAT_R32_UINT : VK_FORMAT_R32_SFLOAT;
-}
-
-static void fillPort(PassInstance& pass, const KernelBinding& b, Descriptor& d) {
-  const Access& access = pass.bound->accesses[b.access];
-  if (isImageBinding(b.reflected.kind)) {
-    fillImage(b, pass.state->image(access).view(), d);
-  } else if (b.reflected.kind == gpu::BindingKind::UniformTexelBuffer) {
-    d.texels = pass.state->buffer(access).texelView(
-        texelFormat(pass.desc(access).stride, b.reflected.integerTexels));
-  } else {
-    d.buffer = {pass.state->buffer(access).handle(), 0, VK_WHOLE_SIZE};
-  }
-}
-
-static void fillDescriptor(PassInstance& pass, const KernelState& kernel, uint32_t index, Descriptor& d) {
-  const KernelBinding& b = kernel.bindings[index];
-  d.image.sampler = b.sampler;
-  for (const KernelState::Override& o : kernel.overrides) {
-    if (o.binding != index) continue;
-    if (o.view)
-      fillImage(b, o.view, d);
-    else
-      d.buffer = {o.buffer, o.offset, o.range};
-    return;
-  }
-  switch (b.source) {
-    case KernelBinding::Source::Sampler:
-      return;
-    case KernelBinding::Source::Port:
-      fillPort(pass, b, d);
-      return;
-    case KernelBinding::Source::Counters:
-      d.buffer = {pass.state->counters.handle(), pass.counterOffset,
-                  pass.counterValues.size() * sizeof(uint32_t)};
-      return;
-    case KernelBinding::Source::Manual:
-      break;
-  }
-  const std::string nearest = nearestName(b.reflected.name, pass.paths());
-  bindingError(pass, kernel.name,
-               "binding `" + b.reflected.name + "` is neither a wired port nor bound by hand",
-               nearest.empty() ? "name it after a port" : "did you mean port `" + nearest + "`?");
-}
-
-void Commands::checkConstants() const {
-  for (size_t i = 0; i < kernel_.constants.size(); ++i)
-    if (!(constantsSet_ >> i & 1))
-      throw Error(ExitCode::Internal, "pass `" + context_.pass_.bound->name + "`: push constant `" +
-                                          kernel_.constants[i].reflected.name + "` of shader " +
-                                          kernel_.name + " was not set");
-}
-
-void Commands::flush() {
-  constexpr size_t kMaxBindings = 32;  // the number that every device with push descriptors supports
-  const size_t count = kernel_.bindings.size();
-  if (count > kMaxBindings)
-    throw Error(ExitCode::Internal, "shader " + kernel_.name + " has more than 32 bindings in set 0");
-  checkConstants();
-  std::array<Descriptor, kMaxBindings> descriptors;
-  std::array<VkWriteDescriptorSet, kMaxBindings> writes;
-  for (uint32_t i = 0; i < count; ++i) {
-    fillDescriptor(context_.pass_, kernel_, i, descriptors[i]);
-    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    writes[i].dstBinding = kernel_.bindings[i].reflected.binding;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = gpu::descriptorType(kernel_.bindings[i].reflected.kind);
-    writes[i].pImageInfo = &descriptors[i].image;
-    writes[i].pBufferInfo = &descriptors[i].buffer;
-    writes[i].pTexelBufferView = &descriptors[i].texels;
-  }
-  const gpu::Pipeline& p = kernel_.pipeline;
-  ExecutorState& state = *context_.pass_.state;
-  vkCmdBindPipeline(context_.cmd_, p.bindPoint(), p.handle());
-  if (count)
-    state.device->pushDescriptorSet(context_.cmd_, p.bindPoint(), p.layout(), 0, {writes.data(), count});
-  if (p.interface().usesSharedSet)
-    vkCmdBindDescriptorSets(context_.cmd_, p.bindPoint(), p.layout(), 1, 1, &state.sharedSet, 1,
-                            &context_.pass_.viewOffset);
-  if (p.interface().pushConstantBytes)
-    vkCmdPushConstants(context_.cmd_, p.layout(), p.interface().stages, 0, p.interface().pushConstantBytes,
-                       constants_);
-}
-
-void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) {
-  flush();
-  vkCmdDispatch(context_.cmd_, x, y, z);
-}
-
-void Commands::dispatchThreads(uint32_t x, uint32_t y, uint32_t z) {
-  const auto& local = kernel_.pipeline.interface().localSize;
-  dispatch((x + local[0] - 1) / local[0], (y + local[1] - 1) / local[1], (z + local[2] - 1) / local[2]);
-}
-
-void Commands::dispatchOver(std::string_view imagePort) {
-  const ResourceDesc& d = context_.pass_.desc(context_.pass_.access(imagePort));
-  dispatchThreads(d.width, d.height, std::max(d.depth, d.layers));
-}
-
-void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
-  flush();
-  vkCmdDispatchIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset);
-}
-
-void Commands::drawFullscreen() {
-  context_.render(kernel_.covers, nullptr, [&] { draw(3); });
-}
-
-void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t firstInstance) {
-  flush();
-  vkCmdDraw(context_.cmd_, vertices, instances, 0, firstInstance);
-}
-
-void Commands::drawIndexed(VkBuffer indices32, uint32_t count, uint32_t first, uint32_t instances,
-                           uint32_t firstInstance) {
-  flush();
-  vkCmdBindIndexBuffer(context_.cmd_, indices32, 0, VK_INDEX_TYPE_UINT32);
-  vkCmdDrawIndexed(context_.cmd_, count, instances, first, 0, firstInstance);
-}
-
-void Commands::drawIndirect(std::string_view bufferPort, uint64_t offset, uint32_t count, uint32_t stride) {
-  flush();
-  vkCmdDrawIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset, count, stride);
 }
 
 }  // namespace fovea::graph

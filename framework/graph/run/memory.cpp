@@ -2,8 +2,10 @@
 #include <algorithm>
 
 #include "fovea/error.h"
+#include "framework/base/paths.h"
 #include "framework/gpu/format.h"
 #include "framework/gpu/packed_mips.h"
+#include "framework/graph/pass/registry.h"
 #include "framework/graph/run/execute.h"
 #include "framework/graph/run/execute_state.h"
 
@@ -141,11 +143,20 @@ MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource) {
   return {r.size, r.alignment, r.memoryTypeBits};
 }
 
+void addShaderFolders(gpu::ShaderCompiler& compiler, const Registry& registry) {
+  for (const auto& path : dataFolders("shaders")) compiler.addSearchPath(path);
+  for (const auto& path : registry.pluginShaderPaths()) compiler.addSearchPath(path);
+}
+
 CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph) {
   CompileOptions options;
   options.granularity = device.limits().bufferImageGranularity;
   options.memory = [&device, graph](uint32_t resource) {
     return deviceMemory(device, graph->resources[resource]);
+  };
+  addShaderFolders(device.shaders(), Registry::global());
+  options.shaders = [&device](const std::string& file, const gpu::Defines& defines) {
+    return device.shaders().compile(file, defines);
   };
   return options;
 }

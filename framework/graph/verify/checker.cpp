@@ -92,6 +92,20 @@ std::vector<Need> needsOf(PassKind kind, const Access& access) {
   return needs;
 }
 
+constexpr VkAccessFlags2 kWriteAccesses =
+    VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
+
+// Reads and writes of a step, each as a need of its own.
+std::vector<Need> needsOfStep(const StepAccess& access) {
+  std::vector<Need> needs;
+  const StageSet stages = stageSet(access.stage);
+  if (access.mask & ~kWriteAccesses)
+    needs.push_back({stages, access.mask & ~kWriteAccesses, false, access.reads});
+  if (access.mask & kWriteAccesses) needs.push_back({stages, access.mask & kWriteAccesses, true, false});
+  return needs;
+}
+
 // ---- Memory ------------------------------------------------------------------------------------------
 
 // The contents of a piece of memory.
@@ -148,6 +162,7 @@ class Checker {
   void playBarriers(const BarrierBatch& batch);
   void playTransition(const ImageBarrier& b, const BarrierBatch& batch);
   void playPass(uint32_t p);
+  void playSteps(uint32_t p);
   void touch(uint32_t p, Copy& copy, const std::vector<const Access*>& accesses);
   void checkContents(uint32_t p, const Copy& copy, const Access& access);
   void checkWaits(const char* who, const Copy& copy, const std::vector<Event>& events, const Need& need);
@@ -325,6 +340,35 @@ void Checker::playPass(uint32_t p) {
     for (const Access& a : pass.accesses)
       if (a.resource * 2 + (a.previous ? 1 : 0) == copy) accesses.push_back(&a);
     touch(p, copies_[copy], accesses);
+  }
+  if (!plan_.steps.empty() && !pass.declaration->stepsByFrame) playSteps(p);
+}
+
+// Inside a pass, every step must wait for the steps before it, except for those with which it may run together.
+void Checker::playSteps(uint32_t p) {
+  const BoundPass& pass = graph_.passes[p];
+  std::vector<std::vector<Event>> past(copies_.size()), together(copies_.size());
+  for (const PlannedStep& step : plan_.steps[p]) {
+    const StepSpec& spec = pass.declaration->steps[step.step];
+    if (!spec.together)
+      for (size_t c = 0; c < past.size(); ++c) {
+        past[c].insert(past[c].end(), together[c].begin(), together[c].end());
+        together[c].clear();
+      }
+    const Dependency& wait = step.before;
+    const Scope scope{stageSet(wait.srcStage), stageSet(wait.dstStage), wait.srcAccess, wait.dstAccess};
+    for (auto* list : {&past, &together})
+      for (std::vector<Event>& events : *list)
+        for (Event& event : events) applyBarrier(event, scope);
+    const std::string who = fmt::format("{}, step {}", pass.name, spec.name);
+    for (const StepAccess& a : step.accesses) {
+      const Access& access = pass.accesses[a.access];
+      const size_t c = access.resource * 2 + (access.previous ? 1 : 0);
+      for (const Need& need : needsOfStep(a)) {
+        checkWaits(who.c_str(), copies_[c], past[c], need);
+        for (const Event& event : eventsOf(need)) together[c].push_back(event);
+      }
+    }
   }
 }
 

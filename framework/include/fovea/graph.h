@@ -42,9 +42,15 @@ struct ResourceDesc {
 // Times in milliseconds. `gpuMs` is the time between the timestamps around the pass; `cpuMs` is the time spent on
 // recording the pass or, for a host pass, on executing it. A host pass between two parts of a frame waits for the
 // device, and the device then waits for the pass; neither wait is counted.
+struct StepTiming {
+  std::string name;
+  double gpuMs = 0;  // in all its runs together, including the wait for what it depends on
+};
+
 struct PassTiming {
   uint32_t pass = 0;  // index into the passes of the graph, in the order of the file; see Session::passName
   double gpuMs = 0, cpuMs = 0;
+  std::vector<StepTiming> steps;  // those that ran, in the order of their first run; none for a host pass
 };
 
 struct OutputData {
@@ -67,6 +73,9 @@ struct FrameResult {
 // Loads a shared library whose FOVEA_PASS registrations add pass types to the process. Its shaders are looked up in a
 // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
 void loadPlugin(const std::filesystem::path& file);
+
+// Adds the passes that the files NAME.pass.json in a folder declare. Throws Error(BadInput) with every mistake.
+void addPasses(const std::filesystem::path& folder);
 
 struct SessionOptions {
   std::string device;         // number or part of the name; "" selects the best device

@@ -1,0 +1,266 @@
+#include "framework/graph/compile/steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "fovea/error.h"
+#include "framework/graph/pass/validate.h"
+
+namespace fovea::graph {
+namespace {
+
+// The usages through which a shader can reach a port by a binding of this kind.
+Usage usageOf(const gpu::ReflectedBinding& b) {
+  switch (b.kind) {
+    case gpu::BindingKind::UniformBuffer:
+      return Usage::Uniform;
+    case gpu::BindingKind::UniformTexelBuffer:
+      return Usage::TexelRead;
+    case gpu::BindingKind::SampledImage:
+    case gpu::BindingKind::CombinedImageSampler:
+      return Usage::Sampled;
+    default:
+      return b.readOnly    ? Usage::StorageRead
+             : b.writeOnly ? Usage::StorageWrite
+                           : Usage::StorageRead | Usage::StorageWrite;
+  }
+}
+
+// A port that only reads is not written, whatever the shader could do.
+Usage allowed(const Access& access, Usage wanted) {
+  const uint32_t refused = access.writes ? 0 : uint32_t(Usage::StorageWrite);
+  return Usage(uint32_t(access.usage) & uint32_t(wanted) & ~refused);
+}
+
+AccessScope scopeOf(const StepAccess& a) { return {a.stage, a.mask}; }
+
+}  // namespace
+
+// ---- What a step does --------------------------------------------------------------------------------
+
+StepAccess portAccess(const BoundPass& pass, uint32_t access, Usage usage, PassKind stages) {
+  const bool writes = any(usage, kWriteUsages) && pass.accesses[access].writes;
+  // An attachment may be loaded, tested or blended.
+  const bool reads = any(usage, kReadUsages | Usage::ColorAttachment | Usage::DepthAttachment);
+  const AccessScope scope = accessScope(stages, usage, reads, writes);
+  return {access, scope.stage, scope.access, reads, writes};
+}
+
+StepAccess bindingAccess(const BoundPass& pass, uint32_t access, const gpu::ReflectedBinding& binding,
+                         PassKind stages) {
+  return portAccess(pass, access, allowed(pass.accesses[access], usageOf(binding)), stages);
+}
+
+uint32_t accessOfBinding(const BoundPass& pass, std::string_view binding) {
+  std::string name(binding);
+  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+  for (uint32_t i = 0; i < pass.accesses.size(); ++i) {
+    const PortSpec& port = pass.declaration->ports[pass.accesses[i].port];
+    const MemberSpec& member = port.members[pass.accesses[i].member];
+    if (shaderName(member.name.empty() ? port.name : port.name + "." + member.name) == name) return i;
+  }
+  return kNone;
+}
+
+std::vector<StepAccess> shaderAccesses(const BoundPass& pass, std::span<const gpu::ReflectedBinding> bindings,
+                                       PassKind stages) {
+  std::vector<StepAccess> accesses;
+  for (const gpu::ReflectedBinding& b : bindings) {
+    const uint32_t access = b.set == 0 ? accessOfBinding(pass, b.name) : kNone;
+    if (access == kNone) continue;
+    accesses.push_back(bindingAccess(pass, access, b, stages));
+  }
+  return accesses;
+}
+
+gpu::Defines stepDefines(const StepSpec& step, const PassContext& context) {
+  gpu::Defines defines;
+  for (const auto& [macro, value] : step.defines) defines[macro] = std::to_string(context.evaluate(value));
+  return defines;
+}
+
+// ---- The order of steps ------------------------------------------------------------------------------
+
+StepTracker::StepTracker(const BoundPass& pass) {
+  std::vector<std::pair<uint32_t, bool>> known;
+  for (const Access& a : pass.accesses) {
+    const std::pair<uint32_t, bool> copy{a.resource, a.previous};
+    const auto found = std::find(known.begin(), known.end(), copy);
+    copyOf_.push_back(static_cast<uint32_t>(found - known.begin()));
+    if (found == known.end()) known.push_back(copy);
+  }
+  copies_.resize(known.size());
+}
+
+void StepTracker::reset() { std::fill(copies_.begin(), copies_.end(), Copy()); }
+
+// The commands that ran together become part of the past.
+void StepTracker::enter(Copy& copy) {
+  if (copy.writtenBy.stage) {
+    beforeWrite(copy.past,
+                {copy.writtenBy.stage | copy.readBy.stage, copy.writtenBy.access | copy.readBy.access},
+                copy.reads || copy.readBy.stage);
+  } else if (copy.readBy.stage) {
+    beforeRead(copy.past, copy.readBy);
+  }
+  copy.readBy = copy.writtenBy = {};
+  copy.reads = false;
+}
+
+Dependency StepTracker::before(std::span<const StepAccess> accesses, bool together) {
+  if (!together)
+    for (Copy& copy : copies_) enter(copy);
+  Dependency wait;
+  for (const StepAccess& a : accesses) {
+    Copy& copy = copies_[copyOf_[a.access]];
+    AccessHistory history = copy.past;
+    wait |= a.writes ? beforeWrite(history, scopeOf(a), a.reads) : beforeRead(history, scopeOf(a));
+    AccessScope& scope = a.writes ? copy.writtenBy : copy.readBy;
+    scope.stage |= a.stage;
+    scope.access |= a.mask;
+    copy.reads |= a.writes && a.reads;
+  }
+  if (wait)
+    for (Copy& copy : copies_) settle(copy.past, wait);
+  return wait;
+}
+
+namespace {
+
+StepAccess attachment(const BoundPass& pass, const std::string& path) {
+  return portAccess(pass, accessOf(pass, path), Usage::ColorAttachment, PassKind::Graphics);
+}
+
+std::string pathOf(const PortSpec& port, const MemberSpec& member) {
+  return member.name.empty() ? port.name : port.name + "." + member.name;
+}
+
+[[noreturn]] void wrongStep(const BoundPass& pass, const std::string& place, const std::string& message,
+                            const std::string& remedy) {
+  const PassDeclaration& d = *pass.declaration;
+  throw Error(ExitCode::BadInput, {{Severity::Error, d.placeOf(place), d.places ? place : "",
+                                    fmt::format("pass `{}` ({}): {}", pass.name, d.type, message), remedy}});
+}
+
+// Every binding must be something that the framework can bind. Steps without a size are completed by the pass, which
+// may bind more.
+void checkBindings(const BoundPass& pass, const StepSpec& step, const gpu::CompiledShader& shader) {
+  if (step.action == StepSpec::Action::Dispatch && step.sizing == StepSpec::Size::Manual) return;
+  for (const gpu::ReflectedBinding& b : shader.reflection.bindings) {
+    const bool counters = b.name == "counters" || b.name == "Counters";
+    if (b.set != 0 || b.kind == gpu::BindingKind::Sampler || counters ||
+        accessOfBinding(pass, b.name) != kNone)
+      continue;
+    std::vector<std::string> names;
+    for (const PortSpec& port : pass.declaration->ports)
+      for (const MemberSpec& m : port.members) names.push_back(shaderName(pathOf(port, m)));
+    const bool declared = std::find(names.begin(), names.end(), b.name) != names.end();
+    const std::string nearest = declared ? "" : nearestName(b.name, names);
+    wrongStep(pass, "steps." + step.name,
+              fmt::format("step `{}`: the shader {} binds `{}`, which is {}", step.name, shader.file, b.name,
+                          declared ? "an input that is not wired" : "no port of the pass"),
+              declared ? "put the binding and its use between #if and #endif, on a define such as wired(PORT)"
+              : nearest.empty() ? "name bindings after ports: `surface.position` is surfacePosition"
+                                : fmt::format("did you mean `{}`?", nearest));
+  }
+}
+
+bool mentions(const SizeExpr& expression, const PortSpec& port) {
+  return std::any_of(expression.terms().begin(), expression.terms().end(), [&](const SizeExpr::Term& term) {
+    return term.op >= SizeExpr::Op::PortWidth && term.op <= SizeExpr::Op::PortCount &&
+           term.name.substr(0, term.name.find('.')) == port.name;
+  });
+}
+
+// Whether the size of the port decides on the size of something.
+bool givesSize(const PassDeclaration& d, const PortSpec& port) {
+  for (const PortSpec& other : d.ports)
+    for (const MemberSpec& m : other.members)
+      for (const SizeExpr* e : {&m.resource.width, &m.resource.height, &m.resource.depth, &m.resource.layers,
+                                &m.resource.mips, &m.resource.count})
+        if (mentions(*e, port)) return true;
+  for (const StepSpec& step : d.steps)
+    for (const SizeExpr& e : step.size)
+      if (mentions(e, port)) return true;
+  return false;
+}
+
+// In a file, a port that no step uses is a mistake, such as a binding of another name.
+void checkPorts(const BoundPass& pass, const std::vector<uint8_t>& used) {
+  for (uint32_t i = 0; i < pass.accesses.size(); ++i) {
+    const PortSpec& port = pass.declaration->ports[pass.accesses[i].port];
+    if (used[i] || givesSize(*pass.declaration, port)) continue;
+    const std::string path = pathOf(port, port.members[pass.accesses[i].member]);
+    wrongStep(pass, "ports." + port.name, fmt::format("no step uses the port `{}`", path),
+              fmt::format("bind it in a shader as `{}`, or remove it", shaderName(path)));
+  }
+}
+
+std::vector<StepAccess> accessesOf(const BoundPass& pass, const StepSpec& step, const PassContext& context,
+                                   const ShaderLookup& shaders) {
+  using Action = StepSpec::Action;
+  const auto transfer = [&](const std::string& path, Usage usage) {
+    return portAccess(pass, accessOf(pass, path), usage, PassKind::Compute);
+  };
+  switch (step.action) {
+    case Action::Fill:
+    case Action::Clear:
+      return {transfer(step.targets[0], Usage::TransferWrite)};
+    case Action::Copy:
+      return {transfer(step.source, Usage::TransferRead), transfer(step.targets[0], Usage::TransferWrite)};
+    case Action::Dispatch:
+    case Action::Fullscreen:
+      break;
+  }
+  const PassKind stages = step.action == Action::Dispatch ? PassKind::Compute : PassKind::Graphics;
+  const auto shader = shaders(step.shader, stepDefines(step, context));
+  checkBindings(pass, step, *shader);
+  std::vector<StepAccess> accesses = shaderAccesses(pass, shader->reflection.bindings, stages);
+  for (const std::string& target : step.targets) accesses.push_back(attachment(pass, target));
+  if (step.sizing == StepSpec::Size::Indirect)
+    accesses.push_back(portAccess(pass, accessOf(pass, step.sizePort), Usage::Indirect, stages));
+  return accesses;
+}
+
+// Memory that belongs to the pass holds nothing when a frame starts, unless it is kept.
+void checkRead(const BoundPass& pass, const StepSpec& step, const StepAccess& access,
+               const std::vector<uint8_t>& written) {
+  const PortSpec& port = pass.declaration->ports[pass.accesses[access.access].port];
+  const bool own = port.direction == Direction::Scratch || port.direction == Direction::Output;
+  if (access.writes || written[access.access] || !own || port.lifetime != Lifetime::Transient) return;
+  wrongStep(pass, "steps." + step.name,
+            fmt::format("step `{}` reads `{}`, which no step before it has written", step.name, port.name),
+            "write or fill it in an earlier step, or keep it from frame to frame");
+}
+
+}  // namespace
+
+std::vector<PlannedStep> planSteps(const BoundGraph& graph, const BoundPass& pass,
+                                   const ShaderLookup& shaders) {
+  const PassContext context(graph, pass);
+  StepTracker tracker(pass);
+  std::vector<uint8_t> written(pass.accesses.size()), used(pass.accesses.size());
+  std::vector<PlannedStep> planned;
+  const std::vector<StepSpec>& steps = pass.declaration->steps;
+  for (uint32_t i = 0; i < steps.size(); ++i) {
+    if (context.evaluate(steps[i].condition) == 0) continue;
+    PlannedStep step{i, {}, accessesOf(pass, steps[i], context, shaders)};
+    if (pass.declaration->stepsByFrame) {
+      planned.push_back(std::move(step));
+      continue;
+    }
+    for (const StepAccess& a : step.accesses) checkRead(pass, steps[i], a, written);
+    for (const StepAccess& a : step.accesses) {
+      written[a.access] |= uint8_t(a.writes);
+      used[a.access] = 1;
+    }
+    step.before = tracker.before(step.accesses, steps[i].together);
+    planned.push_back(std::move(step));
+  }
+  if (pass.declaration->places && planned.size() == steps.size()) checkPorts(pass, used);
+  return planned;
+}
+
+}  // namespace fovea::graph

@@ -1,0 +1,104 @@
+// The sample passes that are nothing but files: outline, bilateral-blur and trail.
+#include <gtest/gtest.h>
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "fovea/test.h"
+#include "places.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr uint32_t kWidth = 12, kHeight = 5;
+
+struct Surfaces {
+  std::vector<glm::vec4> position, normal;
+};
+
+// Two planes at right angles, which meet in the middle of the picture.
+Surfaces corner() {
+  Surfaces s;
+  for (uint32_t y = 0; y < kHeight; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x) {
+      const bool left = x < kWidth / 2;
+      s.position.emplace_back(left ? 0.1f * float(x) : 0.6f, 0.1f * float(y),
+                              left ? 0.0f : 0.1f * float(x - kWidth / 2), 5.0f);
+      s.normal.push_back(left ? glm::vec4(0, 0, 1, 0) : glm::vec4(1, 0, 0, 0));
+    }
+  return s;
+}
+
+std::vector<glm::vec4> stripes() {
+  std::vector<glm::vec4> picture;
+  for (uint32_t i = 0; i < kWidth * kHeight; ++i)
+    picture.emplace_back(float((i * 7) % 5) / 4, float(i % 3) / 2, float(i) / 64, 1);
+  return picture;
+}
+
+PassTest passTest(const char* type) {
+  graph::addPasses(FOVEA_OWN_PASSES);
+  PassTest test(type);
+  test.viewSize(kWidth, kHeight);
+  return test;
+}
+
+void wire(PassTest& test, const Surfaces& s, const std::vector<glm::vec4>& picture) {
+  test.image("picture", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, picture);
+  test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, s.position);
+  test.image("gbuffer.normal", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, s.normal);
+}
+
+TEST(OwnFiles, OutlineDrawsALineWhereTheSurfaceTurns) {
+  PassTest test = passTest("outline");
+  wire(test, corner(), std::vector<glm::vec4>(kWidth * kHeight, glm::vec4(1)));
+  test.param("strength", 0.75).run();
+  const std::vector<float> rgba = test.floats("image");
+  for (uint32_t i = 0; i < kWidth * kHeight; ++i)
+    EXPECT_NEAR(rgba[4 * i], i % kWidth == kWidth / 2 - 1 ? 0.25f : 1.0f, 0.5f / 255) << "pixel " << i;
+}
+
+// Mean along one axis over the pixels of the same plane.
+std::vector<glm::vec4> blurred(const std::vector<glm::vec4>& from, int radius, bool columns) {
+  std::vector<glm::vec4> result;
+  for (int y = 0; y < int(kHeight); ++y)
+    for (int x = 0; x < int(kWidth); ++x) {
+      glm::vec4 sum(0);
+      float count = 0;
+      for (int i = -radius; i <= radius; ++i) {
+        const int qx = columns ? x : x + i, qy = columns ? y + i : y;
+        if (qx < 0 || qy < 0 || qx >= int(kWidth) || qy >= int(kHeight)) continue;
+        if ((qx < int(kWidth) / 2) != (x < int(kWidth) / 2)) continue;
+        sum += from[size_t(qy) * kWidth + size_t(qx)];
+        ++count;
+      }
+      result.push_back(sum / count);
+    }
+  return result;
+}
+
+TEST(OwnFiles, BilateralBlurStaysOnTheSurface) {
+  const std::vector<glm::vec4> picture = stripes(), wanted = blurred(blurred(picture, 2, false), 2, true);
+  PassTest test = passTest("bilateral-blur");
+  wire(test, corner(), picture);
+  test.param("radius", 2).run();
+  const std::vector<float> rgba = test.floats("image");
+  ASSERT_EQ(rgba.size(), 4u * wanted.size());
+  for (size_t i = 0; i < wanted.size(); ++i)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(rgba[4 * i + size_t(c)], wanted[i][c], 2e-3f) << "pixel " << i;
+}
+
+TEST(OwnFiles, TrailKeepsTheBrighterAndFades) {
+  PassTest test = passTest("trail");
+  std::vector<glm::vec4> dark(kWidth * kHeight, glm::vec4(0.25f)), bright(kWidth * kHeight, glm::vec4(1));
+  test.image("picture", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, dark);
+  test.image("before", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, bright);
+  test.param("fade", 0.5).run();
+  EXPECT_EQ(test.floats("image")[0], 0.5f);
+  test.set("before", dark);
+  test.run();
+  EXPECT_EQ(test.floats("image")[0], 0.25f);
+}
+
+}  // namespace
+}  // namespace fovea::test
