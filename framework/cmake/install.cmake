@@ -17,4 +17,5 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fovea-config.cmake.in ${
 # Before 1.0 a minor version may change interfaces.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/fovea-plugins.cmake
   DESTINATION ${FOVEA_PACKAGE_DIR})

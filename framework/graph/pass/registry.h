@@ -23,9 +23,12 @@ class Registry {
   std::unique_ptr<Pass> create(std::string_view type) const;
   std::vector<std::string> types() const;  // sorted
 
-  // Loads a shared library whose static FOVEA_PASS registrations join this registry. Its shaders are looked up in a
-  // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+  // Loads a shared library whose static FOVEA_PASS registrations join this registry, all of them or none. Its shaders
+  // are looked up in a folder `shaders` beside it. Throws Error(BadInput) if the file is no plug-in for this version of
+  // fovea or if a declaration contradicts itself, and Error(Internal) if a declaration throws.
   void loadPlugin(const std::filesystem::path& file);
+  // The file of the plug-in that registered a type, as it was given to loadPlugin(); empty for other types.
+  std::string_view pluginOf(std::string_view type) const;
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
 
   // FOVEA_PASS registrations run where no exception can be caught. Their errors are kept and thrown here as
@@ -33,14 +36,16 @@ class Registry {
   static void throwIfRegistrationsFailed();
 
  private:
-  bool loaded(const std::filesystem::path& plugin) const;
   struct Entry {
     std::unique_ptr<PassDeclaration> declaration;  // stable address
     Factory factory;
+    std::string plugin;  // its file; empty for types that are linked in
   };
+  const Entry* entry(std::string_view type) const;
+  void add(PassDeclaration declaration, Factory factory, std::string plugin);
   std::vector<Entry> entries_;  // sorted by type
   std::vector<std::filesystem::path> pluginShaderPaths_;
-  std::vector<std::filesystem::path> plugins_;
+  std::vector<void*> plugins_;  // handles of the system's loader
 };
 
 }  // namespace fovea::graph
