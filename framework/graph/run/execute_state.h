@@ -14,6 +14,7 @@
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/graph/compile/plan.h"
+#include "framework/graph/pass/guard.h"
 #include "framework/graph/run/execute.h"
 
 namespace fovea::graph {
@@ -98,6 +99,7 @@ struct PassInstance {
   const BoundPass* bound = nullptr;
   uint32_t index = 0;  // in BoundGraph::passes
   std::unique_ptr<Pass> pass;
+  std::string plugin;                // file that the pass comes from; empty if it is linked in
   NameMap<uint32_t> accessByPath;    // "radiance", "surface.position"
   NameMap<uint32_t> accessByShader;  // "radiance", "surfacePosition"
   NameMap<uint32_t> counterByName;
@@ -114,6 +116,7 @@ struct PassInstance {
   const Access* findAccess(std::string_view path) const;
   const ResourceDesc& desc(const Access& a) const { return state->plan->graph->resources[a.resource].desc; }
   std::vector<std::string> paths() const;
+  PassOrigin origin() const { return {bound->name, bound->declaration->type, plugin}; }
 };
 
 // Defined in memory.cpp: everything that a plan needs on the device.
