@@ -5,6 +5,8 @@ install(TARGETS fovea_framework EXPORT fovea-targets LIBRARY DESTINATION ${CMAKE
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/include/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_SOURCE_DIR}/samples/scenes
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea PATTERN "builtin" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/passes DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea
+  FILES_MATCHING PATTERN "*.pass.json" PATTERN "*.comp" PATTERN "*.frag")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
 install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/report.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
@@ -17,4 +19,5 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fovea-config.cmake.in ${
 # Before 1.0 a minor version may change interfaces.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/fovea-plugins.cmake
   DESTINATION ${FOVEA_PACKAGE_DIR})

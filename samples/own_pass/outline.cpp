@@ -1,5 +1,5 @@
 // A pass of your own: dark lines where the surface turns or jumps.
-#include "fovea/pass.h"
+#include <fovea/pass.h>
 
 using namespace fovea::graph;
 

@@ -17,7 +17,7 @@ done
 
 echo "== installed headers"
 (cd "$prefix/include" && find . -name '*.h' | sort) >"$work/headers"
-printf './fovea/%s.h\n' error graph image pass scene test | diff - "$work/headers" ||
+printf './fovea/%s.h\n' error graph image pass registration scene test | diff - "$work/headers" ||
   { echo "the installation holds other headers than the facade"; exit 1; }
 while read -r header; do
   echo "#include \"$header\"" >"$work/header.cpp"
@@ -30,13 +30,40 @@ cmake -S "$work/own_pass" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix
   { cat "$work/log"; exit 1; }
 cmake --build "$work/build"
 
+echo "== mistakes in the use of the package's functions"
+mistake() {  # what the message says, lines of CMake
+  mkdir -p "$work/mistake"
+  { printf 'cmake_minimum_required(VERSION 3.25)\nproject(mistake CXX)\nfind_package(fovea REQUIRED)\n'
+    printf '%s\n' "${@:2}"; } >"$work/mistake/CMakeLists.txt"
+  touch "$work/mistake/a.cpp"
+  if cmake -S "$work/mistake" -B "$work/mistake/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" 2>&1; then
+    echo "accepted: ${*:2}"
+    exit 1
+  fi
+  tr -s '\n ' ' ' <"$work/log" | grep -q "$1" || { cat "$work/log"; exit 1; }
+}
+mistake 'fovea_add_pass_plugin(empty) names no source file' 'fovea_add_pass_plugin(empty)'
+mistake 'has made no plug-in `missing`' 'fovea_add_pass_test(a_test missing a.cpp)'
+
 echo "== its own test"
 ctest --test-dir "$work/build" --output-on-failure --no-tests=error
 
-echo "== rendered through"
+echo "== listed"
 fovea=$prefix/bin/fovea
 plugin=$work/build/own_pass.so
 "$fovea" passes outline --plugin "$plugin" | grep -q strength
+
+echo "== compiled for another version"
+mkdir "$work/other"
+LC_ALL=C sed 's/fovea [0-9]\.[0-9]\.[0-9] /fovea 9.9.9 /g' "$plugin" >"$work/other/own_pass.so"
+code=0
+"$fovea" passes --plugin "$work/other/own_pass.so" 2>"$work/log" || code=$?
+cat "$work/log"
+[ $code = 3 ] || { echo "exit code $code for a plug-in of another version"; exit 1; }
+grep -q "own_pass.so: error: the plug-in was compiled for fovea 9.9.9, but this is fovea " "$work/log"
+grep -q "compile it again" "$work/log"
+
+echo "== rendered through the plug-in"
 # Data files come from the installation, not from the sources: this graph is only there.
 echo '{ "extends": "direct.json" }' >"$prefix/share/fovea/graphs/only_installed.json"
 (cd "$work" && "$fovea" check only_installed)

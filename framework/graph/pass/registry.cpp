@@ -4,18 +4,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
+#include <map>
+#include <utility>
 
 #include "fovea/error.h"
 #include "framework/base/paths.h"
+#include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/pass_file.h"
+#include "framework/graph/pass/plugin_file.h"
 #include "framework/graph/pass/validate.h"
 
 namespace fovea::graph {
+
+static_assert(kVersion == FOVEA_VERSION, "fovea/registration.h and CMakeLists.txt name different versions");
+
 namespace {
 
-// Registrations run before main() or inside dlopen(), where no exception can be caught, so failures are kept instead.
+// Registrations of linked passes run before main(), where no exception can be caught, so failures are kept instead.
 std::vector<Diagnostic>& failedRegistrations() {
   static std::vector<Diagnostic> failures;
   return failures;
@@ -54,29 +60,40 @@ void Registry::addStock() {
   }
 }
 
-void Registry::add(PassDeclaration declaration, Factory factory) {
+void Registry::add(PassDeclaration declaration, Factory factory) { add(std::move(declaration), factory, {}); }
+
+void Registry::add(PassDeclaration declaration, Factory factory, std::string plugin) {
   validateDeclaration(declaration);
   auto at =
       std::lower_bound(entries_.begin(), entries_.end(), declaration.type,
                        [](const Entry& e, const std::string& type) { return e.declaration->type < type; });
   if (at != entries_.end() && at->declaration->type == declaration.type)
     throw Error(ExitCode::Internal, fmt::format("pass type `{}` is registered twice", declaration.type));
-  entries_.insert(at, {std::make_unique<PassDeclaration>(std::move(declaration)), factory});
+  entries_.insert(at,
+                  {std::make_unique<PassDeclaration>(std::move(declaration)), factory, std::move(plugin)});
+}
+
+const Registry::Entry* Registry::entry(std::string_view type) const {
+  auto at = std::lower_bound(entries_.begin(), entries_.end(), type,
+                             [](const Entry& e, std::string_view t) { return e.declaration->type < t; });
+  return at != entries_.end() && at->declaration->type == type ? &*at : nullptr;
 }
 
 const PassDeclaration* Registry::find(std::string_view type) const {
-  auto at = std::lower_bound(entries_.begin(), entries_.end(), type,
-                             [](const Entry& e, std::string_view t) { return e.declaration->type < t; });
-  return at != entries_.end() && at->declaration->type == type ? at->declaration.get() : nullptr;
+  const Entry* found = entry(type);
+  return found ? found->declaration.get() : nullptr;
+}
+
+std::string_view Registry::pluginOf(std::string_view type) const {
+  const Entry* found = entry(type);
+  return found ? std::string_view(found->plugin) : std::string_view();
 }
 
 std::unique_ptr<Pass> Registry::create(std::string_view type) const {
-  for (const Entry& entry : entries_) {
-    if (entry.declaration->type != type) continue;
-    if (!entry.factory) break;
-    return entry.factory();
-  }
-  throw Error(ExitCode::Internal, fmt::format("no pass type `{}` to create", type));
+  const Entry* found = entry(type);
+  if (!found || !found->factory)
+    throw Error(ExitCode::Internal, fmt::format("no pass type `{}` to create", type));
+  return found->factory();
 }
 
 std::vector<std::string> Registry::types() const {
@@ -85,9 +102,70 @@ std::vector<std::string> Registry::types() const {
   return names;
 }
 
-Registration::Registration(PassDeclaration declaration, std::unique_ptr<Pass> (*factory)()) {
+namespace {
+
+// A registration of a plug-in. Only `abi` is known if that is the mark of another version.
+struct PluginPass {
+  Abi abi;
+  const char* className = nullptr;
+  PassDeclaration (*declaration)() = nullptr;
+  Registry::Factory factory = nullptr;
+};
+
+// Where registrations go while dlopen() runs. They are looked at after it, because exceptions cannot leave dlopen().
+std::vector<PluginPass>* loading = nullptr;
+
+// What the plug-ins of this process register, by the handle of the system's loader. Loading a library a second time
+// does not run its registrations again.
+std::map<void*, std::vector<PluginPass>>& pluginPasses() {
+  static std::map<void*, std::vector<PluginPass>> passes;
+  return passes;
+}
+
+void* openCollecting(const std::filesystem::path& path, std::vector<PluginPass>& found) {
+  loading = &found;
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  loading = nullptr;
+  return handle;
+}
+
+// Everything that is wrong with the passes of a plug-in, with the code of the first failure.
+struct PluginFailures {
+  ExitCode code = ExitCode::BadInput;
+  std::vector<Diagnostic> messages;
+
+  void add(ExitCode failure, const std::vector<Diagnostic>& more) {
+    if (messages.empty()) code = failure;
+    messages.insert(messages.end(), more.begin(), more.end());
+  }
+};
+
+std::vector<std::pair<PassDeclaration, Registry::Factory>> declarationsOf(
+    const std::vector<PluginPass>& passes, const std::string& plugin, PluginFailures& failures) {
+  std::vector<std::pair<PassDeclaration, Registry::Factory>> declarations;
+  for (const PluginPass& pass : passes) {
+    try {
+      declarations.emplace_back(guarded({{}, pass.className, plugin}, "declaration()", pass.declaration),
+                                pass.factory);
+    } catch (const Error& e) {
+      failures.add(e.code(), e.diagnostics());
+    }
+  }
+  return declarations;
+}
+
+}  // namespace
+
+Registration::Registration(const Abi& abi, const char* className, PassDeclaration (*declaration)(),
+                           std::unique_ptr<Pass> (*factory)()) {
+  const std::string mistake = describeOtherAbi(abi);
+  if (loading) {
+    loading->push_back(mistake.empty() ? PluginPass{abi, className, declaration, factory} : PluginPass{abi});
+    return;
+  }
   try {
-    Registry::ofProcess().add(std::move(declaration), factory);
+    if (!mistake.empty()) throw Error(ExitCode::Internal, mistake);
+    Registry::ofProcess().add(guarded({{}, className, {}}, "declaration()", declaration), factory);
   } catch (const Error& error) {
     for (const Diagnostic& d : error.diagnostics()) failedRegistrations().push_back(d);
   }
@@ -98,34 +176,54 @@ void Registry::throwIfRegistrationsFailed() {
 }
 
 void Registry::loadPlugin(const std::filesystem::path& file) {
+  checkPluginMarks(file, readPluginFile(file));
+  const auto refuse = [&](std::string message, std::string remedy) {
+    throw Error(ExitCode::BadInput,
+                std::vector<Diagnostic>{
+                    {Severity::Error, {file.string()}, {}, std::move(message), std::move(remedy)}});
+  };
   std::error_code ec;
   const std::filesystem::path path = std::filesystem::absolute(file, ec);
-  if (!std::filesystem::exists(path, ec))
-    throw Error(ExitCode::BadInput, fmt::format("plug-in {} does not exist", file.string()));
-  const size_t failuresBefore = failedRegistrations().size();
-  const size_t typesBefore = entries_.size();
+  std::vector<PluginPass> found;
   // The library is never closed, because factories and declarations point into it.
-  if (!dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+  void* handle = openCollecting(path, found);
+  if (!handle) {
     const char* reason = dlerror();
-    throw Error(ExitCode::BadInput,
-                fmt::format("cannot load plug-in {}: {}", file.string(), reason ? reason : "?"),
-                "build it against the same version of fovea, as a shared library");
+    refuse(fmt::format("cannot load plug-in: {}", reason ? reason : "?"),
+           "build it with fovea_add_pass_plugin(), and install the libraries that it needs");
   }
-  if (failedRegistrations().size() > failuresBefore) {
-    std::vector<Diagnostic> failures(failedRegistrations().begin() + static_cast<ptrdiff_t>(failuresBefore),
-                                     failedRegistrations().end());
-    failedRegistrations().resize(failuresBefore);
-    for (Diagnostic& d : failures) d.message = fmt::format("plug-in {}: {}", file.string(), d.message);
-    throw Error(ExitCode::BadInput, std::move(failures));
+  std::vector<PluginPass>& passes = pluginPasses()[handle];
+  passes.insert(passes.end(), found.begin(), found.end());
+  if (std::find(plugins_.begin(), plugins_.end(), handle) != plugins_.end()) return;
+  if (passes.empty())
+    refuse("the plug-in registers no pass",
+           "put FOVEA_PASS(YourPass) at namespace scope in one of its sources");
+  for (const PluginPass& pass : passes) checkPluginMarks(file, {pass.abi});
+  const std::string name = file.string();
+  PluginFailures failures;
+  std::vector<std::string> added;
+  for (auto& [declaration, factory] : declarationsOf(passes, name, failures)) {
+    std::string type = declaration.type;
+    try {
+      add(std::move(declaration), factory, name);
+      added.push_back(std::move(type));
+    } catch (const Error& e) {
+      std::vector<Diagnostic> messages = e.diagnostics();
+      for (Diagnostic& d : messages) d.where.file = name;
+      failures.add(ExitCode::BadInput, messages);
+    }
   }
+  if (!failures.messages.empty()) {
+    std::erase_if(entries_, [&](const Entry& e) {
+      return std::find(added.begin(), added.end(), e.declaration->type) != added.end();
+    });
+    throw Error(failures.code, std::move(failures.messages));
+  }
+  plugins_.push_back(handle);
   const std::filesystem::path shaders = path.parent_path() / "shaders";
   const bool known =
       std::find(pluginShaderPaths_.begin(), pluginShaderPaths_.end(), shaders) != pluginShaderPaths_.end();
   if (!known && std::filesystem::is_directory(shaders, ec)) pluginShaderPaths_.push_back(shaders);
-  if (entries_.size() == typesBefore && !loaded(path))
-    throw Error(ExitCode::BadInput, fmt::format("plug-in {} registers no pass", file.string()),
-                "put FOVEA_PASS(YourPass) at namespace scope in one of its sources");
-  if (!loaded(path)) plugins_.push_back(path);
 }
 
 void Registry::addFolder(const std::filesystem::path& folder) {
@@ -156,10 +254,6 @@ void Registry::addFoldersFromEnvironment() {
     if (end > begin) addFolder(text.substr(begin, end - begin));
     begin = end + 1;
   }
-}
-
-bool Registry::loaded(const std::filesystem::path& plugin) const {
-  return std::find(plugins_.begin(), plugins_.end(), plugin) != plugins_.end();
 }
 
 }  // namespace fovea::graph

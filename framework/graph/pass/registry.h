@@ -24,14 +24,17 @@ class Registry {
   std::unique_ptr<Pass> create(std::string_view type) const;
   std::vector<std::string> types() const;  // sorted
 
-  // Loads a shared library whose static FOVEA_PASS registrations join this registry. Its shaders are looked up in a
-  // folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+  // Loads a shared library whose static FOVEA_PASS registrations join this registry, all of them or none. Its shaders
+  // are looked up in a folder `shaders` beside it. Throws Error(BadInput) if the file is no plug-in for this version of
+  // fovea or if a declaration contradicts itself, and Error(Internal) if a declaration throws.
   void loadPlugin(const std::filesystem::path& file);
   // Adds the passes of all pass files in a folder (see pass_file.h). A folder may be named again. Throws Error(BadInput)
   // with every mistake of every file.
   void addFolder(const std::filesystem::path& folder);
   // Adds the passes of the folders that the environment variable FOVEA_PASSES names, separated by colons.
   void addFoldersFromEnvironment();
+  // The file of the plug-in that registered a type, as it was given to loadPlugin(); empty for other types.
+  std::string_view pluginOf(std::string_view type) const;
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
 
   // FOVEA_PASS registrations run where no exception can be caught. Their errors are kept and thrown here as
@@ -42,15 +45,17 @@ class Registry {
   friend struct Registration;
   static Registry& ofProcess();  // while it is filled, before main()
   void addStock();
-  bool loaded(const std::filesystem::path& plugin) const;
   struct Entry {
     std::unique_ptr<PassDeclaration> declaration;  // stable address
     Factory factory;
+    std::string plugin;  // its file; empty for types that are linked in
   };
+  const Entry* entry(std::string_view type) const;
+  void add(PassDeclaration declaration, Factory factory, std::string plugin);
   std::vector<Entry> entries_;  // sorted by type
   std::vector<std::filesystem::path> pluginShaderPaths_;
-  std::vector<std::filesystem::path> plugins_;
   std::vector<std::filesystem::path> passFiles_;
+  std::vector<void*> plugins_;  // handles of the system's loader
 };
 
 }  // namespace fovea::graph

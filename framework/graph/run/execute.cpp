@@ -9,6 +9,7 @@
 #include "framework/base/paths.h"
 #include "framework/gpu/barrier.h"
 #include "framework/gpu/timestamps.h"
+#include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/frame_slot.h"
 #include "framework/scene/frame.h"
@@ -81,9 +82,14 @@ void Executor::Impl::buildPasses(const Registry& registry) {
   const uint64_t alignment = std::max<uint64_t>(device.limits().minStorageBufferOffsetAlignment, 4);
   for (const Level& level : plan->levels) {
     for (uint32_t index : level.passes) {
+      const BoundPass& bound = plan->graph->passes[index];
+      const std::string& type = bound.declaration->type;
+      const std::string_view plugin = registry.pluginOf(type);
       passes.push_back(std::make_unique<PassInstance>(
-          state, index, registry.create(plan->graph->passes[index].declaration->type)));
+          state, index,
+          guarded({bound.name, type, plugin}, "its constructor", [&] { return registry.create(type); })));
       PassInstance& pass = *passes.back();
+      pass.plugin = plugin;
       pass.counterOffset = counterBytes;
       counterBytes += (pass.counterValues.size() * sizeof(uint32_t) + alignment - 1) / alignment * alignment;
     }
@@ -96,7 +102,7 @@ void Executor::Impl::buildPasses(const Registry& registry) {
   for (const auto& pass : passes) {
     if (pass->bound->declaration->kind == PassKind::Host) buildStaging(*pass);
     PrepareContext context(*pass);
-    pass->pass->prepare(context);
+    guarded(pass->origin(), "prepare()", [&] { pass->pass->prepare(context); });
     buildSteps(*pass, plan->steps[pass->index]);
   }
 }
@@ -207,7 +213,7 @@ std::optional<double> Executor::Impl::runHostPass(FrameSlot& slot, PassInstance&
     waited = millisecondsSince(start);
   }
   HostContext context(pass, frame, frameCount);
-  pass.pass->execute(context);
+  guarded(pass.origin(), "execute()", [&] { pass.pass->execute(context); });
   for (size_t i = 0; i < pass.staging.size(); ++i) {
     const Access& a = pass.bound->accesses[i];
     if (!a.writes) continue;
@@ -241,7 +247,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
     waited = runHostPass(slot, pass, frame);
   } else {
     RecordContext context(pass, cmd, frame, frameCount);
-    pass.pass->record(context);
+    guarded(pass.origin(), "record()", [&] { pass.pass->record(context); });
     device.endLabel(cmd);
   }
   recorded.end = writeTimestamp(state, cmd);

@@ -18,6 +18,7 @@
 #include "framework/gpu/timestamps.h"
 #include "framework/graph/compile/plan.h"
 #include "framework/graph/compile/steps.h"
+#include "framework/graph/pass/guard.h"
 #include "framework/graph/run/execute.h"
 
 namespace fovea::graph {
@@ -124,6 +125,7 @@ struct PassInstance {
   const BoundPass* bound = nullptr;
   uint32_t index = 0;  // in BoundGraph::passes
   std::unique_ptr<Pass> pass;
+  std::string plugin;                // file that the pass comes from; empty if it is linked in
   NameMap<uint32_t> accessByPath;    // "radiance", "surface.position"
   NameMap<uint32_t> accessByShader;  // "radiance", "surfacePosition"
   NameMap<uint32_t> counterByName;
@@ -153,6 +155,7 @@ struct PassInstance {
   // Begins the time of a step, unless it is that of the command before, and waits for what the accesses depend on.
   void beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
                     bool together = false);
+  PassOrigin origin() const { return {bound->name, bound->declaration->type, plugin}; }
 };
 
 // Writes a timestamp between the commands before and after. Returns its index in the frame.

@@ -11,7 +11,7 @@ namespace fovea {
 // Exit codes of the program. samples/fovea/README.md documents them, and they are never renumbered.
 enum class ExitCode : int {
   Ok = 0,
-  Internal = 1,     // a defect of fovea itself
+  Internal = 1,     // a defect of fovea itself or of a pass
   Usage = 2,        // wrong command line
   BadInput = 3,     // graph, scene, image or shader that cannot be used
   NoDevice = 4,     // no Vulkan device, or one that lacks a required feature

@@ -71,7 +71,8 @@ struct FrameResult {
 };
 
 // Loads a shared library whose FOVEA_PASS registrations add pass types to the process. Its shaders are looked up in a
-// folder `shaders` beside it. Throws Error(BadInput) with the loader's reason.
+// folder `shaders` beside it. Throws Error(BadInput) if the file is no plug-in, or one for another version of fovea, or
+// if a declaration contradicts itself, and Error(Internal) if a declaration throws an exception.
 void loadPlugin(const std::filesystem::path& file);
 
 // Adds the passes that the files NAME.pass.json in a folder declare. Throws Error(BadInput) with every mistake.

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "fovea/declaration.h"
+#include "fovea/registration.h"
 
 namespace fovea::gpu {
 class Device;
@@ -269,16 +270,13 @@ class Pass {
 
 // ---- Registration ----------------------------------------------------------------------------------------------
 
-// Adds a pass type to those known to the process. An invalid declaration is reported when the program starts.
-struct Registration {
-  Registration(PassDeclaration declaration, std::unique_ptr<Pass> (*factory)());
-};
+// The mark that FOVEA_PASS (fovea/registration.h) gives to a pass: what it exchanges with the framework.
+constexpr Abi passAbi() {
+  return makeAbi({sizeof(PassDeclaration), sizeof(PortSpec), sizeof(MemberSpec), sizeof(ResourceSpec),
+                  sizeof(SizeExpr::Term), sizeof(StepSpec), sizeof(PassContext), sizeof(ParameterSpec),
+                  sizeof(CounterSpec), sizeof(Parameters), sizeof(PrepareContext), sizeof(RecordContext),
+                  sizeof(HostContext), sizeof(Commands), sizeof(GraphicsKernelDesc), sizeof(Attachment),
+                  sizeof(Pass), sizeof(Defines)});
+}
 
 }  // namespace fovea::graph
-
-// Use this at namespace scope in the source file of the pass. The class provides `static
-// fovea::graph::PassDeclaration declaration()`.
-#define FOVEA_PASS(Class)                                         \
-  static const ::fovea::graph::Registration registration_##Class( \
-      Class::declaration(),                                       \
-      []() -> std::unique_ptr<::fovea::graph::Pass> { return std::make_unique<Class>(); })
