@@ -1,5 +1,6 @@
 // Another bounce of light from voxel to voxel: light-inject -> mipmap -> bounce -> mipmap -> ...
 #include "fovea/pass.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -12,11 +13,7 @@ class Bounce : public Pass {
     PassDeclaration d("bounce",
                       "radiance of every voxel side after one more bounce: direct light plus rho E / pi, "
                       "gathered with six cones");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
-             member("info", buffer("VoxelInfo", 16), Usage::TexelRead)},
+    d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface", "info"}, Usage::TexelRead),
             "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "radiance of every side, which lights the other sides");

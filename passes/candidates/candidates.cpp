@@ -3,33 +3,25 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
-#include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-std::vector<MemberSpec> seenSurfaces() {
-  return {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-          member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-          member("face", image2D(), Usage::Sampled)};
-}
-
 class Candidates : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("candidates", "voxels hit by one diffuse bounce from random pixels of the fovea");
     d.view();
-    d.input("gbuffer", "gbuffer", seenSurfaces(), "surfaces seen by the eye");
-    d.input("gbuffer2", "gbuffer", seenSurfaces(),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
+            "surfaces seen by the eye");
+    d.input("gbuffer2", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
             "surfaces seen by a second eye, in view `second_view`; every other attempt starts there")
         .makeOptional();
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+    d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}),
             "voxels that the bounces hit");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "radiance of each voxel side; if not wired, the candidates' luminance is 0")

@@ -9,6 +9,7 @@
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -43,10 +44,7 @@ class Deferred : public Pass {
     d.recorded();
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead),
-             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
+            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo"}),
             "surfaces seen by the eye");
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
             "light sources; empty slots have zero intensity");

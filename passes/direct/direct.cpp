@@ -5,6 +5,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -19,16 +20,9 @@ class Direct : public Pass {
                       PassKind::Graphics);
     d.recorded();
     d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead),
-             member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
+            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission"}),
             "surfaces seen by the eye");
-    d.input("maps", "shadow-maps",
-            {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
-             member("views", buffer("ShadowView", 112), Usage::Uniform)},
-            "shadow maps of the lights");
+    d.input("maps", "shadow-maps", shadowMapMembers(), "shadow maps of the lights");
     d.output(
         "direct",
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),

@@ -5,8 +5,8 @@
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "framework/shader_twins/hemisphere_rays.h"
-#include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -25,10 +25,7 @@ PassDeclaration Importance::declaration() {
   PassDeclaration d("importance",
                     "foveated importance of VPLs: the mean foveated weight of the surfaces in six directions "
                     "from each VPL");
-  d.input("voxels", "voxels",
-          {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-           member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-           member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+  d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}),
           "voxel grid through which the rays or cones are traced");
   d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
           "foveated weight of each voxel side, in [0, 1]");

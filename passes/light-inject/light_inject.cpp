@@ -11,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/motion/movers.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -29,14 +30,8 @@ class LightInject : public Pass {
     PassDeclaration d("light-inject",
                       "outgoing radiance of every voxel side: reflected direct light plus emission");
     d.recorded();
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", 64), Usage::TexelRead),
-             member("info", buffer("VoxelInfo", 16), Usage::Uniform)},
-            "voxelised surfaces");
-    d.input("maps", "shadow-maps",
-            {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
-             member("views", buffer("ShadowView", 112), Usage::Uniform)},
+    d.input("voxels", "voxels", voxelMembers({"index", "surface", "info"}), "voxelised surfaces");
+    d.input("maps", "shadow-maps", shadowMapMembers(),
             "shadow maps of the lights; if not wired, nothing casts a shadow")
         .makeOptional();
     d.output("radiance", buffer("VoxelRadiance", 16, countOf("voxels.surface")),

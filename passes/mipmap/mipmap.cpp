@@ -6,6 +6,7 @@
 #include "framework/gpu/resources.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/movers.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -17,10 +18,7 @@ class Mipmap : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("mipmap", "mip hierarchy of the voxels' light and foveated weight, for cone tracing");
     d.recorded();
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
-            "voxelised surfaces");
+    d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");
     d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,

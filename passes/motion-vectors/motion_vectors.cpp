@@ -3,6 +3,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "fovea/pass.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -16,16 +17,10 @@ class MotionVectors : public Pass {
                       "for every pixel, the pixel of the previous frame that showed the same surface",
                       PassKind::Graphics);
     d.view();
-    const auto position = [] {
-      return member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead);
-    };
-    const auto normal = [] {
-      return member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead);
-    };
-    d.input("gbuffer", "gbuffer",
-            {position(), normal(), member("id", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead)},
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal", "id"}),
             "surfaces seen by the eye");
-    d.input("previous", "gbuffer", {position(), normal()}, "surfaces seen by the eye in the previous frame");
+    d.input("previous", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
+            "surfaces seen by the eye in the previous frame");
     d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
              Usage::ColorAttachment,
              "x | y << 16: one of the four pixels around the previous position, chosen at random with "

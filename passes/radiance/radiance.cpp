@@ -2,6 +2,7 @@
 // radiance).
 #include "fovea/error.h"
 #include "fovea/pass.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -15,11 +16,7 @@ class Radiance : public Pass {
         "radiance",
         "radiosity of every VPL: direct light plus light gathered from the voxels with six cones (Eq. 3)");
     d.input("vpls", buffer("VplState", 80), Usage::TexelRead, "VPLs; empty slots have life 0");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", 64), Usage::TexelRead)},
-            "voxelised surfaces");
+    d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");
     d.input("mips", "voxel-mips",

@@ -7,6 +7,7 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -25,14 +26,9 @@ class Reproject : public Pass {
         "irradiance of the first eye warped to the second eye, and the blocks of pixels left to shade");
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     const SizeExpr tiles = ceilDiv(width, kTile) * ceilDiv(height, kTile);
-    d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead),
-             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead)},
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal", "face"}),
             "surfaces seen by the second eye");
-    d.input("source_gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
+    d.input("source_gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
             "surfaces seen by the first eye");
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance of the first eye to warp, the output `irradiance` of pass deferred");

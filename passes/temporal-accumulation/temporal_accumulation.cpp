@@ -5,6 +5,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "fovea/pass.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -19,9 +20,7 @@ class TemporalAccumulation : public Pass {
                       "follows the surfaces and restarts where one comes into view",
                       PassKind::Graphics);
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
-    d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead)},
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
             "surfaces seen by the eye");
     d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
             "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff if there is none (pass "

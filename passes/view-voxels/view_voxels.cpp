@@ -1,7 +1,7 @@
 // Debug view: the voxels as the eye sees them.
 #include "fovea/error.h"
 #include "fovea/pass.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -13,11 +13,7 @@ class ViewVoxels : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("view-voxels", "debug view: the first voxel side along each of the eye's rays");
     d.view();
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "surface voxels");
+    d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "surface voxels");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "radiance of each side, for show `radiance`")
         .makeOptional();

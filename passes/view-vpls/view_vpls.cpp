@@ -4,6 +4,7 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -24,8 +25,7 @@ class ViewVpls : public Pass {
     d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
             "the same VPLs as light sources, for show `luminance`")
         .makeOptional();
-    d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled)},
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position"}),
             "surfaces that hide VPLs; if not wired, all VPLs are drawn")
         .makeOptional();
     d.input("picture", image2D(), Usage::Sampled,

@@ -6,8 +6,8 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/shader_twins/fovea.h"
-#include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -47,18 +47,11 @@ PassDeclaration declareIntensity(const char* type, const char* doc) {
           "VPLs of this frame, one per slot");
   d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead,
           "rgb: B_l, W/m^2; w: its luminance; slots as in `vpls`");
-  d.input("voxels", "voxels",
-          {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-           member("occupied", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-           member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead),
-           member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), Usage::Uniform)},
+  d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface", "info"}),
           "voxelised surfaces, for which the VPLs stand");
   d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
           "radiance of each voxel side; w: luminance, above 0 if the side is lit");
-  d.input("gbuffer", "gbuffer",
-          {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::Sampled),
-           member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::Sampled),
-           member("face", image2D(), Usage::Sampled)},
+  d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
           "surfaces seen by the eye, from which the eye paths start");
   d.input("placed", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
           "VPLs with which `atlas` was drawn, which gives their positions");
@@ -76,6 +69,8 @@ PassDeclaration declareIntensity(const char* type, const char* doc) {
   d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
               "region in which the eye paths start, as in pass candidates; `area` starts none");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
+  d.parameter("points", integer(2048, 64, 4096),
+              "screen points over which a density is averaged; `area` needs none");
   d.counter("alive", "slots that hold a VPL");
   return d;
 }
@@ -95,7 +90,6 @@ void addTally(PassDeclaration& d, bool area) {
 void declareDensities(PassDeclaration& d) {
   d.parameter("image_share", real(0.4, 0, 1),
               "share of starts in the whole image for region `mixed`, rounded to 64ths");
-  d.parameter("points", integer(2048, 64, 4096), "screen points over which a density is averaged");
   d.parameter(
       "area_cap", real(4, 1, 1e6),
       "largest A_l, in medians of 1 / (N p) (`importance-area` assigns paths that would need more to other "

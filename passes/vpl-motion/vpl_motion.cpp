@@ -3,8 +3,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "fovea/pass.h"
-#include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -19,10 +19,7 @@ class Update : public Pass {
                       "turned away are dropped");
     d.input("previous", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
             "VPLs of the previous frame");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "surfaces of this frame");
+    d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "surfaces of this frame");
     d.output("vpls", buffer("VplState", sizeof(scene::VplState), countOf("previous")), Usage::StorageWrite,
              "VPLs in their slots, one frame older, still with the importance of the previous frame; dropped "
              "ones become empty slots");

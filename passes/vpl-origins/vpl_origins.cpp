@@ -1,8 +1,8 @@
 // Positions of the VPLs as light sources, which pass shadow-atlas needs before pass vpl-intensity
 // can find their intensity.
 #include "fovea/pass.h"
-#include "framework/shader_twins/voxel_grid.h"
 #include "framework/shader_twins/vpl.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -17,9 +17,7 @@ class Place : public Pass {
     d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
             "VPLs of this frame, one per slot");
     d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead, "rgb: B_l, W/m^2; slots as in `vpls`");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
+    d.input("voxels", "voxels", voxelMembers({"index", "surface"}),
             "voxel grid in which the VPLs were found");
     d.output("placed", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
              "VPLs in their slots; an empty slot, or one with a value that is not finite, is all zeros");

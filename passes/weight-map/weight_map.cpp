@@ -1,7 +1,7 @@
 // Foveated weight of each voxel side that the eye sees (passes/README.md, weight-map).
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -16,14 +16,9 @@ class WeightMap : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("weight-map", "foveated weight of every voxel side that the eye sees");
     d.view();
-    d.input("gbuffer", "gbuffer",
-            {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::StorageRead),
-             member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::StorageRead)},
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "face"}),
             "surfaces seen by the eye");
-    d.input("voxels", "voxels",
-            {member("index", image3D(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead),
-             member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead)},
-            "voxel grid whose sides are weighted");
+    d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "voxel grid whose sides are weighted");
     d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "one float per side: the largest foveated weight among the pixels that show it, 0 if unseen");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "fovea/test.h"
@@ -36,11 +37,10 @@ std::vector<glm::vec4> stripes() {
   return picture;
 }
 
-PassTest passTest(const char* type) {
+// The type of a sample pass, whose files are added first.
+std::string own(const char* type) {
   graph::addPasses(FOVEA_OWN_PASSES);
-  PassTest test(type);
-  test.viewSize(kWidth, kHeight);
-  return test;
+  return type;
 }
 
 void wire(PassTest& test, const Surfaces& s, const std::vector<glm::vec4>& picture) {
@@ -50,7 +50,8 @@ void wire(PassTest& test, const Surfaces& s, const std::vector<glm::vec4>& pictu
 }
 
 TEST(OwnFiles, OutlineDrawsALineWhereTheSurfaceTurns) {
-  PassTest test = passTest("outline");
+  PassTest test(own("outline"));
+  test.viewSize(kWidth, kHeight);
   wire(test, corner(), std::vector<glm::vec4>(kWidth * kHeight, glm::vec4(1)));
   test.param("strength", 0.75).run();
   const std::vector<float> rgba = test.floats("image");
@@ -79,7 +80,8 @@ std::vector<glm::vec4> blurred(const std::vector<glm::vec4>& from, int radius, b
 
 TEST(OwnFiles, BilateralBlurStaysOnTheSurface) {
   const std::vector<glm::vec4> picture = stripes(), wanted = blurred(blurred(picture, 2, false), 2, true);
-  PassTest test = passTest("bilateral-blur");
+  PassTest test(own("bilateral-blur"));
+  test.viewSize(kWidth, kHeight);
   wire(test, corner(), picture);
   test.param("radius", 2).run();
   const std::vector<float> rgba = test.floats("image");
@@ -89,7 +91,8 @@ TEST(OwnFiles, BilateralBlurStaysOnTheSurface) {
 }
 
 TEST(OwnFiles, TrailKeepsTheBrighterAndFades) {
-  PassTest test = passTest("trail");
+  PassTest test(own("trail"));
+  test.viewSize(kWidth, kHeight);
   std::vector<glm::vec4> dark(kWidth * kHeight, glm::vec4(0.25f)), bright(kWidth * kHeight, glm::vec4(1));
   test.image("picture", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, dark);
   test.image("before", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, bright);

@@ -151,7 +151,7 @@ TEST_F(PassFiles, OfAKnownNameAreRefused) {
 TEST_F(PassFiles, AreReportedWhereTheyAreWrong) {
   expectReport(R"({"doc": "x", "step": [], "steps": [{"shader": "a.comp", "over": "image"}],
                    "outputs": {"image": {"doc": "x", "format": "rgba8"}}})",
-               "blur.pass.json:1:14: error: unknown member `step`");
+               "blur.pass.json:1:14: error: unknown key `step`");
   expectReport("{\n \"doc\": 7, \"steps\": [{\"shader\": \"a.comp\", \"groups\": [1]}]}",
                "blur.pass.json:2:9: error:");
   expectReport("{\"doc\": \"x\",\n \"steps\": []}",
@@ -185,7 +185,7 @@ TEST_F(PassFiles, ReportAllMistakesOfAllFilesAtOnce) {
   write("a.pass.json", R"({"doc": "x", "steps": []})");
   write("b.pass.json", R"({"steps": [{"shader": "a.comp"}], "colour": 1})");
   const std::string report = added();
-  for (const char* part : {"a.pass.json:1:", "a compute step needs a size", "unknown member `colour`"})
+  for (const char* part : {"a.pass.json:1:", "a compute step needs a size", "unknown key `colour`"})
     EXPECT_NE(report.find(part), std::string::npos) << report;
 }
 

@@ -46,7 +46,8 @@ class Reader {
     if (!document.isObject()) return d;
     places_->emplace("", document.where.location());
     reader.text("$schema");
-    if (reader.require("doc")) d.doc = reader.text("doc");
+    d.doc = reader.text("doc");
+    if (!reader.has("doc")) reader.reportMissing("doc");
     d.usesView = reader.boolean("view", false);
     readPorts(d, reader.object("inputs"), "inputs", Direction::Input);
     readPorts(d, reader.object("updated"), "updated", Direction::InOut);
@@ -56,7 +57,7 @@ class Reader {
       for (const Member& m : params->members) readParameter(d, m);
     if (const json::Value* counters = reader.object("counters"))
       for (const Member& m : counters->members) readCounter(d, m);
-    if (!reader.require("steps")) reader.array("steps");
+    if (!reader.has("steps")) reader.reportMissing("steps");
     if (const json::Value* steps = reader.array("steps")) readSteps(d, *steps);
     reader.finish();
     d.places = places_;
