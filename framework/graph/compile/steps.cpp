@@ -157,6 +157,8 @@ void checkBindings(const BoundPass& pass, const StepSpec& step, const gpu::Compi
     for (const PortSpec& port : pass.declaration->ports)
       for (const MemberSpec& m : port.members) names.push_back(shaderName(pathOf(port, m)));
     const bool declared = std::find(names.begin(), names.end(), b.name) != names.end();
+    if (declared && !pass.declaration->places)
+      continue;  // prepare() says it better, or the command that needs it
     const std::string nearest = declared ? "" : nearestName(b.name, names);
     wrongStep(pass, "steps." + step.name,
               fmt::format("step `{}`: the shader {} binds `{}`, which is {}", step.name, shader.file, b.name,
