@@ -6,10 +6,10 @@
 #include <cmath>
 #include <span>
 
+#include "framework/base/hash.h"
 #include "framework/base/same_text.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/binder.h"
-#include "framework/graph/compile/hash.h"
 
 namespace fovea::graph {
 
@@ -444,7 +444,7 @@ uint64_t Binder::hash() const {
     const SymbolTable& symbols = description_.symbols;
     h.add(symbols.hash(description_.passes[p].name), symbols.hash(description_.passes[p].type));
     h.add(pass.view);
-    for (const Value& value : pass.parameters.values()) h.addValue(value);
+    for (const Value& value : pass.parameters.values()) h.add(value);
     for (const Access& a : pass.accesses)
       h.add(uint64_t(a.resource) << 32 | uint64_t(a.port) << 16 | a.member,
             uint64_t(a.version) << 32 | uint64_t(a.usage) << 3 | uint64_t(a.previous) << 2 |

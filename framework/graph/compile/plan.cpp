@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/base/hash.h"
 #include "framework/graph/compile/alias.h"
 #include "framework/graph/compile/barriers.h"
 #include "framework/graph/compile/compile.h"
-#include "framework/graph/compile/hash.h"
 #include "framework/graph/compile/scratch.h"
 #include "framework/graph/pass/validate.h"
 
@@ -144,7 +144,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
   Plan plan;
   Schedule order = schedule(*graph, options.randomOrder);
   const std::vector<Interval> intervals = lifetimes(*graph, order);
-  detail::Hasher hash;
+  Hasher hash;
   hash.add(graph->hash);
   detail::Scratch scratch;
   detail::ScratchVector<AliasRequest> requests(scratch);
@@ -178,7 +178,7 @@ Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& opti
 std::shared_ptr<const Plan> PlanCache::compile(std::shared_ptr<const BoundGraph> graph,
                                                const CompileOptions& options) {
   constexpr size_t kKept = 8;
-  detail::Hasher hash;
+  Hasher hash;
   hash.add(graph->hash);
   for (uint32_t r = 0; r < graph->resources.size() && options.memory; ++r) {
     if (graph->resources[r].external) continue;
