@@ -6,17 +6,10 @@
 #include "framework/base/same_text.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/binder.h"
-#include "framework/graph/pass/validate.h"
 
 namespace fovea::graph::detail {
 
 namespace {
-
-std::string formatName(VkFormat format) {
-  for (const gpu::FormatInfo& info : gpu::formats())
-    if (info.format == format) return std::string(info.name);
-  return fmt::format("VkFormat {}", static_cast<int>(format));
-}
 
 bool producing(const PortSpec& spec) {
   return spec.direction == Direction::Output || spec.direction == Direction::InOut;
@@ -50,7 +43,7 @@ std::string describeResource(ResourceKind kind, VkFormat format, bool volume, bo
   if (kind == ResourceKind::Buffer) return fmt::format("a buffer of {} ({} bytes each)", element, stride);
   const char* shape = volume ? "a 3D image" : array ? "an image array" : "an image";
   if (format == VK_FORMAT_UNDEFINED) return fmt::format("{} of floating-point texels", shape);
-  return fmt::format("{} of {}", shape, formatName(format));
+  return fmt::format("{} of {}", shape, gpu::formatInfo(format).name);
 }
 
 std::string Binder::describeValue(const PortValue& value) const {
@@ -329,9 +322,10 @@ bool Binder::fits(const MemberSpec& wanted, uint32_t resource) const {
   const auto compare = [&](const auto& have) {
     if (have.kind != want.kind) return false;
     if (have.kind == ResourceKind::Buffer) return have.element == want.element && have.stride == want.stride;
-    return have.volume == want.volume && have.array == want.array &&
-           (have.format == want.format ||
-            (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(have.format)));
+    if (have.volume != want.volume || have.array != want.array) return false;
+    if (want.format != VK_FORMAT_UNDEFINED) return have.format == want.format;
+    const gpu::FormatInfo* format = gpu::findFormat(have.format);
+    return !format || !format->integer();
   };
   const MemberSpec* made = resourceSpec_[resource];
   return made ? compare(made->resource) : compare(graph_.resources[resource].desc);

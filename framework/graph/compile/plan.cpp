@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/base/hash.h"
+#include "framework/gpu/format.h"
 #include "framework/graph/compile/alias.h"
 #include "framework/graph/compile/barriers.h"
 #include "framework/graph/compile/compile.h"
@@ -81,56 +82,13 @@ AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes) {
 
 // ---- Memory ------------------------------------------------------------------------------------------
 
-namespace {
-
-uint64_t texelBytes(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R8_UNORM:
-    case VK_FORMAT_R8_SNORM:
-    case VK_FORMAT_R8_UINT:
-    case VK_FORMAT_R8_SINT:
-      return 1;
-    case VK_FORMAT_R8G8_UNORM:
-    case VK_FORMAT_R8G8_SNORM:
-    case VK_FORMAT_R8G8_UINT:
-    case VK_FORMAT_R8G8_SINT:
-    case VK_FORMAT_R16_UNORM:
-    case VK_FORMAT_R16_SNORM:
-    case VK_FORMAT_R16_UINT:
-    case VK_FORMAT_R16_SINT:
-    case VK_FORMAT_R16_SFLOAT:
-    case VK_FORMAT_D16_UNORM:
-      return 2;
-    case VK_FORMAT_R16G16B16A16_UNORM:
-    case VK_FORMAT_R16G16B16A16_SNORM:
-    case VK_FORMAT_R16G16B16A16_UINT:
-    case VK_FORMAT_R16G16B16A16_SINT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R32G32_SINT:
-    case VK_FORMAT_R32G32_SFLOAT:
-    case VK_FORMAT_R64_UINT:
-    case VK_FORMAT_R64_SINT:
-    case VK_FORMAT_D32_SFLOAT_S8_UINT:
-      return 8;
-    case VK_FORMAT_R32G32B32A32_UINT:
-    case VK_FORMAT_R32G32B32A32_SINT:
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-      return 16;
-    default:
-      return 4;
-  }
-}
-
-}  // namespace
-
 MemoryNeed estimateMemory(const ResourceDesc& desc) {
   constexpr uint64_t kAlignment = 256;
   uint64_t bytes = 0;
   if (desc.kind == ResourceKind::Buffer) {
     bytes = desc.count * desc.stride;
   } else {
-    const uint64_t texel = texelBytes(desc.format);
+    const uint64_t texel = gpu::formatInfo(desc.format).bytesPerTexel;
     for (uint32_t mip = 0; mip < desc.mips; ++mip)
       bytes += uint64_t(std::max(1u, desc.width >> mip)) * std::max(1u, desc.height >> mip) *
                std::max(1u, desc.depth >> mip) * desc.layers * texel;
