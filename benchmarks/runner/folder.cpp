@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "benchmarks/runner/inputs.h"
+#include "framework/base/hash.h"
 #include "framework/base/text_file.h"
-#include "framework/graph/compile/hash.h"
 #include "framework/graph/report/report.h"
 
 namespace fovea::bench {
@@ -134,7 +134,7 @@ std::optional<image::File> readIfWhole(const fs::path& file) {
 }  // namespace
 
 std::string Fingerprint::key(const Job& job) const {
-  graph::detail::Hasher hash;
+  Hasher hash;
   hash.add(std::string_view(parts.dump()));
   hash.add(std::string_view(job.json().dump()));
   return formatHash(hash.value());

@@ -13,9 +13,9 @@
 #include "benchmarks/runner/interrupt.h"
 #include "benchmarks/runner/pass_code.h"
 #include "fovea/scene.h"
+#include "framework/base/hash.h"
 #include "framework/base/paths.h"
 #include "framework/gpu/format.h"
-#include "framework/graph/compile/hash.h"
 #include "framework/graph/report/report.h"
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
@@ -65,7 +65,7 @@ Json codesOf(const graph::BoundGraph& graph) {
 }
 
 std::string hashOf(std::string_view text) {
-  graph::detail::Hasher hash;
+  Hasher hash;
   hash.add(text);
   return formatHash(hash.value());
 }
@@ -200,8 +200,8 @@ Json BenchRunner::referenceParts(const Job& job) {
   Json parts = Json::object();
   for (const graph::BoundPass& pass : bound.passes) {
     if (pass.declaration->kind != graph::PassKind::Host) continue;
-    graph::detail::Hasher parameters;
-    for (const graph::Value& value : pass.parameters.values()) parameters.addValue(value);
+    Hasher parameters;
+    for (const graph::Value& value : pass.parameters.values()) parameters.add(value);
     parts[pass.declaration->type] = passCode(pass.declaration->type);
     parts["parameters of " + pass.name] = formatHash(parameters.value());
   }
@@ -272,7 +272,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
 }
 
 BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame) {
-  graph::detail::Hasher hash;
+  Hasher hash;
   for (const uint64_t n : {scene_.hash, frame, uint64_t(job.size.x), uint64_t(job.size.y),
                            std::bit_cast<uint64_t>(job.frameRate), uint64_t(kReferenceSeed)})
     hash.add(n);

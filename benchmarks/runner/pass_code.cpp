@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "benchmarks/runner/inputs.h"
+#include "framework/base/hash.h"
 #include "framework/base/paths.h"
-#include "framework/graph/compile/hash.h"
 
 namespace fovea::bench {
 namespace {
@@ -56,7 +56,7 @@ void addShadersIn(const std::string& part, Shaders& shaders) {
 }
 
 std::string codeOf(std::string_view sources, const Shaders& shaders) {
-  graph::detail::Hasher hash;
+  Hasher hash;
   hash.add(sources);
   for (const auto& [name, text] : shaders) hash.add(std::string_view(name)), hash.add(std::string_view(text));
   return formatHash(hash.value());

@@ -281,6 +281,12 @@ ObjectReader::ObjectReader(const Value& value, std::string path, Diagnostics& di
   if (!value.isObject()) reportKind();
 }
 
+ObjectReader::ObjectReader(const Value& value, std::string_view parent, std::string_view key,
+                           Diagnostics& diagnostics)
+    : value_(value), parent_(parent), key_(key), diagnostics_(diagnostics) {
+  if (!value.isObject()) reportKind();
+}
+
 void ObjectReader::reportKind() {
   diagnostics_.error(value_.where.location(), path(),
                      fmt::format("expected an object, found {}", value_.describe()));
@@ -295,13 +301,25 @@ void ObjectReader::wrong(std::string_view key, const Value& value, const std::st
                      fmt::format("`{}`: expected {}, found {}", key, expected, value.describe()));
 }
 
-void ObjectReader::reportMissing(std::string_view key) {
-  if (value_.isObject())
-    diagnostics_.error(value_.where.location(), path(), fmt::format("`{}` is missing", key));
+const Value* ObjectReader::find(std::string_view key) {
+  const Value* value = value_.find(key);
+  if (value && std::find(known_.begin(), known_.end(), key) == known_.end()) ++found_;
+  if (known_.empty()) known_.reserve(8);
+  known_.push_back(key);
+  return value;
 }
 
-const Value* ObjectReader::notObject(std::string_view key, const Value& value) {
-  return wrong(key, value, "an object"), nullptr;
+const Value* ObjectReader::require(std::string_view key) {
+  const Value* value = find(key);
+  if (!value && value_.isObject())
+    diagnostics_.error(value_.where.location(), path(), fmt::format("`{}` is missing", key));
+  return value;
+}
+
+const Value* ObjectReader::object(std::string_view key) {
+  const Value* value = find(key);
+  if (value && !value->isObject()) return wrong(key, *value, "an object"), nullptr;
+  return value;
 }
 
 const Value* ObjectReader::array(std::string_view key) {
@@ -346,9 +364,10 @@ bool ObjectReader::boolean(std::string_view key, bool fallback) {
   return value && value->isBool() ? value->boolean : fallback;
 }
 
-std::string ObjectReader::textOf(std::string_view key, const Value& value, std::string fallback) {
-  if (value.isString()) return value.string;
-  wrong(key, value, "a text");
+std::string ObjectReader::text(std::string_view key, std::string fallback) {
+  const Value* value = find(key);
+  if (value && value->isString()) return value->string;
+  if (value) wrong(key, *value, "a text");
   return fallback;
 }
 
@@ -380,10 +399,10 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
   return std::nullopt;
 }
 
-void ObjectReader::reportUnknown() {
+void ObjectReader::finish() {
+  if (found_ == value_.members.size()) return;
+  const std::vector<std::string> known(known_.begin(), known_.end());
   for (const Member& member : value_.members) {
-    std::vector<std::string> known(listed_.begin(), listed_.end());
-    known.insert(known.end(), known_.begin(), known_.end());
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
     const std::string nearest = nearestName(member.key, known);
     std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))

@@ -3,22 +3,18 @@
 // are both read through it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "fovea/error.h"
-#include "framework/base/same_text.h"
-#include "framework/base/small_vector.h"
 
 namespace fovea::json {
 
@@ -65,14 +61,13 @@ struct Member {
   Value value;
 };
 
-// Most keys are literals. Inlined, each costs a comparison or two of whole words.
-[[gnu::always_inline]] inline const Member* Value::findMember(std::string_view key) const {
+inline const Member* Value::findMember(std::string_view key) const {
   for (const Member& member : members)
-    if (sameText(member.key, key)) return &member;
+    if (member.key == key) return &member;
   return nullptr;
 }
 
-[[gnu::always_inline]] inline const Value* Value::find(std::string_view key) const {
+inline const Value* Value::find(std::string_view key) const {
   const Member* member = findMember(key);
   return member ? &member->value : nullptr;
 }
@@ -100,70 +95,25 @@ class ObjectReader {
   // Reports a `value` that is not an object; every member is then absent. `path` is the place inside the document.
   ObjectReader(const Value& value, std::string path, Diagnostics& diagnostics);
   // The same at "parent.key". Both strings are kept by reference.
-  ObjectReader(const Value& value, std::string_view parent, std::string_view key, Diagnostics& diagnostics)
-      : value_(value), parent_(parent), key_(key), diagnostics_(diagnostics) {
-    if (!value.isObject()) reportKind();
-  }
+  ObjectReader(const Value& value, std::string_view parent, std::string_view key, Diagnostics& diagnostics);
 
-  [[gnu::always_inline]] const Value* find(std::string_view key) {  // any type; nullptr if absent
-    known_.push_back(key);
-    const Member* member = value_.findMember(key);
-    if (!member) return nullptr;
-    const size_t index = static_cast<size_t>(member - value_.members.data());
-    if (index < 64) asked_ |= uint64_t(1) << index;
-    return &member->value;
-  }
-  [[gnu::always_inline]] const Value* require(std::string_view key) {  // reports an absent member
-    const Value* value = find(key);
-    if (!value) reportMissing(key);
-    return value;
-  }
-  [[gnu::always_inline]] const Value* object(std::string_view key) {  // nullptr if absent or wrong
-    return object(key, find(key));
-  }
+  const Value* find(std::string_view key);     // any type; nullptr if absent
+  const Value* require(std::string_view key);  // reports an absent member
+  const Value* object(std::string_view key);   // nullptr if absent or wrong
   const Value* array(std::string_view key);
-  // Looks up several keys, a constant array, in one walk over the members. Returns their values, nullptr where absent.
-  template <const auto& keys>
-  [[gnu::always_inline]] auto findAll() {
-    listed_ = keys;
-    std::array<const Value*, std::size(keys)> found = {};
-    uint64_t bit = 1;
-    for (const Member& member : value_.members) {
-      const auto isAny = [&]<size_t... I>(std::index_sequence<I...>) {
-        return ((sameText(member.key, keys[I]) && (found[I] = &member.value)) || ...);
-      };
-      if (isAny(std::make_index_sequence<std::size(keys)>())) asked_ |= bit;
-      bit <<= 1;
-    }
-    return found;
-  }
-  // Takes a value that findAll() returned; a value of another type is reported.
-  const Value* object(std::string_view key, const Value* value) {
-    return !value || value->isObject() ? value : notObject(key, *value);
-  }
-  void expectText(std::string_view key, const Value* value) {
-    if (value && !value->isString()) textOf(key, *value, {});
-  }
-  [[gnu::cold]] void reportMissing(std::string_view key);
-  [[gnu::always_inline]] bool has(std::string_view key) const { return value_.find(key) != nullptr; }
+  bool has(std::string_view key) const { return value_.find(key) != nullptr; }
 
   double number(std::string_view key, double fallback, double min = -std::numeric_limits<double>::infinity(),
                 double max = std::numeric_limits<double>::infinity());
   int64_t integer(std::string_view key, int64_t fallback, int64_t min = std::numeric_limits<int64_t>::min(),
                   int64_t max = std::numeric_limits<int64_t>::max());
   bool boolean(std::string_view key, bool fallback);
-  [[gnu::always_inline]] std::string text(std::string_view key, std::string fallback = {}) {
-    const Value* value = find(key);
-    return value ? textOf(key, *value, std::move(fallback)) : fallback;
-  }
+  std::string text(std::string_view key, std::string fallback = {});
   std::string choice(std::string_view key, std::string fallback, const std::vector<std::string>& choices);
   // An array of exactly `count` numbers; nullopt if absent or wrong.
   std::optional<std::vector<double>> numbers(std::string_view key, size_t count);
 
-  void finish() {
-    const size_t count = value_.members.size();
-    if (count > 64 || (count > 0 && asked_ != ~uint64_t(0) >> (64 - count))) reportUnknown();
-  }
+  void finish();
 
   std::string pathOf(std::string_view key) const;  // "camera.fov_degrees"
   std::string path() const;
@@ -171,18 +121,14 @@ class ObjectReader {
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
-  [[gnu::cold]] void wrong(std::string_view key, const Value& value, const std::string& expected);
-  [[gnu::cold]] const Value* notObject(std::string_view key, const Value& value);
-  std::string textOf(std::string_view key, const Value& value, std::string fallback);
-  [[gnu::cold]] void reportKind();
-  [[gnu::cold]] void reportUnknown();
+  void wrong(std::string_view key, const Value& value, const std::string& expected);
+  void reportKind();
   const Value& value_;
   std::string path_;  // used if there is no key
   std::string_view parent_, key_;
   Diagnostics& diagnostics_;
-  SmallVector<std::string_view, 8> known_;
-  std::span<const std::string_view> listed_;  // known as well
-  uint64_t asked_ = 0;                        // a bit for each of the first 64 members that was asked for
+  std::vector<std::string_view> known_;  // the keys that were asked for
+  size_t found_ = 0;                     // number of members that were asked for
 };
 
 // "a.b", or "b" if `path` is empty.

@@ -69,10 +69,15 @@ constexpr FormatInfo kFormats[] = {
 
 std::span<const FormatInfo> formats() { return kFormats; }
 
-const FormatInfo& formatInfo(VkFormat format) {
+const FormatInfo* findFormat(VkFormat format) {
   for (const FormatInfo& info : kFormats) {
-    if (info.format == format) return info;
+    if (info.format == format) return &info;
   }
+  return nullptr;
+}
+
+const FormatInfo& formatInfo(VkFormat format) {
+  if (const FormatInfo* info = findFormat(format)) return *info;
   throw Error(ExitCode::Internal,
               "VkFormat " + std::to_string(int(format)) + " is not one of fovea's formats");
 }

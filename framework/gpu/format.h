@@ -18,9 +18,12 @@ struct FormatInfo {
   uint32_t channels;
   bool depth;
   enum class Type : uint8_t { Float, Unorm, Snorm, Uint, Sint, Srgb } type;
+
+  bool integer() const { return type == Type::Uint || type == Type::Sint; }
 };
 
-std::span<const FormatInfo> formats();  // all formats that fovea knows
+std::span<const FormatInfo> formats();          // all formats that fovea knows
+const FormatInfo* findFormat(VkFormat format);  // nullptr for formats that fovea does not know
 // Throws Error(Internal) for formats that fovea does not know.
 const FormatInfo& formatInfo(VkFormat format);
 // VK_FORMAT_UNDEFINED if there is no such name.

@@ -1,140 +1,110 @@
 #include "framework/scene/scene.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <memory>
 
+#include "framework/base/hash.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/subdivision/subdivision.h"
 
 namespace fovea::scene {
 namespace {
 
-// Streaming content hash. Every variable-length field is preceded by its length, so that bytes cannot move from one
-// field to its neighbour.
-class Hasher {
- public:
-  Hasher() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
-  void bytes(const void* data, size_t size) {
-    if (size > 0) XXH3_64bits_update(state_.get(), data, size);
-  }
-  template <class T>
-  void value(const T& v) {
-    static_assert(std::is_arithmetic_v<T>);
-    bytes(&v, sizeof v);
-  }
-  void floats(const float* v, size_t count) { bytes(v, count * sizeof(float)); }
-  void text(const std::string& s) {
-    value(uint64_t(s.size()));
-    bytes(s.data(), s.size());
-  }
-  template <class T>
-  void array(const std::vector<T>& v) {
-    value(uint64_t(v.size()));
-    bytes(v.data(), v.size() * sizeof(T));
-  }
-  uint64_t digest() const { return XXH3_64bits_digest(state_.get()); }
-
- private:
-  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
-};
-
 void hash(Hasher& h, const TextureUse& use) {
-  h.value(use.texture);
-  h.value(uint32_t(use.wrapU));
-  h.value(uint32_t(use.wrapV));
-  h.floats(&use.transform[0][0], 6);
+  h.add(use.texture);
+  h.add(uint32_t(use.wrapU));
+  h.add(uint32_t(use.wrapV));
+  h.add(&use.transform[0][0], 6);
 }
 
 void hash(Hasher& h, const Material& m) {
-  h.floats(&m.baseColor[0], 4);
+  h.add(&m.baseColor[0], 4);
   hash(h, m.baseColorTexture);
-  h.value(m.metallic);
-  h.floats(&m.emission[0], 3);
+  h.add(m.metallic);
+  h.add(&m.emission[0], 3);
   hash(h, m.emissionTexture);
-  h.value(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1);
-  h.value(m.alphaCutoff);
+  h.add(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1);
+  h.add(m.alphaCutoff);
 }
 
 void hash(Hasher& h, const Node& n) {
-  h.value(n.parent);
+  h.add(n.parent);
   const glm::mat4 local = localTransform(n);
-  h.floats(&local[0][0], 16);
-  h.value(n.mesh);
-  h.value(uint32_t(n.dynamic));
+  h.add(&local[0][0], 16);
+  h.add(n.mesh);
+  h.add(uint32_t(n.dynamic));
 }
 
 void hash(Hasher& h, const Light& l) {
-  h.value(uint32_t(l.type));
-  h.floats(&l.color[0], 3);
+  h.add(uint32_t(l.type));
+  h.add(&l.color[0], 3);
   const float scalars[] = {l.intensity, l.range, l.innerConeAngle, l.outerConeAngle};
-  h.floats(scalars, 4);
-  h.floats(&l.position[0], 3);
-  h.floats(&l.direction[0], 3);
+  h.add(scalars, 4);
+  h.add(&l.position[0], 3);
+  h.add(&l.direction[0], 3);
 }
 
 void hash(Hasher& h, const Camera& c) {
-  h.floats(&c.position[0], 3);
+  h.add(&c.position[0], 3);
   const float scalars[] = {c.orientation.w, c.orientation.x, c.orientation.y, c.orientation.z,
                            c.verticalFov,   c.zNear,         c.zFar};
-  h.floats(scalars, 7);
+  h.add(scalars, 7);
 }
 
 template <class Motion>
 void hashPath(Hasher& h, uint32_t what, const Motion& m) {
-  h.value(what);
-  h.value(uint32_t(m.smooth) | uint32_t(m.repeat) << 1);
-  h.value(uint64_t(m.keys.size()));
+  h.add(what);
+  h.add(uint32_t(m.smooth) | uint32_t(m.repeat) << 1);
+  h.add(uint64_t(m.keys.size()));
 }
 
 void hash(Hasher& h, const Primitive& p) {
-  if (!p.lightIndices.empty()) h.array(p.lightIndices);
+  if (!p.lightIndices.empty()) h.add(p.lightIndices);
   if (p.targets.empty() && p.joints.empty()) return;
   for (const MorphTarget& t : p.targets) {
-    h.array(t.positions);
-    h.array(t.normals);
+    h.add(t.positions);
+    h.add(t.normals);
   }
-  h.array(p.joints);
-  h.array(p.weights);
+  h.add(p.joints);
+  h.add(p.weights);
 }
 
 // At rest, the primitives contain everything.
 void hash(Hasher& h, const SubdivisionCage& cage) {
   if (cage.targets.empty() && cage.joints.empty()) return;
-  h.array(cage.positions);
-  for (const MorphTarget& t : cage.targets) h.array(t.positions);
-  h.array(cage.joints);
-  h.array(cage.weights);
+  h.add(cage.positions);
+  for (const MorphTarget& t : cage.targets) h.add(t.positions);
+  h.add(cage.joints);
+  h.add(cage.weights);
 }
 
 // Adds what deforms, and how.
 void hashAnimation(Hasher& h, const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     for (const Primitive& p : mesh.primitives) hash(h, p);
-    if (!mesh.weights.empty()) h.array(mesh.weights);
+    if (!mesh.weights.empty()) h.add(mesh.weights);
     if (mesh.cage) hash(h, *mesh.cage);
   }
   for (size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& n = scene.nodes[i];
     if (n.skin == kNoIndex && n.weights.empty()) continue;
-    h.value(uint64_t(i));
-    h.value(n.skin);
-    h.array(n.weights);
+    h.add(uint64_t(i));
+    h.add(n.skin);
+    h.add(n.weights);
   }
   for (const Skin& s : scene.skins) {
-    h.array(s.joints);
-    h.array(s.inverseBind);
+    h.add(s.joints);
+    h.add(s.inverseBind);
   }
   for (const Animation& a : scene.animations) {
     if (!a.plays) continue;
-    h.value(a.speed);
-    h.value(uint32_t(a.repeat));
+    h.add(a.speed);
+    h.add(uint32_t(a.repeat));
     for (const AnimationChannel& c : a.channels) {
-      h.value(c.node);
-      h.value(uint32_t(c.path) | uint32_t(c.interpolation) << 8);
-      h.array(c.times);
-      h.array(c.values);
+      h.add(c.node);
+      h.add(uint32_t(c.path) | uint32_t(c.interpolation) << 8);
+      h.add(c.times);
+      h.add(c.values);
     }
   }
 }
@@ -147,27 +117,27 @@ void hashMotion(Hasher& h, const Scene& scene) {
       const float values[] = {k.time,          k.translation.x, k.translation.y,
                               k.translation.z, k.rotation.w,    k.rotation.x,
                               k.rotation.y,    k.rotation.z,    k.visible ? 1.0f : 0.0f};
-      h.floats(values, 9);
+      h.add(values, 9);
     }
   }
   for (const LightMotion& m : scene.lightMotions) {
     hashPath(h, ~m.light, m);
     for (const LightKey& k : m.keys) {
-      h.value(k.time);
-      for (const glm::vec3& v : {k.position, k.direction, k.color}) h.floats(&v[0], 3);
-      h.value(k.intensity);
+      h.add(k.time);
+      for (const glm::vec3& v : {k.position, k.direction, k.color}) h.add(&v[0], 3);
+      h.add(k.intensity);
     }
   }
   for (size_t i = 0; i < scene.gaze.size(); ++i)
     for (const auto& eye : {scene.gaze[i].left, scene.gaze[i].right})
       if (eye) {
-        h.value(uint64_t(i));
-        h.floats(&(*eye)[0], 2);
+        h.add(uint64_t(i));
+        h.add(&(*eye)[0], 2);
       }
-  if (scene.ipd != Scene{}.ipd) h.value(scene.ipd);
+  if (scene.ipd != Scene{}.ipd) h.add(scene.ipd);
   if (scene.lens) {
     const float angles[] = {scene.lens->outward, scene.lens->inward, scene.lens->up, scene.lens->down};
-    h.floats(angles, 4);
+    h.add(angles, 4);
   }
 }
 
@@ -195,48 +165,48 @@ std::vector<glm::mat4> worldTransforms(const Scene& scene) {
 
 uint64_t contentHash(const Scene& scene) {
   Hasher h;
-  h.value(uint64_t(scene.textures.size()));
+  h.add(uint64_t(scene.textures.size()));
   for (const Texture& t : scene.textures) {
-    h.value(t.width);
-    h.value(t.height);
-    h.value(uint32_t(t.srgb));
-    h.array(t.rgba);
+    h.add(t.width);
+    h.add(t.height);
+    h.add(uint32_t(t.srgb));
+    h.add(t.rgba);
   }
-  h.value(uint64_t(scene.materials.size()));
+  h.add(uint64_t(scene.materials.size()));
   for (const Material& m : scene.materials) hash(h, m);
-  h.value(uint64_t(scene.meshes.size()));
+  h.add(uint64_t(scene.meshes.size()));
   for (const Mesh& mesh : scene.meshes) {
-    h.value(uint64_t(mesh.primitives.size()));
+    h.add(uint64_t(mesh.primitives.size()));
     for (const Primitive& p : mesh.primitives) {
-      h.array(p.positions);
-      h.array(p.normals);
-      h.array(p.uvs);
-      h.array(p.indices);
-      h.value(p.material);
+      h.add(p.positions);
+      h.add(p.normals);
+      h.add(p.uvs);
+      h.add(p.indices);
+      h.add(p.material);
     }
   }
-  h.value(uint64_t(scene.nodes.size()));
+  h.add(uint64_t(scene.nodes.size()));
   for (const Node& n : scene.nodes) hash(h, n);
-  h.value(uint64_t(scene.lights.size()));
+  h.add(uint64_t(scene.lights.size()));
   for (const Light& l : scene.lights) hash(h, l);
-  h.value(uint64_t(scene.cameras.size()));
+  h.add(uint64_t(scene.cameras.size()));
   for (const Camera& c : scene.cameras) hash(h, c);
-  h.value(uint64_t(scene.cameraPath.size()));
+  h.add(uint64_t(scene.cameraPath.size()));
   for (const CameraKey& k : scene.cameraPath) {
-    h.value(k.time);
+    h.add(k.time);
     hash(h, k.camera);
   }
-  h.value(uint64_t(scene.gaze.size()));
+  h.add(uint64_t(scene.gaze.size()));
   for (const GazeSample& g : scene.gaze) {
-    h.value(g.time);
-    h.floats(&g.position[0], 2);
-    h.value(uint32_t(g.valid));
+    h.add(g.time);
+    h.add(&g.position[0], 2);
+    h.add(uint32_t(g.valid));
   }
-  h.value(scene.exposure);
-  h.floats(&scene.environment[0], 3);
+  h.add(scene.exposure);
+  h.add(&scene.environment[0], 3);
   hashMotion(h, scene);
   hashAnimation(h, scene);
-  return h.digest();
+  return h.value();
 }
 
 std::vector<std::pair<std::string, int64_t>> quantities(const Scene& scene, const Geometry& geometry) {

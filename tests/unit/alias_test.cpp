@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/gpu/format.h"
 #include "tests/unit/graph_support.h"
 
 namespace fovea::graph::test {
@@ -22,6 +23,15 @@ std::vector<uint64_t> offsets(const std::vector<AliasRequest>& requests, uint64_
 }
 
 using Offsets = std::vector<uint64_t>;
+
+TEST(EstimateMemory, TexelsHaveTheSizeOfTheirFormat) {
+  for (const gpu::FormatInfo& info : gpu::formats()) {
+    ResourceDesc desc;
+    desc.format = info.format;
+    desc.width = desc.height = 16;
+    EXPECT_EQ(estimateMemory(desc).bytes, 256u * info.bytesPerTexel) << info.name;
+  }
+}
 
 TEST(Alias, DisjointLivesShare) {
   EXPECT_EQ(offsets({request(0, 0, 1, 100), request(1, 2, 3, 100), request(2, 4, 5, 60)}),

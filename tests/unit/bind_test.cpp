@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "framework/gpu/format.h"
 #include "framework/graph/verify/checker.h"
 #include "tests/unit/graph_support.h"
 
@@ -175,24 +176,27 @@ TEST(Bind, ExternalInputs) {
 }
 
 TEST(Bind, FloatInputsTakeAnyFloatFormatButNoIntegers) {
-  Registry registry;
-  PassDeclaration f("make", "Makes"), u("make-ids", "Makes ids"), r("any", "Reads");
-  f.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM), Usage::StorageWrite, "made");
-  u.output("image", image2D(VK_FORMAT_R32_UINT), Usage::StorageWrite, "made");
-  r.input("image", image2D(), Usage::Sampled, "read");
-  r.output("out", image2D(kColor), Usage::StorageWrite, "made");
-  for (const PassDeclaration& d : {f, u, r}) registry.add(d, nullptr);
-  Diagnostics good, bad;
-  EXPECT_NO_THROW(bindText(
-      R"({"passes": {"m": {"type": "make"}, "r": {"type": "any", "inputs": {"image": "m"}}}, "outputs": {"o": "r"}})",
-      registry, good));
-  EXPECT_THROW(
-      bindText(
-          R"({"passes": {"m": {"type": "make-ids"}, "r": {"type": "any", "inputs": {"image": "m"}}}, "outputs": {"o": "r"}})",
-          registry, bad),
-      Error);
-  EXPECT_THAT(bad.format(),
-              HasSubstr("`image` wants an image of floating-point texels, but `m` is an image of r32ui"));
+  for (const gpu::FormatInfo& format : gpu::formats()) {
+    if (format.depth) continue;
+    Registry registry;
+    PassDeclaration make("make", "Makes"), any("any", "Reads");
+    make.output("image", image2D(format.format), Usage::StorageWrite, "made");
+    any.input("image", image2D(), Usage::Sampled, "read");
+    any.output("out", image2D(kColor), Usage::StorageWrite, "made");
+    for (const PassDeclaration& d : {make, any}) registry.add(d, nullptr);
+    const char* text =
+        R"({"passes": {"m": {"type": "make"}, "r": {"type": "any", "inputs": {"image": "m"}}}, "outputs": {"o": "r"}})";
+    Diagnostics messages;
+    const std::string_view name = format.name;
+    if (!name.ends_with("i")) {
+      EXPECT_NO_THROW(bindText(text, registry, messages)) << name;
+      continue;
+    }
+    EXPECT_THROW(bindText(text, registry, messages), Error) << name;
+    EXPECT_THAT(messages.format(),
+                HasSubstr(fmt::format(
+                    "`image` wants an image of floating-point texels, but `m` is an image of {}", name)));
+  }
 }
 
 TEST(Bind, DeviceLimitsNameThePassTheLimitAndWhatToChange) {
@@ -349,6 +353,10 @@ TEST(Declarations, ThatContradictThemselvesAreRefused) {
               HasSubstr("a buffer cannot have"));
   EXPECT_THAT(with([&](PassDeclaration& d) { d.output("a", image2D(), Usage::StorageWrite, ""); }),
               HasSubstr("needs a format"));
+  EXPECT_THAT(with([&](PassDeclaration& d) {
+                d.output("a", image2D(VK_FORMAT_D32_SFLOAT_S8_UINT), Usage::TransferWrite, "");
+              }),
+              HasSubstr("port `a`: VkFormat 130 is not one of fovea's formats"));
   EXPECT_THAT(with([&](PassDeclaration& d) { d.input("a", buffer("T", 0), Usage::StorageRead, ""); }),
               HasSubstr("needs a stride"));
   EXPECT_THAT(with([&](PassDeclaration& d) { d.input("a", image, Usage::HostRead, ""); }),

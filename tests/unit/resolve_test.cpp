@@ -104,36 +104,35 @@ TEST(Merge, PlacesPointIntoTheFileTheValueCameFrom) {
 struct Loaded {
   Description description;
   Diagnostics messages;
-  std::string text(Symbol s) const { return std::string(s == kNone ? "-" : description.symbols[s]); }
   // "pass.port.member@previous"
   std::string wire(const WireDescription& w) const {
     std::string t =
-        w.external != kNone ? "inputs." + text(description.externals[w.external].name) : text(w.pass);
-    if (w.port != kNone) t += "." + text(w.port);
-    if (w.member != kNone) t += "." + text(w.member);
+        w.external ? "inputs." + description.externals[*w.external].name : description.passes[w.pass].name;
+    if (!w.port.empty()) t += "." + std::string(w.port);
+    if (!w.member.empty()) t += "." + std::string(w.member);
     return w.previous ? t + "@previous" : t;
   }
   std::vector<std::string> passes() const {
     std::vector<std::string> names;
-    for (const PassDescription& p : description.passes) names.push_back(text(p.name));
+    for (const PassDescription& p : description.passes) names.push_back(p.name);
     return names;
   }
   std::string input(const std::string& pass, const std::string& port) const {
     for (const PassDescription& p : description.passes)
-      for (uint32_t i = 0; text(p.name) == pass && i < p.inputCount; ++i)
-        if (description.wires[p.firstInput + i].target == port)
+      for (uint32_t i = 0; p.name == pass && i < p.inputCount; ++i)
+        if (description.wires[p.firstInput + i].target() == port)
           return wire(description.wires[p.firstInput + i]);
     return "none";
   }
   std::string parameter(const std::string& pass, const std::string& name) const {
     for (const PassDescription& p : description.passes) {
-      for (uint32_t i = 0; text(p.name) == pass && i < p.parameterCount; ++i) {
+      for (uint32_t i = 0; p.name == pass && i < p.parameterCount; ++i) {
         const ParameterDescription& v = description.parameters[p.firstParameter + i];
-        if (v.name != name) continue;
-        if (v.type == json::Value::Type::String) return "\"" + text(v.text) + "\"";
-        if (v.type == json::Value::Type::Real) return fmt::format("{}", v.real);
-        if (v.type == json::Value::Type::Bool) return v.integer ? "true" : "false";
-        return std::to_string(v.integer);
+        if (v.given->key != name) continue;
+        if (v.value->isString()) return "\"" + v.value->string + "\"";
+        if (v.value->isBool()) return v.value->boolean ? "true" : "false";
+        if (!v.value->isInt()) return fmt::format("{}", v.value->real);
+        return std::to_string(v.value->integer);
       }
     }
     return "none";
@@ -327,7 +326,7 @@ TEST_F(SubGraphs, HaveTheirOwnParametersAndView) {
   const Loaded l = loadFrom(folder, "stereo.json");
   EXPECT_EQ(l.parameter("left/deferred", "radius"), "0.5");
   EXPECT_EQ(l.parameter("right/deferred", "radius"), "0.25");
-  auto view = [&](size_t i) { return l.text(l.description.passes[i].view); };
+  auto view = [&](size_t i) { return l.description.passes[i].view.value_or("-"); };
   EXPECT_EQ(view(0), "-");
   EXPECT_EQ(view(1), "left");
   EXPECT_EQ(view(3), "main");  // its own

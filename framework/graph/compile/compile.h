@@ -90,7 +90,7 @@ class PlanCache {
   size_t hits() const { return hits_; }
 
  private:
-  std::vector<std::pair<uint64_t, std::shared_ptr<const Plan>>> plans_;  // most recent last; only a few
+  std::vector<std::shared_ptr<const Plan>> plans_;  // most recent last; only a few
   size_t hits_ = 0;
 };
 

@@ -3,20 +3,80 @@
 
 #include <algorithm>
 
-#include "framework/base/same_text.h"
 #include "framework/gpu/format.h"
-#include "framework/graph/compile/binder.h"
-#include "framework/graph/pass/validate.h"
+#include "framework/graph/compile/binding.h"
 
 namespace fovea::graph::detail {
 
+std::string wirePath(const Binding& b, const Port& port) {
+  if (!port.spec) return json::joinPath("outputs", port.wire->target());
+  return passPath(b, port.pass, json::joinPath("inputs", port.wire->target()));
+}
+
+uint32_t versionSeen(const Binding& b, const Port& port, uint32_t resource) {
+  if (port.source == kNone) return 0;  // external, before any update
+  const Port& source = b.ports[port.source];
+  if (source.firstVersion == kNone) return 0;  // after a mistake
+  return b.versions[source.firstVersion + (resource - source.value.first)];
+}
+
+uint32_t resourceOf(const Binding& b, const Port& port, uint32_t m) {
+  const PortValue& value = port.value;
+  if (value.count == 1 && port.spec->bundle.empty()) return value.first;
+  if (value.origin == port.spec) return value.first + m;
+  if (value.first == kNone) return kNone;
+  const std::string& wanted = port.spec->members[m].name;
+  if (value.origin) {
+    const std::vector<MemberSpec>& members = value.origin->members;
+    for (uint32_t k = 0; k < members.size(); ++k)
+      if (members[k].name == wanted) return value.first + k;
+  } else {
+    const std::vector<std::string>& members = b.description.externals[value.external].members;
+    for (uint32_t k = 0; k < members.size(); ++k)
+      if (members[k] == wanted) return value.first + k;
+  }
+  return kNone;
+}
+
 namespace {
 
-std::string formatName(VkFormat format) {
-  for (const gpu::FormatInfo& info : gpu::formats())
-    if (info.format == format) return std::string(info.name);
-  return fmt::format("VkFormat {}", static_cast<int>(format));
+void reportWire(Binding& b, const Port& port, std::string message, std::string remedy = {}) {
+  report(b, port.wire->written->value.where, wirePath(b, port), std::move(message), std::move(remedy));
 }
+
+// ---- Descriptions for messages -----------------------------------------------------------------------
+
+// "an image of rgba16f", "a buffer of Vpl (64 bytes each)"; of a ResourceSpec or a ResourceDesc.
+template <class Resource>
+std::string describeResource(const Resource& r) {
+  if (r.kind == ResourceKind::Buffer)
+    return fmt::format("a buffer of {} ({} bytes each)", r.element, r.stride);
+  const char* shape = r.volume ? "a 3D image" : r.array ? "an image array" : "an image";
+  if (r.format == VK_FORMAT_UNDEFINED) return fmt::format("{} of floating-point texels", shape);
+  return fmt::format("{} of {}", shape, gpu::formatInfo(r.format).name);
+}
+
+// The bundle type of a whole value; "" for plain values and for members.
+std::string_view bundleOf(const Binding& b, const PortValue& value) {
+  if (value.member != kNone) return {};
+  if (value.origin) return value.origin->bundle;
+  return value.external == kNone ? std::string_view() : b.description.externals[value.external].bundle;
+}
+
+std::string describeValue(const Binding& b, const PortValue& value) {
+  const std::string_view bundle = bundleOf(b, value);
+  if (!bundle.empty()) return fmt::format("a bundle `{}`", bundle);
+  if (value.origin)
+    return describeResource(value.origin->members[value.member == kNone ? 0 : value.member].resource);
+  return describeResource(b.graph.resources[value.first].desc);
+}
+
+std::string describeWanted(const PortSpec& spec) {
+  return spec.bundle.empty() ? describeResource(spec.members[0].resource)
+                             : fmt::format("a bundle `{}`", spec.bundle);
+}
+
+// ---- From names to ports -----------------------------------------------------------------------------
 
 bool producing(const PortSpec& spec) {
   return spec.direction == Direction::Output || spec.direction == Direction::InOut;
@@ -35,205 +95,58 @@ uint32_t onlyOutput(const std::vector<PortSpec>& specs) {
 }
 
 uint32_t outputNamed(const std::vector<PortSpec>& specs, std::string_view name) {
-  uint32_t k = 0;
-  for (const PortSpec& spec : specs) {
-    if (producing(spec) && sameText(spec.name, name)) return k;
-    ++k;
-  }
+  for (uint32_t k = 0; k < specs.size(); ++k)
+    if (producing(specs[k]) && specs[k].name == name) return k;
   return kNone;
 }
 
-}  // namespace
-
-std::string describeResource(ResourceKind kind, VkFormat format, bool volume, bool array,
-                             std::string_view element, uint32_t stride) {
-  if (kind == ResourceKind::Buffer) return fmt::format("a buffer of {} ({} bytes each)", element, stride);
-  const char* shape = volume ? "a 3D image" : array ? "an image array" : "an image";
-  if (format == VK_FORMAT_UNDEFINED) return fmt::format("{} of floating-point texels", shape);
-  return fmt::format("{} of {}", shape, formatName(format));
-}
-
-std::string Binder::describeValue(const PortValue& value) const {
-  if (value.origin && !value.origin->bundle.empty() && value.member == kNone)
-    return fmt::format("a bundle `{}`", value.origin->bundle);
-  if (value.external != kNone && value.member == kNone) {
-    const std::string_view bundle = text(description_.externals[value.external].bundle);
-    if (!bundle.empty()) return fmt::format("a bundle `{}`", bundle);
-  }
-  if (value.origin) {
-    const ResourceSpec& r = value.origin->members[value.member == kNone ? 0 : value.member].resource;
-    return describeResource(r.kind, r.format, r.volume, r.array, r.element, r.stride);
-  }
-  const ResourceDesc& d = graph_.resources[value.first].desc;
-  return describeResource(d.kind, d.format, d.volume, d.array, d.element, d.stride);
-}
-
-std::string Binder::describeWanted(const PortSpec& spec) const {
-  if (!spec.bundle.empty()) return fmt::format("a bundle `{}`", spec.bundle);
-  const ResourceSpec& r = spec.members[0].resource;
-  return describeResource(r.kind, r.format, r.volume, r.array, r.element, r.stride);
-}
-
-std::string Binder::wirePath(const PortState& port) const {
-  const WireDescription& wire = description_.wires[port.wire];
-  return passPath(port.pass, json::joinPath("inputs", wire.target));
-}
-
-// ---- From names to ports -----------------------------------------------------------------------------
-
-void Binder::assignWires() {
-  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
-    const PassDescription& from = description_.passes[p];
-    const PassDeclaration* declaration = graph_.passes[p].declaration;
-    if (!declaration) continue;
-    const std::vector<PortSpec>& specs = declaration->ports;
-    const size_t count = specs.size();
-    // Inputs are mostly wired in the order of declaration, so the search starts where the last one was found.
-    size_t guess = 0;
-    for (uint32_t i = 0; i < from.inputCount; ++i) {
-      const WireDescription& wire = description_.wires[from.firstInput + i];
-      const std::string_view name = wire.target;
-      size_t k = 0;
-      for (; k < count; ++k, ++guess) {
-        if (guess >= count) guess = 0;
-        if (sameText(specs[guess].name, name)) break;
-      }
-      if (k < count && !makes(specs[guess])) {
-        portsOf(p)[guess].wire = from.firstInput + i;
-        ++guess;
-        continue;
-      }
-      std::vector<std::string> names;
-      for (const PortSpec& spec : specs)
-        if (spec.direction == Direction::Input || spec.direction == Direction::InOut)
-          names.push_back(spec.name);
-      const std::string nearest = nearestName(name, names);
-      error(wire.keyPlace, passPath(p, json::joinPath("inputs", name)),
-            k < count ? fmt::format("`{}` is an output of `{}`, not an input", name, declaration->type)
-                      : fmt::format("`{}` has no input `{}`", declaration->type, name),
-            !nearest.empty() ? fmt::format("did you mean `{}`?", nearest)
-            : names.empty()  ? std::string("it has none")
-                             : fmt::format("it has: {}", fmt::join(names, ", ")));
-    }
-  }
-}
-
-// Finds the port of `pass` that the wire names; false if there is none.
-inline bool Binder::selectPort(const WireDescription& wire, uint32_t pass, uint32_t& port, uint32_t& member) {
-  const std::vector<PortSpec>& specs = graph_.passes[pass].declaration->ports;
-  Symbol memberName = wire.member;
-  port = wire.port == kNone ? onlyOutput(specs) : outputNamed(specs, text(wire.port));
-  if (port == kNone && wire.port != kNone && wire.member == kNone) {
+// Finds the port that the wire names, and the member of it; false if there is none.
+bool selectPort(const std::vector<PortSpec>& specs, const WireDescription& wire, uint32_t& port,
+                uint32_t& member) {
+  std::string_view memberName = wire.member;
+  port = wire.port.empty() ? onlyOutput(specs) : outputNamed(specs, wire.port);
+  if (port == kNone && wire.member.empty()) {
     port = onlyOutput(specs);  // "surface.position": a member of the only output
     memberName = wire.port;
   }
   member = kNone;
-  return port != kNone && (memberName == kNone || selectMember(specs[port], memberName, member));
-}
-
-bool Binder::selectMember(const PortSpec& spec, Symbol name, uint32_t& member) const {
-  for (uint32_t m = 0; m < spec.members.size(); ++m)
-    if (spec.members[m].name == text(name)) member = m;
+  if (port == kNone || memberName.empty()) return port != kNone;
+  for (uint32_t m = 0; m < specs[port].members.size(); ++m)
+    if (specs[port].members[m].name == memberName) member = m;
   return member != kNone;
 }
 
-// Takes the value of the port's source, or the member of it that the wire names.
-inline void Binder::takeValue(PortState& port) {
-  const uint32_t member = port.value.member;
-  port.state = 2;
-  port.value = port.source == kNone ? PortValue{} : ports_[port.source].value;
-  if (port.value.first != kNone && member != kNone) takeMember(port, member);
-}
-
-void Binder::connectWire(PortState& port, const WireDescription& wire) {
-  port.previous = wire.previous;
-  if (wire.external != kNone) return connectExternal(port, wire);
-  const uint32_t pass = passBySymbol_[wire.pass];
-  if (pass == kNone || !graph_.passes[pass].declaration) {
-    port.state = 2;  // the unknown pass or its unknown type has been reported
-    return;
-  }
-  uint32_t index, member;
-  if (!selectPort(wire, pass, index, member)) return reportNoOutput(port, wire, pass);
-  port.source = firstPort_[pass] + index;
-  port.value.member = member;
-  inOrder_ &= port.previous || pass < port.pass;
-  if (ports_[port.source].state == 2) takeValue(port);  // otherwise when its value is followed
-}
-
-void Binder::connectExternal(PortState& port, const WireDescription& wire) {
-  const ExternalDescription& external = description_.externals[wire.external];
-  port.value = {externalFirst_[wire.external], static_cast<uint32_t>(external.members.size()), nullptr, kNone,
-                wire.external};
-  port.state = 2;
-  if (wire.member == kNone) return;
-  const auto at = std::find(external.members.begin(), external.members.end(), wire.member);
-  port.value.member = static_cast<uint32_t>(at - external.members.begin());
-  port.value.first += port.value.member;
-  port.value.count = 1;
-  if (at != external.members.end()) return;
-  port.value = {};
-  error(wire.place, connectedPath(port, wire),
-        fmt::format("the input `{}` has no member `{}`", text(external.name), text(wire.member)));
-}
-
-void Binder::reportNoOutput(PortState& port, const WireDescription& wire, uint32_t pass) {
-  port.state = 2;
+void reportNoOutput(Binding& b, const Port& port) {
+  const WireDescription& wire = *port.wire;
+  const std::string& name = b.description.passes[wire.pass].name;
   std::vector<std::string> names;
-  const std::string name(text(description_.passes[pass].name));
-  for (const PortSpec& spec : graph_.passes[pass].declaration->ports) {
+  for (const PortSpec& spec : b.graph.passes[wire.pass].declaration->ports) {
     if (!producing(spec)) continue;
     names.push_back(name + "." + spec.name);
-    if (wire.member == kNone && spec.bundle.empty()) continue;
+    if (wire.member.empty() && spec.bundle.empty()) continue;
     for (const MemberSpec& m : spec.members)
       if (!m.name.empty()) names.push_back(name + "." + spec.name + "." + m.name);
   }
-  const std::string nearest = nearestName(wire.written, names);
-  error(wire.place, connectedPath(port, wire),
-        wire.port == kNone ? fmt::format("`{}` has {} outputs: name one", wire.written, names.size())
-                           : fmt::format("no output `{}`", wire.written),
-        !nearest.empty() && wire.port != kNone ? fmt::format("did you mean `{}`?", nearest)
-        : names.empty()                        ? fmt::format("`{}` has no outputs", name)
-                                               : fmt::format("there is: {}", fmt::join(names, ", ")));
-}
-
-// The place where a wire of a pass or of the graph's outputs is written.
-std::string Binder::connectedPath(const PortState& port, const WireDescription& wire) const {
-  return port.pass == kNone ? json::joinPath("outputs", wire.target) : wirePath(port);
+  const std::string nearest = nearestName(wire.text(), names);
+  reportWire(b, port,
+             wire.port.empty() ? fmt::format("`{}` has {} outputs: name one", wire.text(), names.size())
+                               : fmt::format("no output `{}`", wire.text()),
+             !nearest.empty() && !wire.port.empty() ? fmt::format("did you mean `{}`?", nearest)
+             : names.empty()                        ? fmt::format("`{}` has no outputs", name)
+                                                    : fmt::format("there is: {}", fmt::join(names, ", ")));
 }
 
 // ---- Values ------------------------------------------------------------------------------------------
 
-void Binder::followValues() {
-  for (PortState& port : ports_)
-    if (port.wire != kNone) connectWire(port, description_.wires[port.wire]);
-  if (!inPlace_) return;  // all sources were outputs
-  for (uint32_t i = 0; i < ports_.size(); ++i)
-    if (ports_[i].state == 0) followValue(i);
-}
-
-// An in-out port offers what it is wired to: walks up to a port whose value is known, then down again.
-void Binder::followValue(uint32_t port) {
-  ScratchVector<uint32_t>& chain = chain_;
-  chain.clear();
-  uint32_t at = port;
-  while (at != kNone && ports_[at].state == 0) {
-    ports_[at].state = 1;
-    chain.push_back(at);
-    at = ports_[at].source;
-  }
-  if (at != kNone && ports_[at].state == 1 && ports_[at].wire != kNone) {
-    error(description_.wires[ports_[at].wire].place, wirePath(ports_[at]),
-          "in-place updates wired in a circle: no pass makes the first value",
-          "wire one of them to an output");
-  }
-  for (size_t i = chain.size(); i-- > 0;) takeValue(ports_[chain[i]]);
-}
-
-void Binder::takeMember(PortState& port, uint32_t member) {
+// Takes the value of the port's source, or the member of it that the wire names.
+void takeValue(Binding& b, Port& port) {
+  const uint32_t member = port.value.member;
+  port.state = Port::State::Known;
+  port.value = port.source == kNone ? PortValue{} : b.ports[port.source].value;
   PortValue& value = port.value;
+  if (value.first == kNone || member == kNone) return;
   // The member's name was looked up in the source's declaration; an in-out port there may list fewer members.
-  const std::string& name = ports_[port.source].spec->members[member].name;
+  const std::string& name = b.ports[port.source].spec->members[member].name;
   value.member = member;
   if (value.origin)
     for (uint32_t m = 0; m < value.origin->members.size(); ++m)
@@ -242,126 +155,184 @@ void Binder::takeMember(PortState& port, uint32_t member) {
   value.count = 1;
 }
 
-uint32_t Binder::resourceNamed(const PortValue& value, const std::string& member) const {
-  if (value.origin) {
-    const std::vector<MemberSpec>& members = value.origin->members;
-    for (uint32_t k = 0; k < members.size(); ++k)
-      if (members[k].name == member) return value.first + k;
-  } else {
-    const std::vector<Symbol>& members = description_.externals[value.external].members;
-    for (uint32_t k = 0; k < members.size(); ++k)
-      if (text(members[k]) == member) return value.first + k;
+void connectExternal(Binding& b, Port& port) {
+  const WireDescription& wire = *port.wire;
+  const ExternalDescription& external = b.description.externals[*wire.external];
+  port.state = Port::State::Known;
+  port.value = {b.firstOfExternal[*wire.external], static_cast<uint32_t>(external.members.size()), nullptr,
+                kNone, *wire.external};
+  if (wire.member.empty()) return;
+  const auto at = std::find(external.members.begin(), external.members.end(), wire.member);
+  port.value.member = static_cast<uint32_t>(at - external.members.begin());
+  port.value.first += port.value.member;
+  port.value.count = 1;
+  if (at != external.members.end()) return;
+  port.value = {};
+  reportWire(b, port, fmt::format("the input `{}` has no member `{}`", external.name, wire.member));
+}
+
+// An in-out port offers what it is wired to: walks up to a port whose value is known, then down again.
+void followValue(Binding& b, uint32_t port) {
+  std::vector<uint32_t> chain;
+  uint32_t at = port;
+  while (at != kNone && b.ports[at].state == Port::State::Unknown) {
+    b.ports[at].state = Port::State::BeingFollowed;
+    chain.push_back(at);
+    at = b.ports[at].source;
   }
-  return kNone;
+  if (at != kNone && b.ports[at].state == Port::State::BeingFollowed && b.ports[at].wire)
+    reportWire(b, b.ports[at], "in-place updates wired in a circle: no pass makes the first value",
+               "wire one of them to an output");
+  for (size_t i = chain.size(); i-- > 0;) takeValue(b, b.ports[chain[i]]);
 }
 
 // ---- Types -------------------------------------------------------------------------------------------
 
-void Binder::checkTypes() {
-  for (PortState& port : ports_) {
-    const PortSpec& spec = *port.spec;
-    if (makes(spec)) continue;
-    if (port.wire == kNone && !spec.optional) reportUnwired(port, spec);
-    if (port.value.first != kNone) checkPort(port, spec);
-  }
-}
-
-void Binder::reportUnwired(const PortState& port, const PortSpec& spec) {
-  const PassDescription& pass = description_.passes[port.pass];
-  // A wire that was given but could not be resolved has been reported already.
-  if (diagnostics_.hasErrors()) {
-    const std::string path = passPath(port.pass, "inputs." + spec.name);
-    const bool said = std::any_of(diagnostics_.list().begin(), diagnostics_.list().end(),
-                                  [&](const Diagnostic& d) { return d.path == path; });
-    if (said || pass.type == kNone) return;
-  }
-  error(pass.place, passPath(port.pass, "inputs"),
-        fmt::format("`{}`: the input `{}` ({}) is not wired", graph_.passes[port.pass].name, spec.name,
-                    describeWanted(spec)),
-        missingRemedy(spec));
-}
-
-// The bundle type of a whole value; "" for plain values and for members.
-std::string_view Binder::bundleOf(const PortValue& value) const {
-  if (value.member != kNone) return {};
-  if (value.origin) return value.origin->bundle;
-  return value.external == kNone ? std::string_view() : text(description_.externals[value.external].bundle);
-}
-
-void Binder::checkPort(PortState& port, const PortSpec& spec) {
-  if (port.previous && spec.direction == Direction::InOut) {
-    error(description_.wires[port.wire].place, wirePath(port),
-          fmt::format("`{}` is updated in place, last frame's value cannot be", spec.name),
-          "wire it without `@previous`");
-    port.value = {};
-    return;
-  }
-  if (!sameText(bundleOf(port.value), spec.bundle)) return reportMisfit(port, spec, kNone);
-  uint32_t m = 0;
-  for (const MemberSpec& member : spec.members) {
-    const uint32_t resource = resourceOf(port, m);
-    if (resource == kNone || !fits(member, resource)) return reportMisfit(port, spec, m);
-    ++m;
-  }
-}
-
-// `m` is the first member that does not fit, or kNone if the value as a whole does not.
-void Binder::reportMisfit(const PortState& port, const PortSpec& spec, uint32_t m) {
-  const std::string why = m == kNone ? std::string() : describeMisfit(port, spec.members[m], m);
-  const WireDescription& wire = description_.wires[port.wire];
-  std::string remedy;
-  if (!bundleOf(port.value).empty() && spec.bundle.empty() && port.value.origin)
-    for (const MemberSpec& member : port.value.origin->members) {
-      const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
-      if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
-          remedy.empty())
-        remedy = fmt::format("wire a member of it, such as `{}.{}`", wire.written, member.name);
-    }
-  error(wire.place, wirePath(port),
-        fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), wire.written,
-                    describeValue(port.value), why.empty() ? why : ": " + why),
-        remedy);
-}
-
 // Sizes are evaluated later, so only declarations are compared.
-bool Binder::fits(const MemberSpec& wanted, uint32_t resource) const {
+bool fits(const Binding& b, const MemberSpec& wanted, uint32_t resource) {
   const ResourceSpec& want = wanted.resource;
   const auto compare = [&](const auto& have) {
     if (have.kind != want.kind) return false;
     if (have.kind == ResourceKind::Buffer) return have.element == want.element && have.stride == want.stride;
-    return have.volume == want.volume && have.array == want.array &&
-           (have.format == want.format ||
-            (want.format == VK_FORMAT_UNDEFINED && !isIntegerFormat(have.format)));
+    if (have.volume != want.volume || have.array != want.array) return false;
+    if (want.format != VK_FORMAT_UNDEFINED) return have.format == want.format;
+    const gpu::FormatInfo* format = gpu::findFormat(have.format);
+    return !format || !format->integer();
   };
-  const MemberSpec* made = resourceSpec_[resource];
-  return made ? compare(made->resource) : compare(graph_.resources[resource].desc);
+  const MemberSpec* made = b.origins[resource].spec;
+  return made ? compare(made->resource) : compare(b.graph.resources[resource].desc);
 }
 
-// "" if the description of the value as a whole is enough.
-std::string Binder::describeMisfit(const PortState& port, const MemberSpec& wanted, uint32_t m) const {
-  const uint32_t resource = resourceOf(port, m);
-  if (resource == kNone) return fmt::format("it lacks the member `{}`", wanted.name);
-  if (wanted.name.empty()) return {};
-  const auto describe = [&](const auto& have) {
-    return fmt::format(
-        "its member `{}` is {}", wanted.name,
-        describeResource(have.kind, have.format, have.volume, have.array, have.element, have.stride));
-  };
-  const MemberSpec* made = resourceSpec_[resource];
-  return made ? describe(made->resource) : describe(graph_.resources[resource].desc);
-}
-
-std::string Binder::missingRemedy(const PortSpec& spec) const {
+std::string missingRemedy(const Binding& b, const PortSpec& spec) {
   std::vector<std::string> names;
-  const MemberSpec& wanted = spec.members[0];
-  for (const PortState& port : ports_) {
+  for (const Port& port : b.ports) {
     const PortSpec& other = *port.spec;
     if (other.direction != Direction::Output || other.bundle != spec.bundle || names.size() >= 6) continue;
-    if (spec.bundle.empty() && !fits(wanted, port.value.first)) continue;
-    names.push_back(fmt::format("{}.{}", graph_.passes[port.pass].name, other.name));
+    if (spec.bundle.empty() && !fits(b, spec.members[0], port.value.first)) continue;
+    names.push_back(fmt::format("{}.{}", b.graph.passes[port.pass].name, other.name));
   }
   if (names.empty()) return "no pass of the graph makes one";
   return fmt::format("these would fit: {}", fmt::join(names, ", "));
+}
+
+void reportUnwired(Binding& b, const Port& port) {
+  const PortSpec& spec = *port.spec;
+  // A wire that was given but could not be resolved has been reported already.
+  const std::string path = passPath(b, port.pass, "inputs." + spec.name);
+  for (const Diagnostic& d : b.diagnostics.list())
+    if (d.path == path && b.diagnostics.hasErrors()) return;
+  report(b, b.description.passes[port.pass].written->keyWhere, passPath(b, port.pass, "inputs"),
+         fmt::format("`{}`: the input `{}` ({}) is not wired", b.graph.passes[port.pass].name, spec.name,
+                     describeWanted(spec)),
+         missingRemedy(b, spec));
+}
+
+// "" if the description of the value as a whole is enough.
+std::string describeMisfit(const Binding& b, const Port& port, uint32_t m) {
+  const MemberSpec& wanted = port.spec->members[m];
+  const uint32_t resource = resourceOf(b, port, m);
+  if (resource == kNone) return fmt::format(": it lacks the member `{}`", wanted.name);
+  if (wanted.name.empty()) return {};
+  const MemberSpec* made = b.origins[resource].spec;
+  return fmt::format(
+      ": its member `{}` is {}", wanted.name,
+      made ? describeResource(made->resource) : describeResource(b.graph.resources[resource].desc));
+}
+
+// `m` is the first member that does not fit, or kNone if the value as a whole does not.
+void reportMisfit(Binding& b, const Port& port, uint32_t m) {
+  const PortSpec& spec = *port.spec;
+  std::string remedy;
+  if (!bundleOf(b, port.value).empty() && spec.bundle.empty() && port.value.origin)
+    for (const MemberSpec& member : port.value.origin->members) {
+      const ResourceSpec &have = member.resource, &want = spec.members[0].resource;
+      if (have.kind == want.kind && (have.format == want.format || want.format == VK_FORMAT_UNDEFINED) &&
+          remedy.empty())
+        remedy = fmt::format("wire a member of it, such as `{}.{}`", port.wire->text(), member.name);
+    }
+  reportWire(
+      b, port,
+      fmt::format("`{}` wants {}, but `{}` is {}{}", spec.name, describeWanted(spec), port.wire->text(),
+                  describeValue(b, port.value), m == kNone ? std::string() : describeMisfit(b, port, m)),
+      remedy);
+}
+
+void checkPort(Binding& b, Port& port) {
+  const PortSpec& spec = *port.spec;
+  if (port.previous() && spec.direction == Direction::InOut) {
+    reportWire(b, port, fmt::format("`{}` is updated in place, last frame's value cannot be", spec.name),
+               "wire it without `@previous`");
+    port.value = {};
+    return;
+  }
+  if (bundleOf(b, port.value) != spec.bundle) return reportMisfit(b, port, kNone);
+  for (uint32_t m = 0; m < spec.members.size(); ++m) {
+    const uint32_t resource = resourceOf(b, port, m);
+    if (resource == kNone || !fits(b, spec.members[m], resource)) return reportMisfit(b, port, m);
+  }
+}
+
+}  // namespace
+
+// ---- Steps -------------------------------------------------------------------------------------------
+
+void assignWires(Binding& b) {
+  for (uint32_t p = 0; p < b.graph.passes.size(); ++p) {
+    const PassDescription& from = b.description.passes[p];
+    const PassDeclaration* declaration = b.graph.passes[p].declaration;
+    if (!declaration) continue;
+    const std::span<Port> ports = b.portsOf(p);
+    // Inputs are mostly wired in the order of declaration, so the search starts after the last one found.
+    size_t next = 0;
+    for (uint32_t i = 0; i < from.inputCount; ++i) {
+      const WireDescription& wire = b.description.wires[from.firstInput + i];
+      const auto named = [&](const Port& port) { return port.spec->name == wire.target(); };
+      auto port = std::find_if(ports.begin() + next, ports.end(), named);
+      if (port == ports.end()) port = std::find_if(ports.begin(), ports.end(), named);
+      if (port != ports.end() && !makes(*port->spec)) {
+        port->wire = &wire;
+        next = port - ports.begin() + 1;
+        continue;
+      }
+      std::vector<std::string> names;
+      for (const PortSpec& spec : declaration->ports)
+        if (!makes(spec)) names.push_back(spec.name);
+      report(b, wire.written->keyWhere, passPath(b, p, json::joinPath("inputs", wire.target())),
+             port != ports.end()
+                 ? fmt::format("`{}` is an output of `{}`, not an input", wire.target(), declaration->type)
+                 : fmt::format("`{}` has no input `{}`", declaration->type, wire.target()),
+             remedyFor(wire.target(), names));
+    }
+  }
+}
+
+void connectWire(Binding& b, Port& port) {
+  const WireDescription& wire = *port.wire;
+  if (wire.external) return connectExternal(b, port);
+  port.state = Port::State::Known;  // without a value, if a mistake was or is reported
+  const PassDeclaration* declaration = b.graph.passes[wire.pass].declaration;
+  if (!declaration) return;
+  uint32_t index, member;
+  if (!selectPort(declaration->ports, wire, index, member)) return reportNoOutput(b, port);
+  port.source = b.firstPort[wire.pass] + index;
+  port.value.member = member;
+  port.state = Port::State::Unknown;
+  if (b.ports[port.source].state == Port::State::Known) takeValue(b, port);  // otherwise when it is followed
+}
+
+void followValues(Binding& b) {
+  for (Port& port : b.ports)
+    if (port.wire) connectWire(b, port);
+  for (uint32_t i = 0; i < b.ports.size(); ++i)
+    if (b.ports[i].state == Port::State::Unknown) followValue(b, i);
+}
+
+void checkTypes(Binding& b) {
+  for (Port& port : b.ports) {
+    if (makes(*port.spec)) continue;
+    if (!port.wire && !port.spec->optional) reportUnwired(b, port);
+    if (port.value.first != kNone) checkPort(b, port);
+  }
 }
 
 }  // namespace fovea::graph::detail

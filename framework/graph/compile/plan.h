@@ -1,84 +1,14 @@
-// The results of the compiler phases, as plain data. Each phase is a pure function of the previous result:
-//   document -> Description (resolve) -> BoundGraph (bind) -> Schedule -> lifetimes, alias, barriers -> Plan
+// The plan, as plain data: what the device does in every frame. compile() makes it of a bound graph.
 #pragma once
-
-#include <vulkan/vulkan_core.h>
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "fovea/graph.h"
-#include "fovea/pass.h"
-#include "framework/base/small_vector.h"
+#include "framework/graph/compile/bound.h"
 
 namespace fovea::graph {
-
-inline constexpr uint32_t kNone = ~0u;
-
-// Some constructors below do nothing but are not defaulted, because a defaulted one fills every byte with zeros
-// before the members are set, and lists grow by thousands of these elements.
-
-struct BoundResource {
-  BoundResource(Lifetime lives, uint32_t made) : lifetime(lives), versions(made) {}
-  std::string name;  // "surface.surface.position": pass, port and member of its first version
-  ResourceDesc desc;
-  Lifetime lifetime = Lifetime::Transient;
-  bool external = false;   // an input of the whole graph, in the caller's memory
-  bool history = false;    // a pass reads last frame's value; two copies swap every frame
-  bool output = false;     // an output of the graph, readable by transfer at the end of the frame
-  uint32_t usage = 0;      // union of the Usage bits of all passes
-  uint32_t versions = 0;   // number of versions that its writers make
-  uint32_t firstSlot = 0;  // Access::slot of version 0
-};
-
-// One access of a pass to a resource.
-struct Access {
-  uint32_t resource = kNone;
-  uint16_t port = 0, member = 0;  // in the declaration
-  Usage usage = Usage::None;
-  bool reads = false, writes = false;
-  bool previous = false;  // last frame's copy
-  uint32_t version = 0;   // writes: the version made; reads: the version seen (0 before any write)
-  uint32_t slot = 0;      // index among the versions of all resources; last frame's copy follows the last one
-  // For images: the layout while the pass runs, which its descriptors and attachments must name. All accesses of a
-  // pass to the image share one layout, as do all readers of one version (GENERAL if they want different ones).
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-};
-
-struct BoundPass {
-  explicit BoundPass(std::string_view called) : name(called) {}
-  std::string name;  // "left/blur" inside a prefixed sub-graph
-  const PassDeclaration* declaration = nullptr;
-  Parameters parameters;
-  uint32_t view = 0;                // index into BoundGraph::views
-  SmallVector<Access, 4> accesses;  // declaration order
-};
-
-// The access through which the pass reaches a port or a member ("surface.position"). Throws Error(Internal) with the
-// nearest name if the pass has none that is wired.
-uint32_t accessOf(const BoundPass& pass, std::string_view path);
-
-struct BoundOutput {
-  std::string name;
-  uint32_t resource = kNone;
-  uint32_t version = 0;  // must be the resource's last version
-};
-
-struct BoundGraph {
-  std::string name, description;
-  std::vector<std::string> views;                    // views used by a pass; [0] is "main" by default
-  std::vector<BoundPass> passes;                     // declaration order
-  std::shared_ptr<const std::vector<Value>> values;  // storage of the parameters of `passes`
-  std::vector<BoundResource> resources;
-  std::vector<BoundOutput> outputs;  // bundles are expanded: "surface.position"
-  uint32_t slots = 0;                // number of values of Access::slot
-  uint64_t hash = 0;                 // hash of everything the graph was derived from
-};
 
 struct ImageBarrier {
   uint32_t resource = kNone;
@@ -92,14 +22,13 @@ struct ImageBarrier {
 struct BarrierBatch {
   VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  SmallVector<ImageBarrier, 4> images;  // inline room for what a pass alone in its level reads and writes
+  std::vector<ImageBarrier> images;
   bool empty() const { return srcStage == 0 && dstStage == 0 && images.empty(); }
 };
 
 struct Level {
-  Level() {}
   BarrierBatch before;
-  SmallVector<uint32_t, 2> passes;  // indices into BoundGraph::passes, without hazards among them
+  std::vector<uint32_t> passes;  // indices into BoundGraph::passes, without hazards among them
 };
 
 // A dependency between commands, as one global memory barrier expresses it. Empty if nothing has to be waited for.
@@ -153,15 +82,5 @@ struct Plan {
   uint64_t bytesKept = 0;                         // kept and history resources
   uint64_t hash = 0;
 };
-
-// Layout and synchronization scope of a single access by itself; the layout in force is Access::layout. Host passes
-// reach their resources through copies: HostRead is a transfer read (TRANSFER_SRC), HostWrite a transfer write.
-struct AccessScope {
-  VkPipelineStageFlags2 stage = 0;
-  VkAccessFlags2 access = 0;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-};
-AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes);
-VkImageLayout accessLayout(Usage usage, bool reads, bool writes);  // only the layout
 
 }  // namespace fovea::graph

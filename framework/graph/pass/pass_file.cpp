@@ -46,8 +46,7 @@ class Reader {
     if (!document.isObject()) return d;
     places_->emplace("", document.where.location());
     reader.text("$schema");
-    d.doc = reader.text("doc");
-    if (!reader.has("doc")) reader.reportMissing("doc");
+    if (const json::Value* doc = reader.require("doc")) readDoc(d, *doc);
     d.usesView = reader.boolean("view", false);
     readPorts(d, reader.object("inputs"), "inputs", Direction::Input);
     readPorts(d, reader.object("updated"), "updated", Direction::InOut);
@@ -57,8 +56,7 @@ class Reader {
       for (const Member& m : params->members) readParameter(d, m);
     if (const json::Value* counters = reader.object("counters"))
       for (const Member& m : counters->members) readCounter(d, m);
-    if (!reader.has("steps")) reader.reportMissing("steps");
-    if (const json::Value* steps = reader.array("steps")) readSteps(d, *steps);
+    if (const json::Value* steps = reader.require("steps")) readSteps(d, *steps);
     reader.finish();
     d.places = places_;
     deriveKind(d);
@@ -70,6 +68,11 @@ class Reader {
   void error(const json::Position& where, const std::string& path, std::string message,
              std::string remedy = {}) {
     diagnostics_.error(where.location(), path, std::move(message), std::move(remedy));
+  }
+
+  void readDoc(PassDeclaration& d, const json::Value& doc) {
+    d.doc = doc.string;
+    if (!doc.isString()) error(doc.where, "doc", fmt::format("expected a text, found {}", doc.describe()));
   }
 
   void place(const std::string& path, const json::Position& where) {
@@ -282,6 +285,8 @@ class Reader {
   // ---- Steps -------------------------------------------------------------------------------------------
 
   void readSteps(PassDeclaration& d, const json::Value& steps) {
+    if (!steps.isArray())
+      return error(steps.where, "steps", fmt::format("expected an array, found {}", steps.describe()));
     for (size_t i = 0; i < steps.items.size(); ++i) {
       const json::Value& item = steps.items[i];
       const std::string path = fmt::format("steps[{}]", i);

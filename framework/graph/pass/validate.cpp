@@ -7,41 +7,9 @@
 #include <set>
 
 #include "fovea/error.h"
+#include "framework/gpu/format.h"
 
 namespace fovea::graph {
-
-bool isDepthFormat(VkFormat format) {
-  return format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT &&
-         format != VK_FORMAT_S8_UINT;
-}
-
-bool isIntegerFormat(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R8_UINT:
-    case VK_FORMAT_R8_SINT:
-    case VK_FORMAT_R8G8_UINT:
-    case VK_FORMAT_R8G8_SINT:
-    case VK_FORMAT_R8G8B8A8_UINT:
-    case VK_FORMAT_R8G8B8A8_SINT:
-    case VK_FORMAT_R16_UINT:
-    case VK_FORMAT_R16_SINT:
-    case VK_FORMAT_R16G16_UINT:
-    case VK_FORMAT_R16G16_SINT:
-    case VK_FORMAT_R16G16B16A16_UINT:
-    case VK_FORMAT_R16G16B16A16_SINT:
-    case VK_FORMAT_R32_UINT:
-    case VK_FORMAT_R32_SINT:
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R32G32_SINT:
-    case VK_FORMAT_R32G32B32A32_UINT:
-    case VK_FORMAT_R32G32B32A32_SINT:
-    case VK_FORMAT_R64_UINT:
-    case VK_FORMAT_R64_SINT:
-      return true;
-    default:
-      return false;
-  }
-}
 
 namespace {
 
@@ -156,7 +124,10 @@ class Validator {
       wrong(fmt::format("port `{}`: an input with a writing usage", path));
     if (port.direction != Direction::Input && !any(m.usage, kWriteUsages))
       wrong(fmt::format("port `{}`: nothing writes it; give it a writing usage", path));
-    if (any(m.usage, Usage::DepthAttachment) && !isDepthFormat(r.format) && r.format != VK_FORMAT_UNDEFINED)
+    const gpu::FormatInfo* format = gpu::findFormat(r.format);
+    if (image && r.format != VK_FORMAT_UNDEFINED && !format)
+      wrong(fmt::format("port `{}`: VkFormat {} is not one of fovea's formats", path, int(r.format)));
+    if (any(m.usage, Usage::DepthAttachment) && r.format != VK_FORMAT_UNDEFINED && !(format && format->depth))
       wrong(fmt::format("port `{}`: a depth attachment needs a depth format", path));
     const bool makes = port.direction == Direction::Output || port.direction == Direction::Scratch;
     if (image && makes && r.format == VK_FORMAT_UNDEFINED)

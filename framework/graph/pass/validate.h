@@ -22,8 +22,4 @@ inline constexpr Usage kBufferUsages = Usage::StorageRead | Usage::StorageWrite 
                                        Usage::TransferWrite | Usage::HostRead | Usage::HostWrite;
 inline constexpr Usage kHostUsages = Usage::HostRead | Usage::HostWrite;
 
-// True for depth-only and for depth-stencil formats.
-bool isDepthFormat(VkFormat format);
-bool isIntegerFormat(VkFormat format);
-
 }  // namespace fovea::graph

@@ -1,7 +1,5 @@
 #include "framework/scene/rays/ray_scene.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/base/hash.h"
 #include "framework/scene/rays/ray_tracer.h"
 
 namespace fovea::scene {
@@ -30,28 +29,9 @@ Mask makeMask(const Scene& scene, const Material& material) {
   return mask;
 }
 
-// Hashes content rather than addresses, because a scene that replaces another one may be at the same address.
-class ContentHash {
- public:
-  ContentHash() : state_(XXH3_createState(), &XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
-  template <class T>
-  void add(const T* data, uint64_t count) {
-    XXH3_64bits_update(state_.get(), &count, sizeof count);
-    if (count != 0) XXH3_64bits_update(state_.get(), data, count * sizeof(T));
-  }
-  template <class List>
-  void add(const List& list) {
-    add(list.data(), list.size());
-  }
-  XXH64_hash_t digest() const { return XXH3_64bits_digest(state_.get()); }
-
- private:
-  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
-};
-
 // Hash of everything but the positions of vertices that move.
-XXH64_hash_t stillKey(const Scene& scene, const Geometry& geometry) {
-  ContentHash hash;
+uint64_t stillKey(const Scene& scene, const Geometry& geometry) {
+  Hasher hash;
   hash.add(geometry.positions.data(), geometry.staticVertices());
   hash.add(geometry.triangles);
   hash.add(geometry.uvs);
@@ -66,14 +46,14 @@ XXH64_hash_t stillKey(const Scene& scene, const Geometry& geometry) {
     hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
     if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
   }
-  return hash.digest();
+  return hash.value();
 }
 
-XXH64_hash_t movingKey(const Geometry& geometry) {
-  ContentHash hash;
+uint64_t movingKey(const Geometry& geometry) {
+  Hasher hash;
   const size_t first = geometry.staticVertices();
   hash.add(geometry.positions.data() + first, geometry.positions.size() - first);
-  return hash.digest();
+  return hash.value();
 }
 
 std::unique_ptr<RayTracer> makeTracer(const Geometry& geometry, RayTracer::Accepts accepts,
@@ -193,12 +173,12 @@ double RayScene::surfaceArea() const { return impl_->area; }
 
 std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geometry& geometry) {
   struct Entry {
-    XXH64_hash_t still = 0, moving = 0;
+    uint64_t still = 0, moving = 0;
     std::shared_ptr<const RayScene> rays;
   };
   static std::mutex mutex;
   static std::array<Entry, 2> entries;  // the latest first
-  const XXH64_hash_t still = stillKey(scene, geometry), moving = movingKey(geometry);
+  const uint64_t still = stillKey(scene, geometry), moving = movingKey(geometry);
   const auto is = [&](const Entry& e) { return e.rays && e.still == still && e.moving == moving; };
   const std::scoped_lock lock(mutex);
   if (!is(entries[0])) std::swap(entries[0], entries[1]);
