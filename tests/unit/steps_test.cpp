@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "framework/graph/compile/steps.h"
+#include "framework/graph/steps/steps.h"
 #include "framework/graph/verify/checker.h"
 #include "tests/unit/random_graph.h"
 

@@ -17,9 +17,9 @@
 #include "framework/gpu/resources.h"
 #include "framework/gpu/timestamps.h"
 #include "framework/graph/compile/plan.h"
-#include "framework/graph/compile/steps.h"
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/run/execute.h"
+#include "framework/graph/steps/steps.h"
 
 namespace fovea::graph {
 

@@ -1,4 +1,4 @@
-#include "framework/graph/compile/steps.h"
+#include "framework/graph/steps/steps.h"
 
 #include <fmt/format.h>
 
