@@ -179,6 +179,9 @@ TEST_F(PassFiles, AreReportedWhereTheyAreWrong) {
   expectReport("{\"doc\": \"x\", \"steps\": [\n {\"shader\": \"a.comp\", \"groups\": [\"radius\"]}]}",
                "`radius` is over no whole-number parameter, choice or flag");
   expectReport("{\"doc\": \"x\",", "blur.pass.json:1:");
+  expectReport(R"({"doc": "x", "steps": [{"shader": ["a.comp"], "groups": [1]}]})",
+               "`shader`: expected a text");
+  expectReport(R"({"doc": "x", "steps": [{"shader": "", "groups": [1]}]})", "ends in `.comp`, not ``");
 }
 
 TEST_F(PassFiles, ReportAllMistakesOfAllFilesAtOnce) {

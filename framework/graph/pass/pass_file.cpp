@@ -330,7 +330,7 @@ class Reader {
 
   StepSpec* readKernel(PassDeclaration& d, ObjectReader& reader) {
     const std::string shader = reader.text("shader"),
-                      file = fs::absolute(file_.parent_path() / shader).lexically_normal().string();
+                      file = (fs::absolute(file_).parent_path() / shader).lexically_normal().string();
     if (reader.has("colors")) {
       std::vector<std::string> images;
       if (const json::Value* colors = reader.array("colors"))
