@@ -111,10 +111,8 @@ void readRootInputs(Expansion& all, Scope& scope) {
     if (!isName(member.key))
       report(all, scope, member.keyWhere, member.value,
              fmt::format("`{}` is no name for an input", member.key), "letters, digits, _ and -");
-    if (!member.value.isObject()) {
-      json::ObjectReader(member.value, "inputs", member.key, all.diagnostics);  // reports it
-      continue;
-    }
+    const json::ObjectReader reportsWhatIsNoObject(member.value, "inputs", member.key, all.diagnostics);
+    if (!member.value.isObject()) continue;
     std::vector<ExternalDescription>& externals = all.description.externals;
     scope.inputs.push_back({&member, false, false, nullptr, static_cast<uint32_t>(externals.size())});
     externals.push_back(readExternal(all, scope, member));
