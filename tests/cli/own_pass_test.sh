@@ -17,7 +17,7 @@ done
 
 echo "== installed headers"
 (cd "$prefix/include" && find . -name '*.h' | sort) >"$work/headers"
-printf './fovea/%s.h\n' error graph image pass registration scene test | diff - "$work/headers" ||
+printf './fovea/%s.h\n' declaration error graph image pass registration scene test | diff - "$work/headers" ||
   { echo "the installation holds other headers than the facade"; exit 1; }
 while read -r header; do
   echo "#include \"$header\"" >"$work/header.cpp"
@@ -81,4 +81,11 @@ mean() { oiiotool --stats "$1" | sed -n 's/.*Stats Avg: *\([0-9.]*\).*/\1/p'; }
 echo "mean of red: stock $(mean stock.png), outlined $(mean outlined.png)"
 awk -v a="$(mean stock.png)" -v b="$(mean outlined.png)" 'BEGIN { exit !(b > 0.5 * a && b < a) }' ||
   { echo "outlines must darken the picture a little"; exit 1; }
+echo "== passes in files"
+"$fovea" render own_pass/files/outlined.json "${common[@]}" -o file.png
+if idiff stock.png file.png >"$work/log"; then
+  echo "the outline pass in a file changed nothing"
+  exit 1
+fi
+for graph in blurred trails; do "$fovea" check "own_pass/files/$graph.json"; done
 echo "passed"

@@ -122,8 +122,11 @@ class Timings(CliTest):
         times = [t["frame"][key] for key in ("gpu_ms", "cpu_ms", "wall_ms")]
         self.assertGreaterEqual({p["name"] for p in t["passes"]}, {"gbuffer", "direct", "tonemap"})
         for p in t["passes"]:
-            self.assertEqual(set(p), {"name", "type", "gpu_ms", "cpu_ms"})
-            times += [p["gpu_ms"], p["cpu_ms"]]
+            self.assertEqual(set(p) - {"steps"}, {"name", "type", "gpu_ms", "cpu_ms"})
+            times += [p["gpu_ms"], p["cpu_ms"]] + [step["gpu_ms"] for step in p.get("steps", [])]
+        steps = {p["name"]: [step["name"] for step in p.get("steps", [])] for p in t["passes"]}
+        self.assertEqual(steps["gbuffer"], ["visibility", "resolve"])
+        self.assertEqual(steps["tonemap"], [])  # a single step is the pass
         for spread in times:
             self.assertEqual(set(spread), {"median", "min", "p95"})
             self.assertTrue(0 <= spread["min"] <= spread["median"] <= spread["p95"], spread)
