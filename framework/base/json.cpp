@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -302,11 +303,13 @@ void ObjectReader::wrong(std::string_view key, const Value& value, const std::st
 }
 
 const Value* ObjectReader::find(std::string_view key) {
-  const Value* value = value_.find(key);
-  if (value && std::find(known_.begin(), known_.end(), key) == known_.end()) ++found_;
   if (known_.empty()) known_.reserve(8);
   known_.push_back(key);
-  return value;
+  const Member* member = value_.findMember(key);
+  if (!member) return nullptr;
+  const auto index = static_cast<size_t>(member - value_.members.data());
+  if (index < 64) asked_ |= uint64_t(1) << index;
+  return &member->value;
 }
 
 const Value* ObjectReader::require(std::string_view key) {
@@ -400,7 +403,7 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 }
 
 void ObjectReader::finish() {
-  if (found_ == value_.members.size()) return;
+  if (value_.members.size() == static_cast<size_t>(std::popcount(asked_))) return;
   const std::vector<std::string> known(known_.begin(), known_.end());
   for (const Member& member : value_.members) {
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;

@@ -128,7 +128,7 @@ class ObjectReader {
   std::string_view parent_, key_;
   Diagnostics& diagnostics_;
   std::vector<std::string_view> known_;  // the keys that were asked for
-  size_t found_ = 0;                     // number of members that were asked for
+  uint64_t asked_ = 0;                   // a bit for each of the first 64 members that was asked for
 };
 
 // "a.b", or "b" if `path` is empty.

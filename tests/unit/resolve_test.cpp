@@ -333,6 +333,14 @@ TEST_F(SubGraphs, HaveTheirOwnParametersAndView) {
   EXPECT_EQ(view(4), "right");
 }
 
+TEST_F(SubGraphs, UnusedParametersAreReportedWhereTheyAreDeclared) {
+  folder.write("idle.json", "{\n  \"parameters\": {\"idle\": 1},\n  \"passes\": {\"a\": {\"type\": \"s\"}}}");
+  folder.write("given.json", R"({"parameters": {"r": 2},
+    "passes": {"left": {"graph": "idle.json", "parameters": {"idle": "$r"}}}})");
+  EXPECT_THAT(loadFrom(folder, "given.json").messages.format(),
+              HasSubstr("idle.json:2:18: warning: nothing uses the graph parameter `idle`"));
+}
+
 TEST_F(SubGraphs, CanBeOverridden) {
   const Loaded l =
       loadFrom(folder, "stereo.json", {{"left.n", "20"}, {"right/deferred.radius", "0.1"}, {"r", "0.75"}});

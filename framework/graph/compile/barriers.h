@@ -16,8 +16,8 @@ struct Barriers {
   std::vector<VkImageLayout> endLayout;
 };
 
-// The plan repeats every frame, so the state at its end is the state at its start: first rounds find that state, and the
-// last one writes the barriers.
+// The plan repeats every frame, so the state at its end is the state at its start: first rounds find that state, and
+// the last one writes the barriers.
 //
 // - All readers of one version, whatever their levels, are served by one barrier before the first of them.
 // - The memory hazards of a level are merged into one global barrier; an image has a barrier of its own

@@ -245,6 +245,12 @@ void makeExternals(Binding& b) {
 }
 
 void makeResources(Binding& b) {
+  size_t count = b.graph.resources.size();
+  for (const Port& port : b.ports)
+    if (makes(*port.spec)) count += port.spec->members.size();
+  b.graph.resources.reserve(count);
+  b.origins.reserve(count);
+  b.versions.reserve(count);
   for (Port& port : b.ports) {
     const PortSpec& spec = *port.spec;
     if (!makes(spec)) continue;

@@ -74,9 +74,8 @@ ResourceDesc readResource(Expansion& all, Scope& scope, json::ObjectReader& read
   return desc;
 }
 
-ExternalDescription readExternal(Expansion& all, Scope& scope, const Member& member) {
-  const std::string path = json::joinPath("inputs", member.key);
-  json::ObjectReader reader(member.value, path, all.diagnostics);
+ExternalDescription readExternal(Expansion& all, Scope& scope, const Member& member,
+                                 json::ObjectReader& reader) {
   ExternalDescription external{member.key, {}, {}, {}, member.keyWhere};
   reader.text("doc");
   if (!reader.has("bundle")) {
@@ -91,7 +90,7 @@ ExternalDescription readExternal(Expansion& all, Scope& scope, const Member& mem
       return external;
     }
     for (const Member& m : members->members) {
-      json::ObjectReader memberReader(m.value, json::joinPath(path, "members." + m.key), all.diagnostics);
+      json::ObjectReader memberReader(m.value, reader.pathOf("members." + m.key), all.diagnostics);
       if (!m.value.isObject()) continue;
       external.members.push_back(m.key);
       external.resources.push_back(readResource(all, scope, memberReader));
@@ -111,18 +110,18 @@ void readRootInputs(Expansion& all, Scope& scope) {
     if (!isName(member.key))
       report(all, scope, member.keyWhere, member.value,
              fmt::format("`{}` is no name for an input", member.key), "letters, digits, _ and -");
-    const json::ObjectReader reportsWhatIsNoObject(member.value, "inputs", member.key, all.diagnostics);
+    json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), all.diagnostics);
     if (!member.value.isObject()) continue;
     std::vector<ExternalDescription>& externals = all.description.externals;
     scope.inputs.push_back({&member, false, false, nullptr, static_cast<uint32_t>(externals.size())});
-    externals.push_back(readExternal(all, scope, member));
+    externals.push_back(readExternal(all, scope, member, reader));
   }
 }
 
 void readInputs(Expansion& all, Scope& scope, const json::Value* wires) {
   if (const json::Value* inputs = scope.document->find("inputs"); inputs && inputs->isObject()) {
     for (const Member& member : inputs->members) {
-      json::ObjectReader reader(member.value, "inputs", member.key, all.diagnostics);
+      json::ObjectReader reader(member.value, json::joinPath("inputs", member.key), all.diagnostics);
       reader.text("doc");
       scope.inputs.push_back({&member, reader.boolean("optional", false)});
       reader.finish();

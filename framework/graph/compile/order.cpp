@@ -156,6 +156,7 @@ void chooseLayouts(BoundGraph& graph) {
   const auto isImage = [&](const Access& a) {
     return graph.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
   };
+  bool mixed = false;  // readers of a version want different layouts
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     for (const Access& a : graph.passes[p].accesses) {
       Seen& s = seen[a.resource * 2 + a.previous];
@@ -170,12 +171,12 @@ void chooseLayouts(BoundGraph& graph) {
       a.layout = accessLayout(s.usage, s.reads, s.writes);
       if (s.writes) continue;
       VkImageLayout& shared = readLayout[a.slot];
-      if (shared != VK_IMAGE_LAYOUT_UNDEFINED && shared != a.layout)
-        shared = VK_IMAGE_LAYOUT_GENERAL;
-      else
-        shared = a.layout;
+      const bool differs = shared != VK_IMAGE_LAYOUT_UNDEFINED && shared != a.layout;
+      shared = differs ? VK_IMAGE_LAYOUT_GENERAL : a.layout;
+      mixed |= differs;
     }
   }
+  if (!mixed) return;
   for (BoundPass& pass : graph.passes)
     for (Access& a : pass.accesses)
       if (isImage(a) && !a.writes && readLayout[a.slot] != VK_IMAGE_LAYOUT_UNDEFINED)

@@ -291,7 +291,7 @@ void expandInstance(Expansion& all, Scope& parent, const Member& member, const j
   const std::shared_ptr<const json::Value> document = instanceDocument(all, parent, graph, file);
   if (!document) return;
   ++all.made;
-  Scope& scope = all.scopes.emplace_back();
+  Scope& scope = all.scopes.emplace_back(all.memory);
   scope.file = file;
   scope.parent = &parent;
   scope.prefix = parent.prefix + member.key + "/";
@@ -356,7 +356,7 @@ void expandPass(Expansion& all, Scope& scope, const Member& member) {
   const json::Value* type = reader.require("type");
   scope.passes.emplace(member.key, static_cast<uint32_t>(all.description.passes.size()));
   PassDescription& pass = all.description.passes.emplace_back();
-  pass.name = scope.prefix + member.key;
+  pass.name.append(scope.prefix).append(member.key);
   pass.written = &member;
   pass.view = scope.view;
   if (type && !type->isString())
@@ -441,7 +441,7 @@ Description resolve(std::shared_ptr<const json::Value> document, const std::file
   detail::Expansion all{description, options, diagnostics};
   detail::readOverrides(all);
   ++all.made;
-  detail::Scope& root = all.scopes.emplace_back();
+  detail::Scope& root = all.scopes.emplace_back(all.memory);
   root.file = file;
   root.document = description.documents[0].get();
   description.start = {root.document->where.location().file, 1, 1};

@@ -148,6 +148,7 @@ std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Te
 }
 
 std::optional<int64_t> evaluate(Sizes& sizes, uint32_t p, const SizeExpr& size, int depth, std::string& why) {
+  if (size.terms().size() == 1) return evaluateTerm(sizes, p, size.terms()[0], depth, why);
   Stack stack;
   for (const SizeExpr::Term& term : size.terms()) {
     if (term.op >= Op::Add) {
