@@ -1,7 +1,7 @@
-// Measures what compiling a graph costs, by phase and per pass, for chains, diamonds, fan-ins, and graphs of history and
-// long lifetimes, of 19 to 5,000 passes. From resolve to plan a pass may cost 1 us, whatever the size of the graph.
-// "ResolveToPlan" is the cost, after parsing, of editing the text of a graph live. "BindToPlan" is the same without
-// resolving: the cost of another view size.
+// Measures what compiling a graph costs, by phase and per pass, for chains, diamonds, fan-ins, and graphs of history
+// and long lifetimes, of 19 to 5,000 passes. From resolve to plan a pass may cost 1 us, whatever the size of the
+// graph. "ResolveToPlan" is the cost, after parsing, of editing the text of a graph live. "BindToPlan" is the same
+// without resolving: the cost of another view size.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 

@@ -83,12 +83,10 @@ void loadPassFolders(const std::vector<std::string>& folders) {
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages) {
   loadPlugins(options.plugins);
   loadPassFolders(options.passes);
-  const std::filesystem::path beside =
-      graph::findGraph(options.graph, dataFolders("graphs")).parent_path() / "passes";
-  if (std::filesystem::is_directory(beside)) graph::Registry::global().addFolder(beside);
   graph::LoadOptions load;
   for (const std::string& text : options.set) load.overrides.push_back(graph::parseOverride(text));
   load.searchPaths = dataFolders("graphs");
+  graph::Registry::global().addFolderBeside(graph::findGraph(options.graph, load.searchPaths));
   return graph::load(options.graph, load, messages);
 }
 

@@ -32,8 +32,8 @@ scene::Lens parseLens(std::string_view text);
 void loadPlugins(const std::vector<std::string>& plugins);
 // Loads the pass files of the folders that FOVEA_PASSES names and of these.
 void loadPassFolders(const std::vector<std::string>& folders);
-// Loads the plug-ins and passes, among them those of a folder `passes` beside the graph, then the graph with its overrides. Mistakes inside the file are collected in `messages`;
-// bind() throws them.
+// Loads the plug-ins and passes, among them those of a folder `passes` beside the graph, then the graph with its
+// overrides. Mistakes inside the file are collected in `messages`; bind() throws them.
 graph::Description loadGraph(const GraphOptions& options, Diagnostics& messages);
 
 // Writes warnings and notes to stderr, each text once per process.

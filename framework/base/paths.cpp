@@ -41,13 +41,7 @@ fs::path libraryFolder() {
 }
 
 void addFromEnvironment(std::vector<fs::path>& list) {
-  const char* variable = std::getenv("FOVEA_DATA");
-  const std::string text = variable ? variable : "";
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find(':', begin), text.size());
-    const fs::path folder = text.substr(begin, end - begin);
-    begin = end + 1;
-    if (folder.empty()) continue;
+  for (const fs::path& folder : pathsInVariable("FOVEA_DATA")) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored))
       throw Error(ExitCode::BadInput, "FOVEA_DATA names `" + folder.string() + "`, which is not a folder",
@@ -57,6 +51,18 @@ void addFromEnvironment(std::vector<fs::path>& list) {
 }
 
 }  // namespace
+
+std::vector<fs::path> pathsInVariable(const char* name) {
+  const char* variable = std::getenv(name);
+  const std::string text = variable ? variable : "";
+  std::vector<fs::path> paths;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(':', begin), text.size());
+    if (end > begin) paths.emplace_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return paths;
+}
 
 fs::path programFolder() {
   std::error_code failed;

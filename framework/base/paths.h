@@ -20,6 +20,9 @@ std::vector<std::filesystem::path> dataDirectories();
 // scenes are in samples/scenes.
 std::vector<std::filesystem::path> dataFolders(std::string_view kind);
 
+// The paths in an environment variable, separated by colons.
+std::vector<std::filesystem::path> pathsInVariable(const char* name);
+
 // The folder of the running program; "" if the system does not tell.
 std::filesystem::path programFolder();
 

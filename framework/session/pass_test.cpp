@@ -79,7 +79,7 @@ std::string PassTest::Impl::graphText() const {
       std::string members;
       bool plain = false;
       for (const graph::MemberSpec& m : port.members) {
-        const auto it = inputs.find(m.name.empty() ? port.name : port.name + "." + m.name);
+        const auto it = inputs.find(graph::memberPath(port, m));
         if (it == inputs.end()) continue;
         plain = m.name.empty();
         append(members, plain ? describe(it->second) : quoted(m.name) + ": " + describe(it->second));
@@ -174,7 +174,7 @@ PassTest& PassTest::imageBytes(const std::string& port, VkFormat format, uint32_
   input.desc.array = !volume && layers > 1;
   for (const auto& p : impl_->declaration->ports)
     for (const auto& m : p.members)
-      if ((m.name.empty() ? p.name : p.name + "." + m.name) == port) input.desc.array |= m.resource.array;
+      if (graph::memberPath(p, m) == port) input.desc.array |= m.resource.array;
   input.desc.mips = mips;
   uint64_t expected = 0;
   for (uint32_t mip = 0; mip < mips; ++mip)

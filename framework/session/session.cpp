@@ -24,6 +24,8 @@ Session::Session(const std::string& graph, const scene::Scene& scene, const Sess
   LoadOptions load;
   for (const std::string& text : options.set) load.overrides.push_back(parseOverride(text));
   load.searchPaths = dataFolders("graphs");
+  Registry::global().addFoldersFromEnvironment();
+  Registry::global().addFolderBeside(findGraph(graph, load.searchPaths));
   const Description description = graph::load(graph, load, impl_->warnings);
   impl_->device = session::openDevice(options.device, options.validation);
   impl_->geometry = scene::flatten(scene);

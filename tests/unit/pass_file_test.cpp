@@ -192,6 +192,26 @@ TEST_F(PassFiles, ReportAllMistakesOfAllFilesAtOnce) {
     EXPECT_NE(report.find(part), std::string::npos) << report;
 }
 
+TEST_F(PassFiles, AShaderThatDoesNotCompileIsReportedInItsLine) {
+  write("blur.comp", "layout(local_size_x = 8) in;\nvoid main() { nothing(); }\n");
+  ASSERT_EQ(reported(R"({"doc": "x", "outputs": {"image": {"doc": "x", "format": "rgba8"}},
+                         "steps": [{"shader": "blur.comp", "over": "image"}]})"),
+            "");
+  Diagnostics messages;
+  const auto graph =
+      bindText(R"({"passes": {"b": {"type": "blur"}}, "outputs": {"image": "b"}})", registry_, messages);
+  gpu::ShaderCompiler compiler{fs::path()};
+  CompileOptions options;
+  options.shaders = [&](const std::string& file, const gpu::Defines& d) { return compiler.compile(file, d); };
+  try {
+    compile(graph, options);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(error.what()).find("blur.comp:2: error:"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(PassFiles, AMissingFolderIsNamed) {
   try {
     registry_.addFolder(folder_ / "nothing");

@@ -69,6 +69,19 @@ class Steps : public ::testing::Test {
     return plan_.steps[1];
   }
 
+  // What planning reports for a pass that is declared in a file, of which `place` stands in line 7.
+  std::string reported(const std::string& place) {
+    declaration_.places = std::make_shared<const std::map<std::string, SourceLocation>>(
+        std::map<std::string, SourceLocation>{{place, {"stepped.pass.json", 7, 5}}});
+    try {
+      plan();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::BadInput);
+      return error.what();
+    }
+    return "accepted";
+  }
+
   FakeShaders shaders_;
   PassDeclaration declaration_;
   Registry registry_;
@@ -155,6 +168,42 @@ TEST_F(Steps, ReadingWhatNothingWroteIsAnError) {
               std::string::npos)
         << error.what();
   }
+}
+
+TEST_F(Steps, InAFileABindingWithoutPortIsReportedThere) {
+  shaders_.add("wrong.comp", {binding("givn", BindingKind::SampledImage)});
+  declaration_.step("wrong.comp").threads(16);
+  EXPECT_EQ(
+      reported("steps.wrong"),
+      "stepped.pass.json:7:5: error: pass `stepped` (stepped): step `wrong`: the shader wrong.comp binds "
+      "`givn`, which is no port of the pass (at steps.wrong)\n  -> did you mean `given`?");
+}
+
+TEST_F(Steps, InAFileAPortWithoutBindingIsReportedThere) {
+  declaration_.fill("made", 0);
+  declaration_.fill("own", 0);
+  EXPECT_EQ(
+      reported("ports.given"),
+      "stepped.pass.json:7:5: error: pass `stepped` (stepped): no step uses the port `given` (at ports.given)"
+      "\n  -> bind it in a shader as `given`, or remove it");
+}
+
+TEST_F(Steps, InAFileABindingOfAnInputThatIsNotWiredIsReportedThere) {
+  declaration_.input("more", image2D(kColor), Usage::Sampled, "read").makeOptional();
+  shaders_.add("more.comp", {binding("more", BindingKind::SampledImage)});
+  declaration_.step("more.comp").threads(16);
+  EXPECT_NE(reported("steps.more")
+                .find("7:5: error: pass `stepped` (stepped): step `more`: the shader more.comp binds "
+                      "`more`, which is an input that is not wired"),
+            std::string::npos);
+}
+
+TEST_F(Steps, AnExpressionThatOverflowsIsAnError) {
+  const SizeExpr large = int64_t(1) << 40;
+  declaration_.step("looks.comp").define("HUGE", large * large).threads(16);
+  EXPECT_NE(
+      reported("").find("`1099511627776 * 1099511627776` in one of its steps overflows or divides by zero"),
+      std::string::npos);
 }
 
 // ---- Random passes -----------------------------------------------------------------------------------

@@ -67,7 +67,8 @@ void appendSized(std::string& out, std::string_view text) {
 ShaderSource ShaderSource::fromFile(const std::string& name,
                                     const std::vector<std::filesystem::path>& searchPaths) {
   std::string searched;
-  for (const std::filesystem::path& folder : searchPaths) {
+  const bool absolute = std::filesystem::path(name).is_absolute();  // then there is nothing to search
+  for (const std::filesystem::path& folder : absolute ? std::vector{std::filesystem::path()} : searchPaths) {
     if (const std::filesystem::path path = (folder / name).lexically_normal(); isFile(path)) {
       ShaderSource source;
       source.load(path);
@@ -77,7 +78,9 @@ ShaderSource ShaderSource::fromFile(const std::string& name,
     searched += (searched.empty() ? "" : ", ") + folder.string();
   }
   throw Error(ExitCode::BadInput, "shader `" + name + "` not found",
-              searched.empty() ? "no folder for shaders is known" : "looked in " + searched);
+              absolute           ? "put it there, or correct the name of the step's shader"
+              : searched.empty() ? "no folder for shaders is known"
+                                 : "looked in " + searched);
 }
 
 ShaderSource ShaderSource::fromText(const std::string& name, std::string text,

@@ -23,8 +23,8 @@ struct AliasResult {
 
 // Places the resources from the largest to the smallest, each in the tightest gap that is free during its whole
 // lifetime, otherwise on top. Deterministic: ties are broken by the earlier lifetime, then by the lower resource
-// number; among equal gaps the lower offset wins. Offsets and sizes are multiples of `granularity` (bufferImageGranularity), so that images
-// and buffers may be neighbours.
+// number; among equal gaps the lower offset wins. Offsets and sizes are multiples of `granularity`
+// (bufferImageGranularity), so that images and buffers may be neighbours.
 AliasResult placeResources(std::span<const AliasRequest> requests, uint64_t granularity, bool alias);
 
 }  // namespace fovea::graph

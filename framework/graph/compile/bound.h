@@ -53,6 +53,8 @@ struct BoundPass {
 // The access through which the pass reaches a port or a member ("surface.position"). Throws Error(Internal) with the
 // nearest name if the pass has none that is wired.
 uint32_t accessOf(const BoundPass& pass, std::string_view path);
+// All names that accessOf() knows.
+std::vector<std::string> wiredPaths(const BoundPass& pass);
 
 struct BoundOutput {
   std::string name;

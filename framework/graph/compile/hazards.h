@@ -1,5 +1,5 @@
-// What separates two accesses to the same memory: the one rule behind the barriers between levels of a frame and between
-// the steps of a pass.
+// What separates two accesses to the same memory: the one rule behind the barriers between levels of a frame and
+// between the steps of a pass.
 #pragma once
 
 #include "framework/graph/compile/plan.h"

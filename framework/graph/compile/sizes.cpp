@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "framework/graph/compile/binding.h"
+#include "framework/graph/pass/evaluate.h"
 
 namespace fovea::graph::detail {
 namespace {
@@ -22,36 +23,6 @@ double bytesOf(const ResourceDesc& d) {
   return 32.0 * d.width * d.height * d.depth * d.layers;
 }
 
-struct Stack {
-  int64_t values[64];
-  int size = 0;
-};
-
-// False on overflow, on division by zero, and if an expression is too deep.
-bool apply(SizeExpr::Op op, Stack& stack) {
-  if (stack.size < 2) return false;
-  const int64_t b = stack.values[--stack.size];
-  int64_t& a = stack.values[stack.size - 1];
-  switch (op) {
-    case Op::Add:
-      return !__builtin_add_overflow(a, b, &a);
-    case Op::Sub:
-      return !__builtin_sub_overflow(a, b, &a);
-    case Op::Mul:
-      return !__builtin_mul_overflow(a, b, &a);
-    case Op::Div:
-      if (b <= 0 || a < 0) return false;
-      a = a / b + (a % b != 0);
-      return true;
-    case Op::Min:
-      a = std::min(a, b);
-      return true;
-    default:
-      a = std::max(a, b);
-      return true;
-  }
-}
-
 // The sizes of passes are evaluated on demand, because a size may follow from those of inputs.
 enum class State : uint8_t { Pending, InProgress, Done, Failed };
 struct Sizes {
@@ -60,10 +31,6 @@ struct Sizes {
 };
 
 bool evaluatePass(Sizes& sizes, uint32_t p, int depth);
-
-std::string nameOf(const PortSpec& spec, const MemberSpec& member) {
-  return member.name.empty() ? spec.name : spec.name + "." + member.name;
-}
 
 // "`radius`, `count`": what the sizes of a resource depend on.
 std::string quantitiesOf(const ResourceSpec& spec) {
@@ -101,28 +68,10 @@ std::optional<int64_t> sizeOfPort(Sizes& sizes, uint32_t p, const SizeExpr::Term
         return std::nullopt;
       }
       if (producer != kNone && !evaluatePass(sizes, producer, depth + 1)) return std::nullopt;
-      const ResourceDesc& desc = sizes.b.graph.resources[r].desc;
-      if (term.op == Op::PortWidth) return desc.width;
-      if (term.op == Op::PortHeight) return desc.height;
-      if (term.op == Op::PortLayers) return desc.volume ? desc.depth : desc.layers;
-      return static_cast<int64_t>(desc.count);
+      return quantityOf(sizes.b.graph.resources[r].desc, term.op);
     }
   }
   return std::nullopt;
-}
-
-// A flag counts as 0 or 1, a choice as its index.
-std::optional<int64_t> sizeOfParameter(const BoundPass& pass, const std::string& name) {
-  const Value* value = pass.parameters.find(name);
-  if (!value) return std::nullopt;
-  if (const int64_t* number = std::get_if<int64_t>(value)) return *number;
-  if (const bool* flag = std::get_if<bool>(value)) return *flag;
-  const std::string* chosen = std::get_if<std::string>(value);
-  if (!chosen) return std::nullopt;
-  for (const ParameterSpec& spec : pass.declaration->parameters)
-    if (spec.name == name)
-      return std::find(spec.choices.begin(), spec.choices.end(), *chosen) - spec.choices.begin();
-  return 0;
 }
 
 std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Term& term, int depth,
@@ -137,7 +86,7 @@ std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Te
     case Op::ViewHeight:
       return sizes.b.viewExtents[pass.view].height;
     case Op::Parameter:
-      return sizeOfParameter(pass, term.name);
+      return wholeNumber(pass.parameters, term.name);
     case Op::Environment:
       for (const auto& [name, value] : sizes.b.environment.quantities)
         if (name == term.name) quantity = std::max<int64_t>(1, value);
@@ -145,26 +94,6 @@ std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Te
     default:
       return sizeOfPort(sizes, p, term, depth, why);
   }
-}
-
-std::optional<int64_t> evaluate(Sizes& sizes, uint32_t p, const SizeExpr& size, int depth, std::string& why) {
-  if (size.terms().size() == 1) return evaluateTerm(sizes, p, size.terms()[0], depth, why);
-  Stack stack;
-  for (const SizeExpr::Term& term : size.terms()) {
-    if (term.op >= Op::Add) {
-      if (apply(term.op, stack)) continue;
-      why = "overflows or divides by zero";
-      return std::nullopt;
-    }
-    if (stack.size == 64) {
-      why = "is too long an expression";
-      return std::nullopt;
-    }
-    const std::optional<int64_t> value = evaluateTerm(sizes, p, term, depth, why);
-    if (!value) return std::nullopt;
-    stack.values[stack.size++] = *value;
-  }
-  return stack.values[0];
 }
 
 // ---- Limits ------------------------------------------------------------------------------------------
@@ -229,7 +158,7 @@ void reportLimits(Binding& b, uint32_t p, const PortSpec& spec, const MemberSpec
   const std::string names = quantitiesOf(member.resource);
   const std::string choices = otherChoices(pass, member.resource);
   report(b, b.description.passes[p].written->keyWhere, passPath(b, p),
-         fmt::format("pass `{}`: `{}`: {}", pass.name, nameOf(spec, member),
+         fmt::format("pass `{}`: `{}`: {}", pass.name, memberPath(spec, member),
                      describeExcess(b.environment, desc)),
          !choices.empty() ? choices
          : names.empty()  ? std::string("render at a smaller size")
@@ -251,7 +180,8 @@ bool evaluateResource(Sizes& sizes, uint32_t p, const PortSpec& spec, const Memb
   bool good = true;
   const auto evaluateInto = [&]<class T>(T& out, const SizeExpr& size, const char* what, int64_t limit) {
     std::string why;
-    const std::optional<int64_t> value = evaluate(sizes, p, size, depth, why);
+    const std::optional<int64_t> value = evaluate(
+        size, why, [&](const SizeExpr::Term& term) { return evaluateTerm(sizes, p, term, depth, why); });
     if (value && *value >= 1 && *value <= limit) {
       out = static_cast<T>(*value);
       return;
@@ -262,7 +192,7 @@ bool evaluateResource(Sizes& sizes, uint32_t p, const PortSpec& spec, const Memb
     const std::string names = quantitiesOf(from);
     report(sizes.b, sizes.b.description.passes[p].written->keyWhere, passPath(sizes.b, p),
            fmt::format("pass `{}`: {} of `{}`, {}, {}", sizes.b.graph.passes[p].name, what,
-                       nameOf(spec, member), size.print(), why),
+                       memberPath(spec, member), size.print(), why),
            names.empty() ? std::string() : fmt::format("it depends on {}", names));
   };
   if (from.kind == ResourceKind::Buffer) {

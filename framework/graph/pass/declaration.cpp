@@ -423,6 +423,10 @@ MemberSpec member(std::string name, ResourceSpec resource, Usage usage, std::str
   return {std::move(name), std::move(doc), std::move(resource), usage};
 }
 
+std::string memberPath(const PortSpec& port, const MemberSpec& member) {
+  return member.name.empty() ? port.name : port.name + "." + member.name;
+}
+
 std::string shaderName(std::string_view path) {
   std::string name;
   bool upper = false;

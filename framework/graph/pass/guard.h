@@ -13,8 +13,9 @@ struct PassOrigin {
   std::string_view plugin;    // file of the plug-in; empty for a pass that is linked in
 };
 
-// To be called while an exception that left `function` ("prepare()") of the pass is being handled. An Error keeps its code and its
-// messages and gains a note; std::bad_alloc becomes Error(OutOfMemory) and anything else Error(Internal).
+// To be called while an exception that left `function` ("prepare()") of the pass is being handled. An Error keeps its
+// code and its messages and gains a note; std::bad_alloc becomes Error(OutOfMemory) and anything else
+// Error(Internal).
 [[noreturn]] void rethrowWithOrigin(const PassOrigin& origin, std::string_view function);
 
 template <class Body>

@@ -396,8 +396,7 @@ class Reader {
   static void deriveUsages(PassDeclaration& d) {
     for (PortSpec& port : d.ports)
       for (MemberSpec& m : port.members)
-        if (m.usage == Usage::None)
-          m.usage = usageOf(d, port, m, m.name.empty() ? port.name : port.name + "." + m.name);
+        if (m.usage == Usage::None) m.usage = usageOf(d, port, m, memberPath(port, m));
   }
 
   static Usage usageOf(const PassDeclaration& d, const PortSpec& port, const MemberSpec& m,

@@ -19,8 +19,8 @@ PassDeclaration readPassFile(const json::Value& document, const std::filesystem:
 // Also throws Error(BadInput) if the file cannot be read or is not JSON.
 PassDeclaration loadPassFile(const std::filesystem::path& file);
 
-// The pass files of a folder: DIR/NAME.pass.json and DIR/NAME/NAME.pass.json, sorted. Throws Error(BadInput) if there is
-// no such folder, or if two files declare one name.
+// The pass files of a folder: DIR/NAME.pass.json and DIR/NAME/NAME.pass.json, sorted. Throws Error(BadInput) if there
+// is no such folder, or if two files declare one name.
 std::vector<std::filesystem::path> findPassFiles(const std::filesystem::path& folder);
 
 }  // namespace fovea::graph

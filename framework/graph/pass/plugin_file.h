@@ -13,8 +13,8 @@ namespace fovea::graph {
 // would end the process with SIGBUS. Throws Error(BadInput), at once even for a pipe or a device.
 std::vector<Abi> readPluginFile(const std::filesystem::path& file);
 
-// Throws Error(BadInput) that names the file, both versions and the remedy, unless all marks are those of this fovea and
-// there is at least one.
+// Throws Error(BadInput) that names the file, both versions and the remedy, unless all marks are those of this fovea
+// and there is at least one.
 void checkPluginMarks(const std::filesystem::path& file, const std::vector<Abi>& marks);
 
 // What is wrong with a mark, as the message of an error; empty for the mark of this fovea.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -247,13 +246,13 @@ void Registry::addFolder(const std::filesystem::path& folder) {
 }
 
 void Registry::addFoldersFromEnvironment() {
-  const char* variable = std::getenv("FOVEA_PASSES");
-  const std::string text = variable ? variable : "";
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find(':', begin), text.size());
-    if (end > begin) addFolder(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  for (const std::filesystem::path& folder : pathsInVariable("FOVEA_PASSES")) addFolder(folder);
+}
+
+void Registry::addFolderBeside(const std::filesystem::path& graph) {
+  const std::filesystem::path folder = graph.parent_path() / "passes";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(folder, ignored)) addFolder(folder);
 }
 
 }  // namespace fovea::graph

@@ -28,11 +28,13 @@ class Registry {
   // are looked up in a folder `shaders` beside it. Throws Error(BadInput) if the file is no plug-in for this version of
   // fovea or if a declaration contradicts itself, and Error(Internal) if a declaration throws.
   void loadPlugin(const std::filesystem::path& file);
-  // Adds the passes of all pass files in a folder (see pass_file.h). A folder may be named again. Throws Error(BadInput)
-  // with every mistake of every file.
+  // Adds the passes of all pass files in a folder (see pass_file.h). A folder may be named again. Throws
+  // Error(BadInput) with every mistake of every file.
   void addFolder(const std::filesystem::path& folder);
   // Adds the passes of the folders that the environment variable FOVEA_PASSES names, separated by colons.
   void addFoldersFromEnvironment();
+  // Adds the passes of a folder `passes` beside a graph file, if there is one.
+  void addFolderBeside(const std::filesystem::path& graph);
   // The file of the plug-in that registered a type, as it was given to loadPlugin(); empty for other types.
   std::string_view pluginOf(std::string_view type) const;
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }

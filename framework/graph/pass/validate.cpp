@@ -96,7 +96,7 @@ class Validator {
     for (const MemberSpec& m : port.members) {
       if (!port.bundle.empty()) checkName(m.name, "member", true);
       if (!names.insert(m.name).second) wrong(fmt::format("port `{}`: member `{}` twice", port.name, m.name));
-      const std::string path = m.name.empty() ? port.name : port.name + "." + m.name;
+      const std::string path = memberPath(port, m);
       if (!shaderNames_.insert(shaderName(path)).second)
         wrong(fmt::format("port `{}` has the same name in shaders as another", path));
       checkMember(port, m, path);
@@ -184,7 +184,7 @@ class Validator {
     std::vector<std::string> known;
     for (const PortSpec& port : d_.ports)
       for (const MemberSpec& m : port.members) {
-        const std::string name = m.name.empty() ? port.name : port.name + "." + m.name;
+        const std::string name = memberPath(port, m);
         if (name == path) return &m;
         known.push_back(name);
         // The name of a whole bundle serves to ask whether it is wired.

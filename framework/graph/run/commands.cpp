@@ -78,10 +78,6 @@ Commands& Commands::constantBytes(std::string_view name, const void* data, size_
               "shader " + kernel_.name + " has no push constant `" + std::string(name) + "`");
 }
 
-static uint32_t accessIndex(const PassInstance& pass, std::string_view port) {
-  return static_cast<uint32_t>(&pass.access(port) - pass.bound->accesses.data());
-}
-
 static uint32_t bindingIndex(const KernelState& kernel, std::string_view name) {
   for (uint32_t i = 0; i < kernel.bindings.size(); ++i)
     if (kernel.bindings[i].reflected.name == name) return i;
@@ -89,7 +85,7 @@ static uint32_t bindingIndex(const KernelState& kernel, std::string_view name) {
 }
 
 Commands& Commands::mip(std::string_view name, std::string_view port, uint32_t level) {
-  kernel_.overrides.push_back({bindingIndex(kernel_, name), accessIndex(context_.pass_, port),
+  kernel_.overrides.push_back({bindingIndex(kernel_, name), accessOf(*context_.pass_.bound, port),
                                context_.image(port).mipView(level), VK_NULL_HANDLE, 0, VK_WHOLE_SIZE});
   return *this;
 }
@@ -160,7 +156,7 @@ static void fillDescriptor(PassInstance& pass, const KernelState& kernel, uint32
     case KernelBinding::Source::Manual:
       break;
   }
-  const std::string nearest = nearestName(b.reflected.name, pass.paths());
+  const std::string nearest = nearestName(b.reflected.name, wiredPaths(*pass.bound));
   bindingError(pass, kernel.name,
                "binding `" + b.reflected.name + "` is neither a wired port nor bound by hand",
                nearest.empty() ? "name it after a port" : "did you mean port `" + nearest + "`?");
@@ -243,7 +239,7 @@ void Commands::dispatchOver(std::string_view port) {
 }
 
 void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
-  const uint32_t access = accessIndex(context_.pass_, bufferPort);
+  const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
   flush(&access);
   vkCmdDispatchIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset);
 }
@@ -267,7 +263,7 @@ void Commands::drawIndexed(VkBuffer indices32, uint32_t count, uint32_t first, u
 }
 
 void Commands::drawIndirect(std::string_view bufferPort, uint64_t offset, uint32_t count, uint32_t stride) {
-  const uint32_t access = accessIndex(context_.pass_, bufferPort);
+  const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
   flush(&access);
   vkCmdDrawIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset, count, stride);
 }

@@ -10,13 +10,6 @@
 #include "framework/scene/frame.h"
 
 namespace fovea::graph {
-namespace {
-
-std::string memberPath(const PortSpec& port, const MemberSpec& member) {
-  return member.name.empty() ? port.name : port.name + "." + member.name;
-}
-
-}  // namespace
 
 PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
                            std::unique_ptr<Pass> implementation)
@@ -25,13 +18,6 @@ PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
       index(passIndex),
       pass(std::move(implementation)),
       tracker(*bound) {
-  for (uint32_t i = 0; i < bound->accesses.size(); ++i) {
-    const Access& a = bound->accesses[i];
-    const PortSpec& port = bound->declaration->ports[a.port];
-    const std::string path = memberPath(port, port.members[a.member]);
-    accessByPath.emplace(path, i);
-    accessByShader.emplace(shaderName(path), i);
-  }
   const auto& counters = bound->declaration->counters;
   for (uint32_t i = 0; i < counters.size(); ++i) counterByName.emplace(counters[i].name, i);
   counterValues.resize(counters.size());
@@ -39,24 +25,8 @@ PassInstance::PassInstance(ExecutorState& executorState, uint32_t passIndex,
   transferLabels.resize(bound->accesses.size(), {kNone, kNone, kNone});
 }
 
-std::vector<std::string> PassInstance::paths() const {
-  std::vector<std::string> names;
-  for (const auto& [path, i] : accessByPath) names.push_back(path);
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-const Access* PassInstance::findAccess(std::string_view path) const {
-  auto it = accessByPath.find(path);
-  return it == accessByPath.end() ? nullptr : &bound->accesses[it->second];
-}
-
 const Access& PassInstance::access(std::string_view path) const {
-  if (const Access* a = findAccess(path)) return *a;
-  std::string message = "pass `" + bound->name + "` (" + bound->declaration->type + ") asks for `" +
-                        std::string(path) + "`, which is not one of its wired ports";
-  const std::string nearest = nearestName(path, paths());
-  throw Error(ExitCode::Internal, message, nearest.empty() ? "" : "did you mean `" + nearest + "`?");
+  return bound->accesses[accessOf(*bound, path)];
 }
 
 Label PassInstance::label(std::string_view name) {
@@ -88,28 +58,18 @@ uint32_t writeTimestamp(ExecutorState& state, VkCommandBuffer cmd) {
   return index;
 }
 
-static VkExtent3D extentOf(const PassInstance& pass, std::string_view port) {
-  const ResourceDesc& d = pass.desc(pass.access(port));
-  return {d.width, d.height, d.depth};
-}
-
-// A bundle is wired if one of its members is.
-static bool portWired(const PassInstance& pass, std::string_view port) {
-  if (pass.findAccess(port)) return true;
-  return std::any_of(pass.bound->accesses.begin(), pass.bound->accesses.end(),
-                     [&](const Access& a) { return pass.bound->declaration->ports[a.port].name == port; });
-}
-
 // ---- RecordContext ---------------------------------------------------------------------------------------------
 
 RecordContext::RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame,
                              uint64_t frameNumber)
-    : pass_(pass), cmd_(cmd), frame_(frame), frameNumber_(frameNumber) {}
+    : PassContext(*pass.state->plan->graph, *pass.bound),
+      pass_(pass),
+      cmd_(cmd),
+      frame_(frame),
+      frameNumber_(frameNumber) {}
 
 gpu::Device& RecordContext::device() const { return *pass_.state->device; }
-const Parameters& RecordContext::parameters() const { return pass_.bound->parameters; }
 const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
-bool RecordContext::has(std::string_view port) const { return portWired(pass_, port); }
 bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
@@ -136,10 +96,6 @@ gpu::Buffer& RecordContext::buffer(std::string_view port) const {
   requireKind(pass_, access, port, ResourceKind::Buffer);
   return pass_.state->buffer(access);
 }
-VkExtent3D RecordContext::extent(std::string_view port) const { return extentOf(pass_, port); }
-uint32_t RecordContext::mips(std::string_view port) const { return pass_.desc(pass_.access(port)).mips; }
-uint32_t RecordContext::layers(std::string_view port) const { return pass_.desc(pass_.access(port)).layers; }
-uint64_t RecordContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
 
 // ---- Steps and kernels -----------------------------------------------------------------------------------------
 
@@ -232,8 +188,7 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   std::vector<StepAccess>& touched = pass_.touched;
   touched.clear();
   const auto attach = [&](const Attachment& a, Usage usage) {
-    const uint32_t access = static_cast<uint32_t>(&pass_.access(a.port) - pass_.bound->accesses.data());
-    touched.push_back(portAccess(*pass_.bound, access, usage, PassKind::Graphics));
+    touched.push_back(portAccess(*pass_.bound, accessOf(*pass_.bound, a.port), usage, PassKind::Graphics));
   };
   for (const Attachment& a : colors) attach(a, Usage::ColorAttachment);
   if (depth) attach(*depth, Usage::DepthAttachment);
@@ -290,8 +245,6 @@ static void requireTransfer(const PassInstance& pass, const Access& access, std:
 }
 
 namespace {
-
-enum class Transfer : uint8_t { Fill, Clear, Copy };
 
 struct TransferAccess {
   const Access* access;
@@ -385,14 +338,13 @@ void RecordContext::counter(std::string_view name, double value) { setCounter(pa
 // ---- HostContext -----------------------------------------------------------------------------------------------
 
 HostContext::HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t frameNumber)
-    : pass_(pass), frame_(frame), frameNumber_(frameNumber) {}
+    : PassContext(*pass.state->plan->graph, *pass.bound),
+      pass_(pass),
+      frame_(frame),
+      frameNumber_(frameNumber) {}
 
-const Parameters& HostContext::parameters() const { return pass_.bound->parameters; }
 const scene::View& HostContext::view() const { return frame_.views[pass_.viewIndex]; }
-bool HostContext::has(std::string_view port) const { return portWired(pass_, port); }
 bool HostContext::firstFrame() const { return pass_.state->viewReset; }
-VkExtent3D HostContext::extent(std::string_view port) const { return extentOf(pass_, port); }
-uint64_t HostContext::count(std::string_view port) const { return pass_.desc(pass_.access(port)).count; }
 
 static std::span<std::byte> stagingOf(PassInstance& pass, std::string_view port) {
   const Access& access = pass.access(port);

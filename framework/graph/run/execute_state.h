@@ -93,7 +93,7 @@ struct KernelState {
   std::vector<StepAccess> accesses;  // through its bindings, except those made by hand
   std::vector<KernelBinding> bindings;
   std::vector<KernelConstant> constants;
-  // Set by Commands::bind and Commands::range for the command under construction.
+  // Set by Commands::mip and Commands::range for the command under construction.
   struct Override {
     uint32_t binding = kNone;
     uint32_t access = kNone;
@@ -114,6 +114,8 @@ struct StepInstance {
   std::vector<std::pair<std::string, uint32_t>> constants;
 };
 
+enum class Transfer : uint8_t { Fill, Clear, Copy };
+
 // Where the time of a step begins; it ends where that of the next one begins, or with the pass.
 struct StepBegin {
   Label label = 0;
@@ -125,15 +127,14 @@ struct PassInstance {
   const BoundPass* bound = nullptr;
   uint32_t index = 0;  // in BoundGraph::passes
   std::unique_ptr<Pass> pass;
-  std::string plugin;                // file that the pass comes from; empty if it is linked in
-  NameMap<uint32_t> accessByPath;    // "radiance", "surface.position"
-  NameMap<uint32_t> accessByShader;  // "radiance", "surfacePosition"
+  std::string plugin;  // file that the pass comes from; empty if it is linked in
   NameMap<uint32_t> counterByName;
   std::deque<KernelState> kernels;  // stable addresses
   std::vector<StepInstance> steps;  // those of the plan
   NameMap<uint32_t> stepByName;     // kNone for declared steps that are not in the plan
   std::vector<std::string> labels;
-  std::vector<std::array<Label, 3>> transferLabels;  // per access: of its fills, clears and copies
+  std::vector<std::array<Label, 3>>
+      transferLabels;  // per access and kind of transfer; kNone before the first
   StepTracker tracker;
   std::vector<StepBegin> begun;           // this frame
   std::vector<StepAccess> touched;        // by the command under construction
@@ -148,9 +149,7 @@ struct PassInstance {
 
   PassInstance(ExecutorState& executorState, uint32_t passIndex, std::unique_ptr<Pass> implementation);
   const Access& access(std::string_view path) const;  // throws Error(Internal) with the nearest port
-  const Access* findAccess(std::string_view path) const;
   const ResourceDesc& desc(const Access& a) const { return state->plan->graph->resources[a.resource].desc; }
-  std::vector<std::string> paths() const;
   Label label(std::string_view name);
   // Begins the time of a step, unless it is that of the command before, and waits for what the accesses depend on.
   void beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,

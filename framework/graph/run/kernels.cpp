@@ -50,21 +50,6 @@ const char* kindName(gpu::BindingKind kind) {
   return "unknown";
 }
 
-// The usage that a port must declare for a shader to bind it in this way.
-Usage requiredUsage(const gpu::ReflectedBinding& b) {
-  switch (b.kind) {
-    case gpu::BindingKind::UniformBuffer:
-      return Usage::Uniform;
-    case gpu::BindingKind::UniformTexelBuffer:
-      return Usage::TexelRead;
-    case gpu::BindingKind::SampledImage:
-    case gpu::BindingKind::CombinedImageSampler:
-      return Usage::Sampled;
-    default:
-      return Usage::StorageRead | Usage::StorageWrite;
-  }
-}
-
 VkSampler samplerByName(gpu::Device& device, const std::string& name) {
   if (name == "linearClamp")
     return gpu::sampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
@@ -85,7 +70,7 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
                  "binding `" + b.name + "` is " + kindName(b.kind) + ", but port `" + port.name + "` is " +
                      (image ? "an image" : "a buffer"),
                  "make both the same kind");
-  if (!any(access.usage, requiredUsage(b)))
+  if (!any(access.usage, usageOf(b.kind)))
     bindingError(pass, shader,
                  "binding `" + b.name + "` is " + kindName(b.kind) + ", a usage that port `" + port.name +
                      "` does not declare",
@@ -106,17 +91,10 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
   return binding;
 }
 
-// A block without an instance name goes by the name of the block, which starts with a capital: `buffer Total {...};`.
-std::string portSpelling(const std::string& binding) {
-  std::string name = binding;
-  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
-  return name;
-}
-
 KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, gpu::ReflectedBinding b) {
-  b.name = portSpelling(b.name);
-  if (auto it = pass.accessByShader.find(b.name); it != pass.accessByShader.end())
-    return resolvePort(pass, shader, b, it->second);
+  b.name = bindingName(b.name);
+  if (const uint32_t access = accessOfBinding(*pass.bound, b.name); access != kNone)
+    return resolvePort(pass, shader, b, access);
   KernelBinding binding;
   binding.reflected = b;
   if (b.kind == gpu::BindingKind::Sampler) {
@@ -224,6 +202,35 @@ Kernel PrepareContext::fullscreen(const std::string& fragment, const std::vector
   return kernel;
 }
 
+namespace {
+
+// Sizes and push constants have 32 bits.
+uint32_t stepWord(const PassInstance& pass, const StepSpec& spec, int64_t value, const SizeExpr& expression) {
+  if (value >= 0 && value <= int64_t(~0u)) return static_cast<uint32_t>(value);
+  throw Error(ExitCode::BadInput, "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type +
+                                      "), step `" + spec.name + "`: `" + expression.print() + "` is " +
+                                      std::to_string(value) +
+                                      ", which no 32-bit number without a sign holds");
+}
+
+// Its row in the timings.
+void labelStep(PassInstance& pass, const StepInstance& step) {
+  const Label label = pass.label(step.spec->name);
+  if (step.kernel) {
+    step.kernel->label = label;
+    return;
+  }
+  const StepSpec& spec = *step.spec;
+  const bool copy = spec.action == StepSpec::Action::Copy;
+  const auto kind = copy                                     ? Transfer::Copy
+                    : spec.action == StepSpec::Action::Clear ? Transfer::Clear
+                                                             : Transfer::Fill;
+  const uint32_t access = accessOf(*pass.bound, copy ? spec.source : spec.targets[0]);
+  pass.transferLabels[access][static_cast<size_t>(kind)] = label;
+}
+
+}  // namespace
+
 void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
   PrepareContext context(pass);
   const std::vector<StepSpec>& specs = pass.bound->declaration->steps;
@@ -231,17 +238,18 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
   for (const PlannedStep& plan : planned) {
     const StepSpec& spec = specs[plan.step];
     StepInstance step{&plan, &spec, nullptr, {}, {}};
-    for (size_t i = 0; i < step.size.size(); ++i)
-      step.size[i] = static_cast<uint32_t>(context.evaluate(spec.size[i]));
-    for (const auto& [name, value] : spec.constants)
-      step.constants.emplace_back(name, static_cast<uint32_t>(context.evaluate(value)));
+    const auto word = [&](const SizeExpr& value) {
+      return stepWord(pass, spec, context.evaluate(value), value);
+    };
+    for (size_t i = 0; i < step.size.size(); ++i) step.size[i] = word(spec.size[i]);
+    for (const auto& [name, value] : spec.constants) step.constants.emplace_back(name, word(value));
     Kernel kernel;
     if (spec.action == StepSpec::Action::Dispatch)
       kernel = context.compute(spec.shader, stepDefines(spec, context));
     if (spec.action == StepSpec::Action::Fullscreen)
       kernel = context.fullscreen(spec.shader, spec.targets, stepDefines(spec, context));
     step.kernel = kernel.state_;
-    if (step.kernel) step.kernel->label = pass.label(spec.name);
+    labelStep(pass, step);
     pass.stepByName[spec.name] = static_cast<uint32_t>(pass.steps.size());
     pass.steps.push_back(std::move(step));
   }

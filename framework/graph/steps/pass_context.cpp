@@ -5,11 +5,13 @@
 
 #include "fovea/error.h"
 #include "fovea/pass.h"
-#include "framework/graph/compile/plan.h"
+#include "framework/graph/compile/bound.h"
+#include "framework/graph/pass/evaluate.h"
 
 namespace fovea::graph {
 namespace {
 
+// Compares without making a string, since passes look up their ports in every frame.
 bool isPath(const PortSpec& port, const MemberSpec& member, std::string_view path) {
   if (member.name.empty()) return path == port.name;
   return path.size() == port.name.size() + 1 + member.name.size() && path.starts_with(port.name) &&
@@ -28,64 +30,27 @@ const ResourceDesc& descOf(const BoundGraph& graph, const BoundPass& pass, std::
   return graph.resources[pass.accesses[accessOf(pass, path)].resource].desc;
 }
 
-int64_t parameterNumber(const BoundPass& pass, const std::string& name) {
-  const Value& value = *pass.parameters.find(name);
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1 : 0;
-  if (const auto* number = std::get_if<int64_t>(&value)) return *number;
-  for (const ParameterSpec& spec : pass.declaration->parameters)
-    if (spec.name == name && spec.type == ParameterSpec::Type::Choice)
-      return std::find(spec.choices.begin(), spec.choices.end(), std::get<std::string>(value)) -
-             spec.choices.begin();
-  throw Error(ExitCode::Internal, fmt::format("pass `{}` ({}) counts with `{}`, which is not a whole number",
-                                              pass.name, pass.declaration->type, name));
-}
-
-int64_t sizeOf(SizeExpr::Op what, const ResourceDesc& desc) {
-  switch (what) {
-    case SizeExpr::Op::PortWidth:
-      return desc.width;
-    case SizeExpr::Op::PortHeight:
-      return desc.height;
-    case SizeExpr::Op::PortLayers:
-      return std::max(desc.depth, desc.layers);
-    default:
-      return static_cast<int64_t>(desc.count);
-  }
-}
-
-int64_t apply(SizeExpr::Op op, int64_t a, int64_t b) {
-  using Op = SizeExpr::Op;
-  switch (op) {
-    case Op::Add:
-      return a + b;
-    case Op::Sub:
-      return a - b;
-    case Op::Mul:
-      return a * b;
-    case Op::Div:
-      return b > 0 ? (a + b - 1) / b : 0;
-    case Op::Min:
-      return std::min(a, b);
-    default:
-      return std::max(a, b);
-  }
-}
-
 }  // namespace
 
 uint32_t accessOf(const BoundPass& pass, std::string_view path) {
-  std::vector<std::string> known;
   for (uint32_t i = 0; i < pass.accesses.size(); ++i) {
     const PortSpec& port = pass.declaration->ports[pass.accesses[i].port];
-    const MemberSpec& member = port.members[pass.accesses[i].member];
-    if (isPath(port, member, path)) return i;
-    known.push_back(member.name.empty() ? port.name : port.name + "." + member.name);
+    if (isPath(port, port.members[pass.accesses[i].member], path)) return i;
   }
-  const std::string nearest = nearestName(path, known);
+  const std::string nearest = nearestName(path, wiredPaths(pass));
   throw Error(ExitCode::Internal,
               fmt::format("pass `{}` ({}) asks for `{}`, which is not one of its wired ports", pass.name,
                           pass.declaration->type, path),
               nearest.empty() ? "" : fmt::format("did you mean `{}`?", nearest));
+}
+
+std::vector<std::string> wiredPaths(const BoundPass& pass) {
+  std::vector<std::string> paths;
+  for (const Access& a : pass.accesses) {
+    const PortSpec& port = pass.declaration->ports[a.port];
+    paths.push_back(memberPath(port, port.members[a.member]));
+  }
+  return paths;
 }
 
 const Parameters& PassContext::parameters() const { return bound_.parameters; }
@@ -106,48 +71,36 @@ VkExtent3D PassContext::extent(std::string_view port) const {
 }
 
 uint32_t PassContext::layers(std::string_view port) const { return descOf(graph_, bound_, port).layers; }
+uint32_t PassContext::mips(std::string_view port) const { return descOf(graph_, bound_, port).mips; }
 uint64_t PassContext::count(std::string_view port) const { return descOf(graph_, bound_, port).count; }
 
 int64_t PassContext::evaluate(const SizeExpr& expression) const {
   using Op = SizeExpr::Op;
-  std::vector<int64_t> stack;
-  for (const SizeExpr::Term& term : expression.terms()) {
+  std::string why = "is over something that only sizes of ports know";
+  const auto leaf = [&](const SizeExpr::Term& term) -> std::optional<int64_t> {
     switch (term.op) {
       case Op::Constant:
-        stack.push_back(term.constant);
-        break;
+        return term.constant;
       case Op::Parameter:
-        stack.push_back(parameterNumber(bound_, term.name));
-        break;
+        return wholeNumber(bound_.parameters, term.name);
       case Op::PortWidth:
       case Op::PortHeight:
       case Op::PortLayers:
       case Op::PortCount:
-        stack.push_back(has(term.name) ? sizeOf(term.op, descOf(graph_, bound_, term.name)) : 0);
-        break;
+        return has(term.name) ? quantityOf(descOf(graph_, bound_, term.name), term.op) : 0;
       case Op::Wired:
-        stack.push_back(has(term.name) ? 1 : 0);
-        break;
+        return has(term.name);
       case Op::Read:
-        stack.push_back(isRead(term.name) ? 1 : 0);
-        break;
+        return isRead(term.name);
       case Op::ParameterIs:
-        stack.push_back(parameters().text(term.name) == term.choice ? 1 : 0);
-        break;
-      case Op::ViewWidth:
-      case Op::ViewHeight:
-      case Op::Environment:
-        throw Error(ExitCode::Internal,
-                    fmt::format("a step of pass `{}` is over `{}`, which only sizes of ports know",
-                                bound_.declaration->type, expression.print()));
-      default: {
-        const int64_t b = stack.back();
-        stack.pop_back();
-        stack.back() = apply(term.op, stack.back(), b);
-      }
+        return parameters().text(term.name) == term.choice;
+      default:
+        return std::nullopt;  // refused when the pass was registered
     }
-  }
-  return stack.back();
+  };
+  if (const std::optional<int64_t> value = graph::evaluate(expression, why, leaf)) return *value;
+  throw Error(ExitCode::BadInput, fmt::format("pass `{}` ({}): `{}` in one of its steps {}", bound_.name,
+                                              bound_.declaration->type, expression.print(), why));
 }
 
 }  // namespace fovea::graph

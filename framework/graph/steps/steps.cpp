@@ -11,9 +11,14 @@
 namespace fovea::graph {
 namespace {
 
-// The usages through which a shader can reach a port by a binding of this kind.
-Usage usageOf(const gpu::ReflectedBinding& b) {
-  switch (b.kind) {
+Usage without(Usage all, Usage some) { return Usage(uint32_t(all) & ~uint32_t(some)); }
+
+AccessScope scopeOf(const StepAccess& a) { return {a.stage, a.mask}; }
+
+}  // namespace
+
+Usage usageOf(gpu::BindingKind kind) {
+  switch (kind) {
     case gpu::BindingKind::UniformBuffer:
       return Usage::Uniform;
     case gpu::BindingKind::UniformTexelBuffer:
@@ -22,21 +27,9 @@ Usage usageOf(const gpu::ReflectedBinding& b) {
     case gpu::BindingKind::CombinedImageSampler:
       return Usage::Sampled;
     default:
-      return b.readOnly    ? Usage::StorageRead
-             : b.writeOnly ? Usage::StorageWrite
-                           : Usage::StorageRead | Usage::StorageWrite;
+      return Usage::StorageRead | Usage::StorageWrite;
   }
 }
-
-// A port that only reads is not written, whatever the shader could do.
-Usage allowed(const Access& access, Usage wanted) {
-  const uint32_t refused = access.writes ? 0 : uint32_t(Usage::StorageWrite);
-  return Usage(uint32_t(access.usage) & uint32_t(wanted) & ~refused);
-}
-
-AccessScope scopeOf(const StepAccess& a) { return {a.stage, a.mask}; }
-
-}  // namespace
 
 // ---- What a step does --------------------------------------------------------------------------------
 
@@ -50,18 +43,25 @@ StepAccess portAccess(const BoundPass& pass, uint32_t access, Usage usage, PassK
 
 StepAccess bindingAccess(const BoundPass& pass, uint32_t access, const gpu::ReflectedBinding& binding,
                          PassKind stages) {
-  return portAccess(pass, access, allowed(pass.accesses[access], usageOf(binding)), stages);
+  Usage usage = Usage(uint32_t(pass.accesses[access].usage) & uint32_t(usageOf(binding.kind)));
+  // A port that only reads is not written, whatever the shader could do.
+  if (binding.readOnly || !pass.accesses[access].writes) usage = without(usage, Usage::StorageWrite);
+  if (binding.writeOnly) usage = without(usage, Usage::StorageRead);
+  return portAccess(pass, access, usage, stages);
+}
+
+std::string bindingName(std::string_view inShader) {
+  std::string name(inShader);
+  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+  return name;
 }
 
 uint32_t accessOfBinding(const BoundPass& pass, std::string_view binding) {
-  std::string name(binding);
-  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
-  for (uint32_t i = 0; i < pass.accesses.size(); ++i) {
-    const PortSpec& port = pass.declaration->ports[pass.accesses[i].port];
-    const MemberSpec& member = port.members[pass.accesses[i].member];
-    if (shaderName(member.name.empty() ? port.name : port.name + "." + member.name) == name) return i;
-  }
-  return kNone;
+  const std::string name = bindingName(binding);
+  const std::vector<std::string> paths = wiredPaths(pass);
+  const auto found = std::find_if(paths.begin(), paths.end(),
+                                  [&](const std::string& path) { return shaderName(path) == name; });
+  return found == paths.end() ? kNone : static_cast<uint32_t>(found - paths.begin());
 }
 
 std::vector<StepAccess> shaderAccesses(const BoundPass& pass, std::span<const gpu::ReflectedBinding> bindings,
@@ -133,10 +133,6 @@ StepAccess attachment(const BoundPass& pass, const std::string& path) {
   return portAccess(pass, accessOf(pass, path), Usage::ColorAttachment, PassKind::Graphics);
 }
 
-std::string pathOf(const PortSpec& port, const MemberSpec& member) {
-  return member.name.empty() ? port.name : port.name + "." + member.name;
-}
-
 [[noreturn]] void wrongStep(const BoundPass& pass, const std::string& place, const std::string& message,
                             const std::string& remedy) {
   const PassDeclaration& d = *pass.declaration;
@@ -149,13 +145,12 @@ std::string pathOf(const PortSpec& port, const MemberSpec& member) {
 void checkBindings(const BoundPass& pass, const StepSpec& step, const gpu::CompiledShader& shader) {
   if (step.action == StepSpec::Action::Dispatch && step.sizing == StepSpec::Size::Manual) return;
   for (const gpu::ReflectedBinding& b : shader.reflection.bindings) {
-    const bool counters = b.name == "counters" || b.name == "Counters";
-    if (b.set != 0 || b.kind == gpu::BindingKind::Sampler || counters ||
+    if (b.set != 0 || b.kind == gpu::BindingKind::Sampler || bindingName(b.name) == "counters" ||
         accessOfBinding(pass, b.name) != kNone)
       continue;
     std::vector<std::string> names;
     for (const PortSpec& port : pass.declaration->ports)
-      for (const MemberSpec& m : port.members) names.push_back(shaderName(pathOf(port, m)));
+      for (const MemberSpec& m : port.members) names.push_back(shaderName(memberPath(port, m)));
     const bool declared = std::find(names.begin(), names.end(), b.name) != names.end();
     if (declared && !pass.declaration->places)
       continue;  // prepare() says it better, or the command that needs it
@@ -194,7 +189,7 @@ void checkPorts(const BoundPass& pass, const std::vector<uint8_t>& used) {
   for (uint32_t i = 0; i < pass.accesses.size(); ++i) {
     const PortSpec& port = pass.declaration->ports[pass.accesses[i].port];
     if (used[i] || givesSize(*pass.declaration, port)) continue;
-    const std::string path = pathOf(port, port.members[pass.accesses[i].member]);
+    const std::string path = memberPath(port, port.members[pass.accesses[i].member]);
     wrongStep(pass, "ports." + port.name, fmt::format("no step uses the port `{}`", path),
               fmt::format("bind it in a shader as `{}`, or remove it", shaderName(path)));
   }

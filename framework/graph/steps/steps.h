@@ -45,8 +45,13 @@ StepAccess bindingAccess(const BoundPass& pass, uint32_t access, const gpu::Refl
 // An access through a port for one of its usages.
 StepAccess portAccess(const BoundPass& pass, uint32_t access, Usage usage, PassKind stages);
 
-// The access that a shader's name refers to: "surfacePosition" for surface.position, and "Total" for the port `total`,
-// since a block without an instance name goes by the name of the block; kNone if there is none.
+// The usages through which a shader can reach a port by a binding of this kind.
+Usage usageOf(gpu::BindingKind kind);
+
+// A block without an instance name goes by the name of the block, which starts with a capital: `buffer Total {...};` is
+// "total".
+std::string bindingName(std::string_view inShader);
+// The access that a binding's name refers to: "surfacePosition" for surface.position; kNone if there is none.
 uint32_t accessOfBinding(const BoundPass& pass, std::string_view binding);
 
 // The preprocessor macros of a step of this pass.

@@ -1,8 +1,8 @@
 // What a pass is, as plain data: its resources, parameters, counters and steps.
 //
 // The declaration states once which resources the pass reads and writes, which parameters and counters it has, and of
-// which steps it consists. Validation, the JSON schema, help texts, memory allocation, barriers, shader bindings and the
-// rows of the timings are all derived from it.
+// which steps it consists. Validation, the JSON schema, help texts, memory allocation, barriers, shader bindings and
+// the rows of the timings are all derived from it.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -257,8 +257,7 @@ struct StepSpec {
   bool together = false;  // may run at the same time as the step before it
   std::vector<std::pair<std::string, SizeExpr>> defines;
   std::vector<std::pair<std::string, SizeExpr>> constants;
-  std::vector<std::function<void(const RecordContext&, Commands&)>>
-      frameConstants;  // set anew in every frame
+  std::vector<std::function<void(const RecordContext&, Commands&)>> frameConstants;
   Size sizing = Size::Manual;
   SizeExpr size[3];
   std::string sizePort;
@@ -270,8 +269,8 @@ struct StepSpec {
   // These change the step in place, so that calls can be chained: d.step("blur.comp").define(...).over("image")
   StepSpec& called(std::string stepName);
   StepSpec& when(SizeExpr isTrue);
-  StepSpec&
-  runTogether();  // whatever this step and the one before it do to the same resource may happen in any order
+  // Whatever this step and the one before it do to the same resource may happen in any order.
+  StepSpec& runTogether();
   StepSpec& define(std::string macro, SizeExpr value);
   // A push constant from sizes and parameters. Constants with the name of a parameter, `frameIndex` and `seed` fill
   // themselves.
@@ -337,6 +336,8 @@ struct PassDeclaration {
 };
 
 MemberSpec member(std::string name, ResourceSpec resource, Usage usage, std::string doc = {});
+// How passes name a member of one of their ports: "surface.position", or "radiance" for a plain port.
+std::string memberPath(const PortSpec& port, const MemberSpec& member);
 
 // The only naming rule between JSON and shaders: snake_case and dotted paths become camelCase.
 // "surface.position" -> "surfacePosition", "vpl_count" -> "vplCount".

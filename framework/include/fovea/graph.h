@@ -90,8 +90,9 @@ struct SessionOptions {
 
 class Session {
  public:
-  // `graph` is a file or a bare name. The scene must outlive the session. Throws Error(BadInput) with every mistake
-  // of the graph, Error(NoDevice) or Error(OutOfMemory).
+  // `graph` is a file or a bare name. Passes in files are found as by the program, in the folders that FOVEA_PASSES
+  // names and in a folder `passes` beside the graph. The scene must outlive the session. Throws Error(BadInput) with
+  // every mistake of the graph, Error(NoDevice) or Error(OutOfMemory).
   Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options = {});
   ~Session();
 

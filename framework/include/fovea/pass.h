@@ -73,7 +73,7 @@ struct GraphicsKernelDesc {
   float depthBiasConstant = 0, depthBiasSlope = 0;
 };
 
-// What a bound pass knows of its place in the graph before any frame runs. It needs no device.
+// What a bound pass knows of its place in the graph. All look-ups use the names of the declaration.
 class PassContext {
  public:
   PassContext(const BoundGraph& graph, const BoundPass& pass) : graph_(graph), bound_(pass) {}
@@ -84,8 +84,10 @@ class PassContext {
   bool isRead(std::string_view path) const;
   VkExtent3D extent(std::string_view port) const;
   uint32_t layers(std::string_view port) const;
+  uint32_t mips(std::string_view port) const;
   uint64_t count(std::string_view port) const;  // number of elements in a buffer
   // Conditions are 0 or 1; the sizes of an input that is not wired are 0.
+  // Throws Error(BadInput) on overflow and division by zero.
   int64_t evaluate(const SizeExpr& expression) const;
 
  private:
@@ -93,8 +95,8 @@ class PassContext {
   const BoundPass& bound_;
 };
 
-// Passed to Pass::prepare() once per plan. All kernels are built here, so that the frame loop compiles nothing; those of
-// declared steps are built by the framework.
+// Passed to Pass::prepare() once per plan. All kernels are built here, so that the frame loop compiles nothing; those
+// of declared steps are built by the framework.
 class PrepareContext : public PassContext {
  public:
   explicit PrepareContext(PassInstance& pass);
@@ -160,25 +162,19 @@ struct Attachment {
   VkClearValue clear{};
 };
 
-// Passed to Pass::record() once per frame. All look-ups use the names of the declaration. Commands are ordered by what
-// they read and write, as their shaders say, so a pass needs no barriers between them.
-class RecordContext {
+// Passed to Pass::record() once per frame. Commands are ordered by what they read and write, as their shaders say, so a
+// pass needs no barriers between them.
+class RecordContext : public PassContext {
  public:
   RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame, uint64_t frameNumber);
   VkCommandBuffer cmd() const { return cmd_; }
   gpu::Device& device() const;
-  const Parameters& parameters() const;
   const scene::Frame& frame() const { return frame_; }
   const scene::View& view() const;  // the view that the graph file assigns to this pass
   uint64_t frameNumber() const { return frameNumber_; }
-  bool has(std::string_view port) const;
   bool firstFrame() const;                         // kept and history resources were just zeroed
   gpu::Image& image(std::string_view port) const;  // "radiance" or "surface.position"
   gpu::Buffer& buffer(std::string_view port) const;
-  VkExtent3D extent(std::string_view port) const;
-  uint32_t layers(std::string_view port) const;
-  uint32_t mips(std::string_view port) const;
-  uint64_t count(std::string_view port) const;  // number of elements in a buffer
 
   void runSteps();                  // every declared step whose condition holds, in order
   void run(std::string_view step);  // one declared step; nothing if its condition does not hold
@@ -225,17 +221,13 @@ StepSpec& StepSpec::constant(std::string constant, Function function) {
 
 // Passed to Pass::execute() of host passes once per frame. Inputs and outputs are plain memory; images are tightly
 // packed, layer after layer.
-class HostContext {
+class HostContext : public PassContext {
  public:
   HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t frameNumber);
-  const Parameters& parameters() const;
   const scene::Frame& frame() const { return frame_; }
   const scene::View& view() const;
   uint64_t frameNumber() const { return frameNumber_; }
-  bool has(std::string_view port) const;
   bool firstFrame() const;
-  VkExtent3D extent(std::string_view port) const;
-  uint64_t count(std::string_view port) const;
   std::span<const std::byte> input(std::string_view port) const;
   std::span<std::byte> output(std::string_view port) const;  // whole resource; every byte must be written
   template <class T>

@@ -1,0 +1,57 @@
+#include "framework/graph/pass/evaluate.h"
+
+#include <algorithm>
+
+namespace fovea::graph {
+
+std::optional<int64_t> wholeNumber(const Parameters& parameters, std::string_view name) {
+  const Value* value = parameters.find(name);
+  if (!value) return std::nullopt;
+  if (const int64_t* number = std::get_if<int64_t>(value)) return *number;
+  if (const bool* flag = std::get_if<bool>(value)) return *flag;
+  const std::string* chosen = std::get_if<std::string>(value);
+  if (!chosen) return std::nullopt;
+  for (const ParameterSpec& spec : parameters.specs())
+    if (spec.name == name)
+      return std::find(spec.choices.begin(), spec.choices.end(), *chosen) - spec.choices.begin();
+  return 0;
+}
+
+int64_t quantityOf(const ResourceDesc& desc, SizeExpr::Op what) {
+  switch (what) {
+    case SizeExpr::Op::PortWidth:
+      return desc.width;
+    case SizeExpr::Op::PortHeight:
+      return desc.height;
+    case SizeExpr::Op::PortLayers:
+      return desc.volume ? desc.depth : desc.layers;
+    default:
+      return static_cast<int64_t>(desc.count);
+  }
+}
+
+bool applyOperator(SizeExpr::Op op, ExpressionStack& stack) {
+  if (stack.size < 2) return false;
+  const int64_t b = stack.values[--stack.size];
+  int64_t& a = stack.values[stack.size - 1];
+  switch (op) {
+    case SizeExpr::Op::Add:
+      return !__builtin_add_overflow(a, b, &a);
+    case SizeExpr::Op::Sub:
+      return !__builtin_sub_overflow(a, b, &a);
+    case SizeExpr::Op::Mul:
+      return !__builtin_mul_overflow(a, b, &a);
+    case SizeExpr::Op::Div:
+      if (b <= 0 || a < 0) return false;
+      a = a / b + (a % b != 0);
+      return true;
+    case SizeExpr::Op::Min:
+      a = std::min(a, b);
+      return true;
+    default:
+      a = std::max(a, b);
+      return true;
+  }
+}
+
+}  // namespace fovea::graph
