@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 
 #include "fovea/error.h"
 #include "framework/graph/pass/registry.h"
@@ -206,7 +207,7 @@ namespace {
 
 // Sizes and push constants have 32 bits.
 uint32_t stepWord(const PassInstance& pass, const StepSpec& spec, int64_t value, const SizeExpr& expression) {
-  if (value >= 0 && value <= int64_t(~0u)) return static_cast<uint32_t>(value);
+  if (value >= 0 && value <= std::numeric_limits<uint32_t>::max()) return static_cast<uint32_t>(value);
   throw Error(ExitCode::BadInput, "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type +
                                       "), step `" + spec.name + "`: `" + expression.print() + "` is " +
                                       std::to_string(value) +
