@@ -8,16 +8,21 @@ set(ignored "framework/scene/(builtin|gltf/|file/|load|export/|subdivision/cage_
 set(execution "framework/graph/run/")
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/framework/*.cpp ${SOURCE}/framework/*.h ${SOURCE}/passes/*.cpp
-  ${SOURCE}/passes/*.h ${SOURCE}/benchmarks/runner/*.cpp ${SOURCE}/benchmarks/runner/*.h ${SOURCE}/shaders/common/*)
+  ${SOURCE}/passes/*.h ${SOURCE}/benchmarks/runner/*.cpp ${SOURCE}/benchmarks/runner/*.h ${SOURCE}/shaders/common/* ${SOURCE}/shaders/*.h)
 list(FILTER files EXCLUDE REGEX "${ignored}")
 list(SORT files)
 
 # uses_FILE: what it includes. A header uses its source file, too: the one of its name, and those of its folder that
-# include it and have no header of their own.
+# include it and have no header of their own. The records that C++ and GLSL share include each other as GLSL does.
 foreach(file ${files})
   file(STRINGS ${SOURCE}/${file} lines REGEX "^#include \"")
   list(TRANSFORM lines REPLACE "^#include \"([^\"]+)\".*" "\\1")
   list(TRANSFORM lines REPLACE "^fovea/" "framework/include/fovea/")
+  if(file MATCHES "^shaders/")
+    list(TRANSFORM lines REPLACE "^common/" "shaders/common/")
+    cmake_path(GET file PARENT_PATH folder)
+    list(TRANSFORM lines REPLACE "^([a-z_]+[.]h)$" "${folder}/\\1")
+  endif()
   list(APPEND uses_${file} ${lines})
   if(file MATCHES "\\.cpp$")
     string(REGEX REPLACE "\\.cpp$" ".h" own ${file})
@@ -65,7 +70,7 @@ set(entries "")
 file(GLOB folders LIST_DIRECTORIES true RELATIVE ${SOURCE}/passes ${SOURCE}/passes/*)
 foreach(type ${folders})
   if(IS_DIRECTORY ${SOURCE}/passes/${type})
-    code(hash "passes/${type}/" "framework/(base|scene|image|shader_twins|include)/|shaders/common/")
+    code(hash "passes/${type}/" "framework/(base|scene|image|shader_twins|include)/|shaders/")
     string(APPEND entries "    {\"${type}\", \"${hash}\"},\n")
   endif()
 endforeach()

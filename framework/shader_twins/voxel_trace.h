@@ -10,7 +10,7 @@
 #include <span>
 
 #include "framework/shader_twins/voxel_grid.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::scene {
 

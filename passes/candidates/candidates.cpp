@@ -3,8 +3,8 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

@@ -8,8 +8,8 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

@@ -4,8 +4,8 @@
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/emit/light_paths.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 

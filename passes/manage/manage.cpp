@@ -9,7 +9,7 @@
 #include "fovea/pass.h"
 #include "framework/gpu/device.h"
 #include "framework/scene/frame.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

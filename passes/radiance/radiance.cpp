@@ -3,6 +3,7 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -15,7 +16,8 @@ class Radiance : public Pass {
     PassDeclaration d(
         "radiance",
         "radiosity of every VPL: direct light plus light gathered from the voxels with six cones (Eq. 3)");
-    d.input("vpls", buffer("VplState", 80), Usage::TexelRead, "VPLs; empty slots have life 0");
+    d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+            "VPLs; empty slots have life 0");
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "voxelised surfaces");
     d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
             "outgoing radiance of every voxel side");

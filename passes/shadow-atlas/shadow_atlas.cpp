@@ -24,7 +24,7 @@
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/motion/movers.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

@@ -3,8 +3,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "fovea/pass.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

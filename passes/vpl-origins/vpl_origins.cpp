@@ -1,8 +1,8 @@
 // Positions of the VPLs as light sources, which pass shadow-atlas needs before pass vpl-intensity
 // can find their intensity.
 #include "fovea/pass.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

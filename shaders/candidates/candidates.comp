@@ -51,7 +51,7 @@ Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uin
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
-  Candidate candidate = Candidate(vec4(vec3(0.0), uintBitsToFloat(kNoSide)), vec4(0.0), vec4(0.0), vec4(0.0));
+  Candidate candidate = kNoCandidate;
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
   uint number, from = regionOf(region, imageShare64ths, TWO_EYES != 0 ? i / 2u : i, number);
 #if TWO_EYES
@@ -78,18 +78,20 @@ void main() {
   }
   atomicAdd(counters[kCandidates], 1u);
   VoxelSide side = loadSide(hit.side);
-  candidate.positionSide = vec4(side.position, uintBitsToFloat(hit.side));
-  candidate.normalObject = vec4(side.normal, side.object);
-  candidate.reflectanceLuminance.rgb = side.reflectance;
+  candidate.position = side.position;
+  candidate.side = hit.side;
+  candidate.normal = side.normal;
+  candidate.object = side.object;
+  candidate.reflectance = side.reflectance;
 #if HAS_RADIANCE
-  candidate.reflectanceLuminance.w = texelFetch(radiance, int(hit.side)).w;
+  candidate.luminance = texelFetch(radiance, int(hit.side)).w;
 #endif
   uint object = uint(side.object);
   if (objectDeforms(object)) {  // its place on the surface does not change
-    candidate.localPosition = vec4(attach(sideTriangle(hit.side), side.position), 0.0);
-    candidate.positionSide.xyz = attachedPosition(candidate.localPosition.xyz);
+    candidate.localPosition = attach(sideTriangle(hit.side), side.position);
+    candidate.position = attachedPosition(candidate.localPosition);
   } else {
-    candidate.localPosition = vec4(toObject(object, side.position), 0.0);
+    candidate.localPosition = toObject(object, side.position);
   }
   candidates[i] = candidate;
 }

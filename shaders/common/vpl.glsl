@@ -1,40 +1,41 @@
-// Virtual point lights as the shading passes read them. The same layout as framework/shader_twins/vpl.h.
+// Virtual point lights: their records, and how to read them from texel buffers.
 #ifndef FOVEA_VPL_GLSL
 #define FOVEA_VPL_GLSL
 
-// 48 bytes; 1024 of them fill a page of a uniform buffer (the fast way to read data that every invocation reads). The
-// list index of a VPL is its slot, which determines its map in the shadow atlas and, modulo the number of interleave
-// subsets, the subset that it shades in.
-struct Vpl {
-  vec4 positionArea;   // xyz: world space, m; w: surface area it stands for, m^2 (size of the kernel `disc`)
-  vec4 normal;         // xyz: unit, the side it shines to; w: unused
-  vec4 intensity;      // rgb: radiant intensity along the normal, W/sr = reflected flux / pi; all 0: an empty slot
-};
+#include "common/records/vpl.h"
 
-bool isLit(Vpl v) { return any(notEqual(v.intensity.rgb, vec3(0.0))); }
+bool isLit(Vpl v) { return any(notEqual(v.intensity, vec3(0.0))); }
 
-const uint kVplPage = 1024u;
+// What empty slots hold, and attempts that hit nothing.
+const Vpl kNoVpl = Vpl(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+const VplState kNoVplState = VplState(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0);
+const Candidate kNoCandidate = Candidate(vec3(0.0), kNoSide, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
-// State of a VPL that is kept from frame to frame, one entry per slot; a VPL keeps its slot for life. 80 bytes; an
-// empty slot is all zeros.
-struct VplState {
-  vec4 positionImportance;  // xyz: world space, this frame; w: importance I of this frame, in [0, 1]
-  vec4 normalLife;          // xyz: unit, world space; w: frames shown, including this one: 0 empty, 1 new
-  vec4 reflectanceSide;     // rgb: reflectance; w: voxel side of this frame (bits of a uint)
-  vec4 localPosition;       // xyz: in the space of its object; w: object. On an object that deforms, the place
-                            // in a triangle (attach() in common/scene.glsl)
-  vec4 localNormal;         // xyz: unit, in the space of its object (on one that deforms, along the axes of the
-                            // triangle), as found; w: importance of the previous frame (Eq. 1)
-};
+Vpl loadVpl(samplerBuffer list, uint slot) {
+  int first = int(slot) * 3;
+  vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
+  return Vpl(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
 
-const uint kNoSide = 0xffffffffu;
+// Records that hold whole numbers are read as bits, so that these pass unchanged. What a caller does not use is not
+// fetched: compilers leave it out.
+VplState loadVplState(usamplerBuffer list, uint slot) {
+  int first = int(slot) * 5;
+  uvec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2),
+        d = texelFetch(list, first + 3), e = texelFetch(list, first + 4);
+  return VplState(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), uintBitsToFloat(b.xyz), uintBitsToFloat(b.w),
+                  uintBitsToFloat(c.xyz), c.w, uintBitsToFloat(d.xyz), uintBitsToFloat(d.w),
+                  uintBitsToFloat(e.xyz), uintBitsToFloat(e.w));
+}
 
-// A candidate VPL. 64 bytes.
-struct Candidate {
-  vec4 positionSide;          // xyz: world space; w: voxel side (bits of a uint), kNoSide if the attempt hit nothing
-  vec4 normalObject;          // xyz: unit, world space; w: object
-  vec4 reflectanceLuminance;  // rgb: reflectance; w: luminance of the side's radiance, W/(sr m^2)
-  vec4 localPosition;         // xyz: as in VplState; w: unused
-};
+uint vplStates(usamplerBuffer list) { return uint(textureSize(list)) / 5u; }  // number of them
+
+Candidate loadCandidate(usamplerBuffer list, uint i) {
+  int first = int(i) * 4;
+  uvec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2),
+        d = texelFetch(list, first + 3);
+  return Candidate(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), uintBitsToFloat(b.w), uintBitsToFloat(c.xyz),
+                   uintBitsToFloat(c.w), uintBitsToFloat(d.xyz), uintBitsToFloat(d.w));
+}
 
 #endif

@@ -78,11 +78,11 @@ Block blockOf(Receiver receivers[kPixels], bool valid[kPixels]) {
 
 // Whether a VPL may light any of them, by bounds of both cosines' numerators. Coplanar ones pass because of rounding.
 bool mayLight(Vpl vpl, Block b) {
-  vec3 away = b.centre - vpl.positionArea.xyz;
-  float along = dot(vpl.normal.xyz, away) + dot(abs(vpl.normal.xyz), b.reach);
+  vec3 away = b.centre - vpl.position;
+  float along = dot(vpl.normal, away) + dot(abs(vpl.normal), b.reach);
   float facing = dot(b.normalReach, abs(away)) - dot(b.normal, away) - b.plane;
   float rounding = 1e-6 * (dot(abs(away), vec3(1.0)) + dot(b.reach, vec3(1.0)));
-  return min(along, facing) > rounding && b.reach.x >= 0.0 && vpl.intensity.rgb != vec3(0.0);
+  return min(along, facing) > rounding && b.reach.x >= 0.0 && vpl.intensity != vec3(0.0);
 }
 
 // A VPL in the form in which all receivers of a subgroup use it.
@@ -95,10 +95,10 @@ struct Emitter {
 Emitter emitterOf(Vpl vpl) {
   mat3 axes = mat3(0.0);
 #if SHADOWED
-  axes = orthonormalFrame(vpl.normal.xyz);
+  axes = orthonormalFrame(vpl.normal);
 #endif
-  axes[2] = vpl.normal.xyz;
-  return Emitter(vpl.positionArea.xyz, vpl.intensity.rgb, axes, vpl.positionArea.w);
+  axes[2] = vpl.normal;
+  return Emitter(vpl.position, vpl.intensity, axes, vpl.area);
 }
 
 // The emitter of another lane.

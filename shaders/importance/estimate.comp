@@ -42,12 +42,11 @@ struct Source {
 
 Source loadSource(uint i) {
 #if CANDIDATES
-  uvec4 positionSide = texelFetch(candidates, int(i) * 4), normal = texelFetch(candidates, int(i) * 4 + 1);
-  return Source(uintBitsToFloat(positionSide.xyz), uintBitsToFloat(normal.xyz), positionSide.w, positionSide.w != kNoSide);
+  Candidate c = loadCandidate(candidates, i);
+  return Source(c.position, c.normal, c.side, c.side != kNoSide);
 #else
-  uvec4 position = texelFetch(vpls, int(i) * 5), normalLife = texelFetch(vpls, int(i) * 5 + 1);
-  return Source(uintBitsToFloat(position.xyz), uintBitsToFloat(normalLife.xyz), texelFetch(vpls, int(i) * 5 + 2).w,
-                uintBitsToFloat(normalLife.w) > 0.0);
+  VplState v = loadVplState(vpls, i);
+  return Source(v.position, v.normal, v.side, v.life > 0.0);
 #endif
 }
 

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 uniform usamplerBuffer candidates;
 uniform samplerBuffer candidateImportance;
 uniform samplerBuffer vplImportance;
-uniform samplerBuffer vpls;  // VplState: five texels per slot
+uniform usamplerBuffer vpls;
 
 const uint kManageStream = 0x6d616e61u;  // keeps the random numbers of this pass apart from others
 
@@ -20,20 +20,20 @@ void occupy(uint cell) {
 
 void testSlot(uint slot) {
   sources.list[slot] = kEmpty;
-  int texel = 5 * int(slot);
-  if (!(texelFetch(vpls, texel + 1).w > 0.0)) {  // life
+  VplState vpl = loadVplState(vpls, slot);
+  if (!(vpl.life > 0.0)) {
     slotRecords.list[slot] = SlotRecord(0u, 0u, 0u, 0u);
     return;
   }
   uint importance = quantiseImportance(texelFetch(vplImportance, int(slot)).r);
-  uint before = quantiseImportance(texelFetch(vpls, texel + 4).w);
+  uint before = quantiseImportance(vpl.previousImportance);
   uint stream = randomStream(seed, frameIndex, kManageStream, slot);
   uint u = hashCombine(stream, 0u) >> 8;
   // `random` reuses as many as `linear` would.
   bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
   uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
   if (reuse != kReuseRandom && mostRejected < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // failed last
-  uint cell = cellOf(texelFetch(vpls, texel).xyz);
+  uint cell = cellOf(vpl.position);
   slotRecords.list[slot] = SlotRecord(importance, kAlive | (accepted ? kAccepted : 0u), cell, key);
   occupy(cell);
   atomicAdd(state.alive, 1u);
@@ -41,14 +41,14 @@ void testSlot(uint slot) {
 }
 
 void readCandidate(uint i) {
-  uvec4 positionSide = texelFetch(candidates, 4 * int(i));
-  if (positionSide.w == kNoSide) {
-    candidateRecords.list[i] = uvec2(kNoCandidate, 0u);
+  Candidate candidate = loadCandidate(candidates, i);
+  if (candidate.side == kNoSide) {
+    candidateRecords.list[i] = uvec2(kHitNothing, 0u);
     return;
   }
-  uint cell = cellOf(uintBitsToFloat(positionSide.xyz));
+  uint cell = cellOf(candidate.position);
   uint value = placement == kPlacementLight
-                   ? quantiseLight(uintBitsToFloat(texelFetch(candidates, 4 * int(i) + 2).w), frame.exposure)
+                   ? quantiseLight(candidate.luminance, frame.exposure)
                    : quantiseImportance(texelFetch(candidateImportance, int(i)).r);
   candidateRecords.list[i] = uvec2(value, cell);
   occupy(cell);

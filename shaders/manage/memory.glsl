@@ -42,9 +42,9 @@ struct SlotRecord {
 const uint kAlive = 1u, kAccepted = 2u;
 layout(std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
 
-// x: importance, 24 bits, or direct light (placement `light`), kNoCandidate if the attempt hit nothing; y: cell
+// x: importance, 24 bits, or direct light (placement `light`), kHitNothing if the attempt hit nothing; y: cell
 // of the density grid.
-const uint kNoCandidate = 0xffffffffu;
+const uint kHitNothing = 0xffffffffu;
 layout(std430) buffer CandidateRecordsBlock { uvec2 list[]; } candidateRecords;
 
 // Content of a slot: nothing, the VPL that it has, or candidate `source - kFirstCandidate`.

@@ -6,7 +6,7 @@
 
 layout(local_size_x = GROUP) in;
 
-bool hit(uint i) { return candidateRecords.list[i].x != kNoCandidate; }
+bool hit(uint i) { return candidateRecords.list[i].x != kHitNothing; }
 
 void main() {
   Run run = runOf(candidateCount);

@@ -20,7 +20,7 @@ uint lightFloor = 0u;
 
 uint importanceOf(uint i) {
   uint importance = candidateRecords.list[i].x;
-  return importance == kNoCandidate ? 0u : importance + lightFloor;
+  return importance == kHitNothing ? 0u : importance + lightFloor;
 }
 
 // Sum of the importances before this invocation's run, and over all.

@@ -1,5 +1,6 @@
 // Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones). Define: CONES, 0: only the direct term.
 #include "common/scene.glsl"
+#include "common/vpl.glsl"
 #if CONES
 #include "common/random.glsl"
 #define CONE_GATHER
@@ -10,7 +11,7 @@ uniform samplerBuffer radiance;
 
 layout(local_size_x = 8) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 layout(std430) writeonly buffer Radiosity { vec4 radiosity[]; };
 
 layout(push_constant) uniform Constants {
@@ -19,24 +20,21 @@ layout(push_constant) uniform Constants {
 };
 
 const uint kRadiance = 0x4adu;  // random stream
-const int kVplStateTexels = 5;
 
 void main() {
   uint slot = gl_GlobalInvocationID.x;
   if (slot >= count) return;
-  int first = int(slot) * kVplStateTexels;
-  vec4 normalLife = texelFetch(vpls, first + 1);
+  VplState vpl = loadVplState(vpls, slot);
   vec3 result = vec3(0.0);
-  if (normalLife.w > 0.0) {
-    vec4 reflectanceSide = texelFetch(vpls, first + 2);
-    int side = int(floatBitsToUint(reflectanceSide.w));
+  if (vpl.life > 0.0) {
+    int side = int(vpl.side);
     // Reflected direct light and emission of the voxel are known from light-inject: rho E_direct = pi L.
     if (terms != 2 && side >= 0 && side < textureSize(radiance)) result += kPi * texelFetch(radiance, side).rgb;
 #if CONES
     if (terms != 1) {
       // A slot keeps its cones as long as its VPL lives.
       float turn = 2.0 * kPi * uniformFloat(randomStream(frame.seed, 0u, kRadiance, slot));
-      result += reflectanceSide.rgb * gatherHemisphere(voxelsGrid(), texelFetch(vpls, first).xyz, normalLife.xyz, turn);
+      result += vpl.reflectance * gatherHemisphere(voxelsGrid(), vpl.position, vpl.normal, turn);
     }
 #endif
   }

@@ -26,16 +26,16 @@ shared uint found;
 // Sets `found` if a surface within the sphere might be visible in the map. Must be called by the whole group.
 void look(uint slot, Vpl v, vec4 sphere) {
   if (sphere.w < 0.0) return;
-  vec3 to = sphere.xyz - v.positionArea.xyz;
+  vec3 to = sphere.xyz - v.position;
   float away = length(to);
   float reach = sphere.w + 1e-4 * (away + sphere.w);  // rounding
-  if (dot(to, v.normal.xyz) < -reach) return;         // behind the VPL
+  if (dot(to, v.normal) < -reach) return;         // behind the VPL
   AtlasLayout layout_ = atlasLayout(imageSize(atlas));
   vec2 low = vec2(0.0), high = vec2(layout_.size - 1);
   if (away > reach) {
     // The image of the cone around a sphere is a circle, whose nearest and farthest points lie on the line through
     // the centre of the map. Beyond 150 degrees from the normal, the whole map is assumed.
-    vec3 local = toLocal(orthonormalFrame(v.normal.xyz), to) / away;
+    vec3 local = toLocal(orthonormalFrame(v.normal), to) / away;
     float angle = acos(clamp(local.z, -1.0, 1.0)), half_ = asin(reach / away);
     if (angle + half_ < 2.6) {
       float inner = tan(0.5 * (angle - half_)), outer = tan(0.5 * (angle + half_)), along = length(local.xy);
@@ -64,8 +64,8 @@ void main() {
   uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * kGroupsPerRow;
   if (slot >= slots) return;
   Vpl v = vpls.list[slot];
-  bool stands = refreshed.frames[slot] != 0u && drawn.maps[slot].position.xyz == v.positionArea.xyz &&
-                drawn.maps[slot].normal.xyz == v.normal.xyz;
+  bool stands = refreshed.frames[slot] != 0u && drawn.maps[slot].position.xyz == v.position &&
+                drawn.maps[slot].normal.xyz == v.normal;
   if (gl_LocalInvocationIndex == 0u) found = 0u;
   barrier();
   if (stands && isLit(v)) {

@@ -39,14 +39,14 @@ const float kLeastImportance = 0.05;  // so that unimportant maps are refreshed 
 // Priority among the maps that may be drawn again; 0 if it is not one of them.
 uint priority(uint slot, uint order) {
   if (chosen.list[slot] != kSlotKept) return 0u;
-  float importance = max(state.list[slot].positionImportance.w, 0.0);
+  float importance = max(state.list[slot].importance, 0.0);
   if (order == kByImportance) return floatBitsToUint(importance) + 1u;
   uint age = min(frameNumber + 1u - refreshed.frames[slot], 0x3fffffffu);  // frames since it was drawn
   if (order == kByUrgency)
     return changes.list[slot] == kChangeNone ? 0u : floatBitsToUint((importance + kLeastImportance) * float(age));
   // Four times as urgent if something moves in front of the VPL.
   Vpl v = vpls.list[slot];
-  bool sees = movers.w >= 0.0 && dot(v.normal.xyz, movers.xyz - v.positionArea.xyz) > -movers.w;
+  bool sees = movers.w >= 0.0 && dot(v.normal, movers.xyz - v.position) > -movers.w;
   return (sees ? 4u : 1u) * age;
 }
 
@@ -96,7 +96,7 @@ void main() {
     if (slot < slots) {
       bool lit = isLit(vpls.list[slot]);
 #if HAS_STATE
-      bool isNew = state.list[slot].normalLife.w <= 1.0 || refreshed.frames[slot] == 0u;
+      bool isNew = state.list[slot].life <= 1.0 || refreshed.frames[slot] == 0u;
 #else
       const bool isNew = true;
 #endif

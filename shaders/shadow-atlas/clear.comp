@@ -32,8 +32,8 @@ void main() {
 #if HAS_STATE
   if (isDrawn(choice) && gl_LocalInvocationIndex == 0u) {
     Vpl v = vpls.list[slot];
-    drawn.maps[slot].position = vec4(v.positionArea.xyz, 0.0);
-    drawn.maps[slot].normal = vec4(v.normal.xyz, 0.0);
+    drawn.maps[slot].position = vec4(v.position, 0.0);
+    drawn.maps[slot].normal = vec4(v.normal, 0.0);
     for (int i = 0; i < MOVERS; ++i) {
       drawn.maps[slot].movers[i] = movers[i];
       drawn.maps[slot].poses[i] = poses[i];

@@ -34,8 +34,8 @@ uint pack(bool overlaid, uint count) {
     uint place = count + compact(draw, total);
     if (draw) {
       Vpl v = vpls.list[slot];
-      mat3 frame = orthonormalFrame(v.normal.xyz);
-      batch.views[place] = VplView(vec4(v.positionArea.xyz, float(slot)), vec4(frame[0], 0.0), vec4(frame[1], 0.0),
+      mat3 frame = orthonormalFrame(v.normal);
+      batch.views[place] = VplView(vec4(v.position, float(slot)), vec4(frame[0], 0.0), vec4(frame[1], 0.0),
                                    vec4(frame[2], 0.0));
     }
     count += total;

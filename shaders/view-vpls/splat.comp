@@ -1,9 +1,10 @@
 // One work group per slot: draws the disc of its VPL into the pixels' keys, where the nearest one stays.
 #include "common/scene.glsl"
+#include "common/vpl.glsl"
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer state;  // VplState
+uniform usamplerBuffer state;  // VplState
 #if DEPTH_TEST
 uniform texture2D gbufferPosition;
 #endif
@@ -14,18 +15,15 @@ layout(push_constant) uniform Constants {
   float radius;  // px
 };
 
-const int kStateTexels = 5;
-
 void main() {
   uint slot = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  if (slot >= uint(textureSize(state) / kStateTexels)) return;
-  vec3 position = texelFetch(state, int(slot) * kStateTexels).xyz;
-  float life = texelFetch(state, int(slot) * kStateTexels + 1).w;
-  vec4 clip = view.worldToClip * vec4(position, 1.0);
-  if (!(life > 0.0 && clip.w > 0.0)) return;
+  if (slot >= vplStates(state)) return;
+  VplState vpl = loadVplState(state, slot);
+  vec4 clip = view.worldToClip * vec4(vpl.position, 1.0);
+  if (!(vpl.life > 0.0 && clip.w > 0.0)) return;
   vec2 centre = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
   if (!(all(greaterThanEqual(centre, vec2(0.0))) && all(lessThan(centre, vec2(size))))) return;
-  float distance = length(position - view.eye.xyz);
+  float distance = length(vpl.position - view.eye.xyz);
 #if DEPTH_TEST
   // Draws the VPL if it is in front of the surface seen at its centre, or on it; the tolerance allows
   // for a voxel's size.

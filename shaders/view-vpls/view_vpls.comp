@@ -1,10 +1,11 @@
 // Turns the keys of the pixels into colours, over the picture.
 #include "common/scene.glsl"
 #include "common/colour_map.glsl"
+#include "common/vpl.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-uniform samplerBuffer state;  // VplState
+uniform usamplerBuffer state;  // VplState
 #if LUMINANCE
 uniform samplerBuffer vpls;  // Vpl
 #endif
@@ -16,13 +17,13 @@ layout(rgba16f) uniform writeonly image2D image;
 
 layout(push_constant) uniform Constants { float scale; };  // 1 / value shown as the last colour
 
-float valueOf(int slot) {
+float valueOf(uint slot) {
 #if LUMINANCE
-  return dot(texelFetch(vpls, slot * 3 + 2).rgb, vec3(0.2126, 0.7152, 0.0722));
+  return dot(loadVpl(vpls, slot).intensity, vec3(0.2126, 0.7152, 0.0722));
 #elif AGE
-  return texelFetch(state, slot * 5 + 1).w;
+  return loadVplState(state, slot).life;
 #else
-  return texelFetch(state, slot * 5).w;
+  return loadVplState(state, slot).importance;
 #endif
 }
 
@@ -34,6 +35,6 @@ void main() {
 #if PICTURE
   if (all(lessThan(p, textureSize(picture, 0)))) colour = texelFetch(picture, p, 0).rgb;
 #endif
-  if (key != 0xffffffffu) colour = displayColour(colourMap(valueOf(int(key & 0xffffu)) * scale));
+  if (key != 0xffffffffu) colour = displayColour(colourMap(valueOf(key & 0xffffu) * scale));
   imageStore(image, p, vec4(min(colour, vec3(65504.0)), 1.0));
 }

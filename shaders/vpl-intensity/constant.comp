@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 uniform samplerBuffer radiosity;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer AreasBlock { float list[]; } areas;
@@ -34,6 +34,6 @@ void main() {
   if (total == 0.0 && sums[0].y > 0.0) total = alive * sums[0].x / sums[0].y;
   barrier();
   for (uint i = lane; i < vplCount; i += 64u)
-    areas.list[i] = texelFetch(vpls, int(i) * kStateTexels + 1).w > 0.0 ? total / max(alive, 1.0) : 0.0;
+    areas.list[i] = loadVplState(vpls, i).life > 0.0 ? total / max(alive, 1.0) : 0.0;
   if (lane == 0u) kept.total = total;
 }

@@ -17,7 +17,7 @@
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 uniform samplerBuffer screen;
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 #if ONCE
@@ -60,14 +60,12 @@ float seenShare(VoxelGrid grid, uint slot, uint lane, vec3 position, vec3 normal
 
 void main() {
   uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x, lane = gl_LocalInvocationIndex;
-  int first = int(min(slot, vplCount - 1u)) * kStateTexels;
-  vec3 position = texelFetch(vpls, first).xyz;
-  vec4 normalLife = texelFetch(vpls, first + 1);
-  bool wanted = normalLife.w > 0.0;
+  VplState vpl = loadVplState(vpls, min(slot, vplCount - 1u));
+  bool wanted = vpl.life > 0.0;
 #if ONCE
   wanted = wanted && kept.total == 0.0;
 #endif
-  sums[lane] = wanted ? seenShare(voxelsGrid(), slot, lane, position, normalLife.xyz) : 0.0;
+  sums[lane] = wanted ? seenShare(voxelsGrid(), slot, lane, vpl.position, vpl.normal) : 0.0;
   barrier();
   for (uint half_ = 32u; half_ > 0u; half_ /= 2u) {  // a tree, so that the order is always the same
     if (lane < half_) sums[lane] += sums[lane + half_];

@@ -31,14 +31,14 @@ void main() {
   slot = min(slot, vplCount - 1u);
   float before = texelFetch(densities, int(slot)).r, area = areas.list[slot], sum = 0.0;
   if (before > 0.0 && area > 0.0) {
-    vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
+    Vpl vpl = loadVpl(placed, slot);
 #if NEAR
     area = max(area, texelFetch(spread, 0).x);
 #endif
     uint word = (slot * 64u + lane) * laneWords(points), bits = 0u, turn = 0u;
     for (uint i = lane; i < points; i += 64u, ++turn) {
       if ((turn & 31u) == 0u) bits = texelFetch(seen, int(word + turn / 32u)).r;
-      float p = landing(i, position, normal, area, 0.0);
+      float p = landing(i, vpl.position, vpl.normal, area, 0.0);
       sum += (bits >> (turn & 31u) & 1u) != 0u ? p : 0.0;
     }
   }

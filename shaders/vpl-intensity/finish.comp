@@ -33,7 +33,7 @@ vec3 intensityOf(uint slot, vec3 own, float area) {
   return sum.paths > 0u ? light / float(sum.paths) * area : vec3(0.0);
 }
 #elif SHARED
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 uniform samplerBuffer radiosity;
 uniform samplerBuffer radiance;
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
@@ -49,7 +49,7 @@ float meanLight(uint slot, int side, float radiosity) {
 }
 
 vec3 intensityOf(uint slot, vec3 own, float area) {
-  int side = int(floatBitsToUint(texelFetch(vpls, int(slot) * kStateTexels + 2).w));
+  int side = int(loadVplState(vpls, slot).side);
   return own * (area * meanLight(slot, side, texelFetch(radiosity, int(slot)).w));
 }
 #else
@@ -65,21 +65,19 @@ const float kBrightest = 1e18;  // W/sr: far above any real light, and products 
 void main() {
   uint slot = gl_GlobalInvocationID.x;
   if (slot >= vplCount) return;
-  int first = 3 * int(slot);
-  vec4 place = texelFetch(placed, first), light = texelFetch(placed, first + 2);
+  Vpl place = loadVpl(placed, slot), vpl = kNoVpl;
   float area = areas.list[slot];
-  vec3 intensity = intensityOf(slot, light.rgb, area);
+  vec3 intensity = intensityOf(slot, place.intensity, area);
 #if GAINS
   intensity *= gains.list[slot];
 #endif
-  Vpl vpl = Vpl(vec4(0.0), vec4(0.0), vec4(0.0));
-  if (place.w > 0.0 && finite(vec4(intensity, area))) {
+  if (place.area > 0.0 && finite(vec4(intensity, area))) {
 #if NEAR
     area = max(area, texelFetch(spread, 0).x);
 #endif
-    vpl.positionArea = vec4(place.xyz, area);
-    vpl.normal = texelFetch(placed, first + 1);
-    vpl.intensity = clamp(vec4(intensity, 0.0), vec4(0.0), vec4(kBrightest));
+    vpl = place;
+    vpl.area = area;
+    vpl.intensity = clamp(intensity, vec3(0.0), vec3(kBrightest));
   }
   emitters.list[slot] = vpl;
   if (slot == 0u) counters.alive = totals.value.alive;

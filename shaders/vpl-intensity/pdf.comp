@@ -13,7 +13,7 @@
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 uniform samplerBuffer densities;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) writeonly buffer AreasBlock { float list[]; } areas;
@@ -34,7 +34,7 @@ void main() {
   if (i >= vplCount) return;
   float found = float(totals.value.alive), least = kept.median / areaCap;
   if (totals.value.found > 0u) found *= float(tried) / float(totals.value.found);
-  bool there = texelFetch(vpls, int(i) * kStateTexels + 1).w > 0.0;
+  bool there = loadVplState(vpls, i).life > 0.0;
   float p = texelFetch(densities, int(i)).r;
   float area = there && least > 0.0 ? 1.0 / (found * max(p, least)) : 0.0;
 #if SHARED

@@ -13,7 +13,7 @@
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 uniform samplerBuffer placed;
 layout(r32ui) uniform readonly uimage2DArray atlas;
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
@@ -50,12 +50,12 @@ bool sees(Map map, vec3 point, vec3 face) {
 
 // Sum of the terms of p_l, and of their squares.
 vec2 seenSum(float area, uint slot, uint lane) {
-  vec3 position = texelFetch(placed, int(3u * slot)).xyz, normal = texelFetch(placed, int(3u * slot + 1u)).xyz;
-  Map map = Map(slot, position, orthonormalFrame(normal), atlasLayout(imageSize(atlas)));
+  Vpl vpl = loadVpl(placed, slot);
+  Map map = Map(slot, vpl.position, orthonormalFrame(vpl.normal), atlasLayout(imageSize(atlas)));
   vec2 sum = vec2(0.0);
   uint bits = 0u, turn = 0u;
   for (uint i = lane; i < points; i += 64u, ++turn) {
-    float p = landing(i, position, normal, area, nearest);
+    float p = landing(i, vpl.position, vpl.normal, area, nearest);
     vec3 from = texelFetch(screen, int(3u * i)).xyz, face = texelFetch(screen, int(3u * i + 2u)).xyz;
     bool seen_ = p > 0.0 && sees(map, from, face);
     sum += seen_ ? vec2(p, p * p) : vec2(0.0);
@@ -71,10 +71,10 @@ vec2 seenSum(float area, uint slot, uint lane) {
 void main() {
   uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x, lane = gl_LocalInvocationIndex;
   bool inside = slot < vplCount;
-  int first = int(min(slot, vplCount - 1u)) * kStateTexels;
-  vec4 normalLife = texelFetch(vpls, first + 1);
+  uint within = min(slot, vplCount - 1u);
+  VplState vpl = loadVplState(vpls, within);
   // Also excludes VPLs that pass vpl-origins has emptied because of a value that is not finite.
-  bool wanted = inside && normalLife.w > 0.0 && texelFetch(placed, int(3u * min(slot, vplCount - 1u))).w > 0.0;
+  bool wanted = inside && vpl.life > 0.0 && loadVpl(placed, within).area > 0.0;
   VoxelGrid grid = voxelsGrid();
   sums[lane] = wanted ? seenSum(grid.cell * grid.cell, slot, lane) : vec2(0.0);
   barrier();
@@ -86,11 +86,11 @@ void main() {
   float sum = sums[0].x;
   densities.list[slot] = sum / float(points);
   seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
-  int side = int(floatBitsToUint(texelFetch(vpls, first + 2).w));
+  int side = int(vpl.side);
   float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
   // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
-  float young = fadeFrames > 0u ? max(1.0 - normalLife.w / float(fadeFrames + 1u), 0.0) : 0.0;
+  float young = fadeFrames > 0u ? max(1.0 - vpl.life / float(fadeFrames + 1u), 0.0) : 0.0;
   float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
-  sites.list[2u * slot] = vec4(texelFetch(vpls, first).xyz, handicap);
-  sites.list[2u * slot + 1u] = vec4(normalLife.xyz, light);
+  sites.list[2u * slot] = vec4(vpl.position, handicap);
+  sites.list[2u * slot + 1u] = vec4(vpl.normal, light);
 }

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer vpls;
+uniform usamplerBuffer vpls;
 layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(std430) buffer BricksBlock { uint list[]; } bricks;
 layout(std430) buffer TotalsBlock { Totals value; } totals;
@@ -27,14 +27,13 @@ bool litSide(uint side) { return side < sideCapacity && texelFetch(radiance, int
 void tallyVpls(uint first, uint stride) {
   uint alive = 0u;
   for (uint i = first; i < vplCount; i += stride) {
-    vec4 normalLife = texelFetch(vpls, int(i) * kStateTexels + 1);
-    bool there = normalLife.w > 0.0;
+    VplState vpl = loadVplState(vpls, i);
+    bool there = vpl.life > 0.0;
     alive += uint(there);
 #if AREA
-    uint side = floatBitsToUint(texelFetch(vpls, int(i) * kStateTexels + 2).w);
-    bool competes = there && (LIT_ONLY == 0 || litSide(side));
-    sites.list[2u * i] = vec4(texelFetch(vpls, int(i) * kStateTexels).xyz, competes ? 1.0 : 0.0);
-    sites.list[2u * i + 1u] = vec4(normalLife.xyz, 0.0);
+    bool competes = there && (LIT_ONLY == 0 || litSide(vpl.side));
+    sites.list[2u * i] = vec4(vpl.position, competes ? 1.0 : 0.0);
+    sites.list[2u * i + 1u] = vec4(vpl.normal, 0.0);
 #endif
   }
   if (alive > 0u) atomicAdd(totals.value.alive, alive);

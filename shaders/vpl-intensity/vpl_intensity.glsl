@@ -64,9 +64,6 @@ float partKept(float p, float least, float seenFrom) { return min(min(p / max(le
 // Each of 64 invocations looks at every 64th point, and words of 32 bits say from which of them the VPL is seen.
 uint laneWords(uint points) { return (points + 2047u) / 2048u; }
 
-// Texels of a VplState.
-const int kStateTexels = 5;
-
 // Cells along the edge of a brick. Rays cross empty bricks in one step; the sides in a brick share one list of the
 // VPLs that can be nearest to any of them.
 const int kBrick = 4;

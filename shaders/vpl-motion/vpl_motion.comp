@@ -38,25 +38,27 @@ void main() {
   uint slot = gl_GlobalInvocationID.x;
   if (slot >= uint(previous.length())) return;
   VplState vpl = previous[slot];
-  bool lived = vpl.normalLife.w > 0.0;
+  bool lived = vpl.life > 0.0;
   if (lived) {
-    uint object = uint(vpl.localPosition.w);
+    uint object = uint(vpl.object);
     bool deforms = objectDeforms(object);
-    vec3 position = deforms ? attachedPosition(vpl.localPosition.xyz) : fromObject(object, vpl.localPosition.xyz);
-    vec3 normal = deforms ? triangleAxes(uint(vpl.localPosition.x)) * vpl.localNormal.xyz
-                          : normalFromObject(object, vpl.localNormal.xyz);
-    uint side = sideAt(position, normal, vpl.localPosition.w);
+    vec3 position = deforms ? attachedPosition(vpl.localPosition) : fromObject(object, vpl.localPosition);
+    vec3 normal = deforms ? triangleAxes(uint(vpl.localPosition.x)) * vpl.localNormal
+                          : normalFromObject(object, vpl.localNormal);
+    uint side = sideAt(position, normal, vpl.object);
     if (side != kNoSide) {
       VoxelSide surface = loadSide(side);
-      vpl.localNormal.w = vpl.positionImportance.w;  // I of the previous frame; pass `importance` computes the new one
-      vpl.positionImportance.xyz = position;
-      vpl.normalLife = vec4(surface.normal, vpl.normalLife.w + 1.0);
-      vpl.reflectanceSide = vec4(surface.reflectance, uintBitsToFloat(side));
+      vpl.previousImportance = vpl.importance;  // pass `importance` computes the new one
+      vpl.position = position;
+      vpl.normal = surface.normal;
+      vpl.life += 1.0;
+      vpl.reflectance = surface.reflectance;
+      vpl.side = side;
       vpls[slot] = vpl;
       atomicAdd(counters[0], 1u);
       return;
     }
     atomicAdd(counters[1], 1u);
   }
-  vpls[slot] = VplState(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  vpls[slot] = kNoVplState;
 }

@@ -12,8 +12,8 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/vpl.h"
 #include "places.h"
+#include "shaders/common/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/graph_run.h"
 

@@ -9,8 +9,8 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/vpl.h"
 #include "passes/emit/light_paths.h"
+#include "shaders/common/records/vpl.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {

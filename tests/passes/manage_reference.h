@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::test {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/vpl.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::test {
 

@@ -14,17 +14,20 @@ from pathlib import Path
 SOURCE = Path(sys.argv[1]).resolve()
 
 # A room may include itself, the rooms named here and what these may include. The facade is declarations alone, so that
-# every room of the framework may use it.
+# every room of the framework may use it. The headers among the shaders are records that C++ and GLSL share: those of
+# one pass are for the passes alone.
 ROOMS = {
     "framework/include": [],
+    "shaders/common/records": [],
+    "shaders": ["shaders/common/records"],
     "framework/base": ["framework/include"],
-    "framework/shader_twins": ["framework/base"],
+    "framework/shader_twins": ["framework/base", "shaders/common/records"],
     "framework/gpu": ["framework/base"],
     "framework/image": ["framework/base"],
     "framework/scene": ["framework/gpu", "framework/image", "framework/shader_twins"],
     "framework/graph": ["framework/gpu", "framework/image"],
     "framework/session": ["framework/graph", "framework/scene"],
-    "passes": ["framework/graph", "framework/scene"],
+    "passes": ["framework/graph", "framework/scene", "shaders"],
     "benchmarks/runner": ["framework/session"],
     "benchmarks": ["framework/session", "passes", "benchmarks/runner"],
     "samples/scenes": ["framework/scene"],
@@ -78,6 +81,9 @@ class Rooms(unittest.TestCase):
                 continue
             for name in re.findall(r'^#include "([^"]+)"', read(path), re.M):
                 target = f"framework/include/{name}" if name.startswith("fovea/") else name
+                if room.startswith("shaders"):  # where GLSL looks: the file's own folder, then the shaders'
+                    beside = path.parent / name
+                    target = str(beside if (SOURCE / beside).is_file() else Path("shaders") / name)
                 there = room_of(target)
                 checked += 1
                 if there is None:

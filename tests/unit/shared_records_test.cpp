@@ -1,0 +1,84 @@
+// The records that C++ and GLSL share have the same layout in both: every member of a storage buffer of them, as SPIR-V
+// states it, lies where C++ puts it.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/gpu/shader/shader.h"
+#include "places.h"
+#include "shaders/common/records/vpl.h"
+
+namespace fovea {
+namespace {
+
+// Member -> offset, of every struct that has offsets, by the struct's name.
+using Layouts = std::map<std::string, std::map<std::string, size_t>>;
+
+std::string textAt(const std::vector<uint32_t>& spirv, size_t word) {
+  return reinterpret_cast<const char*>(&spirv[word]);
+}
+
+Layouts layoutsOf(const std::vector<uint32_t>& spirv) {
+  constexpr uint32_t kName = 5, kMemberName = 6, kMemberDecorate = 72, kOffset = 35;
+  std::map<uint32_t, std::string> names;
+  std::map<std::pair<uint32_t, uint32_t>, std::string> members;
+  std::map<std::pair<uint32_t, uint32_t>, size_t> offsets;
+  for (size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
+    const uint32_t operation = spirv[i] & 0xffffu;
+    if (operation == kName) names[spirv[i + 1]] = textAt(spirv, i + 2);
+    if (operation == kMemberName) members[{spirv[i + 1], spirv[i + 2]}] = textAt(spirv, i + 3);
+    if (operation == kMemberDecorate && spirv[i + 3] == kOffset)
+      offsets[{spirv[i + 1], spirv[i + 2]}] = spirv[i + 4];
+  }
+  Layouts layouts;
+  for (const auto& [member, offset] : offsets) layouts[names[member.first]][members[member]] = offset;
+  return layouts;
+}
+
+// Compiles a shader with a buffer of two of these records and compares its layout with that of C++.
+void expectLayout(const std::string& header, const std::string& record, size_t bytes,
+                  const std::map<std::string, size_t>& members) {
+  SCOPED_TRACE(record);
+  gpu::ShaderCompiler compiler({});
+  compiler.addSearchPath(std::filesystem::path(FOVEA_SOURCE_DIR) / "shaders");
+  const auto shader =
+      compiler.compileSource(record + ".comp", "#include \"" + header +
+                                                   "\"\n"
+                                                   "layout(local_size_x = 1) in;\n"
+                                                   "layout(std430) buffer Source { " +
+                                                   record +
+                                                   " list[2]; } source;\n"
+                                                   "layout(std430) buffer Target { " +
+                                                   record +
+                                                   " list[2]; } target;\n"
+                                                   "void main() { target.list = source.list; }\n");
+  for (const gpu::ReflectedBinding& b : shader->reflection.bindings) EXPECT_EQ(b.blockBytes, 2 * bytes);
+  EXPECT_EQ(shader->reflection.bindings.size(), 2u);
+  EXPECT_EQ(layoutsOf(shader->spirv)[record], members);
+}
+
+#define AT(record, member) \
+  { #member, offsetof(record, member) }
+
+TEST(SharedRecords, Vpls) {
+  using namespace scene;
+  const char* header = "common/records/vpl.h";
+  expectLayout(header, "Vpl", sizeof(Vpl),
+               {AT(Vpl, position), AT(Vpl, area), AT(Vpl, normal), AT(Vpl, unused0), AT(Vpl, intensity),
+                AT(Vpl, unused1)});
+  expectLayout(header, "VplState", sizeof(VplState),
+               {AT(VplState, position), AT(VplState, importance), AT(VplState, normal), AT(VplState, life),
+                AT(VplState, reflectance), AT(VplState, side), AT(VplState, localPosition),
+                AT(VplState, object), AT(VplState, localNormal), AT(VplState, previousImportance)});
+  expectLayout(header, "Candidate", sizeof(Candidate),
+               {AT(Candidate, position), AT(Candidate, side), AT(Candidate, normal), AT(Candidate, object),
+                AT(Candidate, reflectance), AT(Candidate, luminance), AT(Candidate, localPosition),
+                AT(Candidate, unused)});
+}
+
+}  // namespace
+}  // namespace fovea
