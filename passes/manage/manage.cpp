@@ -66,7 +66,6 @@ void setConstants(const RecordContext& ctx, Commands& commands) {
 }
 
 void addSteps(PassDeclaration& d) {
-  const SizeExpr none = is("reuse", "none");
   const auto step = [&](const char* shader) -> StepSpec& {
     StepSpec& added = d.step(shader);
     added.frameConstants.emplace_back(setConstants);
@@ -75,11 +74,10 @@ void addSteps(PassDeclaration& d) {
   d.fill("state", 0);
   d.fill("density", 0);
   step("manage/accept.comp").threads(max(countOf("list"), countOf("candidates")));
-  step("manage/refill.comp").when(none).groups(1);
-  step("manage/reuse.comp").when(!none).groups(1);
-  step("manage/thin.comp").when(!none).groups(1);
-  step("manage/order.comp").when(!none).groups(2);
-  step("manage/choose.comp").when(!none).groups(1);
+  step("manage/reuse.comp").groups(1);
+  step("manage/thin.comp").groups(1);
+  step("manage/order.comp").groups(2);
+  step("manage/choose.comp").groups(1);
   step("manage/write.comp").threads(countOf("list"));
 }
 
@@ -100,11 +98,10 @@ PassDeclaration Manage::declaration() {
 
   // The list returns through the pass that updates it, so its length is a parameter and is not taken from the input.
   d.parameter("count", integer(1000, 1, kMost), "number of slots, the most VPLs in the list (N)");
-  d.parameter("reuse", choice("linear", {"linear", "cosine", "random", "none"}),
+  d.parameter("reuse", choice("linear", {"linear", "cosine", "random"}),
               "which VPLs are reused without competing (Eq. 1), C being the ratio of the new importance to "
               "the previous one; linear: with probability min(C, 1); cosine: with probability 1 - cos(pi/2 "
-              "min(C, 1)); random: as many as linear, chosen at random; none: the list is the first "
-              "candidates of this frame, in their order");
+              "min(C, 1)); random: as many as linear, chosen at random");
   d.parameter("keep", integer(0, 0, kMost),
               "candidates left after thinning (K), each kept with probability min(1, K I / sum I); 0 means "
               "as many as `limit`, or for `placement` `light` as there are free slots");

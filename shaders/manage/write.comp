@@ -2,27 +2,17 @@
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "manage/memory.glsl"
+#include "manage/new_vpl.glsl"
 
 layout(local_size_x = 64) in;
 
-uniform usamplerBuffer candidates;
 uniform usamplerBuffer candidateImportance;  // bits of floats, so that they pass unchanged
 uniform usamplerBuffer vplImportance;
 uniform usamplerBuffer vpls;
 layout(std430) writeonly buffer ListBlock { VplState vpls[]; } list;
 
-// Normal in the space of its object, which is the world's if the object never moves.
-vec3 localNormal(Candidate candidate) {
-  uint object = uint(candidate.object);
-  if (objectDeforms(object)) return candidate.normal * triangleAxes(uint(candidate.localPosition.x));
-  return object == 0u ? candidate.normal : normalToObject(object, candidate.normal);
-}
-
 VplState fromCandidate(uint i) {
-  Candidate c = loadCandidate(candidates, i);
-  float importance = uintBitsToFloat(texelFetch(candidateImportance, int(i)).r);
-  return VplState(c.position, importance, c.normal, 1.0, c.reflectance, c.side, c.localPosition, c.object,
-                  localNormal(c), importance);
+  return newVpl(i, uintBitsToFloat(texelFetch(candidateImportance, int(i)).r));
 }
 
 VplState keptIn(uint slot) {

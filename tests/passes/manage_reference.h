@@ -65,13 +65,8 @@ class ManageReference {
     for (size_t i = 0; i < in_.candidates.size(); ++i)
       if (in_.candidates[i].side != scene::kNoSide) valid_.push_back(uint32_t(i));
     out_.candidates = uint32_t(valid_.size());
-    if (s_.reuse == "none") {
-      for (uint32_t i : valid_)
-        if (added_.size() < limit_) added_.push_back(i);
-    } else {
-      reuse();
-      algorithm2(thin());
-    }
+    reuse();
+    algorithm2(thin());
     return fill();
   }
 
