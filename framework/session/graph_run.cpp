@@ -40,9 +40,26 @@ image::Image toImage(const graph::OutputData& output) {
           gpu::texelsToFloats(output.desc.format, output.bytes)};
 }
 
+namespace {
+
+// Parts of graphs have inputs that the graph around them wires.
+void refuseInputs(const graph::Description& description) {
+  Diagnostics messages;
+  for (const graph::ExternalDescription& input : description.externals)
+    messages.error(
+        input.where.location(), "inputs." + input.name,
+        fmt::format("graph `{}` cannot run alone: nothing fills its input `{}`", description.name,
+                    input.name),
+        fmt::format("run a graph with a pass {{\"graph\": \"{}.json\", \"inputs\": ...}}", description.name));
+  messages.throwIfErrors();
+}
+
+}  // namespace
+
 GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, const scene::Scene& scene,
                    scene::Geometry& geometry, Options options, Diagnostics& messages)
     : device_(device), scene_(scene), geometry_(geometry), options_(std::move(options)) {
+  if (!options_.givesInputs) refuseInputs(description);
   const glm::uvec2 size = options_.size;
   const uint32_t limit = device_.limits().maxImageDimension2D;
   if (size.x > limit || size.y > limit)

@@ -43,6 +43,9 @@ class GraphRun {
     graph::HostProgress hostProgress;
     // 0 selects one on a CPU device, where two would only compete for the same cores, and two otherwise.
     uint32_t framesInFlight = 0;
+    // Whether the caller fills the inputs that the graph itself has, with Executor::setInput. If not, a graph that has
+    // any is refused.
+    bool givesInputs = false;
   };
   // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.

@@ -107,6 +107,7 @@ void PassTest::Impl::build() {
   options.size = size;
   options.seed = seed;
   options.framesInFlight = kFramesInFlight;
+  options.givesInputs = true;
   options.readback = [](const graph::BoundGraph& bound) {
     std::vector<std::string> names;
     for (const graph::BoundOutput& output : bound.outputs) names.push_back(output.name);

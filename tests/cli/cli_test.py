@@ -92,10 +92,20 @@ class Inputs(CliTest):
         self.assertGreaterEqual(len(re.findall(r"graph\.json:\d+:\d+: error", run.stderr)), 3, run.stderr)
         self.fails(BAD_INPUT, "render", "graph.json", "--scene", "cornellbox", says=["exposuer"])
 
+    def test_part_alone(self):
+        """A graph with inputs of its own is valid, but nothing fills them when it is the whole graph."""
+        self.write("part.json", {"inputs": {"picture": {"format": "rgba16f"}},
+                                 "passes": {"show": {"type": "tonemap", "inputs": {"radiance": "inputs.picture"}}},
+                                 "outputs": {"image": "show"}})
+        self.succeeds("check", "part.json")
+        self.fails(BAD_INPUT, "render", "part.json", "--scene", "cornellbox", *SMALL,
+                   says=["part.json:3:5", "`picture`", '"graph": "part.json"'])
+
     def test_unknown_override(self):
         self.fails(BAD_INPUT, *DIRECT, "--set", "shadow_map_sise=64", says=["shadow_map_sise", "shadow_map_size"])
         self.fails(BAD_INPUT, *DIRECT, "--set", "tonemap.exposuer=1", says=["exposuer"])
-        self.fails(BAD_INPUT, *DIRECT, "--set", "shadow_map_size=big", says=["big"])
+        run = self.fails(BAD_INPUT, *DIRECT, "--set", "shadow_map_size=big", says=["big"])
+        self.assertEqual(run.stderr.count("error:"), 1, run.stderr)
         self.fails(BAD_INPUT, *DIRECT, "--set", "shadow_map_size=-5", says=["-5"])
 
     def test_missing_scene(self):

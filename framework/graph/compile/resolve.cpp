@@ -145,6 +145,9 @@ ParameterDescription readOverride(Expansion& all, const Expansion::PendingOverri
     value.type = Type::Real;
     const auto d = std::from_chars(text.data(), end, value.real);
     if (d.ec != std::errc() || d.ptr != end || !std::isfinite(value.real)) {
+      // The value that it should have replaced stays, so that no second error follows.
+      value.type = current->type;
+      value.integer = current->integer;
       value.real = current->real;
       expected("a number");
     }
