@@ -296,12 +296,15 @@ void addAccesses(Binding& b, const Port& port, std::vector<Access>& accesses) {
   }
 }
 
-void makeAccesses(Binding& b) {
+void makeAccesses(Binding& b, std::vector<Access>& accesses) {
+  size_t most = 0;
+  for (const Port& port : b.ports) most += port.spec->members.size();
+  accesses.reserve(most);  // the passes point into it
   for (uint32_t p = 0; p < b.graph.passes.size(); ++p) {
-    std::vector<Access>& accesses = b.graph.passes[p].accesses;
-    accesses.reserve(b.portsOf(p).size());
+    const size_t first = accesses.size();
     for (const Port& port : b.portsOf(p))
       if (port.value.first != kNone) addAccesses(b, port, accesses);
+    b.graph.passes[p].accesses = std::span(accesses).subspan(first);
   }
 }
 
@@ -386,7 +389,9 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   graph.name = description.name;
   graph.description = description.description;
   const auto values = std::make_shared<std::vector<Value>>();  // complete before anyone reads them
+  const auto accesses = std::make_shared<std::vector<Access>>();
   graph.values = values;
+  graph.accesses = accesses;
   detail::Binding b{description, environment, diagnostics, graph};
   detail::openFirstView(b);
   detail::declarePasses(b, *values);
@@ -398,12 +403,12 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   const std::vector<uint32_t> order = detail::orderPasses(b);
   detail::makeVersions(b, order);
   detail::evaluateSizes(b, order);
-  detail::makeAccesses(b);
+  detail::makeAccesses(b, *accesses);
   detail::bindOutputs(b);
   detail::markHistory(b);
   if (order.size() == graph.passes.size()) detail::checkInPlace(b);
   diagnostics.throwIfErrors();
-  detail::chooseLayouts(graph);
+  detail::chooseLayouts(graph, *accesses);
   graph.hash = detail::graphHash(graph);
   return graph;
 }

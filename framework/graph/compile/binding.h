@@ -84,7 +84,7 @@ void checkTypes(Binding& b);
 std::vector<uint32_t> orderPasses(Binding& b);
 void makeVersions(Binding& b, std::span<const uint32_t> order);
 void checkInPlace(Binding& b);
-void chooseLayouts(BoundGraph& graph);
+void chooseLayouts(const BoundGraph& graph, std::vector<Access>& accesses);
 
 // sizes.cpp: evaluates size expressions, and checks the device's limits.
 void evaluateSizes(Binding& b, std::span<const uint32_t> order);

@@ -145,7 +145,7 @@ void checkInPlace(Binding& b) {
 }
 
 // Chooses one layout per pass and image, and one for all readers of a version, so that a level never needs two.
-void chooseLayouts(BoundGraph& graph) {
+void chooseLayouts(const BoundGraph& graph, std::vector<Access>& accesses) {
   struct Seen {
     uint32_t pass = kNone;
     Usage usage = Usage::None;
@@ -157,15 +157,18 @@ void chooseLayouts(BoundGraph& graph) {
     return graph.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
   };
   bool mixed = false;  // readers of a version want different layouts
+  size_t first = 0;    // access of the pass
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
-    for (const Access& a : graph.passes[p].accesses) {
+    const auto own = std::span(accesses).subspan(first, graph.passes[p].accesses.size());
+    first += own.size();
+    for (const Access& a : own) {
       Seen& s = seen[a.resource * 2 + a.previous];
       if (s.pass != p) s = {p, Usage::None, false, false};
       s.usage = s.usage | a.usage;
       s.reads |= a.reads;
       s.writes |= a.writes;
     }
-    for (Access& a : graph.passes[p].accesses) {
+    for (Access& a : own) {
       if (!isImage(a)) continue;
       const Seen& s = seen[a.resource * 2 + a.previous];
       a.layout = accessLayout(s.usage, s.reads, s.writes);
@@ -177,10 +180,9 @@ void chooseLayouts(BoundGraph& graph) {
     }
   }
   if (!mixed) return;
-  for (BoundPass& pass : graph.passes)
-    for (Access& a : pass.accesses)
-      if (isImage(a) && !a.writes && readLayout[a.slot] != VK_IMAGE_LAYOUT_UNDEFINED)
-        a.layout = readLayout[a.slot];
+  for (Access& a : accesses)
+    if (isImage(a) && !a.writes && readLayout[a.slot] != VK_IMAGE_LAYOUT_UNDEFINED)
+      a.layout = readLayout[a.slot];
 }
 
 }  // namespace fovea::graph::detail
