@@ -80,7 +80,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     if (!keys_.back().insert(v).second)
       diagnostics.error(where.location(), {}, fmt::format("the key \"{}\" occurs twice in this object", v),
                         "remove or rename one of them");
-    open_.back()->members.push_back({std::move(v), where, {}});
+    open_.back()->members.push_back({std::move(v), {}, where});
     return true;
   }
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& e) override {

@@ -80,7 +80,7 @@ bool readScalar(Expansion& all, Scope& scope, const json::Value& value, Paramete
   const std::string_view text = value.string;
   if (!value.isString() || text.size() < 2 || text[0] != '$') return true;
   if (text[1] == '$') {  // "$$" stands for one '$'
-    Member plain{{}, {}, value};
+    Member plain{{}, value, {}};
     plain.value.string.erase(0, 1);
     out.value = &all.description.made.emplace_back(std::make_shared<Member>(std::move(plain)))->value;
     return true;
