@@ -291,7 +291,7 @@ void expandInstance(Expansion& all, Scope& parent, const Member& member, const j
   const std::shared_ptr<const json::Value> document = instanceDocument(all, parent, graph, file);
   if (!document) return;
   ++all.made;
-  Scope& scope = all.scopes.emplace_back(all.memory);
+  Scope& scope = all.scopes.emplace_back();
   scope.file = file;
   scope.parent = &parent;
   scope.prefix = parent.prefix + member.key + "/";
@@ -354,9 +354,10 @@ void expandPass(Expansion& all, Scope& scope, const Member& member) {
   if (graph) report(all, scope, graph->where, *graph, "a pass has a `type` or a `graph`, not both");
   ++all.made;
   const json::Value* type = reader.require("type");
-  scope.passes.emplace(member.key, static_cast<uint32_t>(all.description.passes.size()));
+  const auto index = static_cast<uint32_t>(all.description.passes.size());
   PassDescription& pass = all.description.passes.emplace_back();
   pass.name.append(scope.prefix).append(member.key);
+  all.passes.emplace(pass.name, index);
   pass.written = &member;
   pass.view = scope.view;
   if (type && !type->isString())
@@ -390,7 +391,7 @@ void expandScope(Expansion& all, Scope& scope) {
   if (const json::Value* passes = reader.object("passes")) {
     const size_t count = all.description.passes.size() + passes->members.size();
     all.description.passes.reserve(count);
-    scope.passes.reserve(passes->members.size());
+    all.passes.reserve(count);
     for (const Member& member : passes->members) expandPass(all, scope, member);
   }
   reader.finish();
@@ -441,7 +442,7 @@ Description resolve(std::shared_ptr<const json::Value> document, const std::file
   detail::Expansion all{description, options, diagnostics};
   detail::readOverrides(all);
   ++all.made;
-  detail::Scope& root = all.scopes.emplace_back(all.memory);
+  detail::Scope& root = all.scopes.emplace_back();
   root.file = file;
   root.document = description.documents[0].get();
   description.start = {root.document->where.location().file, 1, 1};
