@@ -112,14 +112,6 @@ void makeSegments(State& state, const std::vector<Placement>& placements, size_t
   }
 }
 
-void addDependency(BarrierBatch* batch, const Dependency& wait) {
-  if (!batch) return;
-  batch->srcStage |= wait.srcStage;
-  batch->srcAccess |= wait.srcAccess;
-  batch->dstStage |= wait.dstStage;
-  batch->dstAccess |= wait.dstAccess;
-}
-
 // Without a batch, this and the functions below only follow the state.
 void read(const Touch& touch, const AccessScope& readers, Copy& copy, BarrierBatch* batch) {
   AccessHistory& history = copy.history;
@@ -136,7 +128,8 @@ void read(const Touch& touch, const AccessScope& readers, Copy& copy, BarrierBat
     history.readStage = 0;
     copy.layout = touch.scope.layout;
   }
-  addDependency(batch, beforeRead(history, readers));
+  const Dependency wait = beforeRead(history, readers);
+  if (batch) *batch |= wait;
 }
 
 void write(const Touch& touch, std::span<const Segment> memory, Copy& copy, BarrierBatch* batch) {
@@ -151,7 +144,7 @@ void write(const Touch& touch, std::span<const Segment> memory, Copy& copy, Barr
   const Dependency wait = beforeWrite(copy.history, touch.scope, touch.reads);
   const bool change = touch.image && copy.layout != touch.scope.layout;
   // An image barrier covers that image only, so writes of other occupants of its memory need the global barrier.
-  if (!change || (first && wait.srcAccess)) addDependency(batch, wait);
+  if (batch && (!change || (first && wait.srcAccess))) *batch |= wait;
   if (batch && change)
     batch->images.push_back({touch.resource, touch.previous, wait.srcStage, touch.scope.stage, wait.srcAccess,
                              touch.scope.access, copy.layout, touch.scope.layout});

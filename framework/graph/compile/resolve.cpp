@@ -120,34 +120,20 @@ std::string asTyped(const Override& o) { return fmt::format("--set {}={}", o.nam
 ParameterDescription readOverride(Expansion& all, const Expansion::PendingOverride& o,
                                   const json::Value* current) {
   const std::string& text = o.source->value;
-  const char* const end = text.data() + text.size();
   auto made = std::make_shared<Member>();
   json::Value& value = made->value;
   made->key = o.name;
   value.where.file = std::make_shared<const std::string>(asTyped(*o.source));
   made->keyWhere = value.where;
-  const auto expected = [&](const char* what) {
-    all.diagnostics.error(value.where.location(), {},
-                          fmt::format("`{}` is {}, not `{}`", o.source->name, what, text));
-  };
   if (!current || current->isString()) {
     value.type = Type::String;
     value.string = text;
-  } else if (current->isBool()) {
-    value.type = Type::Bool;
-    value.boolean = text == "true" || text == "1";
-    if (!value.boolean && text != "false" && text != "0") expected("true or false");
-  } else if (const auto r = std::from_chars(text.data(), end, value.integer);
-             r.ec == std::errc() && r.ptr == end) {
-    value.type = Type::Int;
-    value.real = static_cast<double>(value.integer);
-  } else {
-    value.type = Type::Real;
-    const auto d = std::from_chars(text.data(), end, value.real);
-    if (d.ec != std::errc() || d.ptr != end || !std::isfinite(value.real)) {
-      value.real = current->real;
-      expected("a number");
-    }
+  } else if (!readTyped(text, current->type, value) || !std::isfinite(value.real)) {
+    value.type = current->isBool() ? Type::Bool : Type::Real;
+    value.real = current->real;
+    all.diagnostics.error(value.where.location(), {},
+                          fmt::format("`{}` is {}, not `{}`", o.source->name,
+                                      current->isBool() ? "true or false" : "a number", text));
   }
   all.description.made.push_back(made);
   return {made.get(), &value, &value.where, true};
@@ -433,6 +419,26 @@ void reportUnused(Expansion& all) {
 
 }  // namespace
 }  // namespace detail
+
+bool readTyped(const std::string& text, json::Value::Type type, json::Value& out) {
+  using Type = json::Value::Type;
+  if (type == Type::Bool) {
+    out.boolean = text == "true" || text == "1";
+    if (!out.boolean && text != "false" && text != "0") return false;
+    out.type = Type::Bool;
+    return true;
+  }
+  const char *begin = text.data(), *end = begin + text.size();
+  if (const auto r = std::from_chars(begin, end, out.integer); r.ec == std::errc() && r.ptr == end) {
+    out.type = Type::Int;
+    out.real = static_cast<double>(out.integer);
+    return true;
+  }
+  const auto r = std::from_chars(begin, end, out.real);
+  if (r.ec != std::errc() || r.ptr != end) return false;
+  out.type = Type::Real;
+  return true;
+}
 
 Description resolve(std::shared_ptr<const json::Value> document, const std::filesystem::path& file,
                     const LoadOptions& options, Diagnostics& diagnostics) {
