@@ -114,8 +114,8 @@ struct Fixture {
   }
 };
 
-// All graphs are made before the first measurement, as those of a program that has just read its files. Made later, they
-// would lie scattered over the memory that earlier measurements have freed, and seem to cost up to twice as much.
+// All graphs are made before the first measurement, as those of a program that has just read its files. Made later,
+// they would lie scattered over the memory that earlier measurements have freed, and seem to cost up to twice as much.
 const Fixture& fixture(const benchmark::State& state) {
   static std::map<std::pair<int64_t, int64_t>, Fixture> made;
   if (made.empty())
