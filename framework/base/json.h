@@ -34,11 +34,11 @@ struct Value {
 
   Type type = Type::Null;
   bool boolean = false;
+  std::string string;           // String
+  std::vector<Member> members;  // Object, in the order of the file; keys are unique
   int64_t integer = 0;          // Int
   double real = 0;              // Real and Int; always finite
-  std::string string;           // String
   std::vector<Value> items;     // Array
-  std::vector<Member> members;  // Object, in the order of the file; keys are unique
   Position where;               // first character of the value
 
   bool isNull() const { return type == Type::Null; }
@@ -57,8 +57,8 @@ struct Value {
 
 struct Member {
   std::string key;
-  Position keyWhere;
   Value value;
+  Position keyWhere;
 };
 
 inline const Member* Value::findMember(std::string_view key) const {

@@ -15,6 +15,7 @@ struct Touch {
   uint32_t slot;  // of the version read or made
   AccessScope scope;
   bool reads, writes, previous;
+  bool image, transient;  // what kind of resource it is
 };
 
 // What the frames have in common.
@@ -75,8 +76,16 @@ void collectTouches(Frame& frame) {
           touch.writes |= a.writes;
         } else {
           before = {pass, static_cast<uint32_t>(frame.touches.size())};
-          frame.touches.push_back(
-              {a.resource, a.slot, {scope.stage, scope.access, a.layout}, a.reads, a.writes, a.previous});
+          const BoundResource& resource = graph.resources[a.resource];
+          const bool image = resource.desc.kind == ResourceKind::Image;
+          frame.touches.push_back({a.resource,
+                                   a.slot,
+                                   {scope.stage, scope.access, a.layout},
+                                   a.reads,
+                                   a.writes,
+                                   a.previous,
+                                   image,
+                                   isTransient(resource)});
         }
       }
     }
@@ -103,18 +112,10 @@ void makeSegments(State& state, const std::vector<Placement>& placements, size_t
   }
 }
 
-void addDependency(BarrierBatch* batch, const Dependency& wait) {
-  if (!batch) return;
-  batch->srcStage |= wait.srcStage;
-  batch->srcAccess |= wait.srcAccess;
-  batch->dstStage |= wait.dstStage;
-  batch->dstAccess |= wait.dstAccess;
-}
-
 // Without a batch, this and the functions below only follow the state.
-void read(const Touch& touch, const AccessScope& readers, bool image, Copy& copy, BarrierBatch* batch) {
+void read(const Touch& touch, const AccessScope& readers, Copy& copy, BarrierBatch* batch) {
   AccessHistory& history = copy.history;
-  if (image && copy.layout != touch.scope.layout) {
+  if (touch.image && copy.layout != touch.scope.layout) {
     if (batch)
       batch->images.push_back({touch.resource, touch.previous, history.writeStage | history.readStage,
                                readers.stage, history.writeAccess, readers.access, copy.layout,
@@ -127,12 +128,12 @@ void read(const Touch& touch, const AccessScope& readers, bool image, Copy& copy
     history.readStage = 0;
     copy.layout = touch.scope.layout;
   }
-  addDependency(batch, beforeRead(history, readers));
+  const Dependency wait = beforeRead(history, readers);
+  if (batch) *batch |= wait;
 }
 
-void write(const Touch& touch, const BoundResource& resource, std::span<const Segment> memory, Copy& copy,
-           BarrierBatch* batch) {
-  const bool first = !touch.reads && isTransient(resource);
+void write(const Touch& touch, std::span<const Segment> memory, Copy& copy, BarrierBatch* batch) {
+  const bool first = !touch.reads && touch.transient;
   if (first) {  // waits for the last occupants of the memory, as if they had written here
     copy = {};
     for (const Segment& segment : memory) {
@@ -141,9 +142,9 @@ void write(const Touch& touch, const BoundResource& resource, std::span<const Se
     }
   }
   const Dependency wait = beforeWrite(copy.history, touch.scope, touch.reads);
-  const bool change = resource.desc.kind == ResourceKind::Image && copy.layout != touch.scope.layout;
+  const bool change = touch.image && copy.layout != touch.scope.layout;
   // An image barrier covers that image only, so writes of other occupants of its memory need the global barrier.
-  if (!change || (first && wait.srcAccess)) addDependency(batch, wait);
+  if (batch && (!change || (first && wait.srcAccess))) *batch |= wait;
   if (batch && change)
     batch->images.push_back({touch.resource, touch.previous, wait.srcStage, touch.scope.stage, wait.srcAccess,
                              touch.scope.access, copy.layout, touch.scope.layout});
@@ -152,12 +153,11 @@ void write(const Touch& touch, const BoundResource& resource, std::span<const Se
 
 void access(const Touch& touch, const Frame& frame, State& state, BarrierBatch* batch) {
   if (touch.scope.stage == 0) return;  // only its size is used
-  const BoundResource& resource = frame.graph.resources[touch.resource];
   Copy& copy = (touch.previous ? state.previous : state.current)[touch.resource];
   if (touch.writes)
-    write(touch, resource, state.segmentsOf[touch.resource], copy, batch);
+    write(touch, state.segmentsOf[touch.resource], copy, batch);
   else if (!std::exchange(state.served[touch.slot], 1))
-    read(touch, frame.readers[touch.slot], resource.desc.kind == ResourceKind::Image, copy, batch);
+    read(touch, frame.readers[touch.slot], copy, batch);
 }
 
 // The next occupant of the memory waits for this one, which itself waited for the one before.
@@ -176,7 +176,7 @@ void readOutputs(const BoundGraph& graph, State& state, BarrierBatch* batch) {
     const uint32_t r = output.resource;
     if (std::exchange(done[r], 1)) continue;
     const bool image = graph.resources[r].desc.kind == ResourceKind::Image;
-    read({r, 0, transfer, true, false, false}, transfer, image, state.current[r], batch);
+    read({r, 0, transfer, true, false, false, image, false}, transfer, state.current[r], batch);
     leaveMemory(r, state);
   }
 }

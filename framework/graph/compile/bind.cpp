@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "framework/base/hash.h"
@@ -58,24 +57,6 @@ bool assign(const ParameterSpec& spec, const json::Value& given, Value& out) {
   return given.isString();
 }
 
-// Reads command-line text as a number or flag; text that cannot be read stays text.
-json::Value parseTyped(json::Value given, ParameterSpec::Type type) {
-  const std::string& text = given.string;
-  const char *begin = text.data(), *end = begin + text.size();
-  if (type == ParameterSpec::Type::Bool) {
-    given.boolean = text == "true" || text == "1";
-    if (given.boolean || text == "false" || text == "0") given.type = json::Value::Type::Bool;
-  } else if (type == ParameterSpec::Type::Int || type == ParameterSpec::Type::Real) {
-    if (const auto r = std::from_chars(begin, end, given.integer); r.ec == std::errc() && r.ptr == end) {
-      given.type = json::Value::Type::Int;
-      given.real = static_cast<double>(given.integer);
-    } else if (const auto d = std::from_chars(begin, end, given.real); d.ec == std::errc() && d.ptr == end) {
-      given.type = json::Value::Type::Real;
-    }
-  }
-  return given;
-}
-
 std::string rangeText(const ParameterSpec& spec) {
   const char* kind = spec.type == ParameterSpec::Type::Int ? "a whole number" : "a number";
   if (std::isinf(spec.min) && std::isinf(spec.max)) return kind;
@@ -108,12 +89,16 @@ std::string describeGiven(const json::Value& given) {
 void readParameter(Binding& b, uint32_t pass, const ParameterSpec& spec, const ParameterDescription& given,
                    Value& out) {
   if (assign(spec, *given.value, out)) return;
-  const bool typed = given.fromCommandLine && given.value->isString();
-  const json::Value value = typed ? parseTyped(*given.value, spec.type) : *given.value;
-  if (typed && assign(spec, value, out)) return;
+  using Type = ParameterSpec::Type;
+  json::Value value = *given.value;
+  if (given.fromCommandLine && value.isString() && spec.type != Type::Choice && spec.type != Type::Text) {
+    using Json = json::Value::Type;
+    if (readTyped(value.string, spec.type == Type::Bool ? Json::Bool : Json::Real, value) &&
+        assign(spec, value, out))
+      return;
+  }
   std::string nearest;
-  if (spec.type == ParameterSpec::Type::Choice && value.isString())
-    nearest = nearestName(value.string, spec.choices);
+  if (spec.type == Type::Choice && value.isString()) nearest = nearestName(value.string, spec.choices);
   report(b, *given.where, passPath(b, pass, "params." + spec.name),
          fmt::format("parameter `{}`: expected {}, found {}", spec.name, describeExpected(spec),
                      describeGiven(value)),
@@ -296,12 +281,15 @@ void addAccesses(Binding& b, const Port& port, std::vector<Access>& accesses) {
   }
 }
 
-void makeAccesses(Binding& b) {
+void makeAccesses(Binding& b, std::vector<Access>& accesses) {
+  size_t most = 0;
+  for (const Port& port : b.ports) most += port.spec->members.size();
+  accesses.reserve(most);  // the passes point into it
   for (uint32_t p = 0; p < b.graph.passes.size(); ++p) {
-    std::vector<Access>& accesses = b.graph.passes[p].accesses;
-    accesses.reserve(b.portsOf(p).size());
+    const size_t first = accesses.size();
     for (const Port& port : b.portsOf(p))
       if (port.value.first != kNone) addAccesses(b, port, accesses);
+    b.graph.passes[p].accesses = std::span(accesses).subspan(first);
   }
 }
 
@@ -317,9 +305,8 @@ void bindOutputs(Binding& b) {
       BoundResource& resource = b.graph.resources[r];
       const uint32_t version = versionSeen(b, port, r);
       if (version != resource.versions)
-        report(b, wire.written->value.where, wirePath(b, port),
-               fmt::format("`{}` is updated in place later in the frame", wire.text()),
-               "wire the output to the last pass that updates it");
+        reportWire(b, port, fmt::format("`{}` is updated in place later in the frame", wire.text()),
+                   "wire the output to the last pass that updates it");
       resource.output = true;
       resource.usage |= static_cast<uint32_t>(Usage::TransferRead);
       b.graph.outputs.push_back(
@@ -337,18 +324,16 @@ void markHistory(Binding& b) {
       if (r == kNone) continue;
       BoundResource& resource = b.graph.resources[r];
       resource.history = true;
-      const auto mistake = [&](std::string message, std::string remedy) {
-        report(b, port.wire->written->value.where, wirePath(b, port), std::move(message), std::move(remedy));
-      };
       if (resource.external)
-        mistake("an input of the graph has no history", "wire it without `@previous`");
+        reportWire(b, port, "an input of the graph has no history", "wire it without `@previous`");
       else if (resource.lifetime != Lifetime::Transient)
-        mistake(
+        reportWire(
+            b, port,
             fmt::format("`{}` is kept and updated in place, so last frame's value is gone", resource.name),
             "wire it without `@previous`, or make its pass declare it without keep()");
       else if (port.source != kNone && versionSeen(b, port, r) != resource.versions)
-        mistake(fmt::format("`{}` is updated in place later in the frame", port.wire->text()),
-                "`@previous` holds the last update: wire the pass that makes it");
+        reportWire(b, port, fmt::format("`{}` is updated in place later in the frame", port.wire->text()),
+                   "`@previous` holds the last update: wire the pass that makes it");
     }
   }
 }
@@ -386,7 +371,9 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   graph.name = description.name;
   graph.description = description.description;
   const auto values = std::make_shared<std::vector<Value>>();  // complete before anyone reads them
+  const auto accesses = std::make_shared<std::vector<Access>>();
   graph.values = values;
+  graph.accesses = accesses;
   detail::Binding b{description, environment, diagnostics, graph};
   detail::openFirstView(b);
   detail::declarePasses(b, *values);
@@ -398,12 +385,12 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   const std::vector<uint32_t> order = detail::orderPasses(b);
   detail::makeVersions(b, order);
   detail::evaluateSizes(b, order);
-  detail::makeAccesses(b);
+  detail::makeAccesses(b, *accesses);
   detail::bindOutputs(b);
   detail::markHistory(b);
   if (order.size() == graph.passes.size()) detail::checkInPlace(b);
   diagnostics.throwIfErrors();
-  detail::chooseLayouts(graph);
+  detail::chooseLayouts(graph, *accesses);
   graph.hash = detail::graphHash(graph);
   return graph;
 }

@@ -62,6 +62,8 @@ std::string remedyFor(std::string_view name, const std::vector<std::string>& nam
 // "passes.blur", "passes.blur.type"; and where a wire of a pass or of the graph's outputs is written.
 std::string passPath(const Binding& b, uint32_t pass, std::string_view rest = {});
 std::string wirePath(const Binding& b, const Port& port);
+// Reports a mistake where the port is wired.
+void reportWire(Binding& b, const Port& port, std::string message, std::string remedy = {});
 
 // Whether the members of the port are resources of their own.
 inline bool makes(const PortSpec& spec) {
@@ -84,7 +86,7 @@ void checkTypes(Binding& b);
 std::vector<uint32_t> orderPasses(Binding& b);
 void makeVersions(Binding& b, std::span<const uint32_t> order);
 void checkInPlace(Binding& b);
-void chooseLayouts(BoundGraph& graph);
+void chooseLayouts(const BoundGraph& graph, std::vector<Access>& accesses);
 
 // sizes.cpp: evaluates size expressions, and checks the device's limits.
 void evaluateSizes(Binding& b, std::span<const uint32_t> order);

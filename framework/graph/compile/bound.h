@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,8 +47,8 @@ struct BoundPass {
   std::string name;  // "left/blur" inside a prefixed sub-graph
   const PassDeclaration* declaration = nullptr;
   Parameters parameters;
-  uint32_t view = 0;             // index into BoundGraph::views
-  std::vector<Access> accesses;  // declaration order
+  uint32_t view = 0;                 // index into BoundGraph::views
+  std::span<const Access> accesses;  // declaration order; a part of BoundGraph::accesses
 };
 
 // The access through which the pass reaches a port or a member ("surface.position"). Throws Error(Internal) with the
@@ -64,9 +65,11 @@ struct BoundOutput {
 
 struct BoundGraph {
   std::string name, description;
-  std::vector<std::string> views;                    // views used by a pass; [0] is "main" by default
-  std::vector<BoundPass> passes;                     // declaration order
-  std::shared_ptr<const std::vector<Value>> values;  // storage of the parameters of `passes`
+  std::vector<std::string> views;  // views used by a pass; [0] is "main" by default
+  std::vector<BoundPass> passes;   // declaration order
+  // Storage of the parameters and accesses of `passes`, whose copies share it.
+  std::shared_ptr<const std::vector<Value>> values;
+  std::shared_ptr<const std::vector<Access>> accesses;
   std::vector<BoundResource> resources;
   std::vector<BoundOutput> outputs;  // bundles are expanded: "surface.position"
   uint32_t slots = 0;                // number of values of Access::slot

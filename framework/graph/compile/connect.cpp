@@ -13,6 +13,10 @@ std::string wirePath(const Binding& b, const Port& port) {
   return passPath(b, port.pass, json::joinPath("inputs", port.wire->target()));
 }
 
+void reportWire(Binding& b, const Port& port, std::string message, std::string remedy) {
+  report(b, port.wire->written->value.where, wirePath(b, port), std::move(message), std::move(remedy));
+}
+
 uint32_t versionSeen(const Binding& b, const Port& port, uint32_t resource) {
   if (port.source == kNone) return 0;  // external, before any update
   const Port& source = b.ports[port.source];
@@ -39,10 +43,6 @@ uint32_t resourceOf(const Binding& b, const Port& port, uint32_t m) {
 }
 
 namespace {
-
-void reportWire(Binding& b, const Port& port, std::string message, std::string remedy = {}) {
-  report(b, port.wire->written->value.where, wirePath(b, port), std::move(message), std::move(remedy));
-}
 
 // ---- Descriptions for messages -----------------------------------------------------------------------
 

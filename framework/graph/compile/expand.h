@@ -29,9 +29,6 @@ struct Scope {
     std::optional<uint32_t> external;   // index of the input among those of the whole graph
   };
 
-  // The table of passes takes its memory from one buffer, because allocating each entry costs a sixth of resolve.
-  explicit Scope(std::pmr::memory_resource& memory) : passes(&memory) {}
-
   std::string prefix;       // "" or "left/"
   Scope* parent = nullptr;  // nullptr for the whole graph
   std::filesystem::path file;
@@ -39,7 +36,6 @@ struct Scope {
   std::optional<std::string_view> view;
   std::vector<Parameter> parameters;
   std::vector<Input> inputs;
-  std::pmr::unordered_map<std::string_view, uint32_t> passes;  // by name in the document: Description::passes
   std::map<std::string, Scope*, std::less<>> instances;
 
   Parameter* findParameter(std::string_view name);
@@ -61,9 +57,12 @@ struct Expansion {
   Description& description;
   const LoadOptions& options;
   Diagnostics& diagnostics;
-  std::pmr::monotonic_buffer_resource memory = {};
   std::deque<Scope> scopes = {};     // pointed to
   std::vector<Origin> origins = {};  // per pass
+  // Description::passes by full name. The table takes its memory from one buffer, because allocating each entry costs a
+  // sixth of resolve.
+  std::pmr::monotonic_buffer_resource memory = {};
+  std::pmr::unordered_map<std::string, uint32_t> passes{&memory};
   std::vector<PendingOverride> overrides = {};
   size_t made = 0;  // number of passes and scopes
   bool full = false;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/expand.h"
@@ -21,9 +20,9 @@ int64_t readSize(Expansion& all, Scope& scope, json::ObjectReader& reader, const
   int64_t number = size.value->integer;
   bool whole = size.value->isInt();
   if (size.value->isString() && size.fromCommandLine) {
-    const std::string& text = size.value->string;
-    const auto [at, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
-    whole = ec == std::errc() && at == text.data() + text.size();
+    json::Value typed;
+    whole = readTyped(size.value->string, json::Value::Type::Int, typed) && typed.isInt();
+    number = typed.integer;
   }
   if (whole && number >= 1 && number <= int64_t(1) << 31) return number;
   report(all, scope, *value,

@@ -45,9 +45,9 @@ void reportCycles(Binding& b, const std::vector<uint8_t>& placed) {
     std::string names;
     for (const uint32_t p : circle) names += b.graph.passes[p].name + " <- ";
     const Port& port = *waiting[circle[0]];
-    report(b, port.wire->written->value.where, wirePath(b, port),
-           fmt::format("these passes wait for each other: {}{}", names, b.graph.passes[circle[0]].name),
-           "one of these wires must read last frame's value: append @previous");
+    reportWire(b, port,
+               fmt::format("these passes wait for each other: {}{}", names, b.graph.passes[circle[0]].name),
+               "one of these wires must read last frame's value: append @previous");
   }
 }
 
@@ -63,10 +63,10 @@ void updateInPlace(Binding& b, Port& port, std::vector<uint32_t>& updaters) {
     uint32_t& version = b.versions[port.firstVersion + (r - port.value.first)];
     if (version != resource.versions) {
       const std::string& other = b.graph.passes[updaters[r] == kNone ? port.pass : updaters[r]].name;
-      report(b, port.wire->written->value.where, wirePath(b, port),
-             fmt::format("`{}` and `{}` both update `{}` in place: their order is open", other,
-                         b.graph.passes[port.pass].name, resource.name),
-             fmt::format("wire one after the other: `{}.{}`", other, port.spec->name));
+      reportWire(b, port,
+                 fmt::format("`{}` and `{}` both update `{}` in place: their order is open", other,
+                             b.graph.passes[port.pass].name, resource.name),
+                 fmt::format("wire one after the other: `{}.{}`", other, port.spec->name));
     }
     version = ++resource.versions;
     updaters[r] = port.pass;
@@ -126,15 +126,14 @@ void checkInPlace(Binding& b) {
       if (r == kNone) continue;
       const uint32_t by = makers[b.graph.resources[r].firstSlot + versionSeen(b, port, r) + 1];
       if (by == kNone || placed[by]) continue;
-      const json::Position& where = port.wire->written->value.where;
       if (by == port.pass)
-        return report(
-            b, where, wirePath(b, port),
+        return reportWire(
+            b, port,
             fmt::format("`{}` reads and updates `{}`: its input `{}` would be changed before it is read",
                         passes[by].name, port.wire->text(), spec.name),
             "wire one of the two ports to another value");
-      return report(
-          b, where, wirePath(b, port),
+      return reportWire(
+          b, port,
           fmt::format("`{}` must read `{}` before `{}` updates it in place, but it also waits for that pass",
                       passes[port.pass].name, port.wire->text(), passes[by].name),
           fmt::format("read the updated value from `{}`, or last frame's with @previous", passes[by].name));
@@ -145,7 +144,7 @@ void checkInPlace(Binding& b) {
 }
 
 // Chooses one layout per pass and image, and one for all readers of a version, so that a level never needs two.
-void chooseLayouts(BoundGraph& graph) {
+void chooseLayouts(const BoundGraph& graph, std::vector<Access>& accesses) {
   struct Seen {
     uint32_t pass = kNone;
     Usage usage = Usage::None;
@@ -157,15 +156,18 @@ void chooseLayouts(BoundGraph& graph) {
     return graph.resources[a.resource].desc.kind == ResourceKind::Image && a.usage != Usage::None;
   };
   bool mixed = false;  // readers of a version want different layouts
+  size_t first = 0;    // access of the pass
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
-    for (const Access& a : graph.passes[p].accesses) {
+    const auto own = std::span(accesses).subspan(first, graph.passes[p].accesses.size());
+    first += own.size();
+    for (const Access& a : own) {
       Seen& s = seen[a.resource * 2 + a.previous];
       if (s.pass != p) s = {p, Usage::None, false, false};
       s.usage = s.usage | a.usage;
       s.reads |= a.reads;
       s.writes |= a.writes;
     }
-    for (Access& a : graph.passes[p].accesses) {
+    for (Access& a : own) {
       if (!isImage(a)) continue;
       const Seen& s = seen[a.resource * 2 + a.previous];
       a.layout = accessLayout(s.usage, s.reads, s.writes);
@@ -177,10 +179,9 @@ void chooseLayouts(BoundGraph& graph) {
     }
   }
   if (!mixed) return;
-  for (BoundPass& pass : graph.passes)
-    for (Access& a : pass.accesses)
-      if (isImage(a) && !a.writes && readLayout[a.slot] != VK_IMAGE_LAYOUT_UNDEFINED)
-        a.layout = readLayout[a.slot];
+  for (Access& a : accesses)
+    if (isImage(a) && !a.writes && readLayout[a.slot] != VK_IMAGE_LAYOUT_UNDEFINED)
+      a.layout = readLayout[a.slot];
 }
 
 }  // namespace fovea::graph::detail

@@ -18,10 +18,16 @@ struct ImageBarrier {
   VkImageLayout oldLayout = VK_IMAGE_LAYOUT_UNDEFINED, newLayout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
-// One vkCmdPipelineBarrier2: memory hazards are merged into one global barrier, images occur only for layout changes.
-struct BarrierBatch {
+// A dependency between commands, as one global memory barrier expresses it. Empty if nothing has to be waited for.
+struct Dependency {
   VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
   VkAccessFlags2 srcAccess = 0, dstAccess = 0;
+  explicit operator bool() const { return srcStage != 0; }
+  Dependency& operator|=(const Dependency& other);
+};
+
+// One vkCmdPipelineBarrier2: memory hazards are merged into one global barrier, images occur only for layout changes.
+struct BarrierBatch : Dependency {
   std::vector<ImageBarrier> images;
   bool empty() const { return srcStage == 0 && dstStage == 0 && images.empty(); }
 };
@@ -29,14 +35,6 @@ struct BarrierBatch {
 struct Level {
   BarrierBatch before;
   std::vector<uint32_t> passes;  // indices into BoundGraph::passes, without hazards among them
-};
-
-// A dependency between commands, as one global memory barrier expresses it. Empty if nothing has to be waited for.
-struct Dependency {
-  VkPipelineStageFlags2 srcStage = 0, dstStage = 0;
-  VkAccessFlags2 srcAccess = 0, dstAccess = 0;
-  explicit operator bool() const { return srcStage != 0; }
-  Dependency& operator|=(const Dependency& other);
 };
 
 // What one step of a pass does to one of its resources.

@@ -80,7 +80,7 @@ bool readScalar(Expansion& all, Scope& scope, const json::Value& value, Paramete
   const std::string_view text = value.string;
   if (!value.isString() || text.size() < 2 || text[0] != '$') return true;
   if (text[1] == '$') {  // "$$" stands for one '$'
-    Member plain{{}, {}, value};
+    Member plain{{}, value, {}};
     plain.value.string.erase(0, 1);
     out.value = &all.description.made.emplace_back(std::make_shared<Member>(std::move(plain)))->value;
     return true;
@@ -120,37 +120,22 @@ std::string asTyped(const Override& o) { return fmt::format("--set {}={}", o.nam
 ParameterDescription readOverride(Expansion& all, const Expansion::PendingOverride& o,
                                   const json::Value* current) {
   const std::string& text = o.source->value;
-  const char* const end = text.data() + text.size();
   auto made = std::make_shared<Member>();
   json::Value& value = made->value;
   made->key = o.name;
   value.where.file = std::make_shared<const std::string>(asTyped(*o.source));
   made->keyWhere = value.where;
-  const auto expected = [&](const char* what) {
-    all.diagnostics.error(value.where.location(), {},
-                          fmt::format("`{}` is {}, not `{}`", o.source->name, what, text));
-  };
   if (!current || current->isString()) {
     value.type = Type::String;
     value.string = text;
-  } else if (current->isBool()) {
-    value.type = Type::Bool;
-    value.boolean = text == "true" || text == "1";
-    if (!value.boolean && text != "false" && text != "0") expected("true or false");
-  } else if (const auto r = std::from_chars(text.data(), end, value.integer);
-             r.ec == std::errc() && r.ptr == end) {
-    value.type = Type::Int;
-    value.real = static_cast<double>(value.integer);
-  } else {
-    value.type = Type::Real;
-    const auto d = std::from_chars(text.data(), end, value.real);
-    if (d.ec != std::errc() || d.ptr != end || !std::isfinite(value.real)) {
-      // The value that it should have replaced stays, so that no second error follows.
-      value.type = current->type;
-      value.integer = current->integer;
-      value.real = current->real;
-      expected("a number");
-    }
+  } else if (!readTyped(text, current->type, value) || !std::isfinite(value.real)) {
+    // The value that it should have replaced stays, so that no second error follows.
+    const json::Position where = value.where;
+    value = *current;
+    value.where = where;
+    all.diagnostics.error(where.location(), {},
+                          fmt::format("`{}` is {}, not `{}`", o.source->name,
+                                      current->isBool() ? "true or false" : "a number", text));
   }
   all.description.made.push_back(made);
   return {made.get(), &value, &value.where, true};
@@ -294,7 +279,7 @@ void expandInstance(Expansion& all, Scope& parent, const Member& member, const j
   const std::shared_ptr<const json::Value> document = instanceDocument(all, parent, graph, file);
   if (!document) return;
   ++all.made;
-  Scope& scope = all.scopes.emplace_back(all.memory);
+  Scope& scope = all.scopes.emplace_back();
   scope.file = file;
   scope.parent = &parent;
   scope.prefix = parent.prefix + member.key + "/";
@@ -357,9 +342,10 @@ void expandPass(Expansion& all, Scope& scope, const Member& member) {
   if (graph) report(all, scope, graph->where, *graph, "a pass has a `type` or a `graph`, not both");
   ++all.made;
   const json::Value* type = reader.require("type");
-  scope.passes.emplace(member.key, static_cast<uint32_t>(all.description.passes.size()));
+  const auto index = static_cast<uint32_t>(all.description.passes.size());
   PassDescription& pass = all.description.passes.emplace_back();
   pass.name.append(scope.prefix).append(member.key);
+  all.passes.emplace(pass.name, index);
   pass.written = &member;
   pass.view = scope.view;
   if (type && !type->isString())
@@ -393,7 +379,7 @@ void expandScope(Expansion& all, Scope& scope) {
   if (const json::Value* passes = reader.object("passes")) {
     const size_t count = all.description.passes.size() + passes->members.size();
     all.description.passes.reserve(count);
-    scope.passes.reserve(passes->members.size());
+    all.passes.reserve(count);
     for (const Member& member : passes->members) expandPass(all, scope, member);
   }
   reader.finish();
@@ -436,6 +422,26 @@ void reportUnused(Expansion& all) {
 }  // namespace
 }  // namespace detail
 
+bool readTyped(const std::string& text, json::Value::Type type, json::Value& out) {
+  using Type = json::Value::Type;
+  if (type == Type::Bool) {
+    out.boolean = text == "true" || text == "1";
+    if (!out.boolean && text != "false" && text != "0") return false;
+    out.type = Type::Bool;
+    return true;
+  }
+  const char *begin = text.data(), *end = begin + text.size();
+  if (const auto r = std::from_chars(begin, end, out.integer); r.ec == std::errc() && r.ptr == end) {
+    out.type = Type::Int;
+    out.real = static_cast<double>(out.integer);
+    return true;
+  }
+  const auto r = std::from_chars(begin, end, out.real);
+  if (r.ec != std::errc() || r.ptr != end) return false;
+  out.type = Type::Real;
+  return true;
+}
+
 Description resolve(std::shared_ptr<const json::Value> document, const std::filesystem::path& file,
                     const LoadOptions& options, Diagnostics& diagnostics) {
   Description description;
@@ -444,7 +450,7 @@ Description resolve(std::shared_ptr<const json::Value> document, const std::file
   detail::Expansion all{description, options, diagnostics};
   detail::readOverrides(all);
   ++all.made;
-  detail::Scope& root = all.scopes.emplace_back(all.memory);
+  detail::Scope& root = all.scopes.emplace_back();
   root.file = file;
   root.document = description.documents[0].get();
   description.start = {root.document->where.location().file, 1, 1};

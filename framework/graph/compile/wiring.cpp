@@ -98,18 +98,6 @@ bool combine(Expansion& all, const Scope& scope, const json::Value& value, std::
   return true;
 }
 
-// The pass that a document calls `name`; "left/blur" is the pass `blur` of its sub-graph `left`.
-std::optional<uint32_t> findPass(const Scope& scope, std::string_view name) {
-  const Scope* at = &scope;
-  for (size_t slash; (slash = name.find('/')) != std::string_view::npos; name.remove_prefix(slash + 1)) {
-    const auto child = at->instances.find(name.substr(0, slash));
-    if (child == at->instances.end()) return std::nullopt;
-    at = child->second;
-  }
-  const auto pass = at->passes.find(name);
-  return pass == at->passes.end() ? std::nullopt : std::optional(pass->second);
-}
-
 void reportNoPass(Expansion& all, const Scope& scope, const json::Value& value, std::string_view name) {
   const bool inner = name.find('/') != std::string::npos;  // a pass inside an instance, by its full name
   std::vector<std::string> names = {"inputs"};
@@ -141,8 +129,10 @@ bool resolveWire(Expansion& all, Scope& scope, const json::Value& value, WireDes
   if (name == "inputs")
     return resolveInput(all, scope, value, parts, wire, depth) &&
            combine(all, scope, value, parts.member(), previous, wire);
-  if (const std::optional<uint32_t> pass = findPass(scope, name)) {
-    wire.pass = *pass;
+  // "blur" is the pass "left/blur" of the graph if it is written in the sub-graph `left`.
+  const auto pass = all.passes.find(std::string(scope.prefix).append(name));
+  if (pass != all.passes.end()) {
+    wire.pass = pass->second;
     wire.port = parts.port();
     wire.member = parts.member();
     wire.previous = previous;
