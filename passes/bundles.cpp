@@ -1,7 +1,8 @@
 #include "passes/bundles.h"
 
 #include "fovea/error.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "shaders/common/records/shadow.h"
+#include "shaders/common/records/voxel.h"
 
 namespace fovea::passes {
 
@@ -41,9 +42,8 @@ std::vector<MemberSpec> voxelMembers(std::initializer_list<std::string_view> nam
 }
 
 std::vector<MemberSpec> shadowMapMembers() {
-  constexpr uint32_t kViewBytes = 112;  // struct ShadowView in shaders/common/shadow.glsl
   return {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
-          member("views", buffer("ShadowView", kViewBytes), Usage::Uniform)};
+          member("views", buffer("ShadowView", sizeof(scene::ShadowView)), Usage::Uniform)};
 }
 
 }  // namespace fovea::passes

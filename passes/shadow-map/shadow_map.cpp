@@ -8,14 +8,12 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
+#include "shaders/common/records/shadow.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
-
-constexpr uint32_t kMaxLayers = scene::kMaxLights * 6;  // kMaxShadowLayers in shaders/common/shadow.glsl
-constexpr uint32_t kViewBytes = 112;                    // struct ShadowView in shaders/common/shadow.glsl
 
 class ShadowMap : public Pass {
  public:
@@ -32,7 +30,8 @@ class ShadowMap : public Pass {
                               environment("scene.shadow_layers")),
                  Usage::DepthAttachment | Usage::TransferWrite,
                  "depth, 1 nearest to the light, 0 where nothing is hit; layers in the order of the lights"),
-          member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
+          member("views", buffer("ShadowView", sizeof(scene::ShadowView), scene::kMaxShadowLayers),
+                 Usage::StorageWrite | Usage::Uniform,
                  "projection of each layer (shaders/common/shadow.glsl); unused entries are undefined")},
          "shadow maps of the lights")
         .keep(Lifetime::Scene);

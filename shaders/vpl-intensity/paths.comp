@@ -31,11 +31,11 @@ void main() {
     vec3 up = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
     uint side = traceVoxels(voxelsGrid(), from.xyz, diffuseBounce(up, face, u), face).side;
     if (side != kNoSide) {
-      int first = int(side) * kVoxelSideTexels;
+      VoxelSide end = loadSide(side);
       float light = texelFetch(radiance, int(side)).w;
       light = light > 0.0 ? light : 0.0;  // excludes NaN
-      position = vec4(texelFetch(voxelsSurface, first).xyz, siteKind(light));
-      normal = vec4(texelFetch(voxelsSurface, first + 1).xyz, light);
+      position = vec4(end.position, siteKind(light));
+      normal = vec4(end.normal, light);
     }
   }
   ends.list[2u * path] = position;

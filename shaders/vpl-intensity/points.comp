@@ -59,7 +59,7 @@ void main() {
   if (i >= points) return;
   ivec2 size = textureSize(gbufferPosition, 0);
   uint number, part = regionOf(region, imageShare64ths, i, number);
-  ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze.xy, vec2(size), foveaRadius), size);
+  ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze, vec2(size), foveaRadius), size);
   vec4 position = texelFetch(gbufferPosition, pixel, 0);
   bool there = position.w > 0.0;
   screen.list[3u * i] = vec4(position.xyz, there ? 1.0 : 0.0);

@@ -43,15 +43,15 @@ void tallySides(uint first, uint stride) {
   VoxelGrid grid = voxelsGrid();
   uint low = 0u, high = 0u, sides = min(2u * voxelsInfo.value.voxels, sideCapacity);
   for (uint i = first; i < sides; i += stride) {
-    vec4 positionArea = texelFetch(voxelsSurface, int(i) * kVoxelSideTexels);
-    if (!(positionArea.w > 0.0)) continue;
-    uint units = areaUnits(grid, positionArea.w);
+    VoxelSide side = loadSide(i);
+    if (!(side.area > 0.0)) continue;
+    uint units = areaUnits(grid, side.area);
     low += units;
     high += uint(low < units);
 #if AREA && LIT_ONLY
     if (!litSide(i)) continue;
 #endif
-    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
+    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, side.position))], 1u);
   }
   ADD_WIDE(totals.value.areaLow, totals.value.areaHigh, low);
   if (high > 0u) atomicAdd(totals.value.areaHigh, high);

@@ -82,7 +82,7 @@ uint brickIndex(VoxelGrid grid, ivec3 brick) {
 // Weight of the normals in the distance between surfaces, m^2: `share` of the squared mean free path 4 V / S of the
 // scene (the mean chord of a room of volume V and surface S), so that one value suits scenes of any size.
 float normalWeight(VoxelGrid grid, float share, uint areaLow, uint areaHigh) {
-  vec3 extent = max(frame.boundsMax.xyz - frame.boundsMin.xyz, vec3(0.0));
+  vec3 extent = max(frame.boundsMax - frame.boundsMin, vec3(0.0));
   float path = 4.0 * extent.x * extent.y * extent.z / max(unitsToArea(grid, areaLow, areaHigh), 1e-12);
   return share * path * path;
 }
