@@ -7,7 +7,7 @@
 
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "shaders/common/records/voxel.h"
+#include "passes/bundles.h"
 #include "shaders/voxelize/records.h"
 
 namespace fovea::passes {
@@ -55,18 +55,7 @@ PassDeclaration Voxelize::declaration() {
   d.recorded();
   const SizeExpr r = parameter("resolution");
   const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
-  d.output("voxels", "voxels",
-           {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
-                   "0 if the cell is empty, else 1 + number of its voxel"),
-            member("occupied",
-                   image3D(VK_FORMAT_R32_UINT, ceilDiv(r, scene::kBrickWidth),
-                           ceilDiv(r, scene::kBrickHeight), ceilDiv(r, scene::kBrickDepth)),
-                   Usage::StorageRead | Usage::StorageWrite,
-                   "one bit for each cell of a brick of 4 x 4 x 2 cells: it holds a voxel"),
-            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
-                   "two sides per voxel, see shaders/common/voxel.glsl; a side with area 0 is empty"),
-            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
-                   Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")},
+  d.output("voxels", "voxels", voxelOutput(r, room),
            "voxels of static surfaces, then those of dynamic objects")
       .keep(Lifetime::Scene);
   const SizeExpr words = ceilDiv(r * r * r, 32), triangles = environment("scene.triangles");

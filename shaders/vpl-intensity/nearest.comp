@@ -35,8 +35,9 @@ void main() {
   for (uint word = 0u; word < words; ++word)
     for (uint bits = texelFetch(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
       uint i = 32u * word + uint(findLSB(bits));
-      vec3 d = texelFetch(sites, int(2u * i)).xyz - side.position;
-      precise float cost = dot(d, d) + lambda * (1.0 - dot(side.normal, texelFetch(sites, int(2u * i + 1u)).xyz));
+      VplSite site = loadSite(sites, i);
+      vec3 d = site.position - side.position;
+      precise float cost = dot(d, d) + lambda * (1.0 - dot(side.normal, site.normal));
       if (cost < best) {
         best = cost;
         owner = i;

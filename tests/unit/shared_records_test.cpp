@@ -10,11 +10,15 @@
 
 #include "framework/gpu/shader/shader.h"
 #include "places.h"
+#include "shaders/common/records/eye_paths.h"
 #include "shaders/common/records/scene.h"
 #include "shaders/common/records/shadow.h"
 #include "shaders/common/records/voxel.h"
 #include "shaders/common/records/vpl.h"
+#include "shaders/manage/records.h"
+#include "shaders/shadow-atlas/records.h"
 #include "shaders/voxelize/records.h"
+#include "shaders/vpl-intensity/records.h"
 
 namespace fovea {
 namespace {
@@ -136,6 +140,49 @@ TEST(SharedRecords, Scene) {
                {AT(ShadowView, worldToClip), AT(ShadowView, right), AT(ShadowView, texelWidth),
                 AT(ShadowView, up), AT(ShadowView, texelHeight), AT(ShadowView, bias),
                 AT(ShadowView, relativeBias), AT(ShadowView, depthScale), AT(ShadowView, unused)});
+}
+
+TEST(SharedRecords, EyePaths) {
+  using namespace passes;
+  const char* header = "common/records/eye_paths.h";
+  expectLayout(header, "EyePathStart", sizeof(EyePathStart),
+               {AT(EyePathStart, position), AT(EyePathStart, there), AT(EyePathStart, normal),
+                AT(EyePathStart, unused0), AT(EyePathStart, face), AT(EyePathStart, unused1)});
+  expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
+               {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
+                AT(EyePathEnd, luminance), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+}
+
+TEST(SharedRecords, OfOnePass) {
+  using passes::manage::ManageState;
+  using passes::manage::SlotRecord;
+  const char* manage = "manage/records.h";
+  expectLayout(manage, "ManageState", sizeof(ManageState),
+               {AT(ManageState, occupied), AT(ManageState, alive), AT(ManageState, accepted),
+                AT(ManageState, reused), AT(ManageState, oldCount), AT(ManageState, candidateCount)});
+  expectLayout(
+      manage, "SlotRecord", sizeof(SlotRecord),
+      {AT(SlotRecord, importance), AT(SlotRecord, flags), AT(SlotRecord, cell), AT(SlotRecord, key)});
+  using passes::intensity::PathSum;
+  using passes::intensity::VplSite;
+  const char* intensity = "vpl-intensity/records.h";
+  expectLayout(intensity, "VplSite", sizeof(VplSite),
+               {AT(VplSite, position), AT(VplSite, handicap), AT(VplSite, normal), AT(VplSite, light)});
+  expectLayout(intensity, "PathSum", sizeof(PathSum),
+               {AT(PathSum, paths), AT(PathSum, lightX), AT(PathSum, lightY), AT(PathSum, lightZ)});
+  using passes::atlas::DrawnMap;
+  using passes::atlas::Step;
+  using passes::atlas::VplView;
+  const char* atlas = "shadow-atlas/records.h";
+  expectLayout(atlas, "DrawnMap", sizeof(DrawnMap),
+               {AT(DrawnMap, position), AT(DrawnMap, unused0), AT(DrawnMap, normal), AT(DrawnMap, unused1),
+                AT(DrawnMap, movers), AT(DrawnMap, poses)});
+  expectLayout(atlas, "VplView", sizeof(VplView),
+               {AT(VplView, position), AT(VplView, slot), AT(VplView, tangent), AT(VplView, unused0),
+                AT(VplView, bitangent), AT(VplView, unused1), AT(VplView, normal), AT(VplView, unused2)});
+  expectLayout(
+      atlas, "Step", sizeof(Step),
+      {AT(Step, cull), AT(Step, small), AT(Step, large), AT(Step, maskedSmall), AT(Step, maskedLarge)});
 }
 
 }  // namespace
