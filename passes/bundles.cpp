@@ -1,7 +1,10 @@
 #include "passes/bundles.h"
 
 #include "fovea/error.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "shaders/common/records/eye_paths.h"
+#include "shaders/common/records/shadow.h"
+#include "shaders/common/records/voxel.h"
+#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 
@@ -9,41 +12,132 @@ using namespace graph;
 
 namespace {
 
-std::vector<MemberSpec> choose(const std::vector<MemberSpec>& all,
-                               std::initializer_list<std::string_view> names) {
-  std::vector<MemberSpec> chosen;
-  for (const std::string_view name : names)
-    for (const MemberSpec& m : all)
-      if (m.name == name) chosen.push_back(m);
-  if (chosen.size() != names.size()) throw Error(ExitCode::Internal, "a bundle has no member of that name");
-  return chosen;
+constexpr uint32_t kTexel = 16;  // bytes of a vec4
+
+// The member of a bundle that a pass reads in this way. What it holds is said where it is made.
+MemberSpec read(const std::vector<MemberSpec>& output, std::string_view name, Usage usage) {
+  for (const MemberSpec& m : output)
+    if (m.name == name) return member(m.name, m.resource, usage);
+  throw Error(ExitCode::Internal, "no bundle has a member `" + std::string(name) + "` here");
+}
+
+std::vector<MemberSpec> read(const std::vector<MemberSpec>& output,
+                             std::initializer_list<std::string_view> names, Usage usage) {
+  std::vector<MemberSpec> members;
+  for (const std::string_view name : names) members.push_back(read(output, name, usage));
+  return members;
 }
 
 }  // namespace
 
+// ---- Buffers of records ----------------------------------------------------------------------------------------
+
+ResourceSpec vplBuffer(const SizeExpr& count) { return buffer("Vpl", sizeof(scene::Vpl), count); }
+ResourceSpec vplStateBuffer(const SizeExpr& count) {
+  return buffer("VplState", sizeof(scene::VplState), count);
+}
+ResourceSpec candidateBuffer(const SizeExpr& count) {
+  return buffer("Candidate", sizeof(scene::Candidate), count);
+}
+ResourceSpec radiosityBuffer(const SizeExpr& count) { return buffer("VplRadiosity", kTexel, count); }
+ResourceSpec voxelRadianceBuffer(const SizeExpr& count) { return buffer("VoxelRadiance", kTexel, count); }
+ResourceSpec voxelWeightBuffer(const SizeExpr& count) { return buffer("VoxelWeight", sizeof(float), count); }
+ResourceSpec spreadBuffer() { return buffer("VplSpread", kTexel); }
+
+// ---- Bundles ---------------------------------------------------------------------------------------------------
+
+std::vector<MemberSpec> gbufferOutput() {
+  return {
+      member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
+             "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
+      member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+             "xyz: unit shading normal, on the side of the face towards the eye"),
+      member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
+             "geometric normal on the side towards the eye, octahedral encoding"),
+      member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+             "rgb: diffuse reflectance, base colour times (1 - metallic)"),
+      member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+             "rgb: emitted radiance, W/(sr m^2), in the background the environment"),
+      member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
+             "material | object << 16; background 0xffffffff"),
+      member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane")};
+}
 std::vector<MemberSpec> gbufferMembers(Usage usage, std::initializer_list<std::string_view> names) {
-  return choose({member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), usage),
-                 member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), usage),
-                 member("face", image2D(VK_FORMAT_R16G16_SNORM), usage),
-                 member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), usage),
-                 member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), usage),
-                 member("id", image2D(VK_FORMAT_R32_UINT), usage),
-                 member("depth", image2D(VK_FORMAT_D32_SFLOAT), usage)},
-                names);
+  return read(gbufferOutput(), names, usage);
 }
 
+std::vector<MemberSpec> voxelOutput(const SizeExpr& r, const SizeExpr& room) {
+  return {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
+                 "0 if the cell is empty, else 1 + number of its voxel"),
+          member("occupied",
+                 image3D(VK_FORMAT_R32_UINT, ceilDiv(r, scene::kBrickWidth), ceilDiv(r, scene::kBrickHeight),
+                         ceilDiv(r, scene::kBrickDepth)),
+                 Usage::StorageRead | Usage::StorageWrite,
+                 "one bit for each cell of a brick of 4 x 4 x 2 cells: it holds a voxel"),
+          member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
+                 "two sides per voxel, see shaders/common/voxel.glsl; a side with area 0 is empty"),
+          member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
+                 Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")};
+}
 std::vector<MemberSpec> voxelMembers(std::initializer_list<std::string_view> names, Usage info) {
-  const ResourceSpec cells = image3D(VK_FORMAT_R32_UINT, 1, 1, 1);
-  return choose({member("index", cells, Usage::StorageRead), member("occupied", cells, Usage::StorageRead),
-                 member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide)), Usage::TexelRead),
-                 member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)), info)},
-                names);
+  const std::vector<MemberSpec> output = voxelOutput(1, 1);
+  std::vector<MemberSpec> members;
+  for (const std::string_view name : names)
+    members.push_back(read(output, name,
+                           name == "info"      ? info
+                           : name == "surface" ? Usage::TexelRead
+                                               : Usage::StorageRead));
+  return members;
 }
 
+std::vector<MemberSpec> voxelMipOutput(const SizeExpr& width, const SizeExpr& size, const SizeExpr& levels) {
+  return {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, levels),
+                 Usage::StorageRead | Usage::StorageWrite,
+                 "rgb: radiance times a; a: surface area relative to the area of a cell's face, over 1 "
+                 "where a cell holds several surfaces"),
+          member("weight", image3D(VK_FORMAT_R16_SFLOAT, width, size, size, levels),
+                 Usage::StorageRead | Usage::StorageWrite, "foveated weight times a of `color`")};
+}
+std::vector<MemberSpec> voxelMipMembers(std::initializer_list<std::string_view> names) {
+  return read(voxelMipOutput(1, 1, 1), names, Usage::Sampled);
+}
+
+std::vector<MemberSpec> shadowMapOutput(const SizeExpr& size, const SizeExpr& layers) {
+  return {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, size, size, layers),
+                 Usage::DepthAttachment | Usage::TransferWrite,
+                 "depth, 1 nearest to the light, 0 where nothing is hit; layers in the order of the lights"),
+          member("views", buffer("ShadowView", sizeof(scene::ShadowView), scene::kMaxShadowLayers),
+                 Usage::StorageWrite | Usage::Uniform,
+                 "projection of each layer (shaders/common/shadow.glsl); unused entries are undefined")};
+}
 std::vector<MemberSpec> shadowMapMembers() {
-  constexpr uint32_t kViewBytes = 112;  // struct ShadowView in shaders/common/shadow.glsl
-  return {member("depth", image2DArray(VK_FORMAT_D32_SFLOAT, 1, 1, 1), Usage::Sampled),
-          member("views", buffer("ShadowView", kViewBytes), Usage::Uniform)};
+  const std::vector<MemberSpec> output = shadowMapOutput(1, 1);
+  return {read(output, "depth", Usage::Sampled), read(output, "views", Usage::Uniform)};
+}
+
+std::vector<MemberSpec> eyePathOutput(const SizeExpr& points, const SizeExpr& paths) {
+  return {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), points), Usage::HostWrite),
+          member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), paths), Usage::HostWrite)};
+}
+std::vector<MemberSpec> eyePathMembers() {
+  return read(eyePathOutput(1, 1), {"starts", "ends"}, Usage::TexelRead);
+}
+
+std::vector<MemberSpec> shadeMaskOutput(const SizeExpr& width, const SizeExpr& height,
+                                        const SizeExpr& blocks) {
+  return {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height),
+                 Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
+                 "1 if the pixel is in a block to shade"),
+          member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
+                 "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
+          member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
+                 "groups of an indirect dispatch, with a column for 256 blocks and a row for each pixel of a "
+                 "block; w: number of blocks")};
+}
+std::vector<MemberSpec> shadeMaskMembers() {
+  const std::vector<MemberSpec> output = shadeMaskOutput(1, 1, 1);
+  return {read(output, "mask", Usage::StorageRead), read(output, "blocks", Usage::TexelRead),
+          read(output, "dispatch", Usage::TexelRead | Usage::Indirect)};
 }
 
 }  // namespace fovea::passes

@@ -1,4 +1,6 @@
-// The bundles that passes hand to each other: their members are declared here, once, and passes name those they use.
+// What passes hand to each other: the bundles and the buffers of records, each declared here once. The pass that makes a
+// bundle says how large it is and takes its declaration as it stands; a pass that reads it names the members that it
+// uses and how it reads them.
 #pragma once
 
 #include <initializer_list>
@@ -10,17 +12,49 @@
 
 namespace fovea::passes {
 
-// Members of the bundle `gbuffer`, all read in the same way: position, normal, face, albedo, emission, id, depth
-// (described by pass gbuffer, which makes them).
+// ---- Buffers of records ----------------------------------------------------------------------------------------
+
+graph::ResourceSpec vplBuffer(const graph::SizeExpr& count = 1);        // scene::Vpl
+graph::ResourceSpec vplStateBuffer(const graph::SizeExpr& count = 1);   // scene::VplState
+graph::ResourceSpec candidateBuffer(const graph::SizeExpr& count = 1);  // scene::Candidate
+// rgb: radiosity of a VPL, W/m^2; w: its luminance.
+graph::ResourceSpec radiosityBuffer(const graph::SizeExpr& count = 1);
+// rgb: radiance of a voxel side, W/(sr m^2); w: its luminance.
+graph::ResourceSpec voxelRadianceBuffer(const graph::SizeExpr& count = 1);
+// Foveated weight of a voxel side, in [0, 1].
+graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
+// x: least area of a VPL's disc, m^2.
+graph::ResourceSpec spreadBuffer();
+
+// ---- Bundles ---------------------------------------------------------------------------------------------------
+
+// The bundle `gbuffer`: position, normal, face, albedo, emission, id, depth.
+std::vector<graph::MemberSpec> gbufferOutput();
 std::vector<graph::MemberSpec> gbufferMembers(graph::Usage usage,
                                               std::initializer_list<std::string_view> names);
 
-// Members of the bundle `voxels`: index, occupied, surface (described by pass voxelize) and info, which is read as a
-// uniform or a texel buffer.
+// The bundle `voxels`: index, occupied, surface and info. A reader reads `info` as a uniform or a texel buffer.
+// resolution: cells along an edge of the grid; room: voxels.
+std::vector<graph::MemberSpec> voxelOutput(const graph::SizeExpr& resolution, const graph::SizeExpr& room);
 std::vector<graph::MemberSpec> voxelMembers(std::initializer_list<std::string_view> names,
                                             graph::Usage info = graph::Usage::Uniform);
 
-// Members of the bundle `shadow-maps`, as pass shadow-map makes them.
+// The bundle `voxel-mips`: color, weight.
+std::vector<graph::MemberSpec> voxelMipOutput(const graph::SizeExpr& width, const graph::SizeExpr& size,
+                                              const graph::SizeExpr& levels);
+std::vector<graph::MemberSpec> voxelMipMembers(std::initializer_list<std::string_view> names);
+
+// The bundle `shadow-maps`: depth, views. size: of a map, texels.
+std::vector<graph::MemberSpec> shadowMapOutput(const graph::SizeExpr& size, const graph::SizeExpr& layers);
 std::vector<graph::MemberSpec> shadowMapMembers();
+
+// The bundle `eye-paths`: starts, ends.
+std::vector<graph::MemberSpec> eyePathOutput(const graph::SizeExpr& points, const graph::SizeExpr& paths);
+std::vector<graph::MemberSpec> eyePathMembers();
+
+// The bundle `shade-mask`: mask, blocks, dispatch. blocks: number of blocks of the image.
+std::vector<graph::MemberSpec> shadeMaskOutput(const graph::SizeExpr& width, const graph::SizeExpr& height,
+                                               const graph::SizeExpr& blocks);
+std::vector<graph::MemberSpec> shadeMaskMembers();
 
 }  // namespace fovea::passes

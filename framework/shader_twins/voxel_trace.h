@@ -10,7 +10,7 @@
 #include <span>
 
 #include "framework/shader_twins/voxel_grid.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/common/records/voxel.h"
 
 namespace fovea::scene {
 
@@ -29,16 +29,6 @@ struct Voxels {
     return inside(cell) ? index[size_t(cell.x) + r * (size_t(cell.y) + r * size_t(cell.z))] : 0u;
   }
 };
-
-struct VoxelHit {
-  uint32_t side = kNoSide;  // kNoSide if the ray leaves the grid
-  float distance = 0;       // along the ray, m
-};
-
-inline constexpr float kOwnSurface = 0.25f;  // cells
-
-inline constexpr float kBehindPlane = 0.1f;  // cells
-inline constexpr float kSideRadii = 1.5f;    // radii of a disc of the side's area
 
 enum class Meeting { None, Passed, Met };
 

@@ -15,16 +15,14 @@ class Bounce : public Pass {
                       "gathered with six cones");
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface", "info"}, Usage::TexelRead),
             "voxelised surfaces");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+    d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
             "radiance of every side, which lights the other sides");
-    d.input("mips", "voxel-mips",
-            {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
-            "mip hierarchy of that radiance");
-    d.input("direct", buffer("VoxelRadiance", 16), Usage::TexelRead,
+    d.input("mips", "voxel-mips", voxelMipMembers({"color"}), "mip hierarchy of that radiance");
+    d.input("direct", voxelRadianceBuffer(), Usage::TexelRead,
             "direct radiance from light-inject, to which the bounced light is added, also for later bounces; "
             "if not wired, `radiance` is used, which is correct for the first bounce only")
         .makeOptional();
-    d.output("bounced", buffer("VoxelRadiance", 16, countOf("voxels.surface")), Usage::StorageWrite,
+    d.output("bounced", voxelRadianceBuffer(countOf("voxels.surface")), Usage::StorageWrite,
              "rgb: direct + rho E / pi, W/(sr m^2); w: its luminance; 0 for empty sides, undefined beyond "
              "the last voxel");
     d.step("bounce/bounce.comp").define("HAS_DIRECT", wired("direct")).threads(countOf("voxels.surface"));

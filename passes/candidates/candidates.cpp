@@ -4,7 +4,6 @@
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -23,11 +22,10 @@ class Candidates : public Pass {
         .makeOptional();
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}),
             "voxels that the bounces hit");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+    d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
             "radiance of each voxel side; if not wired, the candidates' luminance is 0")
         .makeOptional();
-    d.output("candidates", buffer("Candidate", sizeof(scene::Candidate), parameter("count")),
-             Usage::StorageWrite,
+    d.output("candidates", candidateBuffer(parameter("count")), Usage::StorageWrite,
              "one entry per attempt; an attempt that hit nothing has no side and is otherwise zero");
     d.parameter("count", integer(1000, 1, 65536), "number of attempts, with one pixel and one ray each");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),

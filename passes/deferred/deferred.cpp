@@ -10,16 +10,15 @@
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"
 #include "shaders/common/records/vpl.h"
+#include "shaders/deferred/records.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-// Pixels that a work group works on (in shade.comp, pixels of one subset). Pass reproject counts the groups of the
-// indirect dispatch in the same way.
-constexpr uint32_t kTileWidth = 16, kTileHeight = 16;
-static_assert(kTileWidth * kTileHeight == 256);
+using deferred::kTileHeight;
+using deferred::kTileWidth;
 
 // A smaller subset would be too poor an estimate, and using fewer subsets costs little when there are few VPLs.
 constexpr int64_t kSmallestSubset = 4;
@@ -46,8 +45,7 @@ class Deferred : public Pass {
     d.input("gbuffer", "gbuffer",
             gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo"}),
             "surfaces seen by the eye");
-    d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::Uniform,
-            "light sources; empty slots have zero intensity");
+    d.input("vpls", vplBuffer(), Usage::Uniform, "light sources; empty slots have zero intensity");
     d.input(
          "atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
          "distances seen from each VPL (paraboloid maps, both layouts); if not wired, VPLs cast no shadows")
@@ -129,13 +127,7 @@ class Deferred : public Pass {
             "rgb: irradiance / pi of the pixels that `shade` leaves out (from pass reproject), background 0; "
             "used with `shade` only")
         .makeOptional();
-    d.input("shade", "shade-mask",
-            {member("mask", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead,
-                    "1 if the pixel is in a listed block"),
-             member("blocks", buffer("ShadeBlock", 4), Usage::TexelRead,
-                    "x | y << 16 of each block, in blocks of `interleave` pixels"),
-             member("dispatch", buffer("ShadeDispatch", 16), Usage::TexelRead | Usage::Indirect,
-                    "groups of the indirect dispatch; w: number of listed blocks")},
+    d.input("shade", "shade-mask", shadeMaskMembers(),
             "blocks of pixels to shade; if not wired, all pixels are shaded")
         .makeOptional();
   }

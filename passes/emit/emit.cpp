@@ -4,6 +4,7 @@
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
+#include "passes/bundles.h"
 #include "passes/emit/light_paths.h"
 #include "shaders/common/records/vpl.h"
 
@@ -18,7 +19,7 @@ class Emit : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("emit", "VPLs where light paths traced from the lights hit the scene", PassKind::Host);
-    d.output("vpls", buffer("Vpl", sizeof(scene::Vpl), parameter("count")), Usage::HostWrite,
+    d.output("vpls", vplBuffer(parameter("count")), Usage::HostWrite,
              "VPLs that together carry the lights' reflected flux, ordered along a space-filling curve; "
              "unused slots (no light, or none that reaches the scene) have zero intensity");
     d.parameter("count", integer(1000, 1, 65536), "VPLs to store");

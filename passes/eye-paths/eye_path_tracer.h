@@ -9,6 +9,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/shader_twins/fovea.h"
+#include "shaders/common/records/eye_paths.h"
 
 namespace fovea::passes {
 
@@ -25,29 +26,6 @@ struct EyePathSettings {
   uint32_t turn = 0;         // which share has its turn, for both cycles
   uint32_t threads = 0;      // 0 uses one per core; the result does not depend on it
 };
-
-// What a screen point shows, laid out as the screen points of shaders/vpl-intensity/points.comp. All zeros
-// stand for the background.
-struct EyePathStart {
-  glm::vec3 position{0};  // world space, m
-  float there = 0;        // 1 if there is a surface
-  glm::vec3 normal{0};    // shading normal, unit, on the side of the eye
-  float unused0 = 0;
-  glm::vec3 face{0};  // normal of the triangle, unit
-  float unused1 = 0;
-};
-static_assert(sizeof(EyePathStart) == 48);
-
-// The same layout as in shaders/vpl-intensity/vpl_intensity.glsl. All zeros mean that the path hits nothing.
-struct EyePathEnd {
-  glm::vec3 position{0};  // world space, m
-  float kind = 0;         // 1 without direct light, 2 with direct light
-  glm::vec3 normal{0};    // unit, on the side from which the path came
-  float luminance = 0;    // luminance of `radiance`
-  glm::vec3 radiance{0};  // leaves towards the start of the path, W/(sr m^2)
-  float unit = 0;         // unit of sums as whole numbers, W/(sr m^2), the same for all ends; see sumUnit()
-};
-static_assert(sizeof(EyePathEnd) == 48);
 
 struct EyePathStatistics {
   uint64_t rays = 0, ends = 0;

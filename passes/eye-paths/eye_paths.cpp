@@ -7,6 +7,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -21,12 +22,9 @@ class EyePaths : public Pass {
                       "leaving the surfaces where they end",
                       PassKind::Host);
     d.view();
-    d.output(
-        "paths", "eye-paths",
-        {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), parameter("points")), Usage::HostWrite),
-         member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), parameter("paths")), Usage::HostWrite)},
-        "what the screen points show, where their paths end and the light found there; the paths of one "
-        "point are `points` entries apart");
+    d.output("paths", "eye-paths", eyePathOutput(parameter("points"), parameter("paths")),
+             "what the screen points show, where their paths end and the light found there; the paths of one "
+             "point are `points` entries apart");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),

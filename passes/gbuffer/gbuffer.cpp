@@ -6,6 +6,7 @@
 #include "framework/scene/device/draw_clusters.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
@@ -21,22 +22,7 @@ class GBuffer : public Pass {
         PassKind::Graphics);
     d.recorded();
     d.view();
-    d.output("gbuffer", "gbuffer",
-             {member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
-                     "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
-              member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-                     "xyz: unit shading normal, on the side of the face towards the eye"),
-              member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
-                     "geometric normal on the side towards the eye, octahedral encoding"),
-              member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-                     "rgb: diffuse reflectance, base colour times (1 - metallic)"),
-              member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-                     "rgb: emitted radiance, W/(sr m^2), in the background the environment"),
-              member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
-                     "material | object << 16; background 0xffffffff"),
-              member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment,
-                     "0: near plane, 1: far plane")},
-             "one surface per pixel");
+    d.output("gbuffer", "gbuffer", gbufferOutput(), "one surface per pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
               "triangle visible at each pixel, 0xffffffff if none");
     d.parameter(

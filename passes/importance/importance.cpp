@@ -6,7 +6,6 @@
 #include "framework/gpu/resources.h"
 #include "framework/shader_twins/hemisphere_rays.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -27,17 +26,14 @@ PassDeclaration Importance::declaration() {
                     "from each VPL");
   d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}),
           "voxel grid through which the rays or cones are traced");
-  d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
-          "foveated weight of each voxel side, in [0, 1]");
-  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead, "candidate VPLs");
-  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+  d.input("weights", voxelWeightBuffer(), Usage::TexelRead, "foveated weight of each voxel side, in [0, 1]");
+  d.input("candidates", candidateBuffer(), Usage::TexelRead, "candidate VPLs");
+  d.input("vpls", vplStateBuffer(), Usage::TexelRead,
           "VPLs of the previous frame, at their positions in this frame");
-  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+  d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
           "radiance of each voxel side; w: luminance; needed for the parameter `luminance`")
       .makeOptional();
-  d.input("mips", "voxel-mips",
-          {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled),
-           member("weight", image3D(VK_FORMAT_R16_SFLOAT, 1, 1, 1), Usage::Sampled)},
+  d.input("mips", "voxel-mips", voxelMipMembers({"color", "weight"}),
           "mip hierarchy of opacity and weight; needed for method `cones`")
       .makeOptional();
   d.output("candidate_importance", buffer("float", 4, countOf("candidates")),

@@ -34,7 +34,7 @@ class LightInject : public Pass {
     d.input("maps", "shadow-maps", shadowMapMembers(),
             "shadow maps of the lights; if not wired, nothing casts a shadow")
         .makeOptional();
-    d.output("radiance", buffer("VoxelRadiance", 16, countOf("voxels.surface")),
+    d.output("radiance", voxelRadianceBuffer(countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite,
              "rgb: L = rho E / pi + emission, W/(sr m^2); w: its luminance; 0 for empty sides, undefined "
              "beyond the last voxel")

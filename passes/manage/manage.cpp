@@ -9,7 +9,8 @@
 #include "fovea/pass.h"
 #include "framework/gpu/device.h"
 #include "framework/scene/frame.h"
-#include "shaders/common/records/vpl.h"
+#include "passes/bundles.h"
+#include "shaders/manage/records.h"
 
 namespace fovea::passes {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kMost = 65536;  // limit of slots and of candidates; keeps sums of importance below 2^57
-constexpr uint32_t kCells = 64 * 64 * 64;  // cells of the density grid, see shaders/manage/memory.glsl
 
 class Manage : public Pass {
  public:
@@ -29,8 +29,9 @@ void addScratch(PassDeclaration& d) {
   const Usage both = Usage::StorageRead | Usage::StorageWrite;
   const SizeExpr slots = parameter("count"), candidates = countOf("candidates"),
                  more = max(slots, candidates);
-  d.scratch("state", buffer("ManageState", 24), both | Usage::TransferWrite, "lengths of the lists");
-  d.scratch("slot_records", buffer("SlotRecord", 16, slots), both,
+  d.scratch("state", buffer("ManageState", sizeof(manage::ManageState)), both | Usage::TransferWrite,
+            "lengths of the lists");
+  d.scratch("slot_records", buffer("SlotRecord", sizeof(manage::SlotRecord), slots), both,
             "importance, flags, cell and sort key of each slot");
   d.scratch("candidate_records", buffer("uvec2", 8, candidates), both,
             "importance and cell of each candidate");
@@ -38,9 +39,9 @@ void addScratch(PassDeclaration& d) {
   d.scratch("lists", buffer("uvec2", 8, SizeExpr(2) * (slots + candidates + more)), both, "lists to sort");
   d.scratch("attempts", buffer("uint", 4, more), both, "entries that Algorithm 2 tries to add, in order");
   d.scratch("added", buffer("uint", 4, candidates), both, "candidates added, in order");
-  d.scratch("density", buffer("uint", 4, kCells), both | Usage::TransferWrite,
+  d.scratch("density", buffer("uint", 4, manage::kCells), both | Usage::TransferWrite,
             "number of reused VPLs in each cell");
-  d.scratch("segments", buffer("uint", 4, kCells), both, "first of the sorted attempts in each cell");
+  d.scratch("segments", buffer("uint", 4, manage::kCells), both, "first of the sorted attempts in each cell");
 }
 
 // Parameters as the shaders want them.
@@ -84,14 +85,14 @@ void addSteps(PassDeclaration& d) {
 PassDeclaration Manage::declaration() {
   PassDeclaration d("manage",
                     "VPL management: which VPLs are kept, which candidates become VPLs, and in which slots");
-  d.input("candidates", buffer("Candidate", sizeof(scene::Candidate)), Usage::TexelRead,
+  d.input("candidates", candidateBuffer(), Usage::TexelRead,
           "candidate VPLs; attempts that hit nothing are skipped");
   d.input("candidate_importance", buffer("float", 4), Usage::TexelRead, "I of each candidate, in [0, 1]");
   d.input("vpl_importance", buffer("float", 4), Usage::TexelRead,
           "I of the VPL in each slot in this frame, in [0, 1]");
-  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
+  d.input("vpls", vplStateBuffer(), Usage::TexelRead,
           "VPL list of the previous frame, updated for motion; it must have `count` slots");
-  d.output("list", buffer("VplState", sizeof(scene::VplState), parameter("count")), Usage::StorageWrite,
+  d.output("list", vplStateBuffer(parameter("count")), Usage::StorageWrite,
            "VPL list of this frame; a VPL that is kept stays in its slot and takes its new importance, a new "
            "one has life 1 and its importance also as its previous importance");
   addScratch(d);

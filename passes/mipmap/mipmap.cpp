@@ -19,9 +19,8 @@ class Mipmap : public Pass {
     PassDeclaration d("mipmap", "mip hierarchy of the voxels' light and foveated weight, for cone tracing");
     d.recorded();
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "voxelised surfaces");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "outgoing radiance of every voxel side");
-    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
+    d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead, "outgoing radiance of every voxel side");
+    d.input("weights", voxelWeightBuffer(), Usage::TexelRead,
             "foveated weight of every voxel side; if not wired, the weights are 0")
         .makeOptional();
     d.input("changed", buffer("VoxelChanged", 4), Usage::TexelRead,
@@ -30,13 +29,7 @@ class Mipmap : public Pass {
         .makeOptional();
     const SizeExpr size = ceilDiv(widthOf("voxels.index"), 2);
     const SizeExpr width = size * (SizeExpr(1) + SizeExpr(5) * parameter("directional"));
-    d.output("mips", "voxel-mips",
-             {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, width, size, size, kAllMips),
-                     Usage::StorageRead | Usage::StorageWrite,
-                     "rgb: radiance times a; a: surface area relative to the area of a cell's face, over 1 "
-                     "where a cell holds several surfaces"),
-              member("weight", image3D(VK_FORMAT_R16_SFLOAT, width, size, size, kAllMips),
-                     Usage::StorageRead | Usage::StorageWrite, "foveated weight times a of `color`")},
+    d.output("mips", "voxel-mips", voxelMipOutput(width, size, kAllMips),
              "level 0 has cells of 2x2x2 voxels; levels that are not exactly half the size of the one before "
              "are 0 (shaders/common/cone.glsl)")
         .keep(Lifetime::Scene);  // so that cells that stay empty need not be stored

@@ -7,6 +7,7 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
+#include "passes/bundles.h"
 #include "passes/near-field/near_field_tracer.h"
 
 namespace fovea::passes {
@@ -30,7 +31,7 @@ class NearField : public Pass {
              "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
              "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
              "surface, for pass temporal-accumulation");
-    d.output("spread", buffer("VplSpread", 16, 1), Usage::HostWrite,
+    d.output("spread", spreadBuffer(), Usage::HostWrite,
              "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");

@@ -3,7 +3,6 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -16,16 +15,13 @@ class Radiance : public Pass {
     PassDeclaration d(
         "radiance",
         "radiosity of every VPL: direct light plus light gathered from the voxels with six cones (Eq. 3)");
-    d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-            "VPLs; empty slots have life 0");
+    d.input("vpls", vplStateBuffer(), Usage::TexelRead, "VPLs; empty slots have life 0");
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "voxelised surfaces");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "outgoing radiance of every voxel side");
-    d.input("mips", "voxel-mips",
-            {member("color", image3D(VK_FORMAT_R16G16B16A16_SFLOAT, 1, 1, 1), Usage::Sampled)},
+    d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead, "outgoing radiance of every voxel side");
+    d.input("mips", "voxel-mips", voxelMipMembers({"color"}),
             "mip hierarchy of that radiance; not needed for terms `direct`")
         .makeOptional();
-    d.output("radiosity", buffer("VplRadiosity", 16, countOf("vpls")), Usage::StorageWrite,
+    d.output("radiosity", radiosityBuffer(countOf("vpls")), Usage::StorageWrite,
              "rgb: B_l, W/m^2, the light that leaves the surface, including emission; w: its luminance; 0 "
              "for empty slots");
     d.parameter("terms", choice("both", {"both", "direct", "cones"}),

@@ -8,15 +8,16 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "shaders/reproject/records.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-// Width in pixels of the tile that a work group of fill.comp works on; it holds whole blocks of any allowed size.
-constexpr uint32_t kTile = 16;
-constexpr uint32_t kRowWidth = 64, kRows = 4;  // pixels that a work group of warp.comp works on
+using reproject::kRows;
+using reproject::kRowWidth;
+using reproject::kTile;
 
 class Reproject : public Pass {
  public:
@@ -38,17 +39,8 @@ class Reproject : public Pass {
              "pixels, 0 where there is neither and in the background");
     const SizeExpr blocks =
         ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
-    d.output(
-        "shade", "shade-mask",
-        {member("mask", image2D(VK_FORMAT_R8_UNORM, width, height),
-                Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
-                "1 if the pixel is in a block to shade"),
-         member("blocks", buffer("ShadeBlock", 4, blocks), Usage::StorageWrite,
-                "x | y << 16 of each block to shade, in blocks of `interleave` pixels; in a fixed order"),
-         member("dispatch", buffer("ShadeDispatch", 16), Usage::StorageWrite,
-                "groups of an indirect dispatch, with a column for 256 blocks and a row for each pixel of a "
-                "block; w: number of blocks")},
-        "pixels that must be shaded for the second eye");
+    d.output("shade", "shade-mask", shadeMaskOutput(width, height, blocks),
+             "pixels that must be shaded for the second eye");
     d.scratch("tile_blocks", buffer("uint", 4, tiles),
               Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
               "number of blocks to shade in each tile of 16 x 16 pixels, later in all tiles before it");

@@ -24,22 +24,17 @@
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/motion/movers.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/vpl.h"
+#include "passes/bundles.h"
+#include "shaders/shadow-atlas/records.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-constexpr uint32_t kBatch = 16;                  // VPLs that share one reading of the triangles
-constexpr uint32_t kViewBytes = 64;              // VplView in shaders/shadow-atlas/step.glsl
-constexpr uint32_t kListBytes = 16;              // WorkList in step.glsl
-constexpr uint32_t kStepBytes = 5 * kListBytes;  // Step: cull, small, large, maskedSmall, maskedLarge
-constexpr uint32_t kRangeTriangles = 1 << 19;    // per step: bounds the lists of pairs to 64 MiB
-constexpr uint32_t kCullGroup = 128;             // triangles per work group of cull.comp
-constexpr uint32_t kGroupsPerRow = 4096;         // the same in the shaders
-constexpr uint32_t kMovers = 4;  // spheres around objects that may have changed a map (changed.comp)
-constexpr uint32_t kDrawnBytes = 32 + 20 * kMovers;  // DrawnMap in step.glsl
+using namespace atlas;
+
+constexpr uint32_t kRangeTriangles = 1 << 19;  // per step: bounds the lists of pairs to 64 MiB
 // 4,096 blocks of about 10 turns each, which stays below the limit of 65,535 turns of a loop.
 constexpr uint32_t kSliceTexels = 1 << 18;
 
@@ -80,9 +75,8 @@ class ShadowAtlas : public Pass {
 
 PassDeclaration ShadowAtlas::declaration() {
   PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
-  d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::StorageRead,
-          "VPLs; a slot with zero intensity keeps an empty map");
-  d.input("state", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
+  d.input("vpls", vplBuffer(), Usage::StorageRead, "VPLs; a slot with zero intensity keeps an empty map");
+  d.input("state", vplStateBuffer(), Usage::StorageRead,
           "state of the VPLs, which says which are new and how important each is; if not wired, every map is "
           "drawn in every frame")
       .makeOptional();
@@ -101,7 +95,7 @@ PassDeclaration ShadowAtlas::declaration() {
       .keep(Lifetime::View);
   d.scratch("chosen", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
             "what is done with each slot in this frame");
-  d.scratch("drawn", buffer("DrawnMap", kDrawnBytes, countOf("vpls")),
+  d.scratch("drawn", buffer("DrawnMap", sizeof(DrawnMap), countOf("vpls")),
             Usage::StorageRead | Usage::StorageWrite, "positions and poses with which each map was drawn")
       .keep(Lifetime::View);
   d.scratch("changes", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,
@@ -114,10 +108,10 @@ PassDeclaration ShadowAtlas::declaration() {
                          max(1, parameter("size") * keeps), max(1, ceilDiv(countOf("vpls"), tiles) * keeps)),
             Usage::StorageRead | Usage::StorageWrite, "the same as the atlas, with static geometry only")
       .keep(Lifetime::View);
-  d.scratch("batch", buffer("VplView", kViewBytes, (batches + 1) * kBatch),
+  d.scratch("batch", buffer("VplView", sizeof(VplView), (batches + 1) * kBatch),
             Usage::StorageWrite | Usage::Uniform, "VPLs whose maps are drawn, packed");
   d.scratch("steps",
-            buffer("AtlasStep", kStepBytes, (batches + 1) * (ceilDiv(triangles, kRangeTriangles) + 2)),
+            buffer("AtlasStep", sizeof(Step), (batches + 1) * (ceilDiv(triangles, kRangeTriangles) + 2)),
             Usage::StorageRead | Usage::StorageWrite | Usage::Indirect,
             "indirect dispatches and lengths of the lists");
   d.scratch("pairs", buffer("uint", 4, min(triangles, kRangeTriangles) * (2 * kBatch)),
@@ -169,7 +163,7 @@ PassDeclaration ShadowAtlas::declaration() {
 }
 
 ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplified, bool toStaticMaps) {
-  Defines defines{{"BATCH", std::to_string(kBatch) + "u"}};
+  Defines defines;
   if (simplified) defines["SIMPLIFIED"] = "1";
   if (toStaticMaps) defines["STATIC_MAPS"] = "1";
   if (!simplified && !toStaticMaps && ctx.parameters().real("mover_slack") > 0) defines["MOVER_SLACK"] = "1";
@@ -191,18 +185,16 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   // The maps have the least possible size if nothing moves.
   const VkExtent3D still = ctx.extent("static_maps"), all = ctx.extent("atlas");
   staticMaps_ = hasState_ && still.width == all.width && still.height == all.height;
-  const Defines batch{{"BATCH", std::to_string(kBatch) + "u"}};
-  Defines defines = batch;
-  defines["MOVERS"] = std::to_string(kMovers);
+  Defines defines;
   if (hasState_) changed_ = ctx.compute("shadow-atlas/changed.comp", defines);
   defines["HAS_STATE"] = hasState_ ? "1" : "0";
   defines["STATIC_MAPS"] = staticMaps_ ? "1" : "0";
   clear_ = ctx.compute("shadow-atlas/clear.comp", defines);
   defines["REFRESH"] = refresh == "split" ? "2" : refresh == "stale" ? "3" : "1";
   choose_ = ctx.compute("shadow-atlas/choose.comp", defines);
-  setup_ = ctx.compute("shadow-atlas/setup.comp", batch);
+  setup_ = ctx.compute("shadow-atlas/setup.comp", Defines{});
   exact_ = makeKernels(ctx, false, false);
-  if (staticMaps_) compose_ = ctx.compute("shadow-atlas/compose.comp", batch);
+  if (staticMaps_) compose_ = ctx.compute("shadow-atlas/compose.comp", Defines{});
   if (staticMaps_ && !simplify_) still_ = makeKernels(ctx, false, true);
   if (simplify_) simplified_ = makeKernels(ctx, true, staticMaps_);
 }
@@ -244,18 +236,18 @@ ShadowAtlas::Ranges ShadowAtlas::ranges(RecordContext& ctx) {
 }
 
 void ShadowAtlas::recordStep(RecordContext& ctx, uint32_t batch, uint32_t step, const Range& range) {
-  const uint64_t viewOffset = uint64_t(batch) * kBatch * kViewBytes;
+  const uint64_t viewOffset = uint64_t(batch) * kBatch * sizeof(VplView);
   const uint32_t capacity = uint32_t(ctx.count("pairs") / 2),
                  size = uint32_t(ctx.parameters().integer("size"));
   auto use = [&](Kernel kernel) {
     Commands commands = ctx.use(kernel);
-    commands.range("batch", viewOffset, kBatch * kViewBytes)
+    commands.range("batch", viewOffset, kBatch * sizeof(VplView))
         .constant("step_", step)
         .constant("capacity", capacity);
     return commands;
   };
   auto dispatch = [&](Commands& commands, uint32_t list) {
-    commands.dispatchIndirect("steps", uint64_t(step) * kStepBytes + list * kListBytes);
+    commands.dispatchIndirect("steps", uint64_t(step) * sizeof(Step) + list * sizeof(WorkList));
   };
   Commands cull = use(range.kernels->cull);
   cull.constant("firstTriangle", range.first).constant("triangleCount", range.count);

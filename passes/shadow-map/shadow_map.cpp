@@ -8,14 +8,12 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
+#include "passes/bundles.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
-
-constexpr uint32_t kMaxLayers = scene::kMaxLights * 6;  // kMaxShadowLayers in shaders/common/shadow.glsl
-constexpr uint32_t kViewBytes = 112;                    // struct ShadowView in shaders/common/shadow.glsl
 
 class ShadowMap : public Pass {
  public:
@@ -25,16 +23,8 @@ class ShadowMap : public Pass {
         "shadow maps of all lights, with one layer for a directional or spot light and six for a point light",
         PassKind::ComputeAndGraphics);
     d.recorded();
-    d.output(
-         "maps", "shadow-maps",
-         {member("depth",
-                 image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
-                              environment("scene.shadow_layers")),
-                 Usage::DepthAttachment | Usage::TransferWrite,
-                 "depth, 1 nearest to the light, 0 where nothing is hit; layers in the order of the lights"),
-          member("views", buffer("ShadowView", kViewBytes, kMaxLayers), Usage::StorageWrite | Usage::Uniform,
-                 "projection of each layer (shaders/common/shadow.glsl); unused entries are undefined")},
-         "shadow maps of the lights")
+    d.output("maps", "shadow-maps", shadowMapOutput(parameter("size"), environment("scene.shadow_layers")),
+             "shadow maps of the lights")
         .keep(Lifetime::Scene);
     d.scratch("still",
               image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),

@@ -14,10 +14,9 @@ class ViewVoxels : public Pass {
     PassDeclaration d("view-voxels", "debug view: the first voxel side along each of the eye's rays");
     d.view();
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "surface voxels");
-    d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
-            "radiance of each side, for show `radiance`")
+    d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead, "radiance of each side, for show `radiance`")
         .makeOptional();
-    d.input("weights", buffer("VoxelWeight", 4), Usage::TexelRead,
+    d.input("weights", voxelWeightBuffer(), Usage::TexelRead,
             "foveated weight of each side, for show `weight`")
         .makeOptional();
     d.output("image", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, viewWidth(), viewHeight()), Usage::StorageWrite,

@@ -1,10 +1,10 @@
 // Debug view: the VPLs and one of their properties.
 #include <algorithm>
+#include <glm/glm.hpp>
 
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -20,10 +20,8 @@ class ViewVpls : public Pass {
         "view-vpls",
         "debug view: every VPL visible to the eye, as a disc coloured by importance, age or luminance");
     d.view();
-    d.input("state", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-            "VPLs; empty slots are not drawn");
-    d.input("vpls", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
-            "the same VPLs as light sources, for show `luminance`")
+    d.input("state", vplStateBuffer(), Usage::TexelRead, "VPLs; empty slots are not drawn");
+    d.input("vpls", vplBuffer(), Usage::TexelRead, "the same VPLs as light sources, for show `luminance`")
         .makeOptional();
     d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position"}),
             "surfaces that hide VPLs; if not wired, all VPLs are drawn")

@@ -7,19 +7,21 @@
 
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "passes/bundles.h"
+#include "shaders/voxelize/records.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-// Shared with shaders/voxelize/state.glsl.
-constexpr uint32_t kSumWords = 28;
-constexpr uint32_t kRow = 32768;
-constexpr uint32_t kScanBlock = 256;
-constexpr uint32_t kStateBytes = 80;
-constexpr uint64_t kChunkGroupsOffset = 0, kPhaseOffset = 16, kPhaseBytes = 32;
+using voxelize::kRow;
+using voxelize::kScanBlock;
+using voxelize::kSumWords;
+using voxelize::State;
+
+constexpr uint64_t kChunkGroupsOffset = offsetof(State, chunkGroups);
+constexpr uint64_t kPhaseOffset = offsetof(State, phases), kPhaseBytes = sizeof(voxelize::Phase);
 
 // The sides of this many voxels fill the 128 MiB that a storage buffer is guaranteed to hold.
 constexpr int64_t kMostVoxels = 1 << 20;
@@ -53,16 +55,7 @@ PassDeclaration Voxelize::declaration() {
   d.recorded();
   const SizeExpr r = parameter("resolution");
   const SizeExpr room = min(min(parameter("capacity") * r * r, r * r * r), kMostVoxels);
-  d.output("voxels", "voxels",
-           {member("index", image3D(VK_FORMAT_R32_UINT, r, r, r), Usage::StorageRead | Usage::StorageWrite,
-                   "0 if the cell is empty, else 1 + number of its voxel"),
-            member("occupied", image3D(VK_FORMAT_R32_UINT, ceilDiv(r, 4), ceilDiv(r, 4), ceilDiv(r, 2)),
-                   Usage::StorageRead | Usage::StorageWrite,
-                   "one bit for each cell of a brick of 4 x 4 x 2 cells: it holds a voxel"),
-            member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
-                   "two sides per voxel, see shaders/common/voxel.glsl; a side with area 0 is empty"),
-            member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
-                   Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")},
+  d.output("voxels", "voxels", voxelOutput(r, room),
            "voxels of static surfaces, then those of dynamic objects")
       .keep(Lifetime::Scene);
   const SizeExpr words = ceilDiv(r * r * r, 32), triangles = environment("scene.triangles");
@@ -73,7 +66,7 @@ PassDeclaration Voxelize::declaration() {
   d.scratch("cells", buffer("VoxelCell", 8, room), both,
             "linear cell index of each voxel, and the index entry that it hides")
       .keep(Lifetime::Scene);
-  d.scratch("state", buffer("VoxelizeState", kStateBytes), both | Usage::Indirect,
+  d.scratch("state", buffer("VoxelizeState", sizeof(State)), both | Usage::Indirect,
             "counts of both phases, and indirect dispatches")
       .keep(Lifetime::Scene);
   d.scratch("chunks", buffer("uint", 4, triangles), both,

@@ -7,7 +7,8 @@
 #include "fovea/pass.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/common/records/eye_paths.h"
+#include "shaders/vpl-intensity/records.h"
 
 namespace fovea::passes {
 namespace {
@@ -18,8 +19,6 @@ constexpr uint32_t kGroup = 64;           // threads per work group, except in b
 constexpr uint32_t kSharedPaths = 8;      // paths per invocation of share.comp, its PATHS
 constexpr uint32_t kTallyGroups = 256;    // work groups of tally.comp, which strides over all elements
 constexpr uint32_t kEscapePoints = 1024;  // screen points from which the share of escaping paths is estimated
-constexpr uint32_t kScreenPoint = 48;     // bytes: position, normal, face
-constexpr uint32_t kBrick = 4;            // cells; shaders/vpl-intensity/vpl_intensity.glsl
 constexpr uint32_t kMostInRow = 32768;    // work groups in a row of a dispatch
 // VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 turns of a loop.
 constexpr uint32_t kMostCompeting = 16384;
@@ -33,7 +32,7 @@ StepSpec& inRows(StepSpec& step, const SizeExpr& groups) {
   return step.groups(row, ceilDiv(groups, row));
 }
 
-SizeExpr bricksAlong() { return ceilDiv(widthOf("voxels.index"), kBrick); }
+SizeExpr bricksAlong() { return ceilDiv(widthOf("voxels.index"), intensity::kBrick); }
 
 StepSpec& stepOverVpls(PassDeclaration& d, const char* shader) {
   return d.step(shader).constant("vplCount", countOf("vpls"));
@@ -43,23 +42,22 @@ StepSpec& stepOverVpls(PassDeclaration& d, const char* shader) {
 PassDeclaration declareIntensity(const char* type, const char* doc) {
   PassDeclaration d(type, doc);
   d.view();
-  d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-          "VPLs of this frame, one per slot");
-  d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead,
+  d.input("vpls", vplStateBuffer(), Usage::TexelRead, "VPLs of this frame, one per slot");
+  d.input("radiosity", radiosityBuffer(), Usage::TexelRead,
           "rgb: B_l, W/m^2; w: its luminance; slots as in `vpls`");
   d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface", "info"}),
           "voxelised surfaces, for which the VPLs stand");
-  d.input("radiance", buffer("VoxelRadiance", 16), Usage::TexelRead,
+  d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
           "radiance of each voxel side; w: luminance, above 0 if the side is lit");
   d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position", "normal", "face"}),
           "surfaces seen by the eye, from which the eye paths start");
-  d.input("placed", buffer("Vpl", sizeof(scene::Vpl)), Usage::TexelRead,
+  d.input("placed", vplBuffer(), Usage::TexelRead,
           "VPLs with which `atlas` was drawn, which gives their positions");
   d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
           "shadow maps of the VPLs, by which `importance-area` decides visibility");
-  d.output("emitters", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
+  d.output("emitters", vplBuffer(countOf("vpls")), Usage::StorageWrite,
            "VPLs for shading, in their slots; an empty slot is all zeros");
-  d.scratch("totals", buffer("WeightTotals", 16), kReadWrite | Usage::TransferWrite,
+  d.scratch("totals", buffer("WeightTotals", sizeof(intensity::Totals)), kReadWrite | Usage::TransferWrite,
             "counts, and surface area of the scene");
   d.scratch("areas", buffer("float", 4, countOf("vpls")), kReadWrite,
             "A_l, m^2, as computed by the strategy");
@@ -94,10 +92,10 @@ void declareDensities(PassDeclaration& d) {
       "area_cap", real(4, 1, 1e6),
       "largest A_l, in medians of 1 / (N p) (`importance-area` assigns paths that would need more to other "
       "VPLs); also the area of VPLs that the region does not see");
-  d.scratch("screen", buffer("ScreenPoint", kScreenPoint, parameter("points")), kWriteThenTexels,
+  d.scratch("screen", buffer("ScreenPoint", sizeof(EyePathStart), parameter("points")), kWriteThenTexels,
             "position, shading normal and geometric normal of the surface at each screen point");
   d.scratch("densities", buffer("float", 4, countOf("vpls")), kWriteThenTexels, "p_A, 1/m^2");
-  d.scratch("kept", buffer("WeightsKept", 8), kReadWrite,
+  d.scratch("kept", buffer("WeightsKept", sizeof(intensity::Kept)), kReadWrite,
             "total area of `constant`, m^2, 0 if not known yet; latest median of the densities, 1/m^2")
       .keep(Lifetime::View);
   d.counter("unseen", "VPLs that no screen point sees");
@@ -202,7 +200,7 @@ PassDeclaration IntensityArea::declaration() {
       "among all VPLs");
   d.parameter("normal_weight", real(0.5, 0, 100), kNormalWeight);
   d.counter("given_sides", "sides assigned to a VPL");
-  d.scratch("sites", buffer("VplSite", 32, countOf("vpls")), kWriteThenTexels,
+  d.scratch("sites", buffer("VplSite", sizeof(intensity::VplSite), countOf("vpls")), kWriteThenTexels,
             "position and normal of the VPLs that compete for surface");
   const SizeExpr bricks = bricksAlong() * bricksAlong() * bricksAlong(),
                  sides = min(countOf("voxels.surface"), countOf("radiance"));
@@ -243,13 +241,11 @@ PassDeclaration IntensityImportanceArea::declaration() {
       "light found there, so that the region receives the light its eye paths find however the VPLs "
       "were chosen");
   declareDensities(d);
-  d.input("traced", "eye-paths",
-          {member("starts", buffer("ScreenPoint", kScreenPoint), Usage::TexelRead),
-           member("ends", buffer("EyePathEnd", 48), Usage::TexelRead)},
+  d.input("traced", "eye-paths", eyePathMembers(),
           "paths of pass eye-paths, with the same number of points; this pass then assigns these, "
           "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
-  d.input("spread", buffer("VplSpread", 16), Usage::TexelRead,
+  d.input("spread", spreadBuffer(), Usage::TexelRead,
           "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
           "discs of this area leave out; needs `traced` and kernel `disc`")
       .makeOptional();
@@ -265,9 +261,10 @@ PassDeclaration IntensityImportanceArea::declaration() {
       "regains the light that the clamp removes");
   d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "clamp distance of the kernel `clamp`");
   d.parameter("normal_weight", real(0.5, 0, 100), kNormalWeight);
-  d.scratch("sites", buffer("VplSite", 32, countOf("vpls")), kReadWrite | Usage::TexelRead,
-            "position and normal of the VPLs that compete for paths");
-  d.scratch("ends", buffer("PathEnd", 32, parameter("paths")), kWriteThenTexels, "where the eye paths end");
+  d.scratch("sites", buffer("VplSite", sizeof(intensity::VplSite), countOf("vpls")),
+            kReadWrite | Usage::TexelRead, "position and normal of the VPLs that compete for paths");
+  d.scratch("ends", buffer("PathEnd", sizeof(intensity::PathEnd), parameter("paths")), kWriteThenTexels,
+            "where the eye paths end");
   d.scratch("seen", buffer("uint", 4, countOf("vpls") * ceilDiv(parameter("points"), 2048) * 64),
             kWriteThenTexels, "one bit for each screen point that sees a VPL");
   d.scratch("seen_from", buffer("float", 4, countOf("vpls")), kWriteThenTexels,
@@ -275,7 +272,8 @@ PassDeclaration IntensityImportanceArea::declaration() {
             "of squares");
   d.scratch("gains", buffer("float", 4, countOf("vpls")), kReadWrite,
             "factor by which a VPL must be brighter to make up for its disc");
-  d.scratch("sums", buffer("PathSum", 16, countOf("vpls")), kReadWrite | Usage::TransferWrite,
+  d.scratch("sums", buffer("PathSum", sizeof(intensity::PathSum), countOf("vpls")),
+            kReadWrite | Usage::TransferWrite,
             "paths and their light assigned to each VPL, as whole numbers");
   addSteps(d);
   return d;

@@ -4,7 +4,6 @@
 
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -17,10 +16,9 @@ class Update : public Pass {
     PassDeclaration d("vpl-motion",
                       "VPLs of the previous frame moved with their objects; those whose surface has gone or "
                       "turned away are dropped");
-    d.input("previous", buffer("VplState", sizeof(scene::VplState)), Usage::StorageRead,
-            "VPLs of the previous frame");
+    d.input("previous", vplStateBuffer(), Usage::StorageRead, "VPLs of the previous frame");
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "surfaces of this frame");
-    d.output("vpls", buffer("VplState", sizeof(scene::VplState), countOf("previous")), Usage::StorageWrite,
+    d.output("vpls", vplStateBuffer(countOf("previous")), Usage::StorageWrite,
              "VPLs in their slots, one frame older, still with the importance of the previous frame; dropped "
              "ones become empty slots");
     d.parameter("max_turn", real(30, 0, 180, "degrees"),

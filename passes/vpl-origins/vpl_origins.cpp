@@ -2,7 +2,6 @@
 // can find their intensity.
 #include "fovea/pass.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
 namespace {
@@ -14,12 +13,11 @@ class Place : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d("vpl-origins",
                       "VPLs at the positions from which they emit, each standing for 1 m^2 of its surface");
-    d.input("vpls", buffer("VplState", sizeof(scene::VplState)), Usage::TexelRead,
-            "VPLs of this frame, one per slot");
-    d.input("radiosity", buffer("VplRadiosity", 16), Usage::TexelRead, "rgb: B_l, W/m^2; slots as in `vpls`");
+    d.input("vpls", vplStateBuffer(), Usage::TexelRead, "VPLs of this frame, one per slot");
+    d.input("radiosity", radiosityBuffer(), Usage::TexelRead, "rgb: B_l, W/m^2; slots as in `vpls`");
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}),
             "voxel grid in which the VPLs were found");
-    d.output("placed", buffer("Vpl", sizeof(scene::Vpl), countOf("vpls")), Usage::StorageWrite,
+    d.output("placed", vplBuffer(countOf("vpls")), Usage::StorageWrite,
              "VPLs in their slots; an empty slot, or one with a value that is not finite, is all zeros");
     // At 0 a VPL lies inside the other surfaces that its voxel averages and is shadowed by them; with a large offset
     // it sees around surfaces that should shadow it. In Sponza with 128^3 voxels, the mean light of method ir_v with

@@ -19,7 +19,7 @@ class WeightMap : public Pass {
     d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "face"}),
             "surfaces seen by the eye");
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "voxel grid whose sides are weighted");
-    d.output("weights", buffer("VoxelWeight", 4, countOf("voxels.surface")),
+    d.output("weights", voxelWeightBuffer(countOf("voxels.surface")),
              Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "one float per side: the largest foveated weight among the pixels that show it, 0 if unseen");
     d.parameter("region", choice("fovea", {"fovea", "image"}),

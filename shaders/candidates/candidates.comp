@@ -57,11 +57,11 @@ void main() {
 #if TWO_EYES
   Seen seen;
   if ((i & 1u) == 0u)
-    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream, from);
+    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
   else
     seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream, from);
 #else
-  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze.xy, stream, from);
+  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
 #endif
   if (seen.background) {
     atomicAdd(counters[kBackground], 1u);
@@ -88,7 +88,7 @@ void main() {
 #endif
   uint object = uint(side.object);
   if (objectDeforms(object)) {  // its place on the surface does not change
-    candidate.localPosition = attach(sideTriangle(hit.side), side.position);
+    candidate.localPosition = attach(uint(side.triangle), side.position);
     candidate.position = attachedPosition(candidate.localPosition);
   } else {
     candidate.localPosition = toObject(object, side.position);

@@ -12,7 +12,7 @@ struct Fovea {
   float radius;  // r_f, pixels
 };
 
-// gaze: view.gaze.xy; imageSize: pixels; foveaRadius: parameter `fovea_radius`, in image widths.
+// gaze: view.gaze; imageSize: pixels; foveaRadius: parameter `fovea_radius`, in image widths.
 Fovea makeFovea(vec2 gaze, vec2 imageSize, float foveaRadius) {
   return Fovea(gaze * imageSize, foveaRadius * imageSize.x);
 }

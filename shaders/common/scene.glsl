@@ -1,59 +1,23 @@
 // Descriptor set 1: frame, view, lights and the scene's world-space triangles, the same for every pass of a frame.
-// Must match framework/scene/device/gpu_scene.cpp, which static_asserts the block sizes.
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
 #include "common/octahedral.glsl"
+#include "common/records/scene.h"
 
 const float kPi = 3.14159265358979;
 
-layout(set = 1, binding = 0) uniform FrameBlock {
-  uint index;            // frame number in the sequence
-  uint seed;
-  uint lightCount;
-  uint triangleCount;
-  uint staticTriangleCount;
-  uint vertexCount;
-  float time;            // s
-  float exposure;
-  vec4 boundsMin;        // world space, m
-  vec4 boundsMax;
-  vec4 environment;      // radiance where nothing is hit
-  uvec4 firstMoving;     // x: vertices below it never move; y: first moving triangle, of those used for voxels
-                         // and VPL maps
-} frame;
-
-layout(set = 1, binding = 1) uniform ViewBlock {
-  mat4 worldToView;
-  mat4 viewToClip;
-  mat4 worldToClip;
-  mat4 clipToWorld;
-  mat4 previousWorldToClip;
-  vec4 eye;              // world space
-  vec4 gaze;             // xy: normalised, origin top-left
-  vec4 size;             // xy: pixels, zw: 1 / pixels
-} view;
-
-const uint kLightDirectional = 0u;
-const uint kLightPoint = 1u;
-const uint kLightSpot = 2u;
-
-struct Light {
-  vec4 position;         // xyz world, w: type as float
-  vec4 direction;        // xyz unit, the way light travels; w: range, 0 unlimited
-  vec4 intensity;        // rgb: lux or candela; w: its first layer in the shadow maps
-  vec4 cone;             // x: cos inner, y: cos outer, z: 1 / (cos inner - cos outer)
-};
-
-layout(set = 1, binding = 2) uniform LightBlock { Light lights[64]; };
+layout(set = 1, binding = 0) uniform FrameUniform { FrameBlock frame; };
+layout(set = 1, binding = 1) uniform ViewUniform { ViewBlock view; };
+layout(set = 1, binding = 2) uniform LightUniform { LightRecord lights[kMaxLights]; };
 
 layout(set = 1, binding = 3) uniform usamplerBuffer sceneTriangles;     // xyz: vertices, w: material | object << 16
 layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;      // xyz world
 layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;     // xy: octahedral normal, zw: uv
-layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // kMaterialTexels texels each
+layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // MaterialRecord
 layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
 
-layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // kObjectTexels texels each
+layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // ObjectRecord
 
 layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, vertices that may move
 
@@ -62,8 +26,8 @@ layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz w
 uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
 vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
 vec3 scenePreviousPosition(uint vertex) {  // in the previous frame
-  if (vertex < frame.firstMoving.x) return scenePosition(vertex);
-  return texelFetch(scenePrevious, int(vertex - frame.firstMoving.x)).xyz;
+  if (vertex < frame.firstMovingVertex) return scenePosition(vertex);
+  return texelFetch(scenePrevious, int(vertex - frame.firstMovingVertex)).xyz;
 }
 vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int(vertex)).xy); }
 vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
@@ -72,11 +36,7 @@ uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 
 // ---- Objects -----------------------------------------------------------------------------------------------------
 
-// An object's own space is that of its mesh. The coordinates of a point in it (VplState.localPosition) stay
-// valid while the object moves. Object 0 holds everything that never moves; its own space is the world's. The
-// same as scene::ObjectTransform. Texels of one object: rows of the transform to the world (0-2), of last
-// frame's (3-5) and of the inverse (6-8; zeros if there is none); 9: x: visible, y: visible in the last frame,
-// z: its vertices move individually.
+// The coordinates of a point in an object's own space (VplState.localPosition) stay valid while the object moves.
 const int kObjectTexels = 10;
 
 mat4x3 objectRows(uint object, int row) {
@@ -101,13 +61,13 @@ vec3 normalToObject(uint object, vec3 n) { return normalize(transpose(mat3(objec
 
 // ---- Points of surfaces that deform -------------------------------------------------------------------------------
 
-// A point keeps its place in a triangle of those used for voxels: the triangle's number past frame.firstMoving.y
+// A point keeps its place in a triangle of those used for voxels: the triangle's number past frame.firstMovingTriangle
 // (exact as a float below 2^24) and the weights of its second and third vertex. A direction keeps its components
 // along the triangle's axes.
 
 // The point of the triangle that is nearest to `position` (Ericson 2005, 5.1.5).
 vec3 attach(uint triangle, vec3 position) {
-  uvec4 t = sceneTriangle(frame.firstMoving.y + triangle);
+  uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
   vec3 a = scenePosition(t.x), ab = scenePosition(t.y) - a, ac = scenePosition(t.z) - a, ap = position - a;
   float d1 = dot(ab, ap), d2 = dot(ac, ap), bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
   float area = bb * cc - bc * bc;
@@ -124,14 +84,14 @@ vec3 attach(uint triangle, vec3 position) {
 }
 
 vec3 attachedPosition(vec3 place) {
-  uvec4 t = sceneTriangle(frame.firstMoving.y + uint(place.x));
+  uvec4 t = sceneTriangle(frame.firstMovingTriangle + uint(place.x));
   vec3 a = scenePosition(t.x);
   return a + place.y * (scenePosition(t.y) - a) + place.z * (scenePosition(t.z) - a);
 }
 
 // Unit columns: along the first edge, across it in the plane, and the normal.
 mat3 triangleAxes(uint triangle) {
-  uvec4 t = sceneTriangle(frame.firstMoving.y + triangle);
+  uvec4 t = sceneTriangle(frame.firstMovingTriangle + triangle);
   vec3 a = scenePosition(t.x), edge = scenePosition(t.y) - a, n = cross(edge, scenePosition(t.z) - a);
   if (!(dot(n, n) > 0.0)) return mat3(1.0);
   edge = normalize(edge);
@@ -141,18 +101,8 @@ mat3 triangleAxes(uint triangle) {
 
 // ---- Materials ---------------------------------------------------------------------------------------------------
 
-// Texels of one material:
-//   0  rgb: base colour times (1 - metallic); a: alpha
-//   1  rgb: emission; a: alpha cutoff, 0: opaque
-//   2  base colour texture: x: page, -1: none; yz: corner in the page; w: flags
-//   3  base colour texture: xy: size in texels; zw: offset of the uv transform
-//   4  base colour texture: xy: u axis, zw: v axis of the uv transform
-//   5, 6, 7  the same for emission
-const int kMaterialTexels = 8;
-const uint kWrapClamp = 1u;             // flags, bits 0-1: wrap of u, bits 2-3: of v; 0 repeats
-const uint kWrapMirror = 2u;
-const uint kTextureLinear = 16u;        // flags: not sRGB-encoded
-const uint kMaterialDoubleSided = 32u;  // flags of texel 2
+// Texels of a material and of its textures in it.
+const int kMaterialTexels = 8, kColorTexture = 2, kEmissionTexture = 5;
 
 struct Material {
   vec3 baseColor;        // times (1 - metallic): diffuse reflectance where the texture is white
@@ -172,7 +122,7 @@ Material loadMaterial(uint material) {
   int first = int(material) * kMaterialTexels;
   vec4 color = texelFetch(sceneMaterials, first);
   vec4 emission = texelFetch(sceneMaterials, first + 1);
-  uint flags = uint(texelFetch(sceneMaterials, first + 2).w);
+  uint flags = uint(texelFetch(sceneMaterials, first + kColorTexture).w);
   return Material(color.rgb, color.a, emission.rgb, emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
@@ -227,14 +177,15 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
 // rgb: diffuse reflectance, a: alpha.
 vec4 materialReflectance(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
-  return texelFetch(sceneMaterials, first) * sampleSceneTexture(first + 2, uv);
+  return texelFetch(sceneMaterials, first) * sampleSceneTexture(first + kColorTexture, uv);
 }
 
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
   // A CPU device skips a loop of zero turns, but not a branch. Few surfaces emit.
-  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns) emission *= sampleSceneTexture(first + 5, uv).rgb;
+  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
+    emission *= sampleSceneTexture(first + kEmissionTexture, uv).rgb;
   return emission;
 }
 
@@ -248,7 +199,7 @@ bool alphaTest(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   float cutoff = texelFetch(sceneMaterials, first + 1).a;
   if (cutoff <= 0.0) return true;
-  return texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + 2, uv).a >= cutoff;
+  return texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a >= cutoff;
 }
 
 // ---- Lights ------------------------------------------------------------------------------------------------------
@@ -262,26 +213,22 @@ struct LightSample {
 const float kFarAway = 1e30;
 
 // The same as scene::sampleLight (framework/scene/lights.h).
-LightSample sampleLight(Light light, vec3 position) {
-  uint type = uint(light.position.w);
-  if (type == kLightDirectional) return LightSample(light.intensity.rgb, -light.direction.xyz, kFarAway);
-  vec3 d = light.position.xyz - position;
+LightSample sampleLight(LightRecord light, vec3 position) {
+  if (light.type == kLightDirectional) return LightSample(light.intensity, -light.direction, kFarAway);
+  vec3 d = light.position - position;
   float d2 = max(dot(d, d), 1e-12);
   float distance = sqrt(d2);
   vec3 direction = d / distance;
   float falloff = 1.0 / d2;
-  if (type == kLightSpot) {
-    float s = clamp((dot(-direction, light.direction.xyz) - light.cone.y) * light.cone.z, 0.0, 1.0);
+  if (light.type == kLightSpot) {
+    float s = clamp((dot(-direction, light.direction) - light.cosOuter) * light.coneScale, 0.0, 1.0);
     falloff *= s * s;
   }
-  float range = light.direction.w;
-  if (range > 0.0) {  // the window that KHR_lights_punctual recommends
-    float x = distance / range;
+  if (light.range > 0.0) {  // the window that KHR_lights_punctual recommends
+    float x = distance / light.range;
     falloff *= clamp(1.0 - x * x * x * x, 0.0, 1.0);
   }
-  return LightSample(light.intensity.rgb * falloff, direction, distance);
+  return LightSample(light.intensity * falloff, direction, distance);
 }
-
-uint firstShadowLayer(Light light) { return uint(light.intensity.w); }
 
 #endif

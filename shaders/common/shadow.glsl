@@ -3,16 +3,7 @@
 #ifndef FOVEA_SHADOW_GLSL
 #define FOVEA_SHADOW_GLSL
 
-const uint kMaxShadowLayers = 384u;  // 64 lights, six faces each
-
-// Projection of one layer. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit). With
-// near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
-struct ShadowView {
-  mat4 worldToClip;
-  vec4 right;  // xyz: unit, image x axis in the world; w: width of a texel where clip.w = 1, m
-  vec4 up;     // xyz: unit, image y axis; w: height of a texel where clip.w = 1, m
-  vec4 bias;   // depth tolerance for rounding; x: absolute, y: relative; z: 1 / depth range or near distance, 1/m or m
-};
+#include "common/records/shadow.h"
 
 // Face of the cube around a point light: +X -X +Y -Y +Z -Z.
 uint shadowFace(vec3 fromLight) {
@@ -54,7 +45,7 @@ vec4 litTexels(ShadowReceiver r, vec2 corner) {
 }
 
 // Share of the light that reaches `position` (world space), a point of a surface whose face has the
-// unit normal `face` on the visible side. firstLayer: firstShadowLayer(light). A face turned away from
+// unit normal `face` on the visible side. firstLayer: light.firstShadowLayer. A face turned away from
 // the light receives nothing.
 //
 // A texel holds the depth at its centre, so it is compared with the depth of the receiver's plane at that centre,
@@ -62,29 +53,30 @@ vec4 litTexels(ShadowReceiver r, vec2 corner) {
 // from their casters. Depth is linear over a plane in both projections: with n = face in the axes of the map and
 // t the texel's size, a step of one texel along x changes it by   n.x t.x / (n.z range)   or   n.x t.x near / (n
 // . (position - eye)).
-float lightVisibility(Light light, uint firstLayer, vec3 position, vec3 face) {
-  bool directional = uint(light.position.w) == kLightDirectional;
-  vec3 fromLight = directional ? light.direction.xyz : position - light.position.xyz;
+float lightVisibility(LightRecord light, uint firstLayer, vec3 position, vec3 face) {
+  bool directional = light.type == kLightDirectional;
+  vec3 fromLight = directional ? light.direction : position - light.position;
   float facing = dot(face, fromLight);
   if (facing >= 0.0) return 0.0;
   ShadowReceiver r;
 #ifdef SHADOW_LAYER
   r.layer = SHADOW_LAYER;
 #else
-  r.layer = firstLayer + (uint(light.position.w) == kLightPoint ? shadowFace(fromLight) : 0u);
+  r.layer = firstLayer + (light.type == kLightPoint ? shadowFace(fromLight) : 0u);
 #endif
-  vec4 right = mapsViews.view[r.layer].right, up = mapsViews.view[r.layer].up, bias = mapsViews.view[r.layer].bias;
-  vec4 clip = mapsViews.view[r.layer].worldToClip * vec4(position, 1.0);
+  ShadowView seen = mapsViews.view[r.layer];
+  vec4 clip = seen.worldToClip * vec4(position, 1.0);
   if (clip.w <= 0.0) return 1.0;  // behind a spot light
   r.size = vec2(textureSize(mapsDepth, 0).xy);
   r.texel = (0.5 * clip.xy / clip.w + 0.5) * r.size;
-  r.slope = bias.z * vec2(dot(face, right.xyz) * right.w, dot(face, up.xyz) * up.w) / facing;
+  vec2 texel = vec2(dot(face, seen.right) * seen.texelWidth, dot(face, seen.up) * seen.texelHeight);
+  r.slope = seen.depthScale * texel / facing;
   // A plane seen edge-on would extend beyond everything in front of it within one texel.
-  float steepest = kSteepest * bias.z * max(right.w, up.w) / clip.w;
+  float steepest = kSteepest * seen.depthScale * max(seen.texelWidth, seen.texelHeight) / clip.w;
   r.slope *= min(1.0, steepest / max(length(r.slope), 1e-30));
   // The third of a texel's slope allows for neighbours of the receiver's face that are tilted against it.
   r.depth = clip.z / clip.w;
-  r.depth += bias.x + bias.y * r.depth + 0.35 * (abs(r.slope.x) + abs(r.slope.y));
+  r.depth += seen.bias + seen.relativeBias * r.depth + 0.35 * (abs(r.slope.x) + abs(r.slope.y));
 #if SHADOW_FILTER == 0
   vec2 centre = floor(r.texel) + 0.5;
   float nearest = texelFetch(mapsDepth, ivec3(clamp(ivec2(centre), ivec2(0), ivec2(r.size) - 1), r.layer), 0).r;

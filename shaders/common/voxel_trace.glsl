@@ -19,32 +19,11 @@ VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }
 uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? imageLoad(voxelsIndex, cell).r : 0u; }
 
 VoxelSide loadSide(uint side) {
-  int first = int(side) * kVoxelSideTexels;
-  vec4 positionArea = texelFetch(voxelsSurface, first), normalObject = texelFetch(voxelsSurface, first + 1);
-  return VoxelSide(positionArea.xyz, positionArea.w, normalObject.xyz, normalObject.w,
-                   texelFetch(voxelsSurface, first + 2).rgb, texelFetch(voxelsSurface, first + 3).rgb);
+  int first = 4 * int(side);
+  vec4 a = texelFetch(voxelsSurface, first), b = texelFetch(voxelsSurface, first + 1),
+       c = texelFetch(voxelsSurface, first + 2), d = texelFetch(voxelsSurface, first + 3);
+  return VoxelSide(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
 }
-
-// For a side of an object that deforms: the triangle (counted from the first non-static one) with the
-// largest piece in it.
-uint sideTriangle(uint side) { return uint(texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 2).w); }
-
-struct VoxelHit {
-  uint side;       // kNoSide if the ray leaves the grid
-  float distance;  // along the ray to the side's plane, kept within the voxel, m
-};
-
-// Smallest distance of a hit from the plane on which the ray starts, in cells. Voxels of the same surface protrude
-// from its plane by rounding only (the average position of a plane lies on it), curved ones by a little.
-const float kOwnSurface = 0.25;
-
-// A voxel's surface is a piece of the plane through the side's average position, so a ray that passes through the
-// cell beside it has not hit it. It is hit if the ray leaves the cell behind the plane (or almost, in cells) and no
-// farther from the position than this many radii of a disc of the side's area. Of diffuse bounces in Sponza (128^3
-// voxels) 82% end within 1.5 cells of where a ray through the triangles ends, in the Cornell box 99%; if any side
-// that faces the ray stopped it, 59% and 95% would.
-const float kBehindPlane = 0.1;
-const float kSideRadii = 1.5;
 
 const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
 
@@ -53,17 +32,15 @@ const uint kNotMet = 0u, kPassed = 1u, kMet = 2u;
 // the ray; distance: to the plane, m.
 uint meetsSide(VoxelGrid grid, uint side, vec3 origin, vec3 direction, vec3 normal, float exit, out float facing,
                out float distance) {
-  int first = int(side) * kVoxelSideTexels;
-  vec4 positionArea = texelFetch(voxelsSurface, first);
-  vec3 sideNormal = texelFetch(voxelsSurface, first + 1).xyz;
-  vec3 to = positionArea.xyz - origin;
-  float height = dot(to, sideNormal);
-  facing = dot(sideNormal, direction);
+  VoxelSide s = loadSide(side);
+  vec3 to = s.position - origin;
+  float height = dot(to, s.normal);
+  facing = dot(s.normal, direction);
   distance = facing < 0.0 ? height / facing : 0.0;
-  if (!(positionArea.w > 0.0 && facing < 0.0 && dot(to, normal) > kOwnSurface * grid.cell)) return kNotMet;
+  if (!(s.area > 0.0 && facing < 0.0 && dot(to, normal) > kOwnSurface * grid.cell)) return kNotMet;
   vec3 off = min(distance, exit) * direction - to;
   return exit * facing - height < kBehindPlane * grid.cell &&
-                 kPi * dot(off, off) < kSideRadii * kSideRadii * positionArea.w
+                 kPi * dot(off, off) < kSideRadii * kSideRadii * s.area
              ? kMet
              : kPassed;
 }

@@ -21,6 +21,7 @@
 // by their base. Towards its border a shaded patch thus blends into its surroundings, without the noise of an
 // incomplete set of subsets.
 #include "common/same_surface.glsl"
+#include "deferred/records.h"
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
@@ -38,7 +39,7 @@ const uint kEdgeGroup = 64u;
 #if EDGES
 layout(local_size_x = 64) in;
 #else
-layout(local_size_x = 16, local_size_y = 4) in;
+layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 #endif
 
 // Images rather than textures, because on lavapipe a load from a texture costs several times as much, and loads are

@@ -11,16 +11,17 @@
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
+#include "deferred/records.h"
 
 // An invocation shades kPixels vertically adjacent pixels: it receives a VPL once for all of them, and neighbours
 // read the same cache lines of a map.
 #if MASKED
 #include "deferred/blocks.glsl"
 const int kPixels = int(kListedPixels);
-layout(local_size_x = 16, local_size_y = 4) in;
+layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 #else
 const int kPixels = 8;
-layout(local_size_x = 16, local_size_y = 2) in;
+layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 #endif
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;

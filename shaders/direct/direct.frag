@@ -17,11 +17,11 @@ layout(rgba16f) uniform readonly image2D gbufferEmission;
 layout(location = 0) out vec4 direct;
 
 // doubt: set where the texels of the map disagree.
-vec3 irradianceFrom(Light light, vec3 position, vec3 normal, vec3 face, inout bool doubt) {
+vec3 irradianceFrom(LightRecord light, vec3 position, vec3 normal, vec3 face, inout bool doubt) {
   LightSample e = sampleLight(light, position);
   float cosine = dot(normal, e.direction);
   if (cosine <= 0.0 || e.irradiance == vec3(0.0)) return vec3(0.0);
-  float visibility = lightVisibility(light, firstShadowLayer(light), position, face);
+  float visibility = lightVisibility(light, light.firstShadowLayer, position, face);
   doubt = doubt || (visibility > 0.0 && visibility < 1.0);
   return e.irradiance * (cosine * visibility);
 }

@@ -16,7 +16,7 @@ const float kMaxHalf = 65504.0;
 
 // Direction of the ray through the centre of a pixel, not normalised; also for off-axis projections.
 vec3 pixelRay(ivec2 p) {
-  vec2 ndc = (2.0 * vec2(p) + 1.0) * view.size.zw - 1.0;
+  vec2 ndc = (2.0 * vec2(p) + 1.0) * view.inverseSize - 1.0;
   vec2 d = (ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]);
   return vec3(d, -1.0) * mat3(view.worldToView);
 }
@@ -27,7 +27,7 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
   vec3 p = cross(ray, edgeC);
   float determinant = dot(edgeB, p);
   if (determinant == 0.0) return vec2(1.0 / 3.0);
-  vec3 s = view.eye.xyz - a;
+  vec3 s = view.eye - a;
   vec2 w = max(vec2(dot(s, p), dot(ray, cross(s, edgeB))) / determinant, 0.0);
   return w / max(w.x + w.y, 1.0);
 }
@@ -43,7 +43,7 @@ void main() {
   vec3 position = a + w.x * edgeB + w.y * edgeC;
 
   vec3 face = normalize(cross(edgeB, edgeC));
-  if (dot(face, view.eye.xyz - a) < 0.0) face = -face;
+  if (dot(face, view.eye - a) < 0.0) face = -face;
   vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
   normal = dot(normal, normal) > 1e-12 ? normalize(normal) : face;
   if (dot(normal, face) < 0.0) normal = -normal;
@@ -55,9 +55,9 @@ void main() {
 #else
   vec3 emission = loadMaterial(material).emission;
 #endif
-  if (background) emission = frame.environment.rgb;
+  if (background) emission = frame.environment;
 
-  gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye.xyz));
+  gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
   gbufferNormal = background ? vec4(0.0) : vec4(normal, 0.0);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
   gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, 0.0);

@@ -29,7 +29,7 @@ const uint kLightInject = 0x11c7u;  // random stream
 
 // Irradiance of a side from one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
 // Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop, as loading it is costly.
-vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cell) {
+vec3 irradianceBy(LightRecord light, VoxelSide side, Patch area, vec2 first, float cell) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < taps; ++i) {
     vec2 p = 2.0 * fract(first + float(i) * vec2(0.7548776662, 0.5698402910)) - 1.0;
@@ -39,7 +39,7 @@ vec3 irradianceBy(Light light, VoxelSide side, Patch area, vec2 first, float cel
     if (cosine <= 0.0 || incoming.irradiance == vec3(0.0)) continue;
 #if SHADOWED
     // The offset is needed because the tangent plane cuts through surfaces that are curved or have an edge.
-    cosine *= lightVisibility(light, firstShadowLayer(light), position + side.normal * (offset * cell), side.normal);
+    cosine *= lightVisibility(light, light.firstShadowLayer, position + side.normal * (offset * cell), side.normal);
 #endif
     sum += incoming.irradiance * cosine;
   }

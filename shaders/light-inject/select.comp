@@ -34,7 +34,7 @@ bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
   vec4 clip = mapsViews.view[layer].worldToClip * vec4(centre, 1.0);
   // A step of 1 m moves a point by 2 / (texels * width of a texel) where w is 1, and by its own distance in depth.
   vec2 texels = vec2(textureSize(mapsDepth, 0).xy), at = clip.xy / clip.w;
-  vec2 metre = 2.0 / (texels * vec2(mapsViews.view[layer].right.w, mapsViews.view[layer].up.w));
+  vec2 metre = 2.0 / (texels * vec2(mapsViews.view[layer].texelWidth, mapsViews.view[layer].texelHeight));
   vec2 reach = directional ? radius * metre : radius * (metre + abs(at)) / (clip.w - radius);
   reach += kMarginTexels * 2.0 / texels;
   // Outside of the map, its border is used.
@@ -52,8 +52,8 @@ bool mayChange(uint layer, vec3 centre, float radius, bool directional) {
 }
 
 // Whether the light's shadow on a sphere may differ from that of the last frame.
-bool shadowMayChange(Light light, vec3 centre, float radius) {
-  uint type = uint(light.position.w), layer = firstShadowLayer(light);
+bool shadowMayChange(LightRecord light, vec3 centre, float radius) {
+  uint type = light.type, layer = light.firstShadowLayer;
 #if ONE_LIGHT == 2
   return mayChange(0u, centre, radius, type == kLightDirectional);
 #endif
@@ -67,15 +67,15 @@ bool shadowMayChange(Light light, vec3 centre, float radius) {
 bool mayDiffer(uint number, bool asked) {
 #if SHADOWED
   VoxelGrid grid = voxelsGrid();
-  vec4 positionArea = texelFetch(voxelsSurface, int(number) * kVoxelSideTexels);
+  VoxelSide side = loadSide(number);
   // No patch extends farther: half a cell along each axis, at a slope of at most 45 degrees.
   float radius = (1.4143 + offset) * grid.cell;
   bool may = false;
-  uint lightCount = moving == 0u || !asked || !(positionArea.w > 0.0) ? 0u : frame.lightCount;
+  uint lightCount = moving == 0u || !asked || !(side.area > 0.0) ? 0u : frame.lightCount;
 #if ONE_LIGHT
-  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[0], positionArea.xyz, radius);
+  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[0], side.position, radius);
 #else
-  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[i], positionArea.xyz, radius);
+  for (uint i = 0u; i < lightCount; ++i) may = may || shadowMayChange(lights[i], side.position, radius);
 #endif
   return may;
 #else

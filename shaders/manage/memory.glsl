@@ -2,6 +2,8 @@
 #ifndef FOVEA_MANAGE_MEMORY_GLSL
 #define FOVEA_MANAGE_MEMORY_GLSL
 
+#include "manage/records.h"
+
 layout(push_constant) uniform Constants {
   vec3 gridOrigin;       // of the density grid, world space
   float cellsPerMetre;
@@ -24,21 +26,8 @@ const uint kReuseLinear = 0u, kReuseCosine = 1u, kReuseRandom = 2u;  // as the c
 const uint kOrderFixed = 1u;
 const uint kPlacementLight = 1u;
 
-layout(std430) buffer StateBlock {
-  uint occupied;        // cells that hold a VPL or a candidate
-  uint alive;           // VPLs at the start
-  uint accepted;        // number of those accepted by Eq. 1
-  uint reused;          // number of those in the new list
-  uint oldCount;        // |L'|
-  uint candidateCount;  // |Lc|
-} state;
+layout(std430) buffer State { ManageState state; };
 
-struct SlotRecord {
-  uint importance;  // 24 bits
-  uint flags;
-  uint cell;        // of the density grid
-  uint key;         // 24 bits: VPLs with lower keys are reused first
-};
 const uint kAlive = 1u, kAccepted = 2u;
 layout(std430) buffer SlotRecordsBlock { SlotRecord list[]; } slotRecords;
 
@@ -62,9 +51,6 @@ const uint kFresh = 0x80000000u, kRefused = 0x40000000u;
 layout(std430) coherent buffer AttemptsBlock { uint list[]; } attempts;
 layout(std430) coherent buffer AddedBlock { uint list[]; } added;  // candidates, in the order of adding
 
-// Density grid of 64^3 cells that repeats in space. This is a hash without collisions inside the scene, whose longest
-// edge is at most as long as 64 cells, and it has a place for VPLs outside.
-const uint kCellBits = 18u;
 const uint kOccupied = 0x80000000u;  // there is a VPL or a candidate; the bits below count the reused VPLs
 layout(std430) buffer DensityBlock { uint cells[]; } density;
 layout(std430) coherent buffer SegmentsBlock { uint first[]; } segments;  // per cell, in the sorted attempts

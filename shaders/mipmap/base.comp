@@ -28,10 +28,10 @@ Cell voxelTowards(uint voxel, int face, float faceArea) {
   if (voxel == 0u) return sum;
   for (uint i = 0u; i < 2u; ++i) {
     int side = int(2u * (voxel - 1u) + i);
-    float coverage = texelFetch(voxelsSurface, kVoxelSideTexels * side).w / faceArea;
+    VoxelSide surface = loadSide(uint(side));
+    float coverage = surface.area / faceArea;
 #if DIRECTIONAL
-    vec3 normal = texelFetch(voxelsSurface, kVoxelSideTexels * side + 1).xyz;
-    float along = face < 2 ? normal.x : face < 4 ? normal.y : normal.z;
+    float along = face < 2 ? surface.normal.x : face < 4 ? surface.normal.y : surface.normal.z;
     coverage *= max((face & 1) == 0 ? along : -along, 0.0);
 #endif
     if (coverage <= 0.0) continue;

@@ -5,8 +5,9 @@
 // INTERLEAVE, pixels per side of a block; FILL, 0 if no pixels are filled.
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
+#include "reproject/records.h"
 
-const int kTile = 16, kBlocksPerSide = kTile / INTERLEAVE;
+const int kBlocksPerSide = kTile / INTERLEAVE;
 const uint kThreads = 16u, kPixels = uint(kTile * kTile), kBlocks = uint(kBlocksPerSide * kBlocksPerSide);
 
 layout(local_size_x = 16) in;  // few, as on a CPU device each subgroup of a group with barriers has a cost

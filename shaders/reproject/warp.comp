@@ -5,12 +5,11 @@
 // tiles that contain such pixels are listed for fill.comp.
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
+#include "reproject/records.h"
 
-const int kTile = 16;
 const float kSameRow = 1e-3;  // texels
-const int kRows = 4;  // vertically adjacent pixels per invocation, all in one tile
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kRowWidth) in;
 
 // Images rather than textures, because on a CPU device a load from a texture costs several times as much.
 layout(rgba32f) uniform readonly image2D gbufferPosition;

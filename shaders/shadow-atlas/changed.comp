@@ -1,6 +1,6 @@
 #extension GL_KHR_shader_subgroup_vote : require
 // One work group per slot: whether its map would change if it were drawn again. It would not if the VPL has not moved
-// and each mover either keeps its pose or lies, then as now, behind the surfaces in the map. Define: MOVERS.
+// and each mover either keeps its pose or lies, then as now, behind the surfaces in the map.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
@@ -16,8 +16,8 @@ layout(std430) writeonly buffer ChangesBlock { uint list[]; } changes;
 layout(r32ui) uniform readonly uimage2DArray atlas;
 
 layout(push_constant) uniform Constants {
-  vec4 movers[MOVERS];  // xyz: centre, w: radius of a sphere around dynamic objects, negative if unused
-  uint poses[MOVERS];
+  vec4 movers[kMovers];  // xyz: centre, w: radius of a sphere around dynamic objects, negative if unused
+  uint poses[kMovers];
   uint slots;
 };
 
@@ -64,12 +64,12 @@ void main() {
   uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * kGroupsPerRow;
   if (slot >= slots) return;
   Vpl v = vpls.list[slot];
-  bool stands = refreshed.frames[slot] != 0u && drawn.maps[slot].position.xyz == v.position &&
-                drawn.maps[slot].normal.xyz == v.normal;
+  bool stands = refreshed.frames[slot] != 0u && drawn.maps[slot].position == v.position &&
+                drawn.maps[slot].normal == v.normal;
   if (gl_LocalInvocationIndex == 0u) found = 0u;
   barrier();
   if (stands && isLit(v)) {
-    for (int i = 0; i < MOVERS; ++i) {
+    for (uint i = 0u; i < kMovers; ++i) {
       if (drawn.maps[slot].movers[i] == movers[i] && drawn.maps[slot].poses[i] == poses[i]) continue;
       look(slot, v, movers[i]);
       look(slot, v, drawn.maps[slot].movers[i]);

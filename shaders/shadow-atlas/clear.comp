@@ -1,6 +1,6 @@
 // Clears the maps that are about to be drawn or whose VPL has gone, and records what they are drawn with.
 // One work group per slot. Defines: STATIC_MAPS 0/1: static geometry is drawn to a map of its own
-// (compose.comp); HAS_STATE 0/1; MOVERS.
+// (compose.comp); HAS_STATE 0/1.
 #include "common/paraboloid.glsl"
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
@@ -19,8 +19,8 @@ layout(std430) writeonly buffer DrawnBlock { DrawnMap maps[]; } drawn;
 
 layout(push_constant) uniform Constants {
 #if HAS_STATE
-  vec4 movers[MOVERS];
-  uint poses[MOVERS];
+  vec4 movers[kMovers];
+  uint poses[kMovers];
 #endif
   uint slots;
 };
@@ -32,9 +32,9 @@ void main() {
 #if HAS_STATE
   if (isDrawn(choice) && gl_LocalInvocationIndex == 0u) {
     Vpl v = vpls.list[slot];
-    drawn.maps[slot].position = vec4(v.position, 0.0);
-    drawn.maps[slot].normal = vec4(v.normal, 0.0);
-    for (int i = 0; i < MOVERS; ++i) {
+    drawn.maps[slot].position = v.position;
+    drawn.maps[slot].normal = v.normal;
+    for (uint i = 0u; i < kMovers; ++i) {
       drawn.maps[slot].movers[i] = movers[i];
       drawn.maps[slot].poses[i] = poses[i];
     }

@@ -6,9 +6,9 @@
 #include "shadow-atlas/step.glsl"
 #include "shadow-atlas/triangles.glsl"
 
-layout(local_size_x = 128) in;
+layout(local_size_x = kCullGroup) in;
 
-layout(std140) uniform BatchBlock { VplView views[BATCH]; } batch;
+layout(std140) uniform BatchBlock { VplView views[kBatch]; } batch;
 layout(std430) buffer StepsBlock { uint words[]; } steps;  // Step
 layout(std430) writeonly buffer PairsBlock { uint list[]; } pairs;
 

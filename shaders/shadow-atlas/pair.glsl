@@ -14,7 +14,7 @@ const bool kMasked = true;
 const bool kMasked = false;
 #endif
 
-layout(std140) uniform BatchBlock { VplView views[BATCH]; } batch;
+layout(std140) uniform BatchBlock { VplView views[kBatch]; } batch;
 layout(std430) readonly buffer StepsBlock { Step list[]; } steps;
 layout(std430) readonly buffer PairsBlock { uint list[]; } pairs;
 layout(std430) buffer CountersBlock { uint maps, small, large, masked; } counters;
@@ -60,7 +60,7 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
     if (!tight) pair.box = cut;
   }
   pair.test = rayTest(view, triangle, planeEpsilon);
-  pair.origin = atlasTexel(uint(view.positionSlot.w), ivec2(0), atlasLayout(imageSize(atlas)));
+  pair.origin = atlasTexel(view.slot, ivec2(0), atlasLayout(imageSize(atlas)));
   pair.material = triangle.material;
 #ifdef MOVER_SLACK
   pair.slack = moverSlack * max(max(wayOf(triangle.vertices.x, triangle.a), wayOf(triangle.vertices.y, triangle.b)),

@@ -35,14 +35,13 @@ uint pack(bool overlaid, uint count) {
     if (draw) {
       Vpl v = vpls.list[slot];
       mat3 frame = orthonormalFrame(v.normal);
-      batch.views[place] = VplView(vec4(v.position, float(slot)), vec4(frame[0], 0.0), vec4(frame[1], 0.0),
-                                   vec4(frame[2], 0.0));
+      batch.views[place] = VplView(v.position, slot, frame[0], 0.0, frame[1], 0.0, frame[2], 0.0);
     }
     count += total;
   }
   uint end = (count + kBatch - 1u) / kBatch * kBatch;
   for (uint place = count + i; place < end; place += 256u)
-    batch.views[place] = VplView(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    batch.views[place] = VplView(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
   return end;
 }
 

@@ -40,12 +40,12 @@ bool isMasked(uint index) {
 Triangle loadTriangle(uint index) { return wholeTriangle(index); }
 #endif
 
-vec3 inFrame(VplView v, vec3 w) { return vec3(dot(v.tangent.xyz, w), dot(v.bitangent.xyz, w), dot(v.normal.xyz, w)); }
-vec3 seenFrom(VplView v, vec3 p) { return inFrame(v, p - v.positionSlot.xyz); }
+vec3 inFrame(VplView v, vec3 w) { return vec3(dot(v.tangent, w), dot(v.bitangent, w), dot(v.normal, w)); }
+vec3 seenFrom(VplView v, vec3 p) { return inFrame(v, p - v.position); }
 
 RayTest rayTest(VplView v, Triangle t, float epsilon) {
   vec3 n = cross(t.b - t.a, t.c - t.a);
-  return rayTest(seenFrom(v, t.a), seenFrom(v, t.b), seenFrom(v, t.c), inFrame(v, n), dot(n, t.a - v.positionSlot.xyz),
+  return rayTest(seenFrom(v, t.a), seenFrom(v, t.b), seenFrom(v, t.c), inFrame(v, n), dot(n, t.a - v.position),
                  epsilon);
 }
 

@@ -31,9 +31,9 @@ void main() {
   vec2 ndc = 2.0 * (vec2(p) + 0.5) / vec2(size) - 1.0;
   vec3 inView = vec3((ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]), -1.0);
   vec3 direction = normalize(transpose(mat3(view.worldToView)) * inView);
-  VoxelHit hit = traceVoxels(voxelsGrid(), view.eye.xyz, direction, direction);
+  VoxelHit hit = traceVoxels(voxelsGrid(), view.eye, direction, direction);
 #if RADIANCE
-  vec3 colour = frame.environment.rgb;
+  vec3 colour = frame.environment;
 #else
   vec3 colour = vec3(0.0);
 #endif

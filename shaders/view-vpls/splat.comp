@@ -23,12 +23,12 @@ void main() {
   if (!(vpl.life > 0.0 && clip.w > 0.0)) return;
   vec2 centre = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
   if (!(all(greaterThanEqual(centre, vec2(0.0))) && all(lessThan(centre, vec2(size))))) return;
-  float distance = length(vpl.position - view.eye.xyz);
+  float distance = length(vpl.position - view.eye);
 #if DEPTH_TEST
   // Draws the VPL if it is in front of the surface seen at its centre, or on it; the tolerance allows
   // for a voxel's size.
   vec4 seen = texelFetch(gbufferPosition, ivec2(centre), 0);
-  if (seen.w > 0.0 && distance > 1.03 * length(seen.xyz - view.eye.xyz)) return;
+  if (seen.w > 0.0 && distance > 1.03 * length(seen.xyz - view.eye)) return;
 #endif
   // The upper bits of a positive float order as the float does. Of VPLs with the same upper bits, the lower
   // slot is on top.

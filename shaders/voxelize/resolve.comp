@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer StateBlock { State value; } state;
 layout(std430) readonly buffer SumsBlock { uint words[]; } sums;
 layout(std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
-layout(std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+layout(std430) writeonly buffer VoxelsSurfaceBlock { VoxelSide sides[]; } voxelsSurface;
 
 layout(push_constant) uniform Constants {
   uint resolution;
@@ -24,10 +24,10 @@ void main() {
   uint entry = groupIndex() * 64u + gl_LocalInvocationIndex, word = entry * kSumWords;
   if (entry >= 2u * min(batch, state.value.phases[phase].voxels - min(base, state.value.phases[phase].voxels))) return;
   uint voxel = state.value.phases[phase].first + base + entry / 2u, side = entry % 2u;
-  uint linear = cells.list[voxel].x, texel = uint(kVoxelSideTexels) * (2u * voxel + side);
+  uint linear = cells.list[voxel].x;
   float area = sumAt(word);
   if (area == 0.0) {
-    for (uint i = 0u; i < uint(kVoxelSideTexels); ++i) voxelsSurface.texels[texel + i] = vec4(0.0);
+    voxelsSurface.sides[2u * voxel + side] = kNoSurface;
     return;
   }
   VoxelGrid grid = voxelGrid(resolution);
@@ -39,10 +39,9 @@ void main() {
   float len = length(normal);
   normal = len > 1e-3 ? normal / len : vec3(side == 0u ? 0.57735027 : -0.57735027);
   float object = float(0xffffu - (sums.words[word + 26u] & 0xffffu));
-  voxelsSurface.texels[texel] = vec4(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell);
-  voxelsSurface.texels[texel + 1u] = vec4(normal, object);
   uint piece = sums.words[word + 27u], mask = (1u << kTriangleBits) - 1u;
   float triangle = piece == 0u ? 0.0 : float(mask - (piece & mask));  // below 2^24: exact
-  voxelsSurface.texels[texel + 2u] = vec4(sums3At(word + 14u) * inverse, triangle);
-  voxelsSurface.texels[texel + 3u] = vec4(sums3At(word + 20u) * inverse, 0.0);
+  voxelsSurface.sides[2u * voxel + side] =
+      VoxelSide(position, area * (1.0 / 4294967296.0) * grid.cell * grid.cell, normal, object,
+                sums3At(word + 14u) * inverse, triangle, sums3At(word + 20u) * inverse, 0.0);
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer StateBlock { State value; } state;
 layout(std430) readonly buffer CellsBlock { uvec2 list[]; } cells;
 layout(std430) writeonly buffer MarksBlock { uint words[]; } marks;
-layout(std430) writeonly buffer VoxelsSurfaceBlock { vec4 texels[]; } voxelsSurface;
+layout(std430) writeonly buffer VoxelsSurfaceBlock { VoxelSide sides[]; } voxelsSurface;
 layout(r32ui) uniform writeonly uimage3D voxelsIndex;
 layout(r32ui) uniform uimage3D voxelsOccupied;
 
@@ -17,8 +17,8 @@ layout(push_constant) uniform Constants { uint resolution; };
 void main() {
   uint side = groupIndex() * 64u + gl_LocalInvocationIndex;
   if (side >= 2u * state.value.phases[1].voxels) return;
-  uint voxel = state.value.phases[1].first + side / 2u, texel = uint(kVoxelSideTexels) * (2u * voxel + side % 2u);
-  for (uint i = 0u; i < uint(kVoxelSideTexels); ++i) voxelsSurface.texels[texel + i] = vec4(0.0);
+  uint voxel = state.value.phases[1].first + side / 2u;
+  voxelsSurface.sides[2u * voxel + side % 2u] = kNoSurface;
   if (side % 2u != 0u) return;
   uvec2 entry = cells.list[voxel];
   marks.words[entry.x / 32u] = 0u;

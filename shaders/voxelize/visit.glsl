@@ -92,7 +92,7 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   if (material.alphaCutoff > 0.0 && surface.alpha < material.alphaCutoff) return;
   piece.centre = turnBack(piece.centre, t.axis);
   uint side = 2u * voxel + voxelSideOf(t.normal);
-  uint moving = objectDeforms(objectOf(indices)) ? triangle - frame.firstMoving.y : ~0u;
+  uint moving = objectDeforms(objectOf(indices)) ? triangle - frame.firstMovingTriangle : ~0u;
   addPiece(side, piece, t.normal, surface, objectOf(indices), moving);
   if (material.doubleSided) addPiece(side ^ 1u, piece, -t.normal, surface, objectOf(indices), moving);
 #else

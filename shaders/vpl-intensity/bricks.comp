@@ -25,18 +25,18 @@ void main() {
   vec3 low = voxelToWorld(grid, vec3(brick * kBrick) - 0.01), high = voxelToWorld(grid, vec3((brick + 1) * kBrick) + 0.01);
   float nearest = 1e38;
   for (uint i = 0u; i < vplCount; ++i) {
-    vec4 site = texelFetch(sites, int(2u * i));
-    vec3 far = max(abs(site.xyz - low), abs(site.xyz - high));
-    nearest = min(nearest, site.w > 0.0 ? dot(far, far) : 1e38);
+    VplSite site = loadSite(sites, i);
+    vec3 far = max(abs(site.position - low), abs(site.position - high));
+    nearest = min(nearest, site.handicap > 0.0 ? dot(far, far) : 1e38);
   }
   // Normals add at most twice their weight.
   float limit = nearest + 2.001 * normalWeight(grid, normalShare, totals.value.areaLow, totals.value.areaHigh);
   for (uint word = 0u; word < words; ++word) {
     uint bits = 0u;
     for (uint i = 32u * word; i < min(32u * word + 32u, vplCount); ++i) {
-      vec4 site = texelFetch(sites, int(2u * i));
-      vec3 gap = max(max(low - site.xyz, site.xyz - high), vec3(0.0));
-      if (site.w > 0.0 && dot(gap, gap) <= limit) bits |= 1u << (i & 31u);
+      VplSite site = loadSite(sites, i);
+      vec3 gap = max(max(low - site.position, site.position - high), vec3(0.0));
+      if (site.handicap > 0.0 && dot(gap, gap) <= limit) bits |= 1u << (i & 31u);
     }
     masks.list[index * words + word] = bits;
   }

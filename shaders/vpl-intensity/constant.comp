@@ -10,7 +10,7 @@ uniform usamplerBuffer vpls;
 uniform samplerBuffer radiosity;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer AreasBlock { float list[]; } areas;
-layout(std430) buffer KeptBlock { float total, median; } kept;  // total: m^2, 0 if not yet known
+layout(std430) buffer KeptBlock { Kept value; } kept;
 
 layout(push_constant) uniform Constants { uint vplCount; };
 
@@ -18,7 +18,7 @@ shared vec2 sums[64];
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  float alive = float(totals.value.alive), total = kept.total;
+  float alive = float(totals.value.alive), total = kept.value.total;
   vec2 sum = vec2(0.0);
   if (total == 0.0)
     for (uint i = lane; i < vplCount; i += 64u) {
@@ -35,5 +35,5 @@ void main() {
   barrier();
   for (uint i = lane; i < vplCount; i += 64u)
     areas.list[i] = loadVplState(vpls, i).life > 0.0 ? total / max(alive, 1.0) : 0.0;
-  if (lane == 0u) kept.total = total;
+  if (lane == 0u) kept.value.total = total;
 }

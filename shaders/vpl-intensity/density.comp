@@ -21,7 +21,7 @@ uniform usamplerBuffer vpls;
 uniform samplerBuffer screen;
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 #if ONCE
-layout(std430) readonly buffer KeptBlock { float total, median; } kept;
+layout(std430) readonly buffer KeptBlock { Kept value; } kept;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -35,12 +35,12 @@ const uint kDensityStream = 0x64656e73u;
 
 // Density of a path from a screen point that nothing blocks.
 float landing(VoxelGrid grid, uint point, vec3 position, vec3 normal) {
-  vec4 from = texelFetch(screen, int(3u * point));
-  vec3 to = position - from.xyz;
+  EyePathStart from = loadStart(screen, point);
+  vec3 to = position - from.position;
   float d2 = dot(to, to);
-  float cosines = max(dot(texelFetch(screen, int(3u * point + 1u)).xyz, to), 0.0) * max(-dot(normal, to), 0.0);
+  float cosines = max(dot(from.normal, to), 0.0) * max(-dot(normal, to), 0.0);
   float solid = kPi * d2 + grid.cell * grid.cell;
-  return from.w > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * solid) : 0.0;
+  return from.there > 0.0 && cosines > 1e-12 * d2 && d2 > 1e-12 ? cosines / (d2 * solid) : 0.0;
 }
 
 float seenShare(VoxelGrid grid, uint slot, uint lane, vec3 position, vec3 normal) {
@@ -54,8 +54,8 @@ float seenShare(VoxelGrid grid, uint slot, uint lane, vec3 position, vec3 normal
     if (term > 0.0 && reached <= target) chosen = i;
     reached += term;
   }
-  vec3 from = texelFetch(screen, int(3u * chosen)).xyz, face = texelFetch(screen, int(3u * chosen + 2u)).xyz;
-  return seesVpl(grid, from, face, position, normal) ? sum : 0.0;
+  EyePathStart from = loadStart(screen, chosen);
+  return seesVpl(grid, from.position, from.face, position, normal) ? sum : 0.0;
 }
 
 void main() {
@@ -63,7 +63,7 @@ void main() {
   VplState vpl = loadVplState(vpls, min(slot, vplCount - 1u));
   bool wanted = vpl.life > 0.0;
 #if ONCE
-  wanted = wanted && kept.total == 0.0;
+  wanted = wanted && kept.value.total == 0.0;
 #endif
   sums[lane] = wanted ? seenShare(voxelsGrid(), slot, lane, vpl.position, vpl.normal) : 0.0;
   barrier();

@@ -19,10 +19,9 @@ const uint kEscapeStream = 0x65736361u;
 void main() {
   uint point = gl_GlobalInvocationID.x;
   if (point >= escapePoints) return;
-  vec4 from = texelFetch(screen, int(3u * point));
-  if (!(from.w > 0.0)) return;
-  vec3 normal = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
+  EyePathStart from = loadStart(screen, point);
+  if (!(from.there > 0.0)) return;
   vec2 u = streamPoint(randomStream(0u, 0u, kEscapeStream, point), 0u);
-  vec3 direction = diffuseBounce(normal, face, u);  // as in pass candidates
-  if (traceVoxels(voxelsGrid(), from.xyz, direction, face).side != kNoSide) atomicAdd(totals.value.found, 1u);
+  vec3 direction = diffuseBounce(from.normal, from.face, u);  // as in pass candidates
+  if (traceVoxels(voxelsGrid(), from.position, direction, from.face).side != kNoSide) atomicAdd(totals.value.found, 1u);
 }

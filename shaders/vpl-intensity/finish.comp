@@ -28,7 +28,7 @@ layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 // emits its own light.
 vec3 intensityOf(uint slot, vec3 own, float area) {
   PathSum sum = sums.list[slot];
-  vec3 light = vec3(sum.lightX, sum.lightY, sum.lightZ) * texelFetch(tracedEnds, 2).w * kPathUnits;
+  vec3 light = vec3(sum.lightX, sum.lightY, sum.lightZ) * loadEyePathEnd(tracedEnds, 0u).unit * kPathUnits;
   if (!(texelFetch(densities, int(slot)).r > 0.0)) return own * area;
   return sum.paths > 0u ? light / float(sum.paths) * area : vec3(0.0);
 }

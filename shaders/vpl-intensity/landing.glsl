@@ -1,9 +1,10 @@
 // The kernel of a density: how densely, per surface area in 1/m^2, eye paths from a screen point land on an
-// unoccluded VPL. Needs common/scene.glsl.
+// unoccluded VPL. Needs common/scene.glsl and
+// vpl-intensity/vpl_intensity.glsl.
 #ifndef FOVEA_LANDING_GLSL
 #define FOVEA_LANDING_GLSL
 
-uniform samplerBuffer screen;  // see points.comp
+uniform samplerBuffer screen;  // EyePathStart
 
 // cos_s cos_l / (pi d^2 + area): the form factor of a disc of that area, seen along its axis, divided by the area.
 // nearest, m: if above 0, smaller distances count as this one instead, as for the kernel `clamp`.
@@ -14,9 +15,9 @@ float landing(vec3 to, vec3 up, vec3 normal, float area, float nearest) {
 }
 
 float landing(uint point, vec3 position, vec3 normal, float area, float nearest) {
-  vec4 from = texelFetch(screen, int(3u * point));
-  float p = landing(position - from.xyz, texelFetch(screen, int(3u * point + 1u)).xyz, normal, area, nearest);
-  return from.w > 0.0 ? p : 0.0;
+  EyePathStart from = loadStart(screen, point);
+  float p = landing(position - from.position, from.normal, normal, area, nearest);
+  return from.there > 0.0 ? p : 0.0;
 }
 
 #endif

@@ -7,9 +7,9 @@
 layout(local_size_x = 64) in;
 
 uniform samplerBuffer densities;
-layout(std430) buffer KeptBlock { float total, median; } kept;
+layout(std430) buffer KeptBlock { Kept value; } kept;
 #if SHARED
-layout(std430) buffer SitesBlock { vec4 list[]; } sites;
+layout(std430) buffer SitesBlock { VplSite list[]; } sites;
 uniform samplerBuffer seenFrom;
 #endif
 
@@ -53,16 +53,16 @@ float medianDensity() {
 }
 
 void main() {
-  float before = kept.median, median = medianDensity();
+  float before = kept.value.median, median = medianDensity();
   if (!(median > 0.0)) median = before;
   barrier();
   uint lane = gl_LocalInvocationIndex;
-  if (lane == 0u) kept.median = median;
+  if (lane == 0u) kept.value.median = median;
 #if SHARED
   for (uint i = lane; i < vplCount; i += 64u) {
-    float p = texelFetch(densities, int(i)).r, handicap = sites.list[2u * i].w;
+    float p = texelFetch(densities, int(i)).r, handicap = sites.list[i].handicap;
     float part = partKept(p, median / areaCap, texelFetch(seenFrom, int(i)).r);
-    if (p > 0.0 && part < 1.0 && handicap >= 0.0) sites.list[2u * i].w = kThinSite - handicap;
+    if (p > 0.0 && part < 1.0 && handicap >= 0.0) sites.list[i].handicap = kThinSite - handicap;
   }
 #endif
 }

@@ -20,31 +20,31 @@ layout(push_constant) uniform Constants {
 };
 
 void main() {
-  uint side = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  if (side >= min(2u * voxelsInfo.value.voxels, sideCapacity)) return;
-  vec4 positionArea = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels);
-  if (!(positionArea.w > 0.0)) return;
+  uint number = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  if (number >= min(2u * voxelsInfo.value.voxels, sideCapacity)) return;
+  VoxelSide side = loadSide(number);
+  if (!(side.area > 0.0)) return;
 #if LIT_ONLY
-  if (!(texelFetch(radiance, int(side)).w > 0.0)) return;
+  if (!(texelFetch(radiance, int(number)).w > 0.0)) return;
 #endif
-  vec3 normal = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 1).xyz;
   VoxelGrid grid = voxelsGrid();
   float lambda = normalWeight(grid, normalShare, totals.value.areaLow, totals.value.areaHigh);
-  uint words = (vplCount + 31u) / 32u, first = brickIndex(grid, brickOf(grid, positionArea.xyz)) * words;
+  uint words = (vplCount + 31u) / 32u, first = brickIndex(grid, brickOf(grid, side.position)) * words;
   float best = 1e38;
   uint owner = kNoSide;
   for (uint word = 0u; word < words; ++word)
     for (uint bits = texelFetch(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
       uint i = 32u * word + uint(findLSB(bits));
-      vec3 d = texelFetch(sites, int(2u * i)).xyz - positionArea.xyz;
-      precise float cost = dot(d, d) + lambda * (1.0 - dot(normal, texelFetch(sites, int(2u * i + 1u)).xyz));
+      VplSite site = loadSite(sites, i);
+      vec3 d = site.position - side.position;
+      precise float cost = dot(d, d) + lambda * (1.0 - dot(side.normal, site.normal));
       if (cost < best) {
         best = cost;
         owner = i;
       }
     }
   if (owner == kNoSide) return;  // no VPL competes
-  uint units = areaUnits(grid, positionArea.w);
+  uint units = areaUnits(grid, side.area);
   ADD_WIDE(sums.list[owner].x, sums.list[owner].y, units);
   atomicAdd(counters.givenSides, 1u);
 }

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 uniform samplerBuffer screen;
 uniform samplerBuffer radiance;
-layout(std430) writeonly buffer EndsBlock { vec4 list[]; } ends;  // position, w: kind; normal, w: luminance
+layout(std430) writeonly buffer EndsBlock { PathEnd list[]; } ends;
 
 layout(push_constant) uniform Constants {
   uint points;
@@ -23,21 +23,20 @@ void main() {
   uint path = gl_GlobalInvocationID.x;
   if (path >= paths) return;
   uint point = path % points, turn = path / points;
-  vec4 from = texelFetch(screen, int(3u * point)), position = vec4(0.0), normal = vec4(0.0);
-  if (from.w > 0.0) {
+  EyePathStart from = loadStart(screen, point);
+  PathEnd end = PathEnd(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (from.there > 0.0) {
     uint stream = randomStream(0u, 0u, kPathStream, point);
     vec2 u = vec2(uniformFloat(hashCombine(stream, 0u) + turn * 3242174889u),
                   uniformFloat(hashCombine(stream, 1u) + turn * 2447445414u));
-    vec3 up = texelFetch(screen, int(3u * point + 1u)).xyz, face = texelFetch(screen, int(3u * point + 2u)).xyz;
-    uint side = traceVoxels(voxelsGrid(), from.xyz, diffuseBounce(up, face, u), face).side;
+    vec3 direction = diffuseBounce(from.normal, from.face, u);
+    uint side = traceVoxels(voxelsGrid(), from.position, direction, from.face).side;
     if (side != kNoSide) {
-      int first = int(side) * kVoxelSideTexels;
+      VoxelSide surface = loadSide(side);
       float light = texelFetch(radiance, int(side)).w;
       light = light > 0.0 ? light : 0.0;  // excludes NaN
-      position = vec4(texelFetch(voxelsSurface, first).xyz, siteKind(light));
-      normal = vec4(texelFetch(voxelsSurface, first + 1).xyz, light);
+      end = PathEnd(surface.position, siteKind(light), surface.normal, light);
     }
   }
-  ends.list[2u * path] = position;
-  ends.list[2u * path + 1u] = normal;
+  ends.list[path] = end;
 }

@@ -17,7 +17,7 @@ uniform usamplerBuffer vpls;
 uniform samplerBuffer densities;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) writeonly buffer AreasBlock { float list[]; } areas;
-layout(std430) readonly buffer KeptBlock { float total, median; } kept;
+layout(std430) readonly buffer KeptBlock { Kept value; } kept;
 #if SHARED
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 #endif
@@ -32,7 +32,7 @@ layout(push_constant) uniform Constants {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= vplCount) return;
-  float found = float(totals.value.alive), least = kept.median / areaCap;
+  float found = float(totals.value.alive), least = kept.value.median / areaCap;
   if (totals.value.found > 0u) found *= float(tried) / float(totals.value.found);
   bool there = loadVplState(vpls, i).life > 0.0;
   float p = texelFetch(densities, int(i)).r;

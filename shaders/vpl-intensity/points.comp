@@ -4,6 +4,7 @@
 // the surfaces that pass eye-paths saw from such points, some of them in earlier frames.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
+#include "vpl-intensity/vpl_intensity.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -14,8 +15,7 @@ uniform texture2D gbufferPosition;
 uniform texture2D gbufferNormal;
 uniform texture2D gbufferFace;
 #endif
-// Three texels per point: position, w: 1, or 0 in the background; normal; face.
-layout(std430) writeonly buffer ScreenBlock { vec4 list[]; } screen;
+layout(std430) writeonly buffer ScreenBlock { EyePathStart list[]; } screen;
 
 #if TRACED
 layout(push_constant) uniform Constants { uint points; };
@@ -23,7 +23,7 @@ layout(push_constant) uniform Constants { uint points; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= points) return;
-  for (uint texel = 3u * i; texel < 3u * i + 3u; ++texel) screen.list[texel] = texelFetch(tracedStarts, int(texel));
+  screen.list[i] = loadStart(tracedStarts, i);
 }
 #else
 layout(push_constant) uniform Constants {
@@ -59,11 +59,11 @@ void main() {
   if (i >= points) return;
   ivec2 size = textureSize(gbufferPosition, 0);
   uint number, part = regionOf(region, imageShare64ths, i, number);
-  ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze.xy, vec2(size), foveaRadius), size);
+  ivec2 pixel = regionPoint(part, number, makeFovea(view.gaze, vec2(size), foveaRadius), size);
   vec4 position = texelFetch(gbufferPosition, pixel, 0);
   bool there = position.w > 0.0;
-  screen.list[3u * i] = vec4(position.xyz, there ? 1.0 : 0.0);
-  screen.list[3u * i + 1u] = vec4(there ? normalize(texelFetch(gbufferNormal, pixel, 0).xyz) : vec3(0.0), 0.0);
-  screen.list[3u * i + 2u] = vec4(octDecode(texelFetch(gbufferFace, pixel, 0).xy), 0.0);
+  vec3 normal = there ? normalize(texelFetch(gbufferNormal, pixel, 0).xyz) : vec3(0.0);
+  vec3 face = octDecode(texelFetch(gbufferFace, pixel, 0).xy);
+  screen.list[i] = EyePathStart(position.xyz, there ? 1.0 : 0.0, normal, 0.0, face, 0.0);
 }
 #endif

@@ -19,7 +19,7 @@ layout(r32ui) uniform readonly uimage2DArray atlas;
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 
 uniform samplerBuffer radiance;
-layout(std430) writeonly buffer SitesBlock { vec4 list[]; } sites;  // position, w: handicap; normal, w: luminance
+layout(std430) writeonly buffer SitesBlock { VplSite list[]; } sites;
 layout(std430) writeonly buffer SeenBlock { uint words[]; } seen;   // see landing.glsl
 layout(std430) writeonly buffer SeenFromBlock { float list[]; } seenFrom;
 
@@ -56,8 +56,8 @@ vec2 seenSum(float area, uint slot, uint lane) {
   uint bits = 0u, turn = 0u;
   for (uint i = lane; i < points; i += 64u, ++turn) {
     float p = landing(i, vpl.position, vpl.normal, area, nearest);
-    vec3 from = texelFetch(screen, int(3u * i)).xyz, face = texelFetch(screen, int(3u * i + 2u)).xyz;
-    bool seen_ = p > 0.0 && sees(map, from, face);
+    EyePathStart from = loadStart(screen, i);
+    bool seen_ = p > 0.0 && sees(map, from.position, from.face);
     sum += seen_ ? vec2(p, p * p) : vec2(0.0);
     bits |= seen_ ? 1u << (turn & 31u) : 0u;
     if ((turn & 31u) == 31u || i + 64u >= points) {
@@ -91,6 +91,5 @@ void main() {
   // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - vpl.life / float(fadeFrames + 1u), 0.0) : 0.0;
   float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
-  sites.list[2u * slot] = vec4(vpl.position, handicap);
-  sites.list[2u * slot + 1u] = vec4(vpl.normal, light);
+  sites.list[slot] = VplSite(vpl.position, handicap, vpl.normal, light);
 }

@@ -34,10 +34,10 @@ uniform samplerBuffer seenFrom;
 uniform usamplerBuffer seen;
 layout(std430) buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer SumsBlock { PathSum list[]; } sums;
-layout(std430) readonly buffer KeptBlock { float total, median; } kept;
+layout(std430) readonly buffer KeptBlock { Kept value; } kept;
 
 #if NEAR
-uniform samplerBuffer screen;  // see points.comp
+uniform samplerBuffer screen;  // EyePathStart
 uniform samplerBuffer spread;  // x: area, m^2
 #endif
 
@@ -56,32 +56,30 @@ const uint kSameKind = 1u;  // lit, or not lit, as the end is
 
 const uint kPaths = uint(PATHS);
 
-vec4 endTexel(uint path, int texel) {
 #if TRACED
-  return texelFetch(tracedEnds, int(path) * kTracedEndTexels + texel);
+EyePathEnd endOf(uint path) { return loadEyePathEnd(tracedEnds, path); }
 #else
-  return texelFetch(ends, int(path) * kEndTexels + texel);
+PathEnd endOf(uint path) { return loadPathEnd(ends, path); }
 #endif
-}
 
 void give(uint vpl, uint path, float luminance, uint pathUnits) {
   if (vpl == kNoSide || pathUnits == 0u) return;
   atomicAdd(sums.list[vpl].paths, pathUnits);
 #if TRACED
-  vec4 radiance = endTexel(path, 2);
-  if (!(radiance.w > 0.0)) return;
+  EyePathEnd end = endOf(path);
+  if (!(end.unit > 0.0)) return;
 #if NEAR
   // The part of it that pass near-field supplies comes from no VPL.
-  vec3 away = endTexel(path, 0).xyz - texelFetch(screen, int(3u * (path % points))).xyz;
+  vec3 away = end.position - loadStart(screen, path % points).position;
   float d2 = dot(away, away);
-  radiance.rgb *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
+  end.radiance *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
 #endif
-  uvec3 light = uvec3(radiance.rgb / radiance.w * (float(pathUnits) / kPathUnits) + 0.5);
+  uvec3 light = uvec3(end.radiance / end.unit * (float(pathUnits) / kPathUnits) + 0.5);
   atomicAdd(sums.list[vpl].lightX, light.x);
   atomicAdd(sums.list[vpl].lightY, light.y);
   atomicAdd(sums.list[vpl].lightZ, light.z);
 #else
-  atomicAdd(sums.list[vpl].lightX, lightUnits(luminance, texelFetch(sites, int(2u * vpl + 1u)).w, pathUnits));
+  atomicAdd(sums.list[vpl].lightX, lightUnits(luminance, loadSite(sites, vpl).light, pathUnits));
 #endif
 }
 
@@ -97,18 +95,19 @@ struct Path {
 
 Path pathAt(uint path) {
   bool inside = path < tried;
-  vec4 end = endTexel(inside ? path : 0u, 0), normal = endTexel(inside ? path : 0u, 1);
-  uint point = path % points, turn = point >> 6u;
-  return Path(end.xyz, normal.xyz, inside && end.w > 0.0 ? end.w : 0.0, 1u << (turn & 31u),
+  uint point = path % points, turn = point >> 6u, within = inside ? path : 0u;
+  vec3 position = endOf(within).position, normal = endOf(within).normal;
+  float kind = endOf(within).kind;
+  return Path(position, normal, inside && kind > 0.0 ? kind : 0.0, 1u << (turn & 31u),
               int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
 }
 
-void offer(inout Path p, uint vpl, vec4 site, vec4 siteNormal, float lambda, int words) {
-  vec3 d = site.xyz - p.position;
-  bool thin = site.w <= kThinSite;
-  float handicap = thin ? kThinSite - site.w : site.w;
-  precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, siteNormal.xyz)) + handicap;
-  uint its = siteKind(siteNormal.w) == p.kind ? kSameKind : 0u;
+void offer(inout Path p, uint vpl, VplSite site, float lambda, int words) {
+  vec3 d = site.position - p.position;
+  bool thin = site.handicap <= kThinSite;
+  float handicap = thin ? kThinSite - site.handicap : site.handicap;
+  precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, site.normal)) + handicap;
+  uint its = siteKind(site.light) == p.kind ? kSameKind : 0u;
 #if TRACED
   its += (texelFetch(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
 #endif
@@ -127,9 +126,10 @@ void finish(Path p, uint path) {
   if (p.kind == 0.0) return;
   atomicAdd(totals.value.found, 1u);
   if (p.owner == kNoSide) return;
-  float part = partKept(texelFetch(densities, int(p.owner)).r, kept.median / areaCap, texelFetch(seenFrom, int(p.owner)).r);
+  float from = texelFetch(seenFrom, int(p.owner)).r;
+  float part = partKept(texelFetch(densities, int(p.owner)).r, kept.value.median / areaCap, from);
   uint units = p.owner == p.whole || p.whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
-  float luminance = endTexel(path, 1).w;
+  float luminance = endOf(path).luminance;
   give(p.owner, path, luminance, units);
   give(p.whole, path, luminance, uint(kPathUnits) - units);
 }
@@ -142,8 +142,8 @@ void main() {
   Path paths[kPaths];
   for (uint k = 0u; k < kPaths; ++k) paths[k] = pathAt(first + k * gl_WorkGroupSize.x);
   for (uint i = 0u; i < vplCount; ++i) {
-    vec4 site = texelFetch(sites, int(2u * i)), siteNormal = texelFetch(sites, int(2u * i + 1u));
-    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, siteNormal, lambda, words);
+    VplSite site = loadSite(sites, i);
+    for (uint k = 0u; k < kPaths; ++k) offer(paths[k], i, site, lambda, words);
   }
   for (uint k = 0u; k < kPaths; ++k) finish(paths[k], first + k * gl_WorkGroupSize.x);
 }

@@ -12,7 +12,7 @@ layout(std430) buffer BricksBlock { uint list[]; } bricks;
 layout(std430) buffer TotalsBlock { Totals value; } totals;
 #if AREA
 uniform samplerBuffer radiance;
-layout(std430) writeonly buffer SitesBlock { vec4 list[]; } sites;
+layout(std430) writeonly buffer SitesBlock { VplSite list[]; } sites;
 #endif
 
 layout(push_constant) uniform Constants {
@@ -32,8 +32,7 @@ void tallyVpls(uint first, uint stride) {
     alive += uint(there);
 #if AREA
     bool competes = there && (LIT_ONLY == 0 || litSide(vpl.side));
-    sites.list[2u * i] = vec4(vpl.position, competes ? 1.0 : 0.0);
-    sites.list[2u * i + 1u] = vec4(vpl.normal, 0.0);
+    sites.list[i] = VplSite(vpl.position, competes ? 1.0 : 0.0, vpl.normal, 0.0);
 #endif
   }
   if (alive > 0u) atomicAdd(totals.value.alive, alive);
@@ -43,15 +42,15 @@ void tallySides(uint first, uint stride) {
   VoxelGrid grid = voxelsGrid();
   uint low = 0u, high = 0u, sides = min(2u * voxelsInfo.value.voxels, sideCapacity);
   for (uint i = first; i < sides; i += stride) {
-    vec4 positionArea = texelFetch(voxelsSurface, int(i) * kVoxelSideTexels);
-    if (!(positionArea.w > 0.0)) continue;
-    uint units = areaUnits(grid, positionArea.w);
+    VoxelSide side = loadSide(i);
+    if (!(side.area > 0.0)) continue;
+    uint units = areaUnits(grid, side.area);
     low += units;
     high += uint(low < units);
 #if AREA && LIT_ONLY
     if (!litSide(i)) continue;
 #endif
-    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, positionArea.xyz))], 1u);
+    atomicOr(bricks.list[brickIndex(grid, brickOf(grid, side.position))], 1u);
   }
   ADD_WIDE(totals.value.areaLow, totals.value.areaHigh, low);
   if (high > 0u) atomicAdd(totals.value.areaHigh, high);

@@ -19,14 +19,12 @@ struct Segment {
 };
 
 bool blocks(VoxelGrid grid, Segment s, uint side) {
-  int first = int(side) * kVoxelSideTexels;
-  vec4 positionArea = texelFetch(voxelsSurface, first);
-  vec3 sideNormal = texelFetch(voxelsSurface, first + 1).xyz;
-  vec3 off = positionArea.xyz - s.to;
-  bool faces = positionArea.w > 0.0 && dot(sideNormal, s.direction) < 0.0;
-  bool own = dot(positionArea.xyz - s.from, s.face) <= kOwnSurface * grid.cell;
+  VoxelSide v = loadSide(side);
+  vec3 off = v.position - s.to;
+  bool faces = v.area > 0.0 && dot(v.normal, s.direction) < 0.0;
+  bool own = dot(v.position - s.from, s.face) <= kOwnSurface * grid.cell;
   bool near = dot(off, off) < kNearby * kNearby * grid.cell * grid.cell;
-  bool same = dot(sideNormal, s.normal) > 0.5 && abs(dot(off, s.normal)) < kSamePlane * grid.cell;
+  bool same = dot(v.normal, s.normal) > 0.5 && abs(dot(off, s.normal)) < kSamePlane * grid.cell;
   return faces && !own && !near && !same;
 }
 

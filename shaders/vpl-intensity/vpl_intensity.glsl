@@ -2,15 +2,9 @@
 #ifndef FOVEA_WEIGHTS_GLSL
 #define FOVEA_WEIGHTS_GLSL
 
+#include "common/records/eye_paths.h"
 #include "common/voxel_trace.glsl"
-
-// Sums over the scene and the lists. Areas are 64-bit integers (low, high word) in units of 1 / kAreaUnits cell
-// faces, as integers add up to the same sum in any order.
-struct Totals {
-  uint alive;              // slots that hold a VPL
-  uint found;              // eye paths that hit a surface, see escapes.comp, share.comp
-  uint areaLow, areaHigh;  // surface of all voxel sides
-};
+#include "vpl-intensity/records.h"
 
 const float kAreaUnits = 65536.0;
 
@@ -35,24 +29,11 @@ float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
 // of a VPL, with an upper limit.
 const float kPathUnits = 1024.0, kMostLight = 16.0;
 
-// Texels of a PathEnd: position, w: kind (siteKind(), 0 if the path hits nothing); normal, w: luminance. An
-// EyePathEnd, of a path traced through the triangles (pass eye-paths), has a third one: radiance, w: the
-// unit of its sums.
-const int kEndTexels = 2, kTracedEndTexels = 3;
-
-// Paths assigned to a VPL, in parts of a path, and their light: in lightX as lightUnits(), for traced paths
-// rgb in their unit.
-struct PathSum {
-  uint paths;
-  uint lightX, lightY, lightZ;
-};
-
 uint lightUnits(float light, float ofVpl, uint pathUnits) {
   return uint((ofVpl > 0.0 ? min(light / ofVpl, kMostLight) : 1.0) * float(pathUnits) + 0.5);
 }
 
-// The fourth component of a VPL that paths may go to is its handicap, added to its distance, m^2; for one that the
-// region hardly sees it is kThinSite minus the handicap; -1 means that it takes no paths.
+// See VplSite::handicap.
 const float kThinSite = -2.0;
 
 // The part that a VPL keeps of the paths that end nearest to it, see share.comp. p: its density; least: least density
@@ -64,9 +45,27 @@ float partKept(float p, float least, float seenFrom) { return min(min(p / max(le
 // Each of 64 invocations looks at every 64th point, and words of 32 bits say from which of them the VPL is seen.
 uint laneWords(uint points) { return (points + 2047u) / 2048u; }
 
-// Cells along the edge of a brick. Rays cross empty bricks in one step; the sides in a brick share one list of the
-// VPLs that can be nearest to any of them.
-const int kBrick = 4;
+EyePathStart loadStart(samplerBuffer list, uint point) {
+  int first = 3 * int(point);
+  vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
+  return EyePathStart(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
+
+EyePathEnd loadEyePathEnd(samplerBuffer list, uint path) {
+  int first = 3 * int(path);
+  vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
+  return EyePathEnd(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
+
+PathEnd loadPathEnd(samplerBuffer list, uint path) {
+  vec4 a = texelFetch(list, 2 * int(path)), b = texelFetch(list, 2 * int(path) + 1);
+  return PathEnd(a.xyz, a.w, b.xyz, b.w);
+}
+
+VplSite loadSite(samplerBuffer list, uint vpl) {
+  vec4 a = texelFetch(list, 2 * int(vpl)), b = texelFetch(list, 2 * int(vpl) + 1);
+  return VplSite(a.xyz, a.w, b.xyz, b.w);
+}
 
 ivec3 brickGrid(VoxelGrid grid) { return ivec3((grid.resolution + kBrick - 1) / kBrick); }
 
@@ -82,7 +81,7 @@ uint brickIndex(VoxelGrid grid, ivec3 brick) {
 // Weight of the normals in the distance between surfaces, m^2: `share` of the squared mean free path 4 V / S of the
 // scene (the mean chord of a room of volume V and surface S), so that one value suits scenes of any size.
 float normalWeight(VoxelGrid grid, float share, uint areaLow, uint areaHigh) {
-  vec3 extent = max(frame.boundsMax.xyz - frame.boundsMin.xyz, vec3(0.0));
+  vec3 extent = max(frame.boundsMax - frame.boundsMin, vec3(0.0));
   float path = 4.0 * extent.x * extent.y * extent.z / max(unitsToArea(grid, areaLow, areaHigh), 1e-12);
   return share * path * path;
 }

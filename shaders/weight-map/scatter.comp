@@ -29,11 +29,10 @@ uint seenSide(VoxelGrid grid, ivec3 cell, uint exact) {
   uint voxel = voxelAt(grid, cell);
   if (voxel == 0u) return kNoSide;
   uint side = 2u * (voxel - 1u) + exact;
-  if (texelFetch(voxelsSurface, int(side) * kVoxelSideTexels).w > 0.0) return side;
+  if (loadSide(side).area > 0.0) return side;
   side ^= 1u;
-  vec4 positionArea = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels);
-  vec3 normal = texelFetch(voxelsSurface, int(side) * kVoxelSideTexels + 1).xyz;
-  return positionArea.w > 0.0 && dot(normal, view.eye.xyz - positionArea.xyz) > 0.0 ? side : kNoSide;
+  VoxelSide s = loadSide(side);
+  return s.area > 0.0 && dot(s.normal, view.eye - s.position) > 0.0 ? side : kNoSide;
 }
 
 // Returns 1 for the first weight that a side gets.
@@ -65,7 +64,7 @@ void main() {
   ivec2 first = ivec2(gl_GlobalInvocationID.xy) * kBlock;
   VoxelGrid grid = voxelsGrid();
 #if !WHOLE_IMAGE
-  Fovea fovea = makeFovea(view.gaze.xy, vec2(size), foveaRadius);
+  Fovea fovea = makeFovea(view.gaze, vec2(size), foveaRadius);
 #endif
   uint visible = 0u, unassigned = 0u;
   Seen next = seenAt(grid, first, 0, size);

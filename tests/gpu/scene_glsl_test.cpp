@@ -185,10 +185,10 @@ TEST(SceneGlsl, Lights) {
     queries.emplace_back(glm::vec3(random(20, k), random(21, k), random(22, k)) * 12.0f - 6.0f,
                          float(k % kMaxLights));
   const auto results = evaluate(gpu, frame, queries, "lights", R"(
-    Light light = lights[uint(q.w)];
+    LightRecord light = lights[uint(q.w)];
     LightSample s = sampleLight(light, q.xyz);
     r[0] = vec4(s.irradiance, s.distance);
-    r[1] = vec4(s.direction, float(firstShadowLayer(light)));
+    r[1] = vec4(s.direction, float(light.firstShadowLayer));
     r[2] = vec4(frame.lightCount);
   )");
   std::vector<uint32_t> firstLayer(kMaxLights);
@@ -273,13 +273,13 @@ TEST(SceneGlsl, GeometryFrameAndViews) {
       r[1] = vec4(objectOf(t), frame.triangleCount, frame.staticTriangleCount, frame.vertexCount);
       r[2] = vec4(frame.index, frame.seed, frame.time, frame.exposure);
     } else if (i == 2u) {
-      r[0] = frame.boundsMin;
-      r[1] = frame.boundsMax;
-      r[2] = frame.environment;
+      r[0] = vec4(frame.boundsMin, 0.0);
+      r[1] = vec4(frame.boundsMax, 0.0);
+      r[2] = vec4(frame.environment, 0.0);
     } else {
       r[0] = view.clipToWorld * view.worldToClip * vec4(1.0, 2.0, 1.0, 1.0);
-      r[1] = vec4(view.eye.xyz, view.size.x);
-      r[2] = vec4(view.gaze.xy, view.size.y, view.size.z * view.size.x);
+      r[1] = vec4(view.eye, view.size.x);
+      r[2] = vec4(view.gaze, view.size.y, view.inverseSize.x * view.size.x);
     }
   )");
   EXPECT_EQ(blocks[0], glm::vec4(0, 1, 2, 3));
@@ -353,8 +353,8 @@ TEST(SceneGlsl, AnEmptySceneWorks) {
   GpuScene gpu(testDevice(), Scene{}, {}, 2);
   EXPECT_EQ(gpu.triangleCount(), 0u);
   const auto results = evaluate(gpu, Frame{}, {glm::vec4(0)}, "empty", R"(
-    r[0] = vec4(frame.triangleCount + frame.lightCount + frame.vertexCount, frame.boundsMin.xyz);
-    r[1] = frame.boundsMax;
+    r[0] = vec4(frame.triangleCount + frame.lightCount + frame.vertexCount, frame.boundsMin);
+    r[1] = vec4(frame.boundsMax, 0.0);
   )");
   EXPECT_EQ(results[0], glm::vec4(0));
   EXPECT_EQ(results[1], glm::vec4(0));

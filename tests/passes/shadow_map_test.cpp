@@ -95,7 +95,7 @@ TEST_F(ShadowMapTest, DepthEqualsRays) {
           lo = std::min(lo, z);
           hi = std::max(hi, z);
         }
-        const double tolerance = views_[layer].bias.x + views_[layer].bias.y * hi;
+        const double tolerance = views_[layer].bias + views_[layer].relativeBias * hi;
         wrong += got < lo - 0.5 * tolerance || got > hi + 0.5 * tolerance;
         edges += hi - lo > 0.05 * hi;
       }
@@ -123,8 +123,7 @@ TEST_F(ShadowMapTest, SunSeesTheWholeSceneTightly) {
   EXPECT_GT(most.x, guarded);
   EXPECT_GT(most.y, guarded);
   // No map turned about the light's direction could be smaller.
-  const glm::dvec3 extent(g.boundsMax - g.boundsMin), x(glm::vec3(views_[0].right)),
-      y(glm::vec3(views_[0].up));
+  const glm::dvec3 extent(g.boundsMax - g.boundsMin), x(views_[0].right), y(views_[0].up);
   const auto areaAt = [&](double angle) {
     const glm::dvec3 right = std::cos(angle) * x + std::sin(angle) * y,
                      up = std::cos(angle) * y - std::sin(angle) * x;
@@ -173,8 +172,8 @@ TEST_F(ShadowMapTest, TexelSizesAreThoseOfTheProjection) {
     const double w = (glm::dmat4(v.worldToClip) * glm::dvec4(p, 1)).w;
     if (w < 0.1) continue;
     const glm::dvec3 at = project(layer, p);
-    const glm::dvec3 x = project(layer, p + float(v.right.w * w) * glm::vec3(v.right));
-    const glm::dvec3 y = project(layer, p + float(v.up.w * w) * glm::vec3(v.up));
+    const glm::dvec3 x = project(layer, p + float(v.texelWidth * w) * v.right);
+    const glm::dvec3 y = project(layer, p + float(v.texelHeight * w) * v.up);
     EXPECT_NEAR((x.x - at.x) * 0.5 * kSize, 1, 1e-3) << "layer " << layer;
     EXPECT_NEAR((y.y - at.y) * 0.5 * kSize, 1, 1e-3) << "layer " << layer;
     EXPECT_NEAR(x.y, at.y, 1e-4);

@@ -1,17 +1,15 @@
-// struct ShadowView of shaders/common/shadow.glsl, with a second derivation of its projections for the tests.
+// A second derivation of the projections of shadow maps, for the tests.
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
+
+#include "shaders/common/records/shadow.h"
 
 namespace fovea::test {
 
-inline constexpr uint32_t kMaxShadowLayers = 384;
-
-struct ShadowView {
-  glm::mat4 worldToClip{0};
-  glm::vec4 right{0}, up{0}, bias{0};
-};
-static_assert(sizeof(ShadowView) == 112);
+using scene::kMaxShadowLayers;
+using scene::ShadowView;
 
 // Looks from `eye` along `forward`; the depth is near / distance along it.
 inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHalf, float near, int size) {
@@ -23,9 +21,11 @@ inline ShadowView perspectiveView(glm::vec3 eye, glm::vec3 forward, float tanHal
     auto dot = [&](glm::vec3 axis) { return c < 3 ? axis[c] : -glm::dot(axis, eye); };
     v.worldToClip[c] = {dot(right) / tanHalf, dot(up) / tanHalf, c < 3 ? 0 : near, dot(forward)};
   }
-  v.right = {right, 2 * tanHalf / size};
-  v.up = {up, 2 * tanHalf / size};
-  v.bias = {0, 1e-4f, near, 0};
+  v.right = right;
+  v.up = up;
+  v.texelWidth = v.texelHeight = 2 * tanHalf / size;
+  v.relativeBias = 1e-4f;
+  v.depthScale = near;
   return v;
 }
 
@@ -37,7 +37,9 @@ inline ShadowView orthographicView(glm::vec3 centre, glm::vec3 forward, float ha
     v.worldToClip[c].z = -0.5f * along / half + (c < 3 ? 0 : 0.5f);
     v.worldToClip[c].w = c < 3 ? 0 : 1;
   }
-  v.bias = {1e-5f, 0, 0.5f / half, 0};
+  v.bias = 1e-5f;
+  v.relativeBias = 0;
+  v.depthScale = 0.5f / half;
   return v;
 }
 

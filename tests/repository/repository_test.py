@@ -24,7 +24,7 @@ ROOMS = {
     "framework/shader_twins": ["framework/base", "shaders/common/records"],
     "framework/gpu": ["framework/base"],
     "framework/image": ["framework/base"],
-    "framework/scene": ["framework/gpu", "framework/image", "framework/shader_twins"],
+    "framework/scene": ["framework/gpu", "framework/image", "framework/shader_twins", "shaders/common/records"],
     "framework/graph": ["framework/gpu", "framework/image"],
     "framework/session": ["framework/graph", "framework/scene"],
     "passes": ["framework/graph", "framework/scene", "shaders"],

@@ -10,7 +10,15 @@
 
 #include "framework/gpu/shader/shader.h"
 #include "places.h"
+#include "shaders/common/records/eye_paths.h"
+#include "shaders/common/records/scene.h"
+#include "shaders/common/records/shadow.h"
+#include "shaders/common/records/voxel.h"
 #include "shaders/common/records/vpl.h"
+#include "shaders/manage/records.h"
+#include "shaders/shadow-atlas/records.h"
+#include "shaders/voxelize/records.h"
+#include "shaders/vpl-intensity/records.h"
 
 namespace fovea {
 namespace {
@@ -78,6 +86,103 @@ TEST(SharedRecords, Vpls) {
                {AT(Candidate, position), AT(Candidate, side), AT(Candidate, normal), AT(Candidate, object),
                 AT(Candidate, reflectance), AT(Candidate, luminance), AT(Candidate, localPosition),
                 AT(Candidate, unused)});
+}
+
+TEST(SharedRecords, Voxels) {
+  using namespace scene;
+  const char* header = "common/records/voxel.h";
+  expectLayout(
+      header, "VoxelSide", sizeof(VoxelSide),
+      {AT(VoxelSide, position), AT(VoxelSide, area), AT(VoxelSide, normal), AT(VoxelSide, object),
+       AT(VoxelSide, reflectance), AT(VoxelSide, triangle), AT(VoxelSide, emission), AT(VoxelSide, unused1)});
+  expectLayout(header, "VoxelInfo", sizeof(VoxelInfo),
+               {AT(VoxelInfo, voxels), AT(VoxelInfo, staticVoxels), AT(VoxelInfo, overflow),
+                AT(VoxelInfo, resolution)});
+  using passes::voxelize::State;
+  expectLayout("voxelize/records.h", "State", sizeof(State),
+               {AT(State, chunkGroups), AT(State, chunks), AT(State, phases)});
+}
+
+TEST(SharedRecords, Scene) {
+  using namespace scene;
+  const char* header = "common/records/scene.h";
+  expectLayout(
+      header, "FrameBlock", sizeof(FrameBlock),
+      {AT(FrameBlock, index), AT(FrameBlock, seed), AT(FrameBlock, lightCount), AT(FrameBlock, triangleCount),
+       AT(FrameBlock, staticTriangleCount), AT(FrameBlock, vertexCount), AT(FrameBlock, time),
+       AT(FrameBlock, exposure), AT(FrameBlock, boundsMin), AT(FrameBlock, unused0),
+       AT(FrameBlock, boundsMax), AT(FrameBlock, unused1), AT(FrameBlock, environment),
+       AT(FrameBlock, unused2), AT(FrameBlock, firstMovingVertex), AT(FrameBlock, firstMovingTriangle),
+       AT(FrameBlock, unused3), AT(FrameBlock, unused4)});
+  expectLayout(header, "ViewBlock", sizeof(ViewBlock),
+               {AT(ViewBlock, worldToView), AT(ViewBlock, viewToClip), AT(ViewBlock, worldToClip),
+                AT(ViewBlock, clipToWorld), AT(ViewBlock, previousWorldToClip), AT(ViewBlock, eye),
+                AT(ViewBlock, unused0), AT(ViewBlock, gaze), AT(ViewBlock, unused1), AT(ViewBlock, size),
+                AT(ViewBlock, inverseSize)});
+  expectLayout(
+      header, "LightRecord", sizeof(LightRecord),
+      {AT(LightRecord, position), AT(LightRecord, type), AT(LightRecord, direction), AT(LightRecord, range),
+       AT(LightRecord, intensity), AT(LightRecord, firstShadowLayer), AT(LightRecord, cosInner),
+       AT(LightRecord, cosOuter), AT(LightRecord, coneScale), AT(LightRecord, unused)});
+  expectLayout(header, "ObjectRecord", sizeof(ObjectRecord),
+               {AT(ObjectRecord, toWorld), AT(ObjectRecord, previousToWorld), AT(ObjectRecord, toObject),
+                AT(ObjectRecord, visible), AT(ObjectRecord, wasVisible), AT(ObjectRecord, deforms),
+                AT(ObjectRecord, unused)});
+  expectLayout(header, "TextureRecord", sizeof(TextureRecord),
+               {AT(TextureRecord, page), AT(TextureRecord, x), AT(TextureRecord, y), AT(TextureRecord, flags),
+                AT(TextureRecord, size), AT(TextureRecord, offset), AT(TextureRecord, axisU),
+                AT(TextureRecord, axisV)});
+  expectLayout(header, "MaterialRecord", sizeof(MaterialRecord),
+               {AT(MaterialRecord, baseColor), AT(MaterialRecord, alpha), AT(MaterialRecord, emission),
+                AT(MaterialRecord, alphaCutoff), AT(MaterialRecord, colorTexture),
+                AT(MaterialRecord, emissionTexture)});
+  expectLayout("common/records/shadow.h", "ShadowView", sizeof(ShadowView),
+               {AT(ShadowView, worldToClip), AT(ShadowView, right), AT(ShadowView, texelWidth),
+                AT(ShadowView, up), AT(ShadowView, texelHeight), AT(ShadowView, bias),
+                AT(ShadowView, relativeBias), AT(ShadowView, depthScale), AT(ShadowView, unused)});
+}
+
+TEST(SharedRecords, EyePaths) {
+  using namespace passes;
+  const char* header = "common/records/eye_paths.h";
+  expectLayout(header, "EyePathStart", sizeof(EyePathStart),
+               {AT(EyePathStart, position), AT(EyePathStart, there), AT(EyePathStart, normal),
+                AT(EyePathStart, unused0), AT(EyePathStart, face), AT(EyePathStart, unused1)});
+  expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
+               {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
+                AT(EyePathEnd, luminance), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+}
+
+TEST(SharedRecords, OfOnePass) {
+  using passes::manage::ManageState;
+  using passes::manage::SlotRecord;
+  const char* manage = "manage/records.h";
+  expectLayout(manage, "ManageState", sizeof(ManageState),
+               {AT(ManageState, occupied), AT(ManageState, alive), AT(ManageState, accepted),
+                AT(ManageState, reused), AT(ManageState, oldCount), AT(ManageState, candidateCount)});
+  expectLayout(
+      manage, "SlotRecord", sizeof(SlotRecord),
+      {AT(SlotRecord, importance), AT(SlotRecord, flags), AT(SlotRecord, cell), AT(SlotRecord, key)});
+  using passes::intensity::PathSum;
+  using passes::intensity::VplSite;
+  const char* intensity = "vpl-intensity/records.h";
+  expectLayout(intensity, "VplSite", sizeof(VplSite),
+               {AT(VplSite, position), AT(VplSite, handicap), AT(VplSite, normal), AT(VplSite, light)});
+  expectLayout(intensity, "PathSum", sizeof(PathSum),
+               {AT(PathSum, paths), AT(PathSum, lightX), AT(PathSum, lightY), AT(PathSum, lightZ)});
+  using passes::atlas::DrawnMap;
+  using passes::atlas::Step;
+  using passes::atlas::VplView;
+  const char* atlas = "shadow-atlas/records.h";
+  expectLayout(atlas, "DrawnMap", sizeof(DrawnMap),
+               {AT(DrawnMap, position), AT(DrawnMap, unused0), AT(DrawnMap, normal), AT(DrawnMap, unused1),
+                AT(DrawnMap, movers), AT(DrawnMap, poses)});
+  expectLayout(atlas, "VplView", sizeof(VplView),
+               {AT(VplView, position), AT(VplView, slot), AT(VplView, tangent), AT(VplView, unused0),
+                AT(VplView, bitangent), AT(VplView, unused1), AT(VplView, normal), AT(VplView, unused2)});
+  expectLayout(
+      atlas, "Step", sizeof(Step),
+      {AT(Step, cull), AT(Step, small), AT(Step, large), AT(Step, maskedSmall), AT(Step, maskedLarge)});
 }
 
 }  // namespace

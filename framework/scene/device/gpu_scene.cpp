@@ -16,48 +16,16 @@ namespace fovea::scene {
 
 namespace {
 
-// ---- The blocks of shaders/common/scene.glsl, std140 ----
-
-struct FrameBlock {
-  uint32_t index, seed, lightCount, triangleCount, staticTriangleCount, vertexCount;
-  float time, exposure;
-  glm::vec4 boundsMin, boundsMax, environment;
-  glm::uvec4 firstMoving;
-};
-static_assert(sizeof(FrameBlock) == 96);
-
-struct ViewBlock {
-  glm::mat4 worldToView, viewToClip, worldToClip, clipToWorld, previousWorldToClip;
-  glm::vec4 eye, gaze, size;
-};
-static_assert(sizeof(ViewBlock) == 368);
-
 struct LightBlock {
-  struct Light {
-    glm::vec4 position, direction, intensity, cone;
-  } lights[kMaxLights];
+  LightRecord lights[kMaxLights];
 };
-static_assert(sizeof(LightBlock) == 64 * kMaxLights);
 
-// One vec4 per texel; kObjectTexels in the shader is their number.
-struct ObjectTexels {
-  glm::vec4 toWorld[3], previous[3], toObject[3], flags;
-};
-static_assert(sizeof(ObjectTexels) == 10 * sizeof(glm::vec4));
+static_assert(uint32_t(LightType::Directional) == kLightDirectional &&
+              uint32_t(LightType::Point) == kLightPoint && uint32_t(LightType::Spot) == kLightSpot);
 
-// One vec4 per texel; kMaterialTexels in the shader is their number.
-struct TextureTexels {
-  glm::vec4 place{-1, 0, 0, 0}, extent{0}, axes{0};
-};
-struct MaterialTexels {
-  glm::vec4 color{0}, emission{0};
-  TextureTexels colorTexture, emissionTexture;
-};
-static_assert(sizeof(MaterialTexels) == 8 * sizeof(glm::vec4));
-
-constexpr uint32_t kTextureLinear = 16, kMaterialDoubleSided = 32;  // flags
-
-uint32_t wrapCode(Wrap wrap) { return wrap == Wrap::Clamp ? 1 : wrap == Wrap::Mirror ? 2 : 0; }
+uint32_t wrapCode(Wrap wrap) {
+  return wrap == Wrap::Clamp ? kWrapClamp : wrap == Wrap::Mirror ? kWrapMirror : 0;
+}
 
 // Meyer et al. 2010; octEncode in scene.glsl.
 glm::vec2 octEncode(glm::vec3 n) {
@@ -113,27 +81,49 @@ void checkCount(const char* what, size_t count, size_t limit) {
               std::string("remove some ") + what);
 }
 
-ObjectTexels objectEntry(const ObjectTransform& o) {
-  ObjectTexels texels{};
-  const glm::mat4 rows[] = {glm::transpose(o.toWorld), glm::transpose(o.previousToWorld),
-                            glm::transpose(o.toObject)};
-  for (int i = 0; i < 3; ++i)
-    texels.toWorld[i] = rows[0][i], texels.previous[i] = rows[1][i], texels.toObject[i] = rows[2][i];
-  texels.flags = glm::vec4(o.visible, o.previousVisible, o.deforms, 0);
-  return texels;
+TransformRows rowsOf(const glm::mat4& m) {
+  const glm::mat4 rows = glm::transpose(m);
+  return {rows[0], rows[1], rows[2]};
 }
 
-LightBlock::Light lightEntry(const Light& light, uint32_t firstShadowLayer) {
+ObjectRecord objectEntry(const ObjectTransform& o) {
+  ObjectRecord record;
+  record.toWorld = rowsOf(o.toWorld);
+  record.previousToWorld = rowsOf(o.previousToWorld);
+  record.toObject = rowsOf(o.toObject);
+  record.visible = float(o.visible);
+  record.wasVisible = float(o.previousVisible);
+  record.deforms = float(o.deforms);
+  return record;
+}
+
+LightRecord lightEntry(const Light& light, uint32_t firstShadowLayer) {
   const SpotCone cone = spotCone(light);
-  return {glm::vec4(light.position, float(light.type)), glm::vec4(light.direction, light.range),
-          glm::vec4(light.color * light.intensity, float(firstShadowLayer)),
-          glm::vec4(cone.cosInner, cone.cosOuter, cone.scale(), 0)};
+  LightRecord record;
+  record.position = light.position;
+  record.type = uint32_t(light.type);
+  record.direction = light.direction;
+  record.range = light.range;
+  record.intensity = light.color * light.intensity;
+  record.firstShadowLayer = firstShadowLayer;
+  record.cosInner = cone.cosInner;
+  record.cosOuter = cone.cosOuter;
+  record.coneScale = cone.scale();
+  return record;
 }
 
 ViewBlock viewEntry(const View& v) {
-  const glm::vec2 size = glm::max(glm::vec2(v.size), glm::vec2(1));
-  return {v.worldToView,         v.viewToClip,        v.worldToClip,           v.clipToWorld,
-          v.previousWorldToClip, glm::vec4(v.eye, 1), glm::vec4(v.gaze, 0, 0), glm::vec4(size, 1.0f / size)};
+  ViewBlock block;
+  block.worldToView = v.worldToView;
+  block.viewToClip = v.viewToClip;
+  block.worldToClip = v.worldToClip;
+  block.clipToWorld = v.clipToWorld;
+  block.previousWorldToClip = v.previousWorldToClip;
+  block.eye = v.eye;
+  block.gaze = v.gaze;
+  block.size = glm::max(glm::vec2(v.size), glm::vec2(1));
+  block.inverseSize = 1.0f / block.size;
+  return block;
 }
 
 uint64_t alignUp(uint64_t value, uint64_t alignment) {
@@ -182,7 +172,7 @@ struct GpuScene::Impl {
                             kTexelUsage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                             gpu::MemoryKind::Device});
     attributes = makeBuffer(device, "scene attributes", attributeList(g), kTexelUsage);
-    std::vector<MaterialTexels> list;
+    std::vector<MaterialRecord> list;
     for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
     materials = makeBuffer(device, "scene materials", list, kTexelUsage);
   }
@@ -191,8 +181,8 @@ struct GpuScene::Impl {
     vkDestroyDescriptorSetLayout(device.handle(), layout, nullptr);
   }
 
-  TextureTexels textureEntry(const Scene& scene, const TextureUse& use) const;
-  MaterialTexels materialEntry(const Scene& scene, const Material& m) const;
+  TextureRecord textureEntry(const Scene& scene, const TextureUse& use) const;
+  MaterialRecord materialEntry(const Scene& scene, const Material& m) const;
   void makeUniforms(uint32_t slots);
   void makeMoves(const Scene& scene, const Geometry& g, uint32_t slots);
   void storeObjects(const Frame& frame, uint32_t slot) const;
@@ -206,24 +196,32 @@ struct GpuScene::Impl {
   }
 };
 
-TextureTexels GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse& use) const {
+TextureRecord GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse& use) const {
   const TexturePages::Place* place = textures.find(use.texture);
   if (!place) return {};
   const Texture& t = scene.textures[use.texture];
   const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear);
   const glm::mat3x2& m = use.transform;
-  return {glm::vec4(place->page, place->x, place->y, flags), glm::vec4(t.width, t.height, m[2].x, m[2].y),
-          glm::vec4(m[0].x, m[0].y, m[1].x, m[1].y)};
+  return {float(place->page),
+          float(place->x),
+          float(place->y),
+          float(flags),
+          {t.width, t.height},
+          m[2],
+          m[0],
+          m[1]};
 }
 
-MaterialTexels GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
-  MaterialTexels texels;
-  texels.color = glm::vec4(glm::vec3(m.baseColor) * (1.0f - m.metallic), m.baseColor.a);
-  texels.emission = glm::vec4(m.emission, m.masked ? m.alphaCutoff : 0.0f);
-  texels.colorTexture = textureEntry(scene, m.baseColorTexture);
-  texels.emissionTexture = textureEntry(scene, m.emissionTexture);
-  if (m.doubleSided) texels.colorTexture.place.w += float(kMaterialDoubleSided);
-  return texels;
+MaterialRecord GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
+  MaterialRecord record;
+  record.baseColor = glm::vec3(m.baseColor) * (1.0f - m.metallic);
+  record.alpha = m.baseColor.a;
+  record.emission = m.emission;
+  record.alphaCutoff = m.masked ? m.alphaCutoff : 0.0f;
+  record.colorTexture = textureEntry(scene, m.baseColorTexture);
+  record.emissionTexture = textureEntry(scene, m.emissionTexture);
+  if (m.doubleSided) record.colorTexture.flags += float(kMaterialDoubleSided);
+  return record;
 }
 
 void GpuScene::Impl::makeUniforms(uint32_t slots) {
@@ -241,7 +239,7 @@ void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t s
   if (movedVertices() > 0) animator = std::make_unique<Animator>(device, scene, g, slots);
   for (uint32_t slot = 0; slot < slots; ++slot) {
     objects.emplace_back(device,
-                         gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectTexels),
+                         gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectRecord),
                                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
     storeObjects({}, slot);
   }
@@ -249,7 +247,7 @@ void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t s
 
 // Objects for which the frame has no pose stay where their vertices are.
 void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
-  auto* entries = static_cast<ObjectTexels*>(objects[slot].mapped());
+  auto* entries = static_cast<ObjectRecord*>(objects[slot].mapped());
   for (uint32_t i = 0; i < objectCount; ++i)
     entries[i] = objectEntry(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
 }
@@ -349,22 +347,24 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   if (slot >= impl_->sets.size())
     throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
   Impl& s = *impl_;
-  const FrameBlock block{uint32_t(frame.index),
-                         frame.seed,
-                         uint32_t(frame.lights.size()),
-                         s.triangleCount,
-                         s.staticTriangles,
-                         s.vertexCount,
-                         float(frame.time),
-                         frame.exposure,
-                         glm::vec4(s.boundsMin, 0),
-                         glm::vec4(s.boundsMax, 0),
-                         glm::vec4(s.environment, 0),
-                         glm::uvec4(s.staticVertices, s.firstMovingLight, 0, 0)};
+  FrameBlock block;
+  block.index = uint32_t(frame.index);
+  block.seed = frame.seed;
+  block.lightCount = uint32_t(frame.lights.size());
+  block.triangleCount = s.triangleCount;
+  block.staticTriangleCount = s.staticTriangles;
+  block.vertexCount = s.vertexCount;
+  block.time = float(frame.time);
+  block.exposure = frame.exposure;
+  block.boundsMin = s.boundsMin;
+  block.boundsMax = s.boundsMax;
+  block.environment = s.environment;
+  block.firstMovingVertex = s.staticVertices;
+  block.firstMovingTriangle = s.firstMovingLight;
   impl_->store(slot, 0, block);
   uint32_t layer = 0;
   for (size_t i = 0; i < frame.lights.size(); ++i) {
-    impl_->store(slot, s.lightOffset + i * sizeof(LightBlock::Light), lightEntry(frame.lights[i], layer));
+    impl_->store(slot, s.lightOffset + i * sizeof(LightRecord), lightEntry(frame.lights[i], layer));
     layer += shadowLayers(frame.lights[i]);
   }
   for (size_t i = 0; i < frame.views.size(); ++i)

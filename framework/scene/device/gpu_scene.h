@@ -8,6 +8,7 @@
 
 #include "framework/scene/device/draw_runs.h"
 #include "framework/scene/frame.h"
+#include "shaders/common/records/scene.h"
 
 namespace fovea::gpu {
 class Device;
@@ -16,7 +17,6 @@ class Buffer;
 
 namespace fovea::scene {
 
-inline constexpr uint32_t kMaxLights = 64;
 inline constexpr uint32_t kMaxViews = 8;
 
 // A scene may have no triangles, lights or textures.
@@ -47,7 +47,7 @@ class GpuScene : public FrameDescriptors {
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
   gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
-  gpu::Buffer& materials() const;   // kMaterialTexels vec4 each
+  gpu::Buffer& materials() const;   // MaterialRecord each
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;

@@ -1,5 +1,6 @@
 // What lets one header declare records and constants for C++ and GLSL alike. Such a header writes its declarations
-// between SHARED_BEGIN and SHARED_END in the types that GLSL has, which C++ takes from glm.
+// between SHARED_BEGIN, which names the namespace that they have in C++, and SHARED_END, in the types that GLSL has,
+// which C++ takes from glm.
 //
 // A record pairs every vec3 with a scalar behind it. Then its members have the same offsets in C++, in a storage buffer
 // (std430), in a uniform buffer (std140) and in a texel buffer of four components per texel.
@@ -11,7 +12,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace fovea::scene {
+namespace fovea::glsl {
 
 using glm::mat4;
 using glm::uvec2;
@@ -21,10 +22,12 @@ using glm::vec3;
 using glm::vec4;
 using uint = uint32_t;
 
-}  // namespace fovea::scene
+}  // namespace fovea::glsl
 
-#define SHARED_BEGIN namespace fovea::scene {
-#define SHARED_END }  // namespace fovea::scene
+#define SHARED_BEGIN(space) \
+  namespace space {         \
+  using namespace fovea::glsl;
+#define SHARED_END }
 #define SHARED_CONSTANT inline constexpr
 // The value of a member that nothing else is said about; GLSL has no such defaults.
 #define SHARED_DEFAULT(value) \
@@ -36,7 +39,7 @@ using uint = uint32_t;
 
 #else
 
-#define SHARED_BEGIN
+#define SHARED_BEGIN(space)
 #define SHARED_END
 #define SHARED_CONSTANT const
 #define SHARED_DEFAULT(value)

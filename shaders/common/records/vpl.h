@@ -1,11 +1,9 @@
 // Virtual point lights (VPLs) as passes exchange them.
 #pragma once
 
-#include "shared.h"
+#include "voxel.h"
 
-SHARED_BEGIN
-
-SHARED_CONSTANT uint kNoSide = 0xffffffffu;  // in place of the number of a voxel side: none
+SHARED_BEGIN(fovea::scene)
 
 // VPLs in one page of a uniform buffer, which is the fast way to read data that every invocation reads: 48 KiB.
 SHARED_CONSTANT uint kVplPage = 1024u;
