@@ -154,7 +154,7 @@ TEST(Compute, OversizedWorkGroupIsNamed) {
   const auto shader = device.shaders().compileSource(
       "huge.comp", "layout(local_size_x = 1024, local_size_y = 64) in;\nvoid main() {}\n");
   try {
-    gpu::Pipeline(device, gpu::ComputePipelineDesc{shader});
+    const gpu::Pipeline pipeline(device, gpu::ComputePipelineDesc{shader});
     FAIL();
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("1024x64x1"));
@@ -166,7 +166,7 @@ TEST(Compute, PipelinesMove) {
   gpu::Pipeline a(device, gpu::ComputePipelineDesc{device.shaders().compileSource("double.comp", kDouble)});
   const VkPipeline handle = a.handle();
   gpu::Pipeline b = std::move(a);
-  EXPECT_FALSE(a);
+  EXPECT_FALSE(a);  // NOLINT(bugprone-use-after-move): this is what is tested
   EXPECT_EQ(b.handle(), handle);
   b = gpu::Pipeline();
   EXPECT_FALSE(b);

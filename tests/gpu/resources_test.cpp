@@ -122,7 +122,7 @@ TEST(Image, ViewsAreMadeOnce) {
   EXPECT_THROW(image.mipView(5), Error);
   EXPECT_THROW(image.layerView(0, 3), Error);
   gpu::Image moved = std::move(image);
-  EXPECT_FALSE(image);
+  EXPECT_FALSE(image);  // NOLINT(bugprone-use-after-move): this is what is tested
   EXPECT_EQ(moved.name(), "views");
 }
 
