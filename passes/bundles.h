@@ -1,5 +1,5 @@
-// What passes hand to each other: the bundles and the buffers of records, each declared here once. The pass that makes a
-// bundle says how large it is and takes its declaration as it stands; a pass that reads it names the members that it
+// What passes hand to each other: the bundles and the buffers of records, each declared here once. The pass that makes
+// a bundle says how large it is and takes its declaration as it stands; a pass that reads it names the members that it
 // uses and how it reads them.
 #pragma once
 

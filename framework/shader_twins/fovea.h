@@ -1,5 +1,5 @@
 // The C++ version of shaders/common/fovea.glsl, which explains the formulas; both must be changed together. It
-// defines the fovea on the image plane, the weight of a pixel, and random pixels in the fovea.
+// computes the fovea on the image plane, the weight of a pixel, and random pixels in the fovea.
 #pragma once
 
 #include <cmath>
@@ -7,14 +7,9 @@
 #include <glm/glm.hpp>
 
 #include "framework/base/random.h"
+#include "shaders/common/records/fovea.h"
 
 namespace fovea::scene {
-
-// Image positions are in pixels from the top left corner; pixel centres are at +0.5.
-struct Fovea {
-  glm::vec2 centre{0};  // may lie outside the image
-  float radius = 0;     // r_f, pixels
-};
 
 // Radius, in image widths, of a fovea of `angle` radians from the line of sight in a view with the
 // projection `viewToClip` (View::viewToClip).
@@ -33,15 +28,8 @@ inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
   return r <= fovea.radius ? 1.0f : fovea.radius / r;
 }
 
-// Values of the parameter `region`.
-inline constexpr uint32_t kRegionFovea = 0u, kRegionImage = 1u;
-inline constexpr uint32_t kRegionMixed = 2u;  // a share of the samples from the whole image
-
 // The parameter `image_share` in 64ths, as the shaders take it.
 inline uint32_t imageShare64ths(double share) { return uint32_t(std::lround(64 * share)); }
-
-// regionSample() draws the numbers [0, kRegionDraws) of a random stream.
-inline constexpr uint32_t kRegionTries = 32u, kRegionDraws = 2u * kRegionTries + 2u;
 
 inline glm::vec2 streamPoint(uint32_t stream, uint32_t draw) {
   return {uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u))};

@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace fovea::scene {
+#include "shaders/common/records/paraboloid.h"
 
-inline constexpr uint32_t kParaboloidEmpty = 0x7f800000u;  // the bits of +inf, where nothing is hit
-inline constexpr uint32_t kAtlasTiles = 16;                // maps per layer of an atlas in the layout `tiled`
+namespace fovea::scene {
 
 // Columns: tangent, bitangent, normal (unit, right-handed).
 inline glm::mat3 orthonormalFrame(glm::vec3 n) {
@@ -43,11 +42,6 @@ inline glm::vec3 paraboloidTexelDirection(glm::ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
-// The width of the atlas divided by its height is the number of maps per layer, a power of two.
-struct AtlasLayout {
-  int size = 0;   // texels per side of a map
-  int shift = 0;  // log2 of the number of maps per layer
-};
 inline AtlasLayout atlasLayout(int width, int height) {
   int shift = 0;
   while ((height << (shift + 1)) <= width) ++shift;

@@ -4,15 +4,15 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
-#include "framework/shader_twins/hemisphere_rays.h"
 #include "passes/bundles.h"
+#include "shaders/common/records/hemisphere_rays.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-constexpr uint32_t kGroupVpls = 16;  // VPLs per work group (estimate.comp)
+constexpr uint32_t kGroupVpls = 16;  // VPLs per work group
 
 class Importance : public Pass {
  public:
@@ -58,6 +58,7 @@ PassDeclaration Importance::declaration() {
         .define("CONES", is("method", "cones"))
         .define("LUMINANCE", parameter("luminance"))
         .define("CANDIDATES", candidates)
+        .define("VPLS", kGroupVpls)
         .constant("count", countOf(port))
         .groups(1, ceilDiv(countOf(port), kGroupVpls));
   };

@@ -8,7 +8,7 @@ namespace {
 
 using namespace graph;
 
-// Pixels per thread and threads per work group, along each axis (scatter.comp).
+// Pixels per thread and threads per work group, along each axis.
 constexpr uint32_t kBlock = 4, kGroup = 8;
 
 class WeightMap : public Pass {
@@ -33,6 +33,8 @@ class WeightMap : public Pass {
     d.fill("weights", 0);
     d.step("weight-map/scatter.comp")
         .define("WHOLE_IMAGE", is("region", "image"))
+        .define("BLOCK", kBlock)
+        .define("GROUP", kGroup)
         .groups(ceilDiv(widthOf("gbuffer.position"), tile), ceilDiv(heightOf("gbuffer.position"), tile));
     return d;
   }

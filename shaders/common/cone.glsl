@@ -106,7 +106,7 @@ const float kOwnReach = 1.5;
 const float kHeightPerCell = 3.0;
 
 #ifdef CONE_GATHER
-#include "common/hemisphere_rays.glsl"
+#include "common/records/hemisphere_rays.h"
 #include "common/paraboloid.glsl"
 #include "common/voxel_trace.glsl"
 

@@ -1,16 +1,10 @@
 // The fovea on the image plane: its disc, the weight of a pixel, and random pixels in it. The same formulas as
 // framework/shader_twins/fovea.h.
-//
-// Image positions are in pixels from the top left corner; the centre of pixel (x, y) is at (x + 0.5, y + 0.5).
 #ifndef FOVEA_FOVEA_GLSL
 #define FOVEA_FOVEA_GLSL
 
 #include "common/random.glsl"
-
-struct Fovea {
-  vec2 centre;   // may lie outside the image
-  float radius;  // r_f, pixels
-};
+#include "common/records/fovea.h"
 
 // gaze: view.gaze; imageSize: pixels; foveaRadius: parameter `fovea_radius`, in image widths.
 Fovea makeFovea(vec2 gaze, vec2 imageSize, float foveaRadius) {
@@ -24,11 +18,6 @@ float foveaWeight(Fovea fovea, vec2 position) {
   return r <= fovea.radius ? 1.0 : fovea.radius / r;
 }
 
-// Values of the parameter `region`.
-const uint kRegionFovea = 0u;
-const uint kRegionImage = 1u;
-const uint kRegionMixed = 2u;  // a share of the samples, evenly interspersed, from the whole image
-
 // Returns kRegionFovea or kRegionImage for sample i; `number` is the number of earlier samples in the same
 // region. imageShare64ths: parameter `image_share`.
 uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
@@ -39,10 +28,6 @@ uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
   number = image ? before : i - before;
   return image ? kRegionImage : kRegionFovea;
 }
-
-// Numbers [0, kRegionDraws) of a random stream belong to regionSample, at most two per try.
-const uint kRegionTries = 32u;
-const uint kRegionDraws = 2u * kRegionTries + 2u;
 
 vec2 streamPoint(uint stream, uint draw) {
   return vec2(uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u)));

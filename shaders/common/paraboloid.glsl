@@ -7,7 +7,7 @@
 #ifndef FOVEA_PARABOLOID_GLSL
 #define FOVEA_PARABOLOID_GLSL
 
-const uint kParaboloidEmpty = 0x7f800000u;  // floatBitsToUint(+inf): nothing is hit
+#include "common/records/paraboloid.h"
 
 // Columns: tangent, bitangent, normal (unit, right-handed). Branchless and without singularities: Duff et al.,
 // "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
@@ -43,12 +43,6 @@ vec3 paraboloidTexelDirection(ivec2 texel, int size) {
   return paraboloidDirection(paraboloidTexelCentre(texel, size));
 }
 
-// The layout follows from the size of the atlas: `height` texels per map, width / height maps side by side in a layer
-// (a power of two; 1 in layout `layers`). Slot s is map s % perLayer of layer s / perLayer.
-struct AtlasLayout {
-  int size;   // texels per side of a map
-  int shift;  // log2 of the maps in a layer
-};
 AtlasLayout atlasLayout(ivec3 imageSizes) {  // textureSize(atlas, 0) or imageSize(atlas)
   return AtlasLayout(imageSizes.y, findMSB(imageSizes.x / imageSizes.y));
 }

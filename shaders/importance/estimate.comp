@@ -3,10 +3,11 @@
 //   I = sum(w_i cos_i) / sum(cos_i),
 // or (CONES) w_i the mean weight in a cone around it, from the mips. The directions depend on the VPL's normal alone,
 // so that I is stable from frame to frame: Eq. 1 compares it with the I of the previous frame, and noise would delete
-// VPLs in a still image. Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1.
+// VPLs in a still image. Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1;
+// VPLS: VPLs per work group.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
-#include "common/hemisphere_rays.glsl"
+#include "common/records/hemisphere_rays.h"
 #include "common/voxel_trace.glsl"
 #if CONES
 #define CONE_WEIGHT
@@ -14,7 +15,7 @@
 #endif
 
 // One invocation per direction. Those of a VPL are adjacent, as they start from the same position.
-const int kVpls = 16;
+const int kVpls = VPLS;
 layout(local_size_x = kHemisphereRays, local_size_y = kVpls) in;
 
 #if CANDIDATES

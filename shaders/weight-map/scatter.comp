@@ -1,6 +1,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 // Every pixel gives its foveated weight to the voxel side in which its surface point lies; a side keeps the largest
-// weight (passes/README.md, weight-map), so the result does not depend on the order. Define: WHOLE_IMAGE 0/1.
+// weight (passes/README.md, weight-map), so the result does not depend on the order. Defines: WHOLE_IMAGE 0/1;
+// BLOCK, pixels per invocation along an axis; GROUP, invocations per work group along an axis.
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/voxel_trace.glsl"
@@ -8,9 +9,9 @@
 // An invocation processes a block of pixels row by row, alternating in direction. Neighbours mostly show the same
 // side, so a run of them costs one look-up of the side and one atomic. A run is a loop of its own, as a CPU device
 // executes everything in a loop in every turn.
-const int kBlock = 4;
+const int kBlock = BLOCK;
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = GROUP, local_size_y = GROUP) in;
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rg16_snorm) uniform readonly image2D gbufferFace;

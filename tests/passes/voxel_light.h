@@ -10,9 +10,9 @@
 
 #include "fovea/test.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/hemisphere_rays.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_trace.h"
+#include "shaders/common/records/hemisphere_rays.h"
 #include "tests/passes/shadow_view.h"
 #include "tests/support/voxels.h"
 

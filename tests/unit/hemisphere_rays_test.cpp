@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "framework/shader_twins/hemisphere_rays.h"
 #include "framework/shader_twins/paraboloid.h"
+#include "shaders/common/records/hemisphere_rays.h"
 
 namespace fovea::scene {
 namespace {
