@@ -8,10 +8,9 @@ SHARED_BEGIN(fovea::passes::voxelize)
 SHARED_CONSTANT uint kSmallColumns = 16u;   // a triangle with more columns of cells is split into chunks
 SHARED_CONSTANT uint kChunkColumns = 256u;  // of this many columns, one work group each
 SHARED_CONSTANT uint kSumWords = 28u;       // of one side, see visit.glsl
-SHARED_CONSTANT uint kTriangleBits =
-    22u;                                 // bits of the record of the largest piece of an object that deforms
-SHARED_CONSTANT uint kRow = 32768u;      // work groups in a row of a dispatch
-SHARED_CONSTANT uint kScanBlock = 256u;  // words per work group of a prefix sum
+SHARED_CONSTANT uint kTriangleBits = 22u;   // bits for the largest piece of an object that deforms
+SHARED_CONSTANT uint kRow = 32768u;         // work groups in a row of a dispatch
+SHARED_CONSTANT uint kScanBlock = 256u;     // words per work group of a prefix sum
 
 struct Phase {     // 0: static triangles, 1: dynamic ones
   uint groups[3];  // indirect dispatch: one invocation per side of the phase's voxels, 64 in a group
