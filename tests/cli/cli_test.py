@@ -154,6 +154,12 @@ class Inputs(CliTest):
         self.write("text.so", "not a library")
         self.fails(BAD_INPUT, "passes", "--plugin", "text.so", says=["text.so"])
 
+    def test_graph_beside_the_stock_passes(self):
+        """As in the root of a checkout, where the front page saves its variant."""
+        (self.folder / "passes").symlink_to(SOURCE / "passes")
+        self.graph()
+        self.succeeds("check", "graph.json")
+
     def test_data_folder(self):
         self.fails(BAD_INPUT, "check", "direct", env={"FOVEA_DATA": "/nowhere"}, says=["FOVEA_DATA", "/nowhere"])
 

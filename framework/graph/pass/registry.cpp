@@ -51,6 +51,8 @@ void Registry::addStock() {
     for (const std::filesystem::path& file : findPassFiles(folder)) {
       try {
         PassDeclaration declaration = loadPassFile(file);
+        // A graph may lie beside this folder, which is then found a second time.
+        passFiles_.push_back(std::filesystem::canonical(file));
         if (!find(declaration.type)) add(std::move(declaration), makePlainPass);
       } catch (const Error& error) {
         for (const Diagnostic& d : error.diagnostics()) failedRegistrations().push_back(d);
