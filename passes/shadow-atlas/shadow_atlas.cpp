@@ -167,14 +167,15 @@ ShadowAtlas::Kernels ShadowAtlas::makeKernels(PrepareContext& ctx, bool simplifi
   if (simplified) defines["SIMPLIFIED"] = "1";
   if (toStaticMaps) defines["STATIC_MAPS"] = "1";
   if (!simplified && !toStaticMaps && ctx.parameters().real("mover_slack") > 0) defines["MOVER_SLACK"] = "1";
+  const auto kernel = [&](const char* shader) { return ctx.compute(shader, defines).called("draw"); };
   Kernels k;
-  k.cull = ctx.compute("shadow-atlas/cull.comp", defines);
-  k.small = ctx.compute("shadow-atlas/small.comp", defines);
-  k.large = ctx.compute("shadow-atlas/large.comp", defines);
+  k.cull = kernel("shadow-atlas/cull.comp");
+  k.small = kernel("shadow-atlas/small.comp");
+  k.large = kernel("shadow-atlas/large.comp");
   if (!ctx.parameters().flag("alpha_mask")) return k;
   defines["MASKED"] = "1";
-  k.maskedSmall = ctx.compute("shadow-atlas/small.comp", defines);
-  k.maskedLarge = ctx.compute("shadow-atlas/large.comp", defines);
+  k.maskedSmall = kernel("shadow-atlas/small.comp");
+  k.maskedLarge = kernel("shadow-atlas/large.comp");
   return k;
 }
 

@@ -156,6 +156,11 @@ KernelState& makeKernel(PassInstance& pass, std::string name, const std::string&
 
 }  // namespace
 
+Kernel& Kernel::called(const std::string& row) {
+  state_->label = state_->pass->label(row);
+  return *this;
+}
+
 PrepareContext::PrepareContext(PassInstance& pass)
     : PassContext(*pass.state->plan->graph, *pass.bound), pass_(pass) {}
 

@@ -51,6 +51,9 @@ struct KernelState;
 class Kernel {
  public:
   explicit operator bool() const { return state_ != nullptr; }
+  // Names the row of the timings that its commands count in; at first that is the name of its shader. Kernels that take
+  // turns in a loop should share one, because each change from row to row costs a timestamp.
+  Kernel& called(const std::string& row);
 
  private:
   friend class PrepareContext;
