@@ -1,4 +1,5 @@
-// The built-in scenes must be as large as the paper's, sound, the same every time, and complete as scene files.
+// The built-in scenes must be as large as the paper's, sound, the same every time, and complete as scene files. The
+// validation scenes must be sound, too, and lit where the viewer looks.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,6 +8,7 @@
 #include <map>
 
 #include "fovea/scene.h"
+#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
@@ -17,8 +19,10 @@ namespace {
 
 struct Expected {
   const char* name;
-  size_t triangles;    // of the paper's scene
+  size_t triangles;    // of the paper's scene, or those that a validation scene has
   bool closed = true;  // around the viewer
+  bool validation = false;
+  size_t lights = 1;
 };
 
 class BuiltinScenes : public testing::TestWithParam<Expected> {
@@ -34,7 +38,7 @@ class BuiltinScenes : public testing::TestWithParam<Expected> {
   }
 };
 
-TEST_P(BuiltinScenes, HasAsManyTrianglesAsThePapers) {
+TEST_P(BuiltinScenes, HasAsManyTrianglesAsItShould) {
   const Geometry g = flatten(scene());
   EXPECT_GE(double(g.triangles.size()), 0.9 * double(GetParam().triangles));
   EXPECT_LE(double(g.triangles.size()), 1.1 * double(GetParam().triangles));
@@ -81,18 +85,20 @@ TEST_P(BuiltinScenes, ReflectancesArePlausible) {
     }
 }
 
-TEST_P(BuiltinScenes, HasOneMainLightAViewAPathAndAGaze) {
+TEST_P(BuiltinScenes, HasLightsAViewAPathAndAGaze) {
   const Scene& s = scene();
-  EXPECT_EQ(s.lights.size(), 1u);
+  EXPECT_EQ(s.lights.size(), GetParam().lights);
   EXPECT_FALSE(s.cameras.empty());
   EXPECT_GE(s.cameraPath.size(), 3u);
-  EXPECT_GE(s.gaze.size(), 15u);
+  EXPECT_GE(s.gaze.size(), GetParam().validation ? 10u : 15u);
   EXPECT_FALSE(s.movers.empty());
-  EXPECT_FALSE(s.lightMotions.empty());
-  size_t cages = 0;
-  for (const Mesh& m : s.meshes) cages += m.cage && !m.cage->targets.empty();
-  EXPECT_GE(cages, 1u) << "nothing deforms";
-  EXPECT_FALSE(s.animations.empty());
+  if (!GetParam().validation) {
+    EXPECT_FALSE(s.lightMotions.empty());
+    size_t cages = 0;
+    for (const Mesh& m : s.meshes) cages += m.cage && !m.cage->targets.empty();
+    EXPECT_GE(cages, 1u) << "nothing deforms";
+    EXPECT_FALSE(s.animations.empty());
+  }
   // The path starts at the generator's view of the still scene.
   const Scene still = builtin(GetParam().name);
   ASSERT_FALSE(still.cameras.empty());
@@ -130,11 +136,95 @@ TEST_P(BuiltinScenes, IsClosedAroundTheViewer) {
   }
 }
 
+glm::vec3 normalOf(const Geometry& g, uint32_t triangle) {
+  const Triangle& t = g.triangles[triangle];
+  return glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]);
+}
+
+class ValidationScenes : public BuiltinScenes {};
+
+// Calls f(direction) for rays through a square picture of side x side pixels.
+template <class F>
+void forPixels(const Camera& camera, int side, F f) {
+  const float half = std::tan(0.5f * camera.verticalFov);
+  for (int i = 0; i < side * side; ++i) {
+    const glm::vec2 p = 2.0f * (glm::vec2(i % side, i / side) + 0.5f) / float(side) - 1.0f;
+    f(glm::normalize(camera.orientation * glm::vec3(half * p.x, -half * p.y, -1)));
+  }
+}
+
+// Two front faces of different materials at the same place would be drawn as a pattern that changes with the view.
+TEST_P(ValidationScenes, NoTwoSurfacesOfDifferentMaterialsCoincideInView) {
+  const Scene& s = scene();
+  const Geometry g = flatten(s);
+  const RayScene rays(s, g);
+  for (const CameraKey& key : s.cameraPath) {
+    constexpr int kSide = 200;
+    int both = 0;
+    forPixels(key.camera, kSide, [&](glm::vec3 d) {
+      const RayHit first = rays.intersect({key.camera.position, d});
+      if (!first) return;
+      const float gap = 2e-5f * first.distance;
+      const RayHit second = rays.intersect(
+          {key.camera.position, d, first.distance + 1e-7f * first.distance, first.distance + gap});
+      if (!second) return;
+      both += g.triangles[first.triangle].material() != g.triangles[second.triangle].material() &&
+              glm::dot(normalOf(g, first.triangle), d) < 0 && glm::dot(normalOf(g, second.triangle), d) < 0;
+    });
+    EXPECT_LE(both, kSide * kSide / 2000) << "at " << key.time << " s";
+  }
+}
+
+// Part of what the eye sees is lit without a bounce, by a light or by a surface that emits.
+TEST_P(ValidationScenes, LightReachesTheView) {
+  const Scene& s = scene();
+  const Geometry g = flatten(s);
+  const RayScene rays(s, g);
+  std::vector<uint32_t> emitters;
+  for (uint32_t t = 0; t < g.triangles.size(); ++t)
+    if (glm::length(s.materials[g.triangles[t].material()].emission) > 0) emitters.push_back(t);
+  for (const CameraKey& key : s.cameraPath) {
+    int seen = 0, lit = 0;
+    uint32_t next = 0;
+    forPixels(key.camera, 48, [&](glm::vec3 d) {
+      const RayHit hit = rays.intersect({key.camera.position, d});
+      if (!hit) return;
+      ++seen;
+      const glm::vec3 n = glm::normalize(normalOf(g, hit.triangle));
+      const glm::vec3 normal = glm::dot(n, d) < 0 ? n : -n;
+      const glm::vec3 p = key.camera.position + hit.distance * d + 4 * rays.epsilon() * normal;
+      const auto sees = [&](glm::vec3 direction, float distance) {
+        return glm::dot(direction, normal) > 0 && !rays.occluded({p, direction, 0, 0.999f * distance});
+      };
+      bool reached = false;
+      for (const Light& light : s.lights) {
+        const LightSample sample = sampleLight(light, p);
+        reached |= glm::dot(sample.irradiance, glm::vec3(1)) > 0 && sees(sample.direction, sample.distance);
+      }
+      for (int i = 0; i < 12 && !reached && !emitters.empty(); ++i) {
+        const uint32_t triangle = emitters[(next += 7919) % emitters.size()];
+        const Triangle& t = g.triangles[triangle];
+        const glm::vec3 to = (g.positions[t.v[0]] + g.positions[t.v[1]] + g.positions[t.v[2]]) / 3.0f - p;
+        if (glm::dot(to, normalOf(g, triangle)) < 0) reached = sees(glm::normalize(to), glm::length(to));
+      }
+      lit += reached;
+    });
+    EXPECT_GT(lit, seen / 10) << "at " << key.time << " s";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                          testing::Values(Expected{"cornellbox_moving", 5800, false},
                                          Expected{"atrium", 279000}, Expected{"balcony", 192000},
                                          Expected{"room", 476000}, Expected{"yard", 516000}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+const Expected kValidation[] = {{"alley", 82500, true, true, 0},   {"dollhouse", 132300, false, true, 2},
+                                {"gallery", 58000, true, true, 0}, {"greenhouse", 112600, true, true, 1},
+                                {"hangar", 35300, true, true, 1},  {"lounge", 86000, true, true, 4}};
+const auto nameOf = [](const auto& info) { return std::string(info.param.name); };
+INSTANTIATE_TEST_SUITE_P(Validation, BuiltinScenes, testing::ValuesIn(kValidation), nameOf);
+INSTANTIATE_TEST_SUITE_P(Validation, ValidationScenes, testing::ValuesIn(kValidation), nameOf);
 
 }  // namespace
 }  // namespace fovea::scene

@@ -34,8 +34,6 @@ model::MeshBuilder pictureFrame(const Palette& p, uint32_t picture, float width,
 model::MeshBuilder rug(const Palette& p);
 model::MeshBuilder windowFrame(const Palette& p, float width, float height);  // hole from the origin up
 model::MeshBuilder curtainRod(const Palette& p, float width);                 // middle at the origin
-// A pillow about the origin in the x-y plane, refined from a cage.
-model::Shape cushion(float width, float height, float thickness, uint32_t seed, uint32_t level = 2);
 
 // A curtain on rings from (0, 0) to (width, 0), falling to -height. `gather` (0..1) is how far it is tied back to its
 // outer edge x = 0. `billow`, `wave` (m) and `phase` describe the effect of the draught.

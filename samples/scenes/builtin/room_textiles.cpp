@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "samples/scenes/builtin/modelling/upholstery.h"
 #include "samples/scenes/builtin/room_parts.h"
 
 namespace fovea::scene::room {
@@ -14,50 +15,6 @@ namespace {
 constexpr float kPi = glm::pi<float>();
 
 }  // namespace
-
-Shape cushion(float width, float height, float thickness, uint32_t seed, uint32_t level) {
-  // A net of 7 x 7 points for the front and one for the back; they share their rim.
-  constexpr int n = 6;
-  SubdivisionCage c;
-  c.level = level;
-  int front[n + 1][n + 1], back[n + 1][n + 1];
-  for (int side = 0; side < 2; ++side)
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        const bool rim = i == 0 || j == 0 || i == n || j == n;
-        if (side == 1 && rim) {
-          back[j][i] = front[j][i];
-          continue;
-        }
-        const float x = 2 * float(i) / n - 1, y = 2 * float(j) / n - 1;
-        // The edges are drawn in between the corners, the middle is full and uneven.
-        const float pull = 1 - 0.09f * (1 - y * y) * x * x - 0.0f, pullY = 1 - 0.09f * (1 - x * x) * y * y;
-        const float fill = std::pow((1 - x * x) * (1 - y * y), 0.45f);
-        const float lump = 1 + 0.22f * (2 * random(seed, uint32_t(side * 64 + j * 8 + i)) - 1);
-        const float z = rim ? 0.012f * (2 * random(seed + 1, uint32_t(j * 8 + i)) - 1)
-                            : 0.62f * thickness * fill * lump * (side == 0 ? 1.0f : -1.0f);
-        (side == 0 ? front : back)[j][i] = int(c.positions.size());
-        c.positions.push_back({0.5f * width * x * pull, 0.5f * height * y * pullY, z});
-        c.uvs.push_back({0.5f * width * x, -0.5f * height * y});
-      }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      c.faceSizes.insert(c.faceSizes.end(), {4u, 4u});
-      for (const int v : {front[j][i], front[j][i + 1], front[j + 1][i + 1], front[j + 1][i]})
-        c.faceVertices.push_back(uint32_t(v));
-      for (const int v : {back[j][i], back[j + 1][i], back[j + 1][i + 1], back[j][i + 1]})
-        c.faceVertices.push_back(uint32_t(v));
-    }
-  c.faceUvs = c.faceVertices;
-  c.corners = {{uint32_t(front[0][0]), 10},
-               {uint32_t(front[0][n]), 10},
-               {uint32_t(front[n][0]), 10},
-               {uint32_t(front[n][n]), 10}};
-  Shape s = refine(c).front();
-  s.material = 0;
-  smooth(s, 70);  // the seam is an edge at the corners
-  return s;
-}
 
 MeshBuilder daybed(const Palette& p) {
   constexpr float w = 1.02f, d = 0.90f;

@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "samples/scenes/builtin/modelling/plants.h"
+#include "samples/scenes/builtin/modelling/upholstery.h"
 #include "samples/scenes/builtin/room_parts.h"
 
 namespace fovea::scene::room {
