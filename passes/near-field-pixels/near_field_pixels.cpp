@@ -1,4 +1,5 @@
 // Light from nearby surfaces at the few pixels that are shaded anew, which have no history to build on.
+#include <algorithm>
 #include <glm/gtc/packing.hpp>
 #include <string>
 #include <vector>
@@ -60,6 +61,7 @@ class NearFieldPixels : public Pass {
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
     const NearFieldStatistics statistics =
         traceNearFieldPixels(frame, ctx.view(), *rays, settings, pixels_, light_);
+    if (settings.samples == 1) limitBrightest(ctx.view().size);
     uint64_t lit = 0;
     for (size_t i = 0; i < pixels_.size(); ++i) {
       if (light_[i].a == 0) continue;
@@ -83,8 +85,32 @@ class NearFieldPixels : public Pass {
                 "wire images of the view that the pass looks through");
   }
 
+  static float luminanceOf(glm::vec4 light) {
+    return glm::dot(glm::vec3(light), {0.2126f, 0.7152f, 0.0722f});
+  }
+
+  // Among the pixels of each 4 x 4 block that got rays, makes the brightest one no brighter than the second: a single
+  // ray that hits something sunlit would be a firefly. Means of several rays need this less and would lose light.
+  void limitBrightest(glm::uvec2 size) {
+    const uint32_t columns = (size.x + 3) / 4;
+    const auto blockOf = [&](glm::uvec2 pixel) { return size_t(pixel.y / 4) * columns + pixel.x / 4; };
+    most_.assign(size_t((size.y + 3) / 4) * columns, glm::vec2(-1));
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+      if (light_[i].a == 0) continue;
+      glm::vec2& most = most_[blockOf(pixels_[i])];
+      const float luminance = luminanceOf(light_[i]);
+      most = {std::max(most.x, luminance), std::max(most.y, std::min(most.x, luminance))};
+    }
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+      const float second = most_[blockOf(pixels_[i])].y, luminance = luminanceOf(light_[i]);
+      if (second >= 0 && luminance > second)
+        light_[i] = glm::vec4(glm::vec3(light_[i]) * (second / luminance), 1);
+    }
+  }
+
   std::vector<glm::uvec2> pixels_;
   std::vector<glm::vec4> light_;
+  std::vector<glm::vec2> most_;  // the two largest luminances of each block; -1 if it has none
 };
 
 FOVEA_PASS(NearFieldPixels);

@@ -1,6 +1,7 @@
 // Compares near-field light at single pixels with plain rays in a room that shines, and with what is known already.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 
@@ -85,6 +86,24 @@ TEST(NearFieldPixels, OnlyWhereItIsNotKnown) {
   test.set("near_field", before);
   test.run(2);
   EXPECT_EQ(test.values<uint64_t>("near_field"), after);
+}
+
+// In a block of 4 x 4 pixels no single ray makes one pixel brighter than all others.
+TEST(NearFieldPixels, NoFireflies) {
+  const size_t count = size_t(kSize.x) * kSize.y;
+  PassTest test("near-field-pixels");
+  wire(test, shiningRoom().scene, std::vector<uint8_t>(count, 255), std::vector<uint64_t>(count));
+  test.run();
+  const auto light = test.values<uint64_t>("near_field");
+  for (int block = 0; block < kSize.x / 4 * kSize.y / 4; ++block) {
+    std::vector<float> red;  // all light of the room has the same colour
+    for (int i = 0; i < 16; ++i) {
+      const int x = block % (kSize.x / 4) * 4 + i % 4, y = block / (kSize.x / 4) * 4 + i / 4;
+      red.push_back(glm::unpackHalf4x16(light[size_t(y * kSize.x + x)]).r);
+    }
+    std::ranges::sort(red);
+    EXPECT_NEAR(red[15], red[14], 2e-3f * red[14]) << "block " << block;
+  }
 }
 
 TEST(NearFieldPixels, BackgroundAndEmptyScenesAreLeftAsTheyAre) {
