@@ -56,5 +56,7 @@ std::vector<graph::MemberSpec> eyePathMembers();
 std::vector<graph::MemberSpec> shadeMaskOutput(const graph::SizeExpr& width, const graph::SizeExpr& height,
                                                const graph::SizeExpr& blocks);
 std::vector<graph::MemberSpec> shadeMaskMembers();
+// The mask alone, for a pass on the CPU.
+std::vector<graph::MemberSpec> shadeMaskOnHost();
 
 }  // namespace fovea::passes

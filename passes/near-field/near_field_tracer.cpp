@@ -49,6 +49,15 @@ class Tracer {
   }
   uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
 
+  glm::vec4 pixelLight(glm::uvec2 pixel, NearFieldStatistics& statistics) const {
+    const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
+    if (!v.there) return glm::vec4(0);
+    glm::vec3 sum(0);
+    for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn)
+      sum += lightAt(v, pixel, turn, statistics);
+    return {sum / float(std::max(settings_.samples, 1u)), 1};
+  }
+
  private:
   // Returns the mean over the turns whose pixel shows a surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
@@ -104,6 +113,24 @@ class Tracer {
   Fovea fovea_;
 };
 
+// Calls trace(row, statistics) for all rows, on several threads, and returns the sum of the statistics.
+template <class Trace>
+NearFieldStatistics traceRows(uint32_t count, uint32_t threads, const Trace& trace) {
+  std::vector<NearFieldStatistics> rows(count);
+  std::atomic<uint32_t> next = 0;
+  onThreads(std::min(threadCount(threads), count), [&] {
+    for (uint32_t row = next++; row < count; row = next++) trace(row, rows[row]);
+  });
+  NearFieldStatistics sum;  // summed in a fixed order
+  for (const NearFieldStatistics& row : rows) {
+    sum.rays += row.rays;
+    sum.shaded += row.shaded;
+    sum.hits += row.hits;
+    sum.length += row.length;
+  }
+  return sum;
+}
+
 }  // namespace
 
 glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
@@ -119,20 +146,20 @@ glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
 NearFieldStatistics traceNearField(const Frame& frame, const View& view, const RayScene& rays,
                                    const NearFieldSettings& settings, std::span<glm::vec4> image) {
   const Tracer tracer(frame, view, rays, settings, image);
-  std::vector<NearFieldStatistics> rows(tracer.tileRows());
-  std::atomic<uint32_t> next = 0;
-  const auto work = [&] {
-    for (uint32_t row = next++; row < rows.size(); row = next++) tracer.traceTiles(row, rows[row]);
-  };
-  onThreads(std::min(threadCount(settings.threads), uint32_t(rows.size())), work);
-  NearFieldStatistics sum;  // summed in a fixed order
-  for (const NearFieldStatistics& row : rows) {
-    sum.rays += row.rays;
-    sum.shaded += row.shaded;
-    sum.hits += row.hits;
-    sum.length += row.length;
-  }
-  return sum;
+  return traceRows(tracer.tileRows(), settings.threads,
+                   [&](uint32_t row, NearFieldStatistics& sum) { tracer.traceTiles(row, sum); });
+}
+
+NearFieldStatistics traceNearFieldPixels(const Frame& frame, const View& view, const RayScene& rays,
+                                         const NearFieldSettings& settings,
+                                         std::span<const glm::uvec2> pixels, std::span<glm::vec4> light) {
+  constexpr size_t kChunk = 256;
+  const Tracer tracer(frame, view, rays, settings, {});
+  return traceRows(uint32_t((pixels.size() + kChunk - 1) / kChunk), settings.threads,
+                   [&](uint32_t row, NearFieldStatistics& sum) {
+                     const size_t end = std::min((row + 1) * kChunk, pixels.size());
+                     for (size_t i = row * kChunk; i < end; ++i) light[i] = tracer.pixelLight(pixels[i], sum);
+                   });
 }
 
 }  // namespace fovea::passes

@@ -40,6 +40,13 @@ NearFieldStatistics traceNearField(const scene::Frame& frame, const scene::View&
                                    const scene::RayScene& rays, const NearFieldSettings& settings,
                                    std::span<glm::vec4> image);
 
+// The same light at single pixels, each with `samples` rays of its own; `foveaRadius` and `spacing` are not used.
+//
+// light: one entry per pixel. rgb: irradiance / pi; a: 1. All zeros if the pixel shows no surface.
+NearFieldStatistics traceNearFieldPixels(const scene::Frame& frame, const scene::View& view,
+                                         const scene::RayScene& rays, const NearFieldSettings& settings,
+                                         std::span<const glm::uvec2> pixels, std::span<glm::vec4> light);
+
 // Code of a sample, as pass temporal-accumulation reads it; exact in half precision. Bits 0 to 3: width of the block
 // in pixels, at most 8; 4 to 6 and 7 to 9: x and y in it of the sampled pixel; 10: that pixel shows no surface, so
 // there is no sample.

@@ -33,10 +33,17 @@ class Reproject : public Pass {
             "surfaces seen by the first eye");
     d.input("source_irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance of the first eye to warp, the output `irradiance` of pass deferred");
+    d.input("source_near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: the part of it that comes from nearby surfaces (pass near-field), to warp on its own for "
+            "pass near-field-pixels")
+        .makeOptional();
     d.output("irradiance", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height),
              Usage::StorageRead | Usage::StorageWrite,
              "rgb: warped irradiance; a: 1 where it has a source, 0.5 where it was filled from nearby "
              "pixels, 0 where there is neither and in the background");
+    d.output("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::StorageWrite,
+             "rgb: warped `source_near_field`; a: 1 where it has a source, else 0; undefined if nothing is "
+             "wired there");
     const SizeExpr blocks =
         ceilDiv(width, parameter("interleave")) * ceilDiv(height, parameter("interleave"));
     d.output("shade", "shade-mask", shadeMaskOutput(width, height, blocks),
@@ -77,6 +84,7 @@ class Reproject : public Pass {
     d.fill("tile_blocks", 0);
     d.fill("open_tiles", 1);
     d.step("reproject/warp.comp")
+        .define("NEAR_FIELD", wired("source_near_field"))
         .constant("sourceWorldToClip", [](const RecordContext& ctx) { return sourceView(ctx).worldToClip; })
         .constant("leastCos", leastCos)
         .groups(ceilDiv(widthOf("irradiance"), kRowWidth), ceilDiv(heightOf("irradiance"), kRows));

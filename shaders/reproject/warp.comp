@@ -2,7 +2,8 @@
 // Warps the irradiance of the first eye to the surfaces that the second eye sees. The point of a pixel is projected
 // into the source image. Of the four texels around it, those that show the same surface count (near the tangent plane
 // of the pixel, with similar normals), with bilinear weights. A pixel with too small a weight has no source; the
-// tiles that contain such pixels are listed for fill.comp.
+// tiles that contain such pixels are listed for fill.comp. Defines: NEAR_FIELD 0/1, whether the light from nearby
+// surfaces, a part of the irradiance, is also warped on its own.
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
 #include "reproject/records.h"
@@ -19,6 +20,10 @@ layout(rgba32f) uniform readonly image2D sourceGbufferPosition;
 layout(rgba16f) uniform readonly image2D sourceGbufferNormal;
 layout(rgba16f) uniform readonly image2D sourceIrradiance;
 layout(rgba16f) uniform writeonly image2D irradiance;
+#if NEAR_FIELD
+layout(rgba16f) uniform readonly image2D sourceNearField;
+layout(rgba16f) uniform writeonly image2D nearField;
+#endif
 layout(std430) buffer TileBlocks { uint count[]; } tileBlocks;      // here: 1 if it is listed
 layout(std430) buffer OpenTiles { uint x, y, z; } openTiles;        // groups of fill.comp; x: 1 + listed tiles
 layout(std430) writeonly buffer OpenList { uint list[]; } openList;
@@ -32,8 +37,10 @@ layout(push_constant) uniform Constants {
 };
 
 // Returns rgb: irradiance, a: bilinear weight of the texels that show the surface; all zeros outside the source
-// image. Differences from one of the texels are averaged, so that uniform light is preserved to the last bit.
-vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
+// image. Differences from one of the texels are averaged, so that uniform light is preserved to the last bit. near:
+// the same for the light from nearby surfaces.
+vec4 fromSource(vec4 position, vec3 normal, vec3 face, out vec3 near) {
+  near = vec3(0.0);
   vec4 clip = sourceWorldToClip * vec4(position.xyz, 1.0);
   if (clip.w <= 0.0) return vec4(0.0);
   ivec2 size = imageSize(sourceGbufferPosition);
@@ -59,7 +66,11 @@ vec4 fromSource(vec4 position, vec3 normal, vec3 face) {
     found = true;
     vec2 w = mix(1.0 - f, f, vec2(d));
     sum += w.x * w.y * vec4(value - origin, 1.0);
+#if NEAR_FIELD
+    near += w.x * w.y * imageLoad(sourceNearField, inside).rgb;
+#endif
   }
+  near /= max(sum.a, 1e-12);
   return vec4(origin + sum.rgb / max(sum.a, 1e-12), sum.a);
 }
 
@@ -73,14 +84,18 @@ void main() {
     vec3 normal = imageLoad(gbufferNormal, inside).xyz, face = octDecode(imageLoad(gbufferFace, inside).xy);
     bool surface = p == inside && position.w > 0.0, known = false;
     vec4 light = vec4(0.0);
+    vec3 near = vec3(0.0);
     if (surface) {
-      light = fromSource(position, normal, face);
+      light = fromSource(position, normal, face, near);
       known = light.a >= leastWeight;
     }
     open = open || (surface && !known);
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
     withoutSource += subgroupBallotBitCount(subgroupBallot(surface && !known));
     if (p == inside) imageStore(irradiance, p, known ? vec4(light.rgb, 1.0) : vec4(0.0));
+#if NEAR_FIELD
+    if (p == inside) imageStore(nearField, p, known ? vec4(near, 1.0) : vec4(0.0));
+#endif
   }
   uint turns = open ? 1u : 0u;  // on a CPU device a loop of zero turns is skipped, a branch is not
   for (uint i = 0u; i < turns; ++i) {

@@ -142,6 +142,47 @@ TEST(Stereo, FoveatedSecondEyeEqualsAllOfItShaded) {
   EXPECT_LT(again.p95, 1e-6);
 }
 
+double meanSquaredError(const std::vector<float>& image, const std::vector<float>& want) {
+  double sum = 0;
+  for (size_t i = 0; i < image.size(); ++i)
+    if (i % 4 < 3) sum += std::pow(image[i] - want[i], 2);
+  return sum / (0.75 * double(image.size()));
+}
+
+// The full method: the first eye does not know of the second, and the second is about as close to what it should see
+// as the first is.
+TEST(Stereo, SecondEyeOfFovealIsAsGoodAsTheFirst) {
+  const scene::Scene s = scene::builtin("cornellbox");
+  GraphRunOptions options;
+  options.size = {96, 96};
+  options.frames = 6;
+  options.set = {"vpl_count=320", "map_size=32", "shadow_map_size=512", "voxels=48"};
+  const GraphRun both = runGraph("foveal_stereo", s, options);
+  const auto look = [](const std::string& view) {
+    return [view](scene::Frame& frame) {
+      frame.views[0] = *frame.findView(view);
+      frame.views[0].name = "main";
+    };
+  };
+  options.beforeFrame = look("left");
+  const GraphRun left = runGraph("foveal", s, options);
+  EXPECT_EQ(both.outputs.at("radiance").bytes, left.outputs.at("radiance").bytes);
+
+  const auto errorOf = [&](const std::string& view, const std::string& output) {
+    GraphRunOptions exact = options;
+    exact.set = {"spp=256"};
+    exact.frames = 1;  // nothing moves
+    exact.beforeFrame = look(view);
+    const GraphRun truth = runGraph("reference", s, exact);
+    return meanSquaredError(toFloats(both.outputs.at(output)), toFloats(truth.outputs.at("indirect")));
+  };
+  const double first = errorOf("left", "indirect"), second = errorOf("right", "indirect_right");
+  std::printf("mean squared error of the first eye %.3g, of the second %.3g\n", first, second);
+  EXPECT_LT(second, 1.15 * first);
+  EXPECT_GT(counter(both, "right/near-field.pixels"), 0);
+  EXPECT_LT(counter(both, "right/near-field.pixels"), 0.05 * counter(both, "right/reproject.pixels"));
+}
+
 class BuiltinStereo : public testing::TestWithParam<const char*> {};
 
 // Thin things, curtains, leaves and the border that only the second eye sees, against the same eye shaded completely

@@ -257,6 +257,29 @@ TEST(Reproject, SilhouettesKeepTheirOwnLight) {
     }
 }
 
+// Light from nearby surfaces is warped like all light, but never filled in.
+TEST(Reproject, NearFieldComesFromTheSamePlaces) {
+  const Pillar scene;
+  const Eye first = scene.eye(0), second = scene.eye(-0.25f);
+  const auto source = sample(first.seen, [](glm::vec3 p) { return glm::vec3(2) + glm::sin(3.0f * p); });
+  std::vector<uint16_t> half;
+  for (const glm::vec3& v : source)
+    for (const float x : {v.r / 4, v.g / 4, v.b / 4, 7.0f}) half.push_back(glm::packHalf1x16(x));
+  PassTest test("reproject");
+  test.param("fill", 2);
+  wire(test, first, second.seen, source);
+  test.image("source_near_field", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1, half);
+  const Result result(test);
+  const auto near = test.floats("near_field");
+  for (size_t i = 0; i < second.seen.pixels.size(); ++i) {
+    ASSERT_EQ(near[4 * i + 3], result.known(i) ? 1.0f : 0.0f) << "pixel " << i;
+    for (size_t c = 0; c < 3; ++c)
+      ASSERT_NEAR(near[4 * i + c], result.known(i) ? result.irradiance[4 * i + c] / 4 : 0.0f, 1e-3)
+          << "pixel " << i;
+  }
+  EXPECT_GT(test.counter("filled_pixels"), 20);
+}
+
 // A pixel without a source takes the mean of its surface's light at most two pixels away in its tile, with more
 // weight for nearer pixels. Only blocks that contain a pixel without any such neighbour are shaded.
 TEST(Reproject, NarrowHolesAreFilledFromTheirSurface) {
