@@ -1,4 +1,5 @@
-// The display transform with which images are compared: T(x) = sRGB(clamp01(exposure * x)).
+// The display transform with which images are compared: T(x) = sRGB(clamp01(exposure * x)). The other curves are for
+// looking only.
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
@@ -19,12 +20,16 @@ class Tonemap : public Pass {
              Usage::ColorAttachment, "rgb: sRGB-encoded, a: 1");
     d.parameter("exposure", real(0, 0, 1e9),
                 "factor from radiance to display intensity; 0 uses the scene's own exposure");
-    d.parameter("operator", choice("clamp", {"clamp", "reinhard"}),
-                "curve before encoding: `clamp` clamps to 1 (used by every measure), `reinhard` is x / (1 + "
-                "luminance)");
+    d.parameter(
+        "operator", choice("clamp", {"clamp", "reinhard", "agx"}),
+        "curve before encoding: `clamp` is linear and clamps to 1 (used by every measure), `reinhard` is "
+        "x / (1 + luminance), `agx` rolls highlights off towards white as film does (for looking)");
+    d.parameter("contrast", real(1, 0.5, 2), "exponent of the codes of `agx`; 1 changes nothing");
+    d.parameter("saturation", real(1, 0, 2), "factor on the colour of the codes of `agx`; 1 changes nothing");
     d.counter("non_finite", "pixels whose radiance holds a NaN (shown black) or an infinity");
     d.fullscreen("tonemap/tonemap.frag", {"image"})
         .define("REINHARD", is("operator", "reinhard"))
+        .define("AGX", is("operator", "agx"))
         .constant("exposure", [](const RecordContext& ctx) {
           const float exposure = float(ctx.parameters().real("exposure"));
           return exposure > 0 ? exposure : ctx.frame().exposure;
