@@ -29,11 +29,13 @@ inline std::filesystem::path sharedScenes() {
   return {};
 }
 
+// Declares `folder`. NOLINTBEGIN(bugprone-macro-parentheses): it is a name, which takes no parentheses.
 #define FOVEA_NEED_SCENES(folder)                                                                   \
   const std::filesystem::path folder = fovea::test::sharedScenes();                                 \
   if (folder.empty())                                                                               \
   GTEST_SKIP() << "the shared test models are not here: put them into ../shared/scenes beside the " \
                   "source, or name their folder in FOVEA_SCENES"
+// NOLINTEND(bugprone-macro-parentheses)
 
 // A temporary folder that is removed at the end.
 class TemporaryFolder {
