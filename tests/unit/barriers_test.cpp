@@ -151,6 +151,7 @@ TEST(Barriers, MemoryTakenOverWaitsForItsLastOccupant) {
             (Lines{// c's memory of the last frame, which d sampled.
                    "a.image undefined > general compute:none > compute:write",
                    // d's memory of the last frame, which the readback read.
+                   // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): two changes before one level
                    "a.image general > sampled compute:write > compute:sampled; "
                    "b.image_out undefined > general transfer:none > compute:write",
                    "b.image_out general > sampled compute:write > compute:sampled; "

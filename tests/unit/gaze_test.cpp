@@ -73,7 +73,7 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
   EXPECT_THAT(error("t,x,y,valid\n0.2,0.5,0.5,1\n0.1,0.5,0.5,1\n"),
               AllOf(HasSubstr("g.csv:3"), HasSubstr("increase")));
   EXPECT_THAT(error("time,x,y\n"), HasSubstr("g.csv:1"));
-  EXPECT_THAT(error(std::string("\x00\xff\x13 garbage", 12)), HasSubstr("g.csv:1"));
+  EXPECT_THAT(error(std::string("\x00\xff\x13 garbage", 11)), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(""), HasSubstr("no header line"));
 }
 
