@@ -27,6 +27,21 @@ Camera eyeOf(Camera camera, float side, float ipd) {
   return camera;
 }
 
+// The radical inverse of Halton's sequence: the digits of a number, mirrored at the point.
+float mirrored(uint32_t number, uint32_t base) {
+  float value = 0, digit = 1;
+  for (; number > 0; number /= base) value += (digit /= float(base)) * float(number % base);
+  return value;
+}
+glm::vec2 halton(uint32_t number) { return {mirrored(number, 2), mirrored(number, 3)}; }
+
+// Moves the picture of a projection by `offset` in clip space.
+glm::mat4 shifted(const glm::mat4& projection, glm::vec2 offset) {
+  glm::mat4 m = projection;
+  for (int c = 0; c < 4; ++c) m[c] += glm::vec4(offset * projection[c].w, 0, 0);
+  return m;
+}
+
 }  // namespace
 
 glm::vec3 View::rayDirection(glm::vec2 p) const {
@@ -67,6 +82,24 @@ View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry, g
   v.clipToWorld = glm::mat4(glm::inverse(glm::dmat4(v.worldToClip)));
   v.previousWorldToClip = v.worldToClip;
   return v;
+}
+
+void jitter(View& view, glm::vec2 now, glm::vec2 before) {
+  view.jitter = now;
+  view.previousJitter = before;
+  const glm::vec2 pixel = 2.0f / glm::vec2(view.size);
+  if (before != glm::vec2(0)) view.previousWorldToClip = shifted(view.previousWorldToClip, -pixel * before);
+  if (now == glm::vec2(0)) return;
+  view.viewToClip = shifted(view.viewToClip, -pixel * now);
+  view.worldToClip = shifted(view.worldToClip, -pixel * now);
+  view.clipToWorld = glm::mat4(glm::inverse(glm::dmat4(view.worldToClip)));
+}
+
+glm::vec2 jitterAt(uint64_t index, uint32_t count) {
+  if (count < 2) return glm::vec2(0);
+  glm::vec2 mean(0);
+  for (uint32_t i = 1; i <= count; ++i) mean += halton(i) / float(count);
+  return halton(uint32_t(index % count) + 1) - mean;
 }
 
 const View* Frame::findView(std::string_view name) const {

@@ -20,6 +20,14 @@ Frustum frustumOf(const Lens& lens, bool left);
 View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry,
               glm::vec2 gaze = glm::vec2(0.5f), const std::optional<Frustum>& frustum = {});
 
+// Lets a view look beside the centres of its pixels by `now` pixels (x right, y down), after it looked beside them by
+// `before` in the last frame. This changes its matrices, also the previous one. (0, 0) leaves them as they are.
+void jitter(View& view, glm::vec2 now, glm::vec2 before);
+
+// Place in the pixel, from its centre, of frame `index` where `count` places take turns: points of the Halton sequence
+// of bases 2 and 3, moved so that their mean is the centre. (0, 0) if `count` is less than 2.
+glm::vec2 jitterAt(uint64_t index, uint32_t count);
+
 // The views of every frame: the camera, and the two eyes, each half of Scene::ipd to the left or right of the camera,
 // looking in the same direction, and through Scene::lens if the scene has one.
 inline constexpr const char* kViewNames[] = {"main", "left", "right"};

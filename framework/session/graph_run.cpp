@@ -42,6 +42,9 @@ image::Image toImage(const graph::OutputData& output) {
 
 namespace {
 
+// Parameter of a pass with a view: how many places in its pixels the view takes in turn, one a frame.
+constexpr const char* kJitterParameter = "jitter";
+
 // Parts of graphs have inputs that the graph around them wires.
 void refuseInputs(const graph::Description& description) {
   Diagnostics messages;
@@ -90,6 +93,16 @@ scene::Frame GraphRun::frame(uint64_t index) const {
   scene::Frame f =
       scene::makeFrame(scene_, geometry_, options_.size, index, options_.seed, options_.frameRate);
   f.gpu = gpuScene_.get();
+  for (size_t i = 0; i < graph().passes.size(); ++i) {
+    const graph::BoundPass& pass = graph().passes[i];
+    if (!plan_->passLive[i] || !pass.declaration->usesView || !pass.parameters.find(kJitterParameter))
+      continue;
+    const auto places = uint32_t(pass.parameters.integer(kJitterParameter));
+    const glm::vec2 now = scene::jitterAt(index, places);
+    for (scene::View& view : f.views)
+      if (view.name == graph().views[pass.view])
+        scene::jitter(view, now, f.cameraCut ? now : scene::jitterAt(index - 1, places));
+  }
   return f;
 }
 

@@ -57,6 +57,8 @@ class GraphRun {
   const std::shared_ptr<const graph::Plan>& plan() const { return plan_; }
   const graph::BoundGraph& graph() const { return *plan_->graph; }
   const std::vector<std::string>& readback() const { return readback_; }
+  // Frame `index` of the scene. A view is jittered (scene::jitterAt) if a pass that runs looks through it and has a
+  // parameter `jitter`, the number of places that take turns; otherwise every view looks through the pixels' centres.
   scene::Frame frame(uint64_t index) const;
   // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.
   void submit(const scene::Frame& frame, bool readOutputs);

@@ -1,6 +1,7 @@
 // The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
 // the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
 // buffer, Burns and Hunt, JCGT 2013).
+#include "common/pixel_ray.glsl"
 #include "common/scene.glsl"
 
 uniform utexture2D seen;
@@ -13,13 +14,6 @@ layout(location = 5) out uint gbufferId;
 
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
-
-// Direction of the ray through the centre of a pixel, not normalised; also for off-axis projections.
-vec3 pixelRay(ivec2 p) {
-  vec2 ndc = (2.0 * vec2(p) + 1.0) * view.inverseSize - 1.0;
-  vec2 d = (ndc + view.viewToClip[2].xy) / vec2(view.viewToClip[0][0], view.viewToClip[1][1]);
-  return vec3(d, -1.0) * mat3(view.worldToView);
-}
 
 // Weights of b and c where the line through the eye meets the plane of a, b, c (Moeller and Trumbore 1997). The
 // rasteriser accepts some pixels whose centre just misses the triangle; they get the nearest point inside.

@@ -107,5 +107,36 @@ TEST(MotionVectors, FollowsObjects) {
   EXPECT_GT(checked, 1000);
 }
 
+// With a jittered view, what stands still keeps its pixel, so that no history wanders. At an edge, where that pixel
+// showed something else, the history is that of a pixel beside it which showed the surface.
+TEST(MotionVectors, JitterDoesNotMoveWhatStandsStill) {
+  Eye now({0, 0, 0}), before({0, 0, 0});
+  const glm::vec2 jitterNow(0.45f, -0.3f), jitterBefore(-0.35f, 0.4f);
+  scene::jitter(before.view, jitterBefore, {});
+  scene::jitter(now.view, jitterNow, jitterBefore);
+  now.seen = now.look(), before.seen = before.look();
+  const auto got = originsOf(now, before);
+  int still = 0, beside = 0, lost = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const SurfacePixel& p = now.seen.at(x, y);
+      const uint32_t origin = got[size_t(y * kSize.x + x)];
+      if (sameSurface(p, before.seen.at(x, y))) {
+        EXPECT_EQ(pixelOf(origin), glm::ivec2(x, y));
+        ++still;
+      } else if (origin == kNone) {
+        ++lost;
+      } else {
+        const glm::ivec2 from = pixelOf(origin);
+        EXPECT_TRUE(sameSurface(p, before.seen.at(from.x, from.y))) << x << " " << y;
+        EXPECT_LE(glm::distance(glm::vec2(from), glm::vec2(x, y)), 1.5f) << x << " " << y;
+        ++beside;
+      }
+    }
+  EXPECT_GT(still, 1700);
+  EXPECT_GT(beside, 10);
+  EXPECT_LT(lost, 3);
+}
+
 }  // namespace
 }  // namespace fovea::test

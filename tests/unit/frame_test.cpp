@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtx/component_wise.hpp>
 
 namespace fovea::scene {
 namespace {
@@ -156,6 +157,56 @@ TEST(Frame, PreviousMatrixIsTheLastFrames) {
   EXPECT_EQ(second.views[0].previousWorldToClip, first.views[0].worldToClip);
   EXPECT_DOUBLE_EQ(second.time, 1.0 / 42.0);
   EXPECT_EQ(second.exposure, 3);
+}
+
+// A jittered view shows at the centre of a pixel what a view without jitter shows beside it. Its matrices and rays agree,
+// and the previous matrix is that of the frame before, with its own jitter.
+TEST(View, JitterLooksBesideThePixelCentres) {
+  const Scene s = sceneWithPath();
+  const Geometry g = bounds(glm::vec3(-1), glm::vec3(1));
+  const glm::vec2 now(0.25f, -0.4f), before(-0.1f, 0.3f);
+  for (const char* name : kViewNames) {
+    const View plain = *makeFrame(s, g, {64, 48}, 15, 0).findView(name);
+    View v = plain, last = *makeFrame(s, g, {64, 48}, 14, 0).findView(name);
+    jitter(last, before, {});
+    jitter(v, now, before);
+    EXPECT_EQ(v.jitter, now);
+    EXPECT_EQ(v.previousJitter, before);
+    EXPECT_EQ(v.previousWorldToClip, last.worldToClip);
+    for (const glm::vec2 pixel : {glm::vec2(0.5f, 0.5f), glm::vec2(31.5f, 20.5f), glm::vec2(63.5f, 47.5f)}) {
+      EXPECT_LT(glm::distance(v.rayDirection(pixel), plain.rayDirection(pixel + now)), 1e-6f);
+      const glm::vec3 ndc = project(v, v.eye + 7.0f * v.rayDirection(pixel));
+      EXPECT_NEAR((ndc.x * 0.5f + 0.5f) * 64, pixel.x, 1e-3f);
+      EXPECT_NEAR((ndc.y * 0.5f + 0.5f) * 48, pixel.y, 1e-3f);
+      const glm::vec4 back = v.clipToWorld * glm::vec4(ndc, 1.0f);
+      EXPECT_LT(glm::distance(glm::vec3(back) / back.w, v.eye + 7.0f * v.rayDirection(pixel)), 2e-3f);
+    }
+    View same = plain;
+    jitter(same, glm::vec2(0), glm::vec2(0));
+    EXPECT_EQ(same.worldToClip, plain.worldToClip);
+    EXPECT_EQ(same.previousWorldToClip, plain.previousWorldToClip);
+  }
+}
+
+// The places of a turn lie in the pixel, are centred on it, and fill it evenly: each half has half of them.
+TEST(View, JitterFillsThePixel) {
+  EXPECT_EQ(jitterAt(5, 0), glm::vec2(0));
+  EXPECT_EQ(jitterAt(5, 1), glm::vec2(0));
+  for (const uint32_t count : {8u, 16u}) {
+    glm::vec2 sum(0);
+    uint32_t left = 0, top = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      const glm::vec2 place = jitterAt(i, count);
+      EXPECT_LT(glm::compMax(glm::abs(place)), 0.56f);
+      for (uint32_t other = 0; other < i; ++other)
+        EXPECT_GT(glm::distance(place, jitterAt(other, count)), 0.12f);
+      EXPECT_EQ(place, jitterAt(i + 3 * count, count));
+      sum += place, left += place.x < 0, top += place.y < 0;
+    }
+    EXPECT_LT(glm::length(sum), 1e-5f);
+    EXPECT_NEAR(left, count / 2, 1);
+    EXPECT_NEAR(top, count / 2, 1);
+  }
 }
 
 TEST(Frame, GazeHoldsThroughBlinks) {

@@ -117,7 +117,7 @@ TEST(SharedRecords, Scene) {
   expectLayout(header, "ViewBlock", sizeof(ViewBlock),
                {AT(ViewBlock, worldToView), AT(ViewBlock, viewToClip), AT(ViewBlock, worldToClip),
                 AT(ViewBlock, clipToWorld), AT(ViewBlock, previousWorldToClip), AT(ViewBlock, eye),
-                AT(ViewBlock, unused0), AT(ViewBlock, gaze), AT(ViewBlock, unused1), AT(ViewBlock, size),
+                AT(ViewBlock, unused0), AT(ViewBlock, gaze), AT(ViewBlock, jitterStep), AT(ViewBlock, size),
                 AT(ViewBlock, inverseSize)});
   expectLayout(
       header, "LightRecord", sizeof(LightRecord),

@@ -298,6 +298,9 @@ struct View {
   glm::uvec2 size{0};        // pixels
   glm::vec2 gaze{0.5f};      // normalised image coordinates, origin top-left
   float verticalFov = 0.8f;  // radians, from the lower to the upper edge
+  // Where the view looks through its pixels in this frame and in the last one, in pixels from their centres. The
+  // matrices contain it, so that what is drawn at a pixel's centre is what lies there (scene::jitter).
+  glm::vec2 jitter{0}, previousJitter{0};
   // World-space direction (not normalised) of the ray through image position p in pixels. Pixel centres are at +0.5.
   glm::vec3 rayDirection(glm::vec2 p) const;
 };

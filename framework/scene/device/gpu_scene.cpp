@@ -121,6 +121,7 @@ ViewBlock viewEntry(const View& v) {
   block.previousWorldToClip = v.previousWorldToClip;
   block.eye = v.eye;
   block.gaze = v.gaze;
+  block.jitterStep = v.jitter - v.previousJitter;
   block.size = glm::max(glm::vec2(v.size), glm::vec2(1));
   block.inverseSize = 1.0f / block.size;
   return block;

@@ -38,8 +38,8 @@ struct ViewBlock {
   mat4 previousWorldToClip SHARED_ZERO;
   vec3 eye SHARED_ZERO;  // world space
   float unused0 SHARED_ZERO;
-  vec2 gaze SHARED_ZERO;  // normalised, origin top-left
-  vec2 unused1 SHARED_ZERO;
+  vec2 gaze SHARED_ZERO;         // normalised, origin top-left
+  vec2 jitterStep SHARED_ZERO;   // pixels: by how much View::jitter has changed since the last frame
   vec2 size SHARED_ZERO;         // pixels
   vec2 inverseSize SHARED_ZERO;  // 1 / pixels
 };
