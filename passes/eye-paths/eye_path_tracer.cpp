@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "framework/base/random.h"
 #include "framework/base/threads.h"
@@ -18,7 +19,9 @@ using namespace scene;
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // random streams
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
-const glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);
+constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
+
+float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 3; }
 
 class Tracer {
  public:
@@ -31,7 +34,9 @@ class Tracer {
   }
   bool stands(const EyePathStart& start, uint64_t& rays) const;
   bool belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const;
-  EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const;
+  // Path `turn` of the `paths` that leave a start.
+  EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint32_t paths,
+                 uint64_t& rays) const;
 
  private:
   const View& view_;
@@ -65,24 +70,39 @@ bool Tracer::belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays)
   return v.there && glm::distance(v.position, start.position) <= reach;
 }
 
-EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn, uint64_t& rays) const {
+EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn, uint32_t paths,
+                       uint64_t& rays) const {
   EyePathEnd end;
+  TracedSurface from;
+  from.position = start.position;
+  from.normal = start.normal;
+  from.face = start.face;
+  from.origin = start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
+  const uint32_t stream = randomStream(0, 0, kPathStream, point);
+  const uint32_t aimed = surfaces_.hasEmitters() ? paths / kAimedShare : 0, others = paths - aimed;
+  const bool isAimed = turn >= others;
+  SurfaceTracer::EmitterRay aim;
+  if (isAimed) aim = surfaces_.towardsEmitter(from, hashCombine(stream, turn));
+  if (isAimed && !aim.there) return end;
   const glm::vec3 direction =
-      cosineDirection(start.normal, streamSequence(randomStream(0, 0, kPathStream, point), turn));
+      isAimed ? aim.direction : cosineDirection(start.normal, streamSequence(stream, turn));
   if (glm::dot(direction, start.face) <= 0) return end;
-  const glm::vec3 origin =
-      start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
-  const TracedSurface v = surfaces_.arrive(origin, direction, kFarAway, rays);
-  if (!v.there) return end;
-  const glm::vec3 rho = surfaces_.reflectance(v);
+  const TracedSurface v = surfaces_.arrive(from.origin, direction, kFarAway, rays);
+  if (!v.there || (isAimed && v.triangle != aim.triangle)) return end;
+  const glm::vec3 rho = surfaces_.reflectance(v), emitted = surfaces_.emitted(v);
   end.radiance = surfaces_.direct(v, rho, rays);
-  end.kind = end.radiance == glm::vec3(0) ? 1.0f : 2.0f;
-  if (settings_.bounces > 1)
-    end.radiance += rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
-                                           randomStream(turn, 0, kGatherStream, point), rays);
+  end.kind = meanChannel(emitted) > meanChannel(end.radiance) ? 3.0f
+             : end.radiance == glm::vec3(0)                   ? 1.0f
+                                                              : 2.0f;
+  end.radiance += emitted + rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
+                                                   randomStream(turn, 0, kGatherStream, point), rays);
   end.position = v.position;
   end.normal = v.face;
-  end.luminance = glm::dot(end.radiance, kLuminance);
+  end.weight = 1;
+  if (aimed == 0) return end;
+  const float cosine = glm::dot(start.normal, direction) * glm::one_over_pi<float>();
+  end.weight =
+      float(paths) * cosine / (float(others) * cosine + float(aimed) * surfaces_.emitterDensity(from, v));
   return end;
 }
 
@@ -90,7 +110,7 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
 
 float sumUnit(std::span<const EyePathEnd> ends) {
   glm::dvec3 sum(0);
-  for (const EyePathEnd& e : ends) sum += glm::dvec3(e.radiance);
+  for (const EyePathEnd& e : ends) sum += glm::dvec3(e.radiance) * double(e.weight);
   return float(std::max({sum.r, sum.g, sum.b}) / 2147483648.0);
 }
 
@@ -117,8 +137,10 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
         const bool anew = (due && !tracer.belongs(start, pixel, count)) || !tracer.stands(start, count);
         if (anew) start = tracer.look(pixel, count);
         if (!anew && point % trace != settings.turn % trace) continue;
-        for (uint32_t path = point, turn = 0; path < ends.size(); path += points, ++turn)
-          ends[path] = start.there > 0 ? tracer.end(start, point, turn, count) : EyePathEnd{};
+        const uint32_t paths = (uint32_t(ends.size()) - point + points - 1) / points;
+        for (uint32_t turn = 0; turn < paths; ++turn)
+          ends[turn * points + point] =
+              start.there > 0 ? tracer.end(start, point, turn, paths, count) : EyePathEnd{};
       }
     traced += count;
   };

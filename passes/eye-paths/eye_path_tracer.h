@@ -1,4 +1,7 @@
-// Traces diffuse eye paths through the triangles: where each ends after one bounce, and the light found there.
+// Traces diffuse eye paths through the triangles: where each ends after one bounce, and the light found there. Where
+// surfaces emit, some of the paths of each start are aimed at them. All paths of a start are one sample of its
+// hemisphere, combined by the balance heuristic (Veach and Guibas 1995), and each says in its weight how many
+// cosine-weighted paths it stands for.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +45,7 @@ EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& vi
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);
 
-// Unit in which the light of all ends sums to 2^31 in the brightest channel.
+// Unit in which the weighted light of all ends sums to 2^31 in the brightest channel.
 float sumUnit(std::span<const EyePathEnd> ends);
 
 }  // namespace fovea::passes

@@ -17,7 +17,8 @@ namespace {
 
 using namespace scene;
 
-constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u;
+constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
+                   kAimStream = 0x6e656169u;
 constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
 
 class Tracer {
@@ -83,26 +84,49 @@ class Tracer {
     const uint32_t order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
     const uint32_t stream = randomStream(settings_.seed, group.x, kNearStream, group.y);
     const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, 16 * turn + order));
-    if (glm::dot(direction, v.face) <= 0) return glm::vec3(0);
     // Rays are traced only as far as they contribute: beyond that, a hit is worth no more than a miss.
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
+    glm::vec3 light(0);
+    if (surfaces_.hasEmitters() && radius2 > 0)
+      light = fromEmitter(v, randomStream(stream, turn, kAimStream, order), reach, statistics);
+    if (glm::dot(direction, v.face) <= 0) return light;
     const TracedSurface hit = surfaces_.arrive(v.origin, direction, reach, statistics.rays);
-    if (!hit.there) return glm::vec3(0);
+    if (!hit.there) return light;
     const float distance = glm::distance(hit.position, v.position);
-    const float part = radius2 / (distance * distance + radius2);
-    const float probability = radius2 > 0 ? std::min(kSure * part, 1.0f) : 1.0f;
+    const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
     statistics.hits += 1 / probability;
     statistics.length += distance / probability;
-    if (!(radius2 > 0)) return glm::vec3(0);
+    if (!(radius2 > 0)) return light;
     ++statistics.shaded;
     const glm::vec3 rho = surfaces_.reflectance(hit);
+    const float cosine = cosineDensity(v, direction);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
-    if (settings_.bounces > 1)
-      radiance += rho * surfaces_.gather(hit, settings_.bounces - 1, 1,
-                                         randomStream(stream, turn, kGatherStream, order), statistics.rays);
-    return radiance * (part / probability);
+    radiance += surfaces_.emitted(hit) * (cosine / (cosine + surfaces_.emitterDensity(v, hit)));
+    radiance += rho * surfaces_.gather(hit, settings_.bounces - 1, 1,
+                                       randomStream(stream, turn, kGatherStream, order), statistics.rays);
+    return light + radiance * (partAt(distance) / probability);
+  }
+
+  // The part of a ray aimed at an emissive surface, beside the cosine-weighted one, which may hit it by chance.
+  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, float reach,
+                        NearFieldStatistics& statistics) const {
+    const SurfaceTracer::EmitterRay to = surfaces_.towardsEmitter(v, stream);
+    if (!to.there || to.distance > reach || !surfaces_.sees(v, to, statistics.rays)) return glm::vec3(0);
+    const float cosine = cosineDensity(v, to.direction);
+    return to.radiance * (cosine / (cosine + to.density) * partAt(to.distance) / probabilityAt(to.distance));
+  }
+
+  // The part of the light from this distance that discs leave out, and the probability with which a ray goes so far.
+  float partAt(float distance) const {
+    const float radius2 = settings_.area * glm::one_over_pi<float>();
+    return radius2 / (distance * distance + radius2);
+  }
+  float probabilityAt(float distance) const { return std::min(kSure * partAt(distance), 1.0f); }
+
+  static float cosineDensity(const TracedSurface& v, glm::vec3 direction) {
+    return glm::dot(v.normal, direction) * glm::one_over_pi<float>();
   }
 
   const View& view_;

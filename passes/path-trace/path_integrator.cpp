@@ -225,7 +225,7 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
 bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
   const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
   if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
-  if (const float density = emitters_.density(path.hit.triangle); density > 0) {
+  if (const float density = emitters_.density(path.hit.triangle, path.vertex.origin); density > 0) {
     const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.direction));
     const float other =
         density * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr

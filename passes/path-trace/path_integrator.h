@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "framework/scene/frame.h"
+#include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "passes/path-trace/emitters.h"
 #include "passes/path-trace/surface_table.h"
 
 namespace fovea::passes {
@@ -92,7 +92,7 @@ class PathIntegrator {
   const scene::Frame& frame_;
   const scene::View& view_;
   const scene::RayScene& rays_;
-  Emitters emitters_;
+  scene::Emitters emitters_;
   SurfaceTable surfaces_;
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;

@@ -35,7 +35,7 @@ void main() {
       VoxelSide surface = loadSide(side);
       float light = texelFetch(radiance, int(side)).w;
       light = light > 0.0 ? light : 0.0;  // excludes NaN
-      end = PathEnd(surface.position, siteKind(light), surface.normal, light);
+      end = PathEnd(surface.position, siteKind(light, luminanceOf(surface.emission)), surface.normal, light);
     }
   }
   ends.list[path] = end;

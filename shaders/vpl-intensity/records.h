@@ -29,7 +29,7 @@ struct VplSite {
   // the region hardly sees it is kThinSite minus that; -1 means that it takes no paths.
   float handicap SHARED_ZERO;
   vec3 normal SHARED_ZERO;
-  float light SHARED_ZERO;  // luminance of its side
+  float light SHARED_ZERO;  // luminance of its side, negative if the side shines itself
 };
 SHARED_SIZE(VplSite, 32)
 

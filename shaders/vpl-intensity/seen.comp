@@ -88,6 +88,7 @@ void main() {
   seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
   int side = int(vpl.side);
   float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
+  if (light > 0.0 && siteKind(light, luminanceOf(loadSide(uint(side)).emission)) == kShining) light = -light;
   // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - vpl.life / float(fadeFrames + 1u), 0.0) : 0.0;
   float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;

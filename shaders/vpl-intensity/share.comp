@@ -50,6 +50,7 @@ layout(push_constant) uniform Constants {
 };
 
 // Of all VPLs, those of the highest rank come first, and then the nearest.
+const uint kShines = 4u;    // shines itself, as the end does; light this bright would make spots elsewhere
 const uint kSeen = 2u;      // seen by the start of the path; for traced paths only, as dark VPLs cannot emit the light
                             // of others
 const uint kSameKind = 1u;  // lit, or not lit, as the end is
@@ -62,11 +63,13 @@ EyePathEnd endOf(uint path) { return loadEyePathEnd(tracedEnds, path); }
 PathEnd endOf(uint path) { return loadPathEnd(ends, path); }
 #endif
 
-void give(uint vpl, uint path, float luminance, uint pathUnits) {
-  if (vpl == kNoSide || pathUnits == 0u) return;
-  atomicAdd(sums.list[vpl].paths, pathUnits);
+// part: the part of the path that the VPL gets.
+void give(uint vpl, uint path, float part) {
+  if (vpl == kNoSide || !(part > 0.0)) return;
 #if TRACED
   EyePathEnd end = endOf(path);
+  part *= end.weight;
+  atomicAdd(sums.list[vpl].paths, max(uint(part * kPathUnits + 0.5), 1u));
   if (!(end.unit > 0.0)) return;
 #if NEAR
   // The part of it that pass near-field supplies comes from no VPL.
@@ -74,12 +77,14 @@ void give(uint vpl, uint path, float luminance, uint pathUnits) {
   float d2 = dot(away, away);
   end.radiance *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
 #endif
-  uvec3 light = uvec3(end.radiance / end.unit * (float(pathUnits) / kPathUnits) + 0.5);
+  uvec3 light = uvec3(end.radiance / end.unit * part + 0.5);
   atomicAdd(sums.list[vpl].lightX, light.x);
   atomicAdd(sums.list[vpl].lightY, light.y);
   atomicAdd(sums.list[vpl].lightZ, light.z);
 #else
-  atomicAdd(sums.list[vpl].lightX, lightUnits(luminance, loadSite(sites, vpl).light, pathUnits));
+  uint units = uint(part * kPathUnits + 0.5);
+  atomicAdd(sums.list[vpl].paths, units);
+  atomicAdd(sums.list[vpl].lightX, lightUnits(endOf(path).luminance, abs(loadSite(sites, vpl).light), units));
 #endif
 }
 
@@ -107,7 +112,8 @@ void offer(inout Path p, uint vpl, VplSite site, float lambda, int words) {
   bool thin = site.handicap <= kThinSite;
   float handicap = thin ? kThinSite - site.handicap : site.handicap;
   precise float cost = dot(d, d) + lambda * (1.0 - dot(p.normal, site.normal)) + handicap;
-  uint its = siteKind(site.light) == p.kind ? kSameKind : 0u;
+  float kind = site.light < 0.0 ? kShining : siteKind(site.light, 0.0);
+  uint its = kind != p.kind ? 0u : kind == kShining ? kShines + kSameKind : kSameKind;
 #if TRACED
   its += (texelFetch(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
 #endif
@@ -128,10 +134,10 @@ void finish(Path p, uint path) {
   if (p.owner == kNoSide) return;
   float from = texelFetch(seenFrom, int(p.owner)).r;
   float part = partKept(texelFetch(densities, int(p.owner)).r, kept.value.median / areaCap, from);
-  uint units = p.owner == p.whole || p.whole == kNoSide ? uint(kPathUnits) : uint(part * kPathUnits + 0.5);
-  float luminance = endOf(path).luminance;
-  give(p.owner, path, luminance, units);
-  give(p.whole, path, luminance, uint(kPathUnits) - units);
+  // In whole units, so that the parts add up.
+  part = p.owner == p.whole || p.whole == kNoSide ? 1.0 : floor(part * kPathUnits + 0.5) / kPathUnits;
+  give(p.owner, path, part);
+  give(p.whole, path, 1.0 - part);
 }
 
 // An invocation compares several paths with each VPL, as on a CPU device loading the VPL is most of the work.

@@ -22,8 +22,15 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
   if (before_ + (VALUE) < before_) atomicAdd(HIGH, 1u); \
 }
 
-// VPLs and ends of eye paths on sides with direct light are kept apart from the others.
-float siteKind(float light) { return light > 0.0 ? 2.0 : 1.0; }
+// VPLs and ends of eye paths on sides with direct light are kept apart from the others, and so are those on sides that
+// shine themselves, by which is meant that most of their radiance is emission.
+const float kShining = 3.0;
+
+float siteKind(float light, float emission) {
+  return emission > 0.5 * light ? kShining : light > 0.0 ? 2.0 : 1.0;
+}
+
+float luminanceOf(vec3 colour) { return dot(colour, vec3(0.2126, 0.7152, 0.0722)); }
 
 // Paths are counted in fixed point, as they may be divided. The direct light at the end of a path is relative to that
 // of a VPL, with an upper limit.

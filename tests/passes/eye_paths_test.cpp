@@ -117,7 +117,8 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.01 * want[c]) << "channel " << c;
 }
 
-// In a closed room whose walls all shine, each bounce adds exactly one more term of the series.
+// In a closed room whose walls all shine, each bounce adds one more term of the series; the paths that are aimed at
+// the walls and those that hit them by chance together count as often as there are paths.
 TEST(EyePaths, Furnace) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
@@ -125,13 +126,57 @@ TEST(EyePaths, Furnace) {
   const uint32_t walls[6] = {m, m, m, m, m, m};
   addRoom(s, walls, 2);
   const Look look(std::move(s));
-  const float series[] = {1, 1.5f, 1.75f};
+  const double series[] = {1.5, 1.75, 1.875};
   for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
     passes::EyePathSettings settings;
     settings.bounces = bounces;
-    for (const EyePathEnd& e : look.trace(settings, 512))
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.radiance[c], series[bounces - 1] * float(1 << c), 1e-5f);
+    glm::dvec3 mean(0);
+    double weights = 0;
+    const auto ends = look.trace(settings, 8192);
+    for (const EyePathEnd& e : ends) {
+      EXPECT_EQ(e.kind, e.weight > 0 ? 3 : 0);
+      weights += double(e.weight) / double(ends.size());
+      mean += double(e.weight) * glm::dvec3(e.radiance) / double(ends.size());
+    }
+    EXPECT_NEAR(weights, 1, 0.02);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / series[bounces - 1] / (1 << c), 1, 0.03) << bounces;
   }
+}
+
+// A lamp so small that one path in some thousands hits it by chance. All starts have a path aimed at it, and together
+// they bring the light that it sends to the starts.
+TEST(EyePaths, AimedAtALamp) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0));
+  const uint32_t walls[6] = {grey, grey, grey, grey, grey, grey};
+  s.materials[lamp].emission = {100, 200, 400};
+  addRoom(s, walls, 2);
+  addQuad(s, lamp, {0.5f, 1.8f, -0.5f}, {0.1f, 0, 0}, {0, 0, 0.1f});  // shines downwards
+  const Look look(std::move(s));
+  passes::EyePathSettings settings;
+  settings.bounces = 1;
+  std::vector<EyePathStart> starts(settings.points);
+  std::vector<EyePathEnd> ends(4096);
+  passes::traceEyePaths(look.frame, look.frame.views[0], *look.rays, settings, {starts, ends});
+  double want = 0, got = 0;
+  int aimed = 0;
+  for (const EyePathStart& start : starts) {
+    const glm::dvec3 to = glm::dvec3(0.55, 1.8, -0.45) - glm::dvec3(start.position);
+    const double d2 = glm::dot(to, to), cosine = glm::dot(glm::dvec3(start.normal), to) / std::sqrt(d2);
+    if (cosine <= 0 || to.y <= 0) continue;
+    want += 100 * 0.01 * cosine * to.y / std::sqrt(d2) / d2 / glm::pi<double>() / double(starts.size());
+    ++aimed;
+  }
+  int found = 0;
+  for (const EyePathEnd& e : ends) {
+    if (e.kind != 3) continue;
+    ++found;
+    EXPECT_LT(e.weight, 4.0 / 3 + 1e-5);
+    got += double(e.weight) * double(e.radiance.r) / double(ends.size());
+  }
+  EXPECT_NEAR(found, aimed, 3);
+  EXPECT_GT(aimed, 100);
+  EXPECT_NEAR(got / want, 1, 0.02);
 }
 
 TEST(EyePaths, TheSameWhateverTheThreads) {

@@ -17,8 +17,8 @@ namespace {
 using passes::NearFieldSettings;
 using passes::NearFieldStatistics;
 
-// Walls that emit {1, 2, 4} and reflect half of what they get: after n bounces a wall sends (2 - 1 / 2^(n-1)) times
-// its own emission.
+// Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to n reflections a wall sends
+// (2 - 1 / 2^n) times its own emission.
 scene::Scene shiningRoom(bool block) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
@@ -67,7 +67,7 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
   NearFieldSettings settings;
   settings.foveaRadius = 2;
   settings.samples = 32768;  // each pixel of a block gets a quarter of them
-  const double series[] = {1, 1.5, 1.75};
+  const double series[] = {1.5, 1.75, 1.875};
   for (const auto& [area, bounces] : {std::pair(0.05f, 2u), {0.5f, 1u}, {0.5f, 2u}, {0.5f, 3u}, {5.0f, 2u}}) {
     settings.area = area;
     settings.bounces = bounces;

@@ -205,7 +205,7 @@ std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector
     ends[i].normal = side.normal;
     ends[i].kind = 2;
     ends[i].radiance = glm::max(glm::vec3(side.position.x, side.position.y, 1) * 40.0f, glm::vec3(0));
-    ends[i].luminance = 1;
+    ends[i].weight = 1;
   }
   const float unit = passes::sumUnit(ends);
   for (passes::EyePathEnd& e : ends) e.unit = unit;
@@ -298,7 +298,7 @@ TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
     ends[i].position = room.voxels.surface[side].position;
     ends[i].normal = room.voxels.surface[side].normal;
     ends[i].kind = 2;
-    ends[i].luminance = 1;
+    ends[i].weight = 1;
     ends[i].radiance = glm::vec3(1);
   }
   const float unit = passes::sumUnit(ends);

@@ -150,7 +150,7 @@ TEST(SharedRecords, EyePaths) {
                 AT(EyePathStart, unused0), AT(EyePathStart, face), AT(EyePathStart, unused1)});
   expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
                {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
-                AT(EyePathEnd, luminance), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+                AT(EyePathEnd, weight), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
 }
 
 TEST(SharedRecords, OfOnePass) {

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "framework/scene/frame.h"
+#include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::scene {
@@ -13,6 +14,7 @@ namespace fovea::scene {
 // A surface as seen by the ray that reached it.
 struct TracedSurface {
   bool there = false;
+  uint32_t triangle = kNoIndex;  // index into Geometry::triangles
   glm::vec3 position{0};         // world space, m
   glm::vec3 origin{0};           // start of rays that leave it, just off the surface
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side reached
@@ -36,22 +38,40 @@ class SurfaceTracer {
   // The surface met within `reach` metres. direction: unit.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
-  // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights, plus the
-  // emission of v.
+  glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
+  // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
   glm::vec3 direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const;
-  // Cosine-weighted mean radiance that reaches v over its hemisphere after at most `bounces` reflections, estimated
-  // with `count` rays, each of which continues with one ray per further bounce.
+  // Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light
+  // after at most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further
+  // bounce, and with one point on an emissive surface at each vertex.
   glm::vec3 gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
                    uint64_t& rays) const;
+
+  // The ray from v to a point on an emissive surface.
+  struct EmitterRay {
+    bool there = false;      // whether a point was found that faces v and may light it; it may be hidden
+    glm::vec3 direction{0};  // unit
+    float distance = 0;      // m
+    float density = 0;       // probability density of the direction, per sr
+    uint32_t triangle = kNoIndex;
+    glm::vec3 radiance{0};  // W/(sr m^2)
+  };
+  bool hasEmitters() const { return !emitters_.empty(); }
+  EmitterRay towardsEmitter(const TracedSurface& v, uint32_t stream) const;
+  bool sees(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const;
+  // Density with which towardsEmitter() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not
+  // emit.
+  float emitterDensity(const TracedSurface& v, const TracedSurface& hit) const;
 
  private:
   TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
   glm::vec3 irradiance(const TracedSurface& v, uint64_t& rays) const;
+  glm::vec3 fromEmitters(const TracedSurface& v, uint32_t count, uint32_t stream, uint64_t& rays) const;
 
   const Frame& frame_;
   const View& view_;
   const RayScene& rays_;
-  bool shines_ = false;  // whether any material emits
+  Emitters emitters_;
 };
 
 }  // namespace fovea::scene

@@ -1,0 +1,143 @@
+#include "framework/scene/rays/emitters.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fovea::scene {
+
+namespace {
+
+constexpr uint32_t kInLeaf = 4;  // most emitters in a leaf
+
+// Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
+// a point is exact.
+double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& material) {
+  constexpr float kPoints[4][2] = {{1 / 3.f, 1 / 3.f}, {0.15f, 0.7f}, {0.7f, 0.15f}, {0.15f, 0.15f}};
+  glm::vec3 sum(0);
+  for (const auto& p : kPoints)
+    sum += 0.25f * emission(*frame.scene, material, surfaceAt(*frame.geometry, {triangle, 0, p[0], p[1]}).uv);
+  // This keeps a dark estimate from hiding a bright spot between the points.
+  sum = glm::max(sum, 0.05f * material.emission);
+  return (double(sum.r) + sum.g + sum.b) / 3.0;
+}
+
+}  // namespace
+
+bool Emitters::Range::isLeaf() const { return last - first <= kInLeaf; }
+
+Emitters::Emitters(const Frame& frame) : frame_(frame) {
+  const auto& materials = frame.scene->materials;
+  if (std::ranges::all_of(materials, [](const Material& m) { return m.emission == glm::vec3(0); })) return;
+  const Geometry& g = *frame.geometry;
+  for (uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const uint32_t index = g.triangles[t].material();
+    if (index >= materials.size() || materials[index].emission == glm::vec3(0)) continue;
+    const glm::vec3 &a = g.positions[g.triangles[t].v[0]], &b = g.positions[g.triangles[t].v[1]],
+                    &c = g.positions[g.triangles[t].v[2]];
+    const glm::vec3 normal = glm::cross(b - a, c - a);
+    const float twice = glm::length(normal);
+    const double power = estimatedRadiance(frame, t, materials[index]) * 0.5 * double(twice);
+    if (!(power > 0) || !std::isfinite(power)) continue;
+    emitters_.push_back(
+        {t, materials[index].doubleSided, float(power), 0.5f * twice, (a + b + c) / 3.0f, normal / twice});
+  }
+  if (emitters_.empty()) return;
+  nodes_.resize(2 * std::bit_ceil(emitters_.size()));
+  build(1, {0, uint32_t(emitters_.size())});
+  place_.assign(g.triangles.size(), kNoIndex);
+  for (uint32_t i = 0; i < emitters_.size(); ++i) place_[emitters_[i].triangle] = i;
+}
+
+void Emitters::build(uint32_t node, Range range) {
+  glm::vec3 low(INFINITY), high(-INFINITY);
+  const auto begin = emitters_.begin() + range.first, end = emitters_.begin() + range.last;
+  double power = 0;
+  for (auto e = begin; e != end; ++e) {
+    for (const uint32_t v : frame_.geometry->triangles[e->triangle].v) {
+      low = glm::min(low, frame_.geometry->positions[v]);
+      high = glm::max(high, frame_.geometry->positions[v]);
+    }
+    power += e->power;
+  }
+  const glm::vec3 size = high - low;
+  nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), float(power)};
+  if (range.isLeaf()) return;
+  const int axis = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
+  std::nth_element(begin, emitters_.begin() + range.middle(), end,
+                   [axis](const Emitter& a, const Emitter& b) {
+                     return std::pair(a.centre[axis], a.triangle) < std::pair(b.centre[axis], b.triangle);
+                   });
+  build(2 * node, {range.first, range.middle()});
+  build(2 * node + 1, {range.middle(), range.last});
+}
+
+float Emitters::weight(const Node& node, glm::vec3 receiver) const {
+  const glm::vec3 to = receiver - node.centre;
+  return node.power / std::max(glm::dot(to, to), node.radius2);
+}
+
+float Emitters::weight(const Emitter& emitter, glm::vec3 receiver) const {
+  const glm::vec3 to = receiver - emitter.centre;
+  if (!emitter.doubleSided && !(glm::dot(to, emitter.normal) > 0)) return 0;
+  return emitter.power / std::max(glm::dot(to, to), emitter.area);
+}
+
+float Emitters::firstHalf(uint32_t node, glm::vec3 receiver) const {
+  const float first = weight(nodes_[2 * node], receiver), second = weight(nodes_[2 * node + 1], receiver);
+  return first / (first + second);
+}
+
+// The random number is rescaled after each decision, so one number is enough.
+EmitterPoint Emitters::sample(glm::vec3 receiver, float choice, float u, float v) const {
+  EmitterPoint p;
+  if (empty()) return p;
+  Range range{0, uint32_t(emitters_.size())};
+  float probability = 1;
+  for (uint32_t node = 1; !range.isLeaf();) {
+    const float first = firstHalf(node, receiver);
+    const bool second = choice >= first;
+    choice = second ? (choice - first) / (1 - first) : choice / first;
+    probability *= second ? 1 - first : first;
+    node = 2 * node + (second ? 1 : 0);
+    (second ? range.first : range.last) = range.middle();
+  }
+  float total = 0, reached = 0;
+  for (uint32_t i = range.first; i < range.last; ++i) total += weight(emitters_[i], receiver);
+  if (!(total > 0)) return p;
+  const Emitter* chosen = nullptr;
+  for (uint32_t i = range.first; i < range.last; ++i) {
+    const float own = weight(emitters_[i], receiver);
+    if (!(own > 0)) continue;
+    chosen = &emitters_[i];
+    reached += own;
+    if (choice * total < reached) break;
+  }
+  const float root = std::sqrt(u);
+  const SurfaceHit s = surfaceAt(*frame_.geometry, {chosen->triangle, 0, root * (1.0f - v), root * v});
+  p.triangle = chosen->triangle;
+  p.position = s.position;
+  p.normal = glm::dot(chosen->normal, receiver - chosen->centre) > 0 ? s.geometricNormal : -s.geometricNormal;
+  p.radiance = emission(*frame_.scene, frame_.scene->materials[s.material], s.uv);
+  p.density = probability * weight(*chosen, receiver) / (total * chosen->area);
+  return p;
+}
+
+float Emitters::density(uint32_t triangle, glm::vec3 receiver) const {
+  if (empty() || place_[triangle] == kNoIndex) return 0;
+  const uint32_t place = place_[triangle];
+  Range range{0, uint32_t(emitters_.size())};
+  float probability = 1;
+  for (uint32_t node = 1; !range.isLeaf();) {
+    const float first = firstHalf(node, receiver);
+    const bool second = place >= range.middle();
+    probability *= second ? 1 - first : first;
+    node = 2 * node + (second ? 1 : 0);
+    (second ? range.first : range.last) = range.middle();
+  }
+  float total = 0;
+  for (uint32_t i = range.first; i < range.last; ++i) total += weight(emitters_[i], receiver);
+  return total > 0 ? probability * weight(emitters_[place], receiver) / (total * emitters_[place].area) : 0;
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,69 @@
+// Emissive triangles as light sources that can be sampled: next-event estimation for rays on the host.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "framework/scene/frame.h"
+#include "framework/scene/rays/ray_scene.h"
+
+namespace fovea::scene {
+
+struct EmitterPoint {
+  uint32_t triangle = kNoIndex;  // kNoIndex if no emitter faces the receiver
+  glm::vec3 position{0};         // world space, m
+  glm::vec3 normal{0};           // unit, on the side of the receiver
+  glm::vec3 radiance{0};         // W/(sr m^2)
+  float density = 0;             // probability density of the choice, per m^2
+};
+
+// Chooses triangles by their power and their distance from the receiver, with a binary tree of bounding boxes, as in
+// Conty Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting" (HPG 2018), but without
+// cones of normals: triangles that face away are left out in the leaves.
+class Emitters {
+ public:
+  explicit Emitters(const Frame& frame);
+  bool empty() const { return emitters_.empty(); }
+  // A point that may light `receiver`. choice, u, v: uniform in [0, 1).
+  EmitterPoint sample(glm::vec3 receiver, float choice, float u, float v) const;
+  // Density with which sample() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does not
+  // emit towards it.
+  float density(uint32_t triangle, glm::vec3 receiver) const;
+
+ private:
+  struct Emitter {
+    uint32_t triangle = kNoIndex;
+    bool doubleSided = false;
+    float power = 0;      // mean of the channels, W / pi
+    float area = 0;       // m^2
+    glm::vec3 centre{0};  // world space, m
+    glm::vec3 normal{0};  // geometric, unit
+  };
+  // Node i of the tree has the children 2 i and 2 i + 1, each with half of its emitters; the root is node 1.
+  struct Node {
+    glm::vec3 centre{0};
+    float radius2 = 0;  // squared half diagonal of its box, m^2
+    float power = 0;
+  };
+  struct Range {
+    uint32_t first, last;  // of emitters_
+    uint32_t middle() const { return first + (last - first) / 2; }
+    bool isLeaf() const;
+  };
+
+  void build(uint32_t node, Range range);
+  float weight(const Node& node, glm::vec3 receiver) const;
+  float weight(const Emitter& emitter, glm::vec3 receiver) const;
+  // The probability of turning to the first half of a node.
+  float firstHalf(uint32_t node, glm::vec3 receiver) const;
+
+  const Frame& frame_;
+  std::vector<Emitter> emitters_;  // in the order of the leaves
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> place_;  // index in emitters_ of every triangle of the geometry; empty if none emits
+};
+
+}  // namespace fovea::scene
