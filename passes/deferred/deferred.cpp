@@ -9,6 +9,7 @@
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"
+#include "passes/deferred/acuity.h"
 #include "shaders/common/records/vpl.h"
 #include "shaders/deferred/records.h"
 
@@ -41,6 +42,7 @@ class Deferred : public Pass {
                       "VPLs, and a filter combines the subsets",
                       PassKind::ComputeAndGraphics);
     d.recorded();
+    d.view();
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
             gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo"}),
@@ -67,6 +69,11 @@ class Deferred : public Pass {
     d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
               "estimate of each pixel from its own subset");
+    d.scratch("coarse",
+              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(coarse() * ceilDiv(width, 2), 1),
+                      max(coarse() * ceilDiv(height, 2), 1)),
+              Usage::StorageRead | Usage::StorageWrite,
+              "for `periphery` 2, estimate of one pixel in each square of 2 x 2 from its own subset");
     d.scratch(
         "edges", buffer("EdgeList", 16),
         Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect | Usage::TransferWrite,
@@ -96,32 +103,58 @@ class Deferred : public Pass {
     side_ = uint32_t(ctx.evaluate(subsets()));
     masked_ = ctx.has("shade");
     if (masked_) checkMask(ctx, uint32_t(interleave));
-    preparePages(ctx);
+    if (masked_ && ctx.evaluate(coarse()) != 0)
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: `shade` says which blocks to shade, so `periphery` has nothing to decide",
+                  "leave `periphery` at 1, or `shade` unwired");
+    preparePages(ctx, 1, pages_);
+    if (ctx.evaluate(coarse()) != 0) preparePages(ctx, 2, coarsePages_);
   }
 
   void record(RecordContext& ctx) override {
+    if (masked_) ctx.copy("base", "irradiance");  // for the pixels outside the blocks
     const VkExtent3D size = ctx.extent("partial");
-    const auto groups = [](uint32_t pixels, uint32_t tile) { return (pixels + tile - 1) / tile; };
-    if (masked_)
-      ctx.copy("base", "irradiance");  // for the pixels outside the blocks
-    else
-      ctx.fill("edges", 1);
-    for (uint32_t page = 0; page < pages_.size(); ++page) {
-      const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
-      Commands commands = ctx.use(pages_[page]);
-      commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
-      if (ctx.has("atlas")) commands.constant("firstSlot", first);
-      if (masked_)
-        commands.dispatchIndirect("shade.dispatch");
-      else
-        commands.dispatch(groups(size.width, kTileWidth * side_), groups(size.height, kTileHeight * side_),
-                          side_ * side_);
-    }
+    const int reach = int(2 * side_);  // of the filter beyond a pixel, where it searches for missing subsets
+    const Square fine = fineSquare(ctx);
+    shade(ctx, pages_, fine.grown(reach).within(size), {});
+    if (!coarsePages_.empty())
+      shade(ctx, coarsePages_, Square{}.grown(1 << 20).within(ctx.extent("coarse")),
+            {fine.low / 2 + reach, fine.high / 2 - reach});
     ctx.runSteps();
     ctx.counter("vpls_per_pixel", double(count_) / double(side_ * side_));
   }
 
  private:
+  static SizeExpr coarse() { return parameter("periphery") - 1; }  // 0 or 1
+
+  // The part of the picture that is shaded at all pixels.
+  static Square fineSquare(const RecordContext& ctx) {
+    const Parameters& p = ctx.parameters();
+    if (ctx.evaluate(coarse()) == 0) return Square{}.grown(1 << 20);
+    return fullDensity(ctx.view(), float(p.real("fovea_radius")), float(p.real("pixels_per_degree")),
+                       kTileWidth);
+  }
+
+  // Shades the part `area` of the grid of samples, without its part `hole`.
+  void shade(RecordContext& ctx, const std::vector<Kernel>& pages, const Square& area, const Square& hole) {
+    const auto groups = [](int samples, int tile) { return uint32_t((samples + tile - 1) / tile); };
+    const glm::ivec2 extent = area.high - area.low;
+    if (extent.x <= 0 || extent.y <= 0) return;
+    for (uint32_t page = 0; page < pages.size(); ++page) {
+      const uint32_t first = page * scene::kVplPage, inPage = std::min(count_ - first, scene::kVplPage);
+      Commands commands = ctx.use(pages[page]);
+      commands.range("vpls", uint64_t(first) * sizeof(scene::Vpl), uint64_t(inPage) * sizeof(scene::Vpl));
+      if (ctx.has("atlas")) commands.constant("firstSlot", first);
+      if (masked_) {
+        commands.dispatchIndirect("shade.dispatch");
+      } else {
+        commands.constant("area", area.corners()).constant("hole", hole.corners());
+        commands.dispatch(groups(extent.x, kTileWidth * int(side_)),
+                          groups(extent.y, kTileHeight * int(side_)), side_ * side_);
+      }
+    }
+  }
+
   static void addMask(PassDeclaration& d) {
     d.input("base", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::TransferRead,
             "rgb: irradiance / pi of the pixels that `shade` leaves out (from pass reproject), background 0; "
@@ -143,6 +176,16 @@ class Deferred : public Pass {
                 "subset would hold fewer than 4 VPLs");
     d.parameter("shadow_bias", real(1, 0, 100),
                 "tolerance of the shadow test, in half texels of the map's footprint at the surface");
+    d.parameter("periphery", integer(1, 1, 2),
+                "outside the fovea, where the eye resolves no more than every second pixel, one pixel of "
+                "each square of "
+                "this width is shaded, and the filter interpolates; 1 shades all pixels");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
+                "radius around the gaze within which all pixels are shaded, whatever `periphery` is");
+    d.parameter("pixels_per_degree", real(0, 0, 1000),
+                "pixels of the picture in a degree of what the eye sees, by which `periphery` knows what it "
+                "resolves; 0 "
+                "means that the picture is seen from where its perspective is right");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),
@@ -152,22 +195,28 @@ class Deferred : public Pass {
 
   static void addSteps(PassDeclaration& d) {
     const SizeExpr masked = wired("shade");
-    const auto filter = [&](const char* name, bool edges) -> StepSpec& {
+    const auto filter = [&](const char* name, bool edges, int scale) -> StepSpec& {
       return d.step("deferred/resolve.comp")
           .called(name)
           .define("INTERLEAVE", subsets())
           .define("MASKED", masked)
           .define("BLOCK", parameter("interleave"))
           .define("EDGES", edges)
+          .define("SCALE", scale)
           .constant("filterCos", [](const RecordContext& ctx) {
             return std::cos(glm::radians(float(ctx.parameters().real("filter_angle"))));
           });
     };
-    filter("filter", false)
-        .when(!masked)
-        .groups(ceilDiv(widthOf("partial"), kTileWidth), ceilDiv(heightOf("partial"), kTileHeight));
-    filter("filter edges", true).when(!masked).indirect("edges");
-    filter("filter blocks", true).when(masked).indirect("shade.dispatch");
+    for (const int scale : {1, 2}) {
+      const SizeExpr runs = scale == 1 ? !masked : !masked * coarse();
+      d.fill("edges", 1).called(scale == 1 ? "fill edges" : "fill coarse edges").when(runs);
+      filter(scale == 1 ? "filter" : "filter coarse", false, scale)
+          .when(runs)
+          .constant("fine", [](const RecordContext& ctx) { return fineSquare(ctx).corners(); })
+          .groups(ceilDiv(widthOf("partial"), kTileWidth), ceilDiv(heightOf("partial"), kTileHeight));
+      filter(scale == 1 ? "filter edges" : "filter coarse edges", true, scale).when(runs).indirect("edges");
+    }
+    filter("filter blocks", true, 1).when(masked).indirect("shade.dispatch");
     d.fullscreen("deferred/compose.frag", {"indirect", "radiance"})
         .when(isRead("indirect") || isRead("radiance"))
         .define("HAS_DIRECT", wired("direct"));
@@ -196,8 +245,10 @@ class Deferred : public Pass {
 
   // The number of VPLs in a page is a constant in the shader, so there is a kernel for each: for a full first page, for
   // further full pages and for the rest.
-  void preparePages(PrepareContext& ctx) {
-    Defines defines{{"INTERLEAVE", std::to_string(side_)}, {"MASKED", masked_ ? "1" : "0"}};
+  void preparePages(PrepareContext& ctx, int scale, std::vector<Kernel>& pages) {
+    Defines defines{{"INTERLEAVE", std::to_string(side_)},
+                    {"MASKED", masked_ ? "1" : "0"},
+                    {"SCALE", std::to_string(scale)}};
     if (masked_) defines["BLOCK"] = std::to_string(ctx.parameters().integer("interleave"));
     defines["KERNEL_DISC"] = ctx.parameters().text("kernel") == "disc" ? "1" : "0";
     defines["NEAR_FIELD"] = ctx.has("near_field") ? "1" : "0";
@@ -216,15 +267,16 @@ class Deferred : public Pass {
     for (uint32_t first = 0; first < count_; first += scene::kVplPage) {
       defines["PAGE_VPLS"] = std::to_string(std::min(count_ - first, scene::kVplPage));
       defines["ACCUMULATE"] = std::to_string(int(first > 0));
-      pages_.push_back(pages_.size() > 1 && count_ - first >= scene::kVplPage
-                           ? pages_.back()
-                           : ctx.compute("deferred/shade.comp", defines));
+      pages.push_back(pages.size() > 1 && count_ - first >= scene::kVplPage
+                          ? pages.back()
+                          : ctx.compute("deferred/shade.comp", defines));
+      if (scale > 1) pages.back().called("shade coarse");
     }
   }
 
   uint32_t count_ = 0, side_ = 1;
   bool masked_ = false;
-  std::vector<Kernel> pages_;
+  std::vector<Kernel> pages_, coarsePages_;
 };
 
 FOVEA_PASS(Deferred);

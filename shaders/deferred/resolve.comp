@@ -2,7 +2,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
-// irradiance only. Defines: INTERLEAVE, MASKED, EDGES.
+// irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl).
 //
 // Pixels whose window does not hold all subsets are listed and processed by the EDGES variant, which packs these few
 // pixels into its work groups. With MASKED most windows extend beyond the blocks, so EDGES processes all pixels of
@@ -13,6 +13,11 @@
 // subset without a sample. Samples of that subset are then searched on the surface in a window four times as wide;
 // those still missing are replaced by the mean of the subsets found, so that edges neither darken nor show a pattern.
 // Where fewer than half are found (leaves, chains), other surfaces nearby that face the same way are used as well.
+//
+// With SCALE 2 the windows are windows of the coarse grid, twice as wide in pixels, and each pixel uses the window
+// around the sample of its square. Only the periphery is shaded so, where a quarter of the subsets suffices for a mean.
+// Samples of the window on other surfaces that face the same way help out for those missing, and if nothing is found
+// at all, as on something thinner than the grid, the whole window does.
 //
 // MASKED: only the listed blocks of BLOCK x BLOCK pixels were shaded and are filtered here; the other pixels already
 // have their irradiance, the base. The part of a pixel's window outside the blocks has no samples, but the base there
@@ -25,6 +30,7 @@
 #if MASKED
 #include "deferred/blocks.glsl"
 #endif
+#include "deferred/samples.glsl"
 // Vertically adjacent pixels that an invocation filters together, as their windows overlap.
 #if !EDGES
 const int kPixels = 4;
@@ -33,7 +39,8 @@ const int kPixels = kListedColumn;
 #else
 const int kPixels = 1;
 #endif
-const uint kSubsets = INTERLEAVE * INTERLEAVE;
+const uint kSubsets = INTERLEAVE * INTERLEAVE, kEnough = max(kSubsets / (SCALE * SCALE), 1u);
+const float kWiderPlane = 8.0, kWiderCos = 0.5;  // bounds of surfaces that may help out
 
 const uint kEdgeGroup = 64u;
 #if EDGES
@@ -46,7 +53,6 @@ layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 // most of the work.
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
-layout(rgba16f) uniform readonly image2D partial;
 layout(rgba16f) uniform writeonly image2D irradiance;
 layout(std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
 #if MASKED
@@ -64,6 +70,9 @@ layout(r8) uniform readonly image2D shadeMask;
 #endif
 
 layout(push_constant) uniform Constants {
+#if !MASKED && !EDGES
+  ivec4 fine;           // corners of the part of the picture that is shaded at all pixels
+#endif
   float filterPlane;  // tolerance from the tangent plane, relative to the distance from the eye
   float filterCos;    // least cosine between normals
 };
@@ -72,6 +81,9 @@ struct Centre {
   vec3 position, normal, sum;
   float plane;    // m; below 0: background
   uint found;     // subsets in the sum
+#if SCALE > 1
+  vec4 others;  // rgb: sum of samples on other surfaces that face the same way, a: their number
+#endif
 #if MASKED
   vec4 outside;   // rgb: sum of the base over the window's pixels of the surface outside the mask, a: their number
 #endif
@@ -105,28 +117,32 @@ Centre centreAt(ivec2 p, ivec2 size) {
   c.plane = surface ? filterPlane * position.w : -1.0;
   c.found = 0u;
   c.missing = uvec2(0u);
+#if SCALE > 1
+  c.others = vec4(0.0);
+#endif
 #if MASKED
   c.outside = vec4(0.0);
 #endif
   return c;
 }
 
-// Every pixel of the windows is loaded once and offered to all centres whose window holds it.
-void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
+// Every sample of the windows is loaded once and offered to all centres whose window holds it.
+void filterWindows(inout Centre centres[kPixels], ivec2 first) {
   const int kBefore = INTERLEAVE / 2;
+  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
   for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
-    for (int row = -kBefore; row < INTERLEAVE - kBefore + kPixels - 1; ++row) {
-      ivec2 q = first + ivec2(dx, row), inside = clamp(q, ivec2(0), size - 1);
-      vec4 position = imageLoad(gbufferPosition, inside);
+    for (int row = -kBefore; row < INTERLEAVE - kBefore + (kPixels - 1) / SCALE; ++row) {
+      ivec2 q = first / SCALE + ivec2(dx, row), inside = clamp(q, ivec2(0), size - 1), at = samplePixel(inside, pixels);
+      vec4 position = imageLoad(gbufferPosition, at);
       if (q != inside) position.w = 0.0;
-      vec3 normal = imageLoad(gbufferNormal, inside).xyz;
+      vec3 normal = imageLoad(gbufferNormal, at).xyz;
       vec3 value = imageLoad(partial, inside).rgb;
 #if MASKED
       bool shaded = isShaded(inside);
       vec4 known = vec4(imageLoad(base, inside).rgb, 1.0);
 #endif
       for (int k = 0; k < kPixels; ++k) {
-        int dy = row - k;
+        int dy = row - k / SCALE;
         if (dy < -kBefore || dy >= INTERLEAVE - kBefore) continue;
         bool same = sameSurface(centres[k], position, normal, centres[k].plane, filterCos);
 #if MASKED
@@ -138,11 +154,24 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first, ivec2 size) {
           ++centres[k].found;
         } else {
           centres[k].missing |= subsetBit(ivec2(dx, dy));
+#if SCALE > 1
+          if (sameSurface(centres[k], position, normal, kWiderPlane * centres[k].plane, kWiderCos))
+            centres[k].others += vec4(value, 1.0);
+#endif
         }
       }
     }
   }
 }
+
+#if SCALE > 1
+void addOthers(inout Centre c) {
+  c.sum += c.others.rgb;
+  c.found += uint(c.others.a);
+}
+#else
+void addOthers(inout Centre c) {}
+#endif
 
 #if EDGES
 // Adds a sample, weighting nearer pixels more; a: weight.
@@ -150,8 +179,9 @@ void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float pla
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
   if (!isShaded(q)) return;
-  if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, plane, least)) return;
-  float w = 1.0 / float(d.x * d.x + d.y * d.y);
+  ivec2 at = samplePixel(q, imageSize(gbufferPosition));
+  if (!sameSurface(c, imageLoad(gbufferPosition, at), imageLoad(gbufferNormal, at).xyz, plane, least)) return;
+  float w = 1.0 / float(max(d.x * d.x + d.y * d.y, 1));
   sum += vec4(imageLoad(partial, q).rgb * w, w);
 }
 
@@ -249,15 +279,22 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
 }
 #endif
 
-// The mean over the subsets, and whether fewer than half of them were found on the surface. All lanes of a subgroup
-// come here, including those without a pixel, which are not `wanted`.
+#if SCALE > 1
+vec3 lastResort(ivec2 p, ivec2 size) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < kSubsets; ++i)
+    sum += imageLoad(partial, clamp(p + placeInWindow(ivec2(i % INTERLEAVE, i / INTERLEAVE)), ivec2(0), size - 1)).rgb;
+  return sum / float(kSubsets);
+}
+#else
+vec3 lastResort(ivec2 p, ivec2 size) { return imageLoad(partial, p).rgb; }  // its normal has length 0, or is NaN
+#endif
+
+// The mean over the subsets, and whether fewer than half of them were found on the surface. p: the sample around which
+// the window lies; size: of the grid. All lanes of a subgroup come here, including those without a pixel, which are not
+// `wanted`.
 vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
   incomplete = false;
-  if (c.found == 0u) {  // a normal of length 0, or NaN: the pixel itself
-    c.sum = imageLoad(partial, p).rgb;
-    c.found = 1u;
-    c.missing = uvec2(0u);
-  }
   bool based = false;
 #if MASKED
   float inWindow = float(c.found);
@@ -277,9 +314,13 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
     incomplete = incomplete || few;
     searches = few && !again && !based;
     again = true;
-    plane *= 8.0;
-    least = 0.5;
+    plane *= kWiderPlane;
+    least = kWiderCos;
   } while (subgroupBallot(searches) != uvec4(0u));
+  if (c.found == 0u) {
+    c.sum = lastResort(p, size);
+    c.found = 1u;
+  }
 #if MASKED
   if (based) {
     vec3 inside = (c.sum + float(kSubsets - c.found) * c.outside.rgb / c.outside.a) / float(kSubsets);
@@ -311,11 +352,11 @@ void main() {
     ivec2 first = itemAt(k, size);  // past the end of the list: `size`
     Centre centres[kPixels];
     for (int i = 0; i < kPixels; ++i) centres[i] = centreAt(first + ivec2(0, i), size);
-    filterWindows(centres, first, size);
+    filterWindows(centres, first);
     for (int i = 0; i < kPixels; ++i) {
       ivec2 p = first + ivec2(0, i);
       bool surface = centres[i].plane >= 0.0, incomplete;
-      vec3 mean = meanOfSubsets(centres[i], min(p, size - 1), size, surface, incomplete);
+      vec3 mean = meanOfSubsets(centres[i], min(p, size - 1) / SCALE, imageSize(partial), surface, incomplete);
       if (all(lessThan(p, size))) imageStore(irradiance, p, vec4(surface ? mean : vec3(0.0), 1.0));
       surfaces += subgroupBallotBitCount(subgroupBallot(surface));
       found += subgroupBallotBitCount(subgroupBallot(incomplete));
@@ -332,12 +373,13 @@ void main() {
 uint resolve(ivec2 first, ivec2 size) {
   Centre centres[kPixels];
   for (int k = 0; k < kPixels; ++k) centres[k] = centreAt(first + ivec2(0, k), size);
-  filterWindows(centres, first, size);
+  filterWindows(centres, first);
+  for (int k = 0; k < kPixels; ++k) addOthers(centres[k]);
   uint surfaces = 0u, total = 0u, before[kPixels];
   for (int k = 0; k < kPixels; ++k) {
     bool surface = centres[k].plane >= 0.0;
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
-    uvec4 edge = subgroupBallot(surface && centres[k].found < kSubsets);
+    uvec4 edge = subgroupBallot(surface && centres[k].found < kEnough);
     before[k] = total + subgroupBallotExclusiveBitCount(edge);
     total += subgroupBallotBitCount(edge);
   }
@@ -348,10 +390,10 @@ uint resolve(ivec2 first, ivec2 size) {
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = first + ivec2(0, k);
     bool surface = centres[k].plane >= 0.0;
-    if (surface && centres[k].found < kSubsets)
+    if (surface && centres[k].found < kEnough)
       edgePixels.list[end - 1u + before[k]] = uint(p.x) | uint(p.y) << 16u;
     else if (all(lessThan(p, size)))
-      imageStore(irradiance, p, vec4(surface ? centres[k].sum / float(kSubsets) : vec3(0.0), 1.0));
+      imageStore(irradiance, p, vec4(surface ? centres[k].sum / float(centres[k].found) : vec3(0.0), 1.0));
   }
   return surfaces;
 }
@@ -359,7 +401,10 @@ uint resolve(ivec2 first, ivec2 size) {
 void main() {
   ivec2 size = imageSize(gbufferPosition);
   ivec2 corner = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy * uvec2(1, kPixels));
+  // Groups lie in one of the two parts as a whole.
+  if ((all(greaterThanEqual(corner, fine.xy)) && all(lessThan(corner, fine.zw))) != (SCALE == 1)) return;
   uint surfaces = resolve(corner + ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y * kPixels), size);
+  surfaces /= SCALE * SCALE;
   if (subgroupElect() && surfaces > 0u) atomicAdd(counters[2], surfaces);
 }
 #endif

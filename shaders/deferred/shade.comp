@@ -6,12 +6,13 @@
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1, 1 for all
 // pages but the first; NEAR_FIELD 0/1, 1 to add the light of pass near-field; MASKED 0/1, 1 to shade only the listed
-// blocks of BLOCK x BLOCK pixels.
+// blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl.
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
 #include "deferred/records.h"
+#include "deferred/samples.glsl"
 
 // An invocation shades kPixels vertically adjacent pixels: it receives a VPL once for all of them, and neighbours
 // read the same cache lines of a map.
@@ -27,7 +28,6 @@ layout(local_size_x = kTileWidth, local_size_y = kTileHeight / kPixels) in;
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(std140) uniform Vpls { Vpl list[PAGE_VPLS]; } vpls;
-layout(rgba16f) uniform image2D partial;
 #if SHADOWED
 layout(rg16_snorm) uniform readonly image2D gbufferFace;
 layout(r32ui) uniform readonly uimage2DArray atlas;
@@ -38,6 +38,10 @@ layout(rgba16f) uniform readonly image2D nearField;
 #endif
 
 layout(push_constant) uniform Constants {
+#if !MASKED
+  ivec4 area;  // corners of the part of the grid to shade
+  ivec4 hole;  // corners of the part in it to leave out
+#endif
   float clampDistance;  // m
 #if SHADOWED
   uint firstSlot;       // of this page
@@ -120,15 +124,17 @@ Emitter handOver(Emitter e, uint lane) {
 // All invocations of a work group share a subset, so that they read the same VPLs at the same time.
 #if MASKED
 uvec2 subsetOfGroup() { return placeInBlock() % INTERLEAVE; }
-ivec2 pixelAt(int k, ivec2 size) { return listedPixel(k, size); }
+ivec2 sampleAt(int k, ivec2 size) { return listedPixel(k, size); }
 #else
 // A work group covers every INTERLEAVE-th pixel of a block. The subset is the slowest of the three dimensions, so
 // everything that is shaded at a time reads the same few maps.
 uvec2 subsetOfGroup() { return uvec2(gl_WorkGroupID.z % INTERLEAVE, gl_WorkGroupID.z / INTERLEAVE); }
-ivec2 pixelAt(int k, ivec2 size) {
+ivec2 sampleAt(int k, ivec2 size) {
   uvec2 block = gl_WorkGroupID.xy * (gl_WorkGroupSize.xy * uvec2(1, kPixels));
   uvec2 place = block + gl_LocalInvocationID.xy * uvec2(1, kPixels) + uvec2(0, k);
-  return ivec2(place * INTERLEAVE + subsetOfGroup());
+  ivec2 at = area.xy + ivec2(place * INTERLEAVE + subsetOfGroup());
+  bool inside = all(lessThan(at, area.zw)) && (any(lessThan(at, hole.xy)) || any(greaterThanEqual(at, hole.zw)));
+  return inside ? at : size;
 }
 #endif
 
@@ -171,13 +177,13 @@ float transfer(Receiver r, Emitter e, uint slot
 
 void main() {
   uvec2 subset2 = subsetOfGroup();
-  ivec2 size = imageSize(partial);
+  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
   Receiver receivers[kPixels];
   bool valid[kPixels];
   for (int k = 0; k < kPixels; ++k) {
-    ivec2 at = pixelAt(k, size), p = min(at, size - 1);
+    ivec2 at = sampleAt(k, size), p = samplePixel(at, pixels);
     vec4 position = imageLoad(gbufferPosition, p);
-    valid[k] = position.w > 0.0 && at == p;
+    valid[k] = position.w > 0.0 && all(lessThan(at, size));
     receivers[k].position = position.xyz;
     receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
 #if SHADOWED
@@ -214,16 +220,16 @@ void main() {
     }
   }
   for (int k = 0; k < kPixels; ++k) {
-    ivec2 p = pixelAt(k, size);
-    if (any(greaterThanEqual(p, size))) continue;
+    ivec2 at = sampleAt(k, size);
+    if (any(greaterThanEqual(at, size))) continue;
     // In units of `irradiance`, E / pi; one subset stands for all of them.
     vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
 #if NEAR_FIELD && !ACCUMULATE
-    sum += imageLoad(nearField, p).rgb;
+    sum += imageLoad(nearField, samplePixel(at, pixels)).rgb;
 #endif
 #if ACCUMULATE
-    sum += imageLoad(partial, p).rgb;
+    sum += imageLoad(partial, at).rgb;
 #endif
-    imageStore(partial, p, vec4(min(sum, 65504.0), 0.0));
+    imageStore(partial, at, vec4(min(sum, 65504.0), 0.0));
   }
 }

@@ -138,20 +138,40 @@ struct DeferredReference {
     return result;
   }
 
+  // The same if only one pixel in each square of 2 x 2 is shaded.
+  std::vector<glm::dvec3> coarseIrradiance(const GBuffer& g, const std::vector<scene::Vpl>& vpls) {
+    const int n = interleave;
+    const GBuffer grid((g.width + 1) / 2, (g.height + 1) / 2, [&](int x, int y) {
+      return g.at(std::min(2 * x + (y & 1), g.width - 1), std::min(2 * y + (x & 1), g.height - 1));
+    });
+    std::vector<glm::dvec3> partial(grid.pixels.size()), result(g.pixels.size());
+    for (int y = 0; y < grid.height; ++y)
+      for (int x = 0; x < grid.width; ++x)
+        if (grid.at(x, y).distance > 0)
+          partial[size_t(y * grid.width + x)] =
+              double(n * n) * shade(grid.at(x, y), vpls, size_t((y % n) * n + x % n), size_t(n * n));
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x)
+        if (g.at(x, y).distance > 0)
+          result[size_t(y * g.width + x)] = coarseFilter(grid, partial, x / 2, y / 2, g.at(x, y));
+    return result;
+  }
+
  private:
   struct Search {
     const GBuffer& g;
     const std::vector<glm::dvec3>& partial;
-    int x, y;
+    SurfacePixel centre;
+    int x, y;  // where its window lies
     double plane, least;
     const std::vector<uint8_t>* mask;
 
     bool shaded(int qx, int qy) const { return !mask || (*mask)[size_t(qy * g.width + qx)]; }
     bool sameSurface(int qx, int qy) const {
       if (qx < 0 || qy < 0 || qx >= g.width || qy >= g.height || g.at(qx, qy).distance <= 0) return false;
-      const SurfacePixel &p = g.at(x, y), &q = g.at(qx, qy);
-      return std::abs(glm::dot(q.position - p.position, p.normal)) <= plane &&
-             glm::dot(q.normal, p.normal) >= least;
+      const SurfacePixel& q = g.at(qx, qy);
+      return std::abs(glm::dot(q.position - centre.position, centre.normal)) <= plane &&
+             glm::dot(q.normal, centre.normal) >= least;
     }
     glm::dvec3 value(int qx, int qy) const { return partial[size_t(qy * g.width + qx)]; }
 
@@ -161,7 +181,7 @@ struct DeferredReference {
       glm::dvec4 s(0);
       const auto add = [&](int dx, int dy) {
         if (sameSurface(x + dx, y + dy) && shaded(x + dx, y + dy))
-          s += glm::dvec4(value(x + dx, y + dy), 1) / double(dx * dx + dy * dy);
+          s += glm::dvec4(value(x + dx, y + dy), 1) / double(std::max(dx * dx + dy * dy, 1));
       };
       const int inX = ax < n - n / 2 ? ax : ax - n, inY = ay < n - n / 2 ? ay : ay - n;
       const int acrossX = inX < 0 ? inX + n : inX - n, acrossY = inY < 0 ? inY + n : inY - n;
@@ -175,10 +195,51 @@ struct DeferredReference {
     }
   };
 
+  Search strictly(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y,
+                  const SurfacePixel& centre) const {
+    return {g,   partial, centre, x, y, filterPlane * centre.distance, std::cos(glm::radians(filterAngle)),
+            mask};
+  }
+  static Search relaxed(Search how) {
+    how.plane *= 8;
+    how.least = 0.5;
+    return how;
+  }
+  // Adds what is found of the missing subsets, and removes them from the list.
+  static void search(const Search& how, int n, std::vector<glm::ivec2>& missing, glm::dvec4& sum) {
+    std::erase_if(missing, [&](const glm::ivec2& m) {
+      const glm::dvec4 v = how.wide(m.x, m.y, n);
+      sum += v;
+      return v.w > 0;
+    });
+  }
+
+  glm::dvec3 coarseFilter(const GBuffer& grid, const std::vector<glm::dvec3>& partial, int x, int y,
+                          const SurfacePixel& centre) const {
+    const int n = interleave;
+    const Search strict = strictly(grid, partial, x, y, centre), loose = relaxed(strict);
+    glm::dvec4 sum(0), others(0), all(0);
+    std::vector<glm::ivec2> missing;
+    for (int dy = -(n / 2); dy < n - n / 2; ++dy)
+      for (int dx = -(n / 2); dx < n - n / 2; ++dx) {
+        const int qx = std::clamp(x + dx, 0, grid.width - 1), qy = std::clamp(y + dy, 0, grid.height - 1);
+        all += glm::dvec4(partial[size_t(qy * grid.width + qx)], 1);
+        if (strict.sameSurface(x + dx, y + dy)) {
+          sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
+          continue;
+        }
+        missing.push_back({(dx + n) % n, (dy + n) % n});
+        if (loose.sameSurface(x + dx, y + dy)) others += glm::dvec4(strict.value(x + dx, y + dy), 1);
+      }
+    if (4 * (sum.w + others.w) >= n * n) return glm::dvec3(sum + others) / (sum.w + others.w);
+    search(strict, n, missing, sum);
+    if (2 * sum.w < n * n) search(loose, n, missing, sum);
+    return glm::dvec3(sum.w > 0 ? sum : all) / (sum.w > 0 ? sum.w : all.w);
+  }
+
   glm::dvec3 filter(const GBuffer& g, const std::vector<glm::dvec3>& partial, int x, int y) const {
     const int n = interleave;
-    const Search strict{
-        g, partial, x, y, filterPlane * g.at(x, y).distance, std::cos(glm::radians(filterAngle)), mask};
+    const Search strict = strictly(g, partial, x, y, g.at(x, y));
     glm::dvec4 sum(0), outside(0);  // outside: the base where the window leaves the mask
     std::vector<glm::ivec2> missing;
     for (int dy = -n / 2; dy < n / 2; ++dy)
@@ -191,17 +252,6 @@ struct DeferredReference {
         if (same && !strict.shaded(x + dx, y + dy))
           outside += glm::dvec4(glm::dvec3((*base)[size_t((y + dy) * g.width + x + dx)]), 1);
       }
-    const auto search = [&](const Search& how) {
-      std::vector<glm::ivec2> still;
-      for (const glm::ivec2& m : missing) {
-        const glm::dvec4 v = how.wide(m.x, m.y, n);
-        if (v.w > 0)
-          sum += v;
-        else
-          still.push_back(m);
-      }
-      missing = still;
-    };
     const double inside = sum.w;
     if (outside.w > 0) {  // what the window lacks, from the block of the pixel
       for (int qy = y / n * n; qy < y / n * n + n; ++qy)
@@ -213,16 +263,13 @@ struct DeferredReference {
           missing.erase(at);
         }
     }
-    if (outside.w == 0) search(strict);
+    if (outside.w == 0) search(strict, n, missing, sum);
     if (outside.w > 0) {
       const glm::dvec3 rest = glm::dvec3(outside) / outside.w;
       const glm::dvec3 all = (glm::dvec3(sum) + (double(n * n) - sum.w) * rest) / double(n * n);
       return (inside * all + glm::dvec3(outside)) / (inside + outside.w);
     }
-    Search relaxed = strict;
-    relaxed.plane *= 8;
-    relaxed.least = 0.5;
-    if (2 * sum.w < n * n) search(relaxed);
+    if (2 * sum.w < n * n) search(relaxed(strict), n, missing, sum);
     return glm::dvec3(sum) / sum.w;
   }
 };

@@ -1,0 +1,31 @@
+// Which part of a picture needs light at every pixel: what the eye resolves there (Guenter et al., "Foveated 3D
+// graphics", SIGGRAPH Asia 2012).
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <glm/glm.hpp>
+
+#include "framework/scene/frame.h"
+
+namespace fovea::passes {
+
+// Pixels from `low` up to, but not including, `high`.
+struct Square {
+  glm::ivec2 low{0}, high{0};
+
+  Square grown(int by) const { return {low - by, high + by}; }
+  Square within(VkExtent3D size) const {
+    const glm::ivec2 most(size.width, size.height);
+    return {glm::clamp(low, glm::ivec2(0), most), glm::clamp(high, glm::ivec2(0), most)};
+  }
+  glm::ivec4 corners() const { return {low, high}; }
+};
+
+// The square around the gaze outside which a sample in every 2 x 2 pixels suffices: all of the fovea, and all that is
+// seen at an eccentricity where the smallest period that the eye resolves is less than 4 pixels. Its corners are
+// multiples of `tile` and may lie outside the picture.
+// foveaRadius: image widths. pixelsPerDegree: of what the eye sees; if 0, that of the view itself.
+Square fullDensity(const scene::View& view, float foveaRadius, float pixelsPerDegree, int tile);
+
+}  // namespace fovea::passes
