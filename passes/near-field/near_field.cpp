@@ -16,6 +16,7 @@ namespace {
 using namespace graph;
 
 constexpr double kLengthKept = 7 / 8.0;  // share of the mean ray length kept from frame to frame
+constexpr double kCellWidth = 0.1;       // width of the cache's cells, in mean ray lengths
 
 class NearField : public Pass {
  public:
@@ -46,6 +47,8 @@ class NearField : public Pass {
                 "rays per sample after a camera cut, when there is no history to build on");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
+    d.counter("gathered",
+              "those of them at whose ends light of further bounces was gathered rather than known");
     return d;
   }
 
@@ -69,16 +72,20 @@ class NearField : public Pass {
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
       const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+      settings.cache = &cache_;
       const auto trace = [&] {
         area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
         settings.area = float(area);
+        cache_.setCellWidth(float(kCellWidth * length_));
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
-      if (first) {  // first the length alone
+      if (first) {  // first the length alone, then the cache
         length_ = 0;
+        cache_.clear();
         statistics = trace();
         length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
         settings.samples = uint32_t(p.integer("first_samples"));
+        trace();
       }
       statistics = trace();
       if (statistics.hits > 0)
@@ -92,10 +99,12 @@ class NearField : public Pass {
     ctx.outputAs<glm::vec4>("spread")[0] = glm::vec4(area, 0, 0, 0);
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("shaded", double(statistics.shaded));
+    ctx.counter("gathered", double(statistics.gathered));
   }
 
  private:
   double length_ = 0;  // m, mean ray length of the frames so far
+  GatherCache cache_;  // of the frames so far
   std::vector<glm::vec4> image_;
 };
 

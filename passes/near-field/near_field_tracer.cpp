@@ -18,8 +18,14 @@ namespace {
 using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
-                   kAimStream = 0x6e656169u;
+                   kAimStream = 0x6e656169u, kCellStream = 0x6e656363u;
+constexpr float kRenewed = 0.25f;  // probability of gathering anew what the cache knows
 constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
+
+// What one row of the picture, or one part of a list, adds.
+struct Row : NearFieldStatistics {
+  std::vector<GatherCache::Sample> samples;
+};
 
 class Tracer {
  public:
@@ -34,7 +40,7 @@ class Tracer {
         fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)) {}
 
   // Traces all tiles of `spacing` pixels in one row.
-  void traceTiles(uint32_t row, NearFieldStatistics& statistics) const {
+  void traceTiles(uint32_t row, Row& statistics) const {
     const uint32_t spacing = settings_.spacing, step = spacing / 2;
     for (uint32_t x = 0; x < view_.size.x; x += spacing) {
       const glm::uvec2 tile(x, row * spacing);
@@ -50,7 +56,7 @@ class Tracer {
   }
   uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
 
-  glm::vec4 pixelLight(glm::uvec2 pixel, NearFieldStatistics& statistics) const {
+  glm::vec4 pixelLight(glm::uvec2 pixel, Row& statistics) const {
     const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
     if (!v.there) return glm::vec4(0);
     glm::vec3 sum(0);
@@ -61,7 +67,7 @@ class Tracer {
 
  private:
   // Returns the mean over the turns whose pixel shows a surface.
-  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, NearFieldStatistics& statistics) const {
+  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, Row& statistics) const {
     const glm::uvec2 block = corner / side;
     glm::vec3 sum(0);
     uint32_t found = 0;
@@ -78,8 +84,7 @@ class Tracer {
   }
 
   // Adjacent blocks, 4 x 4 of them, take turns in one sequence.
-  glm::vec3 lightAt(const TracedSurface& v, glm::uvec2 block, uint32_t turn,
-                    NearFieldStatistics& statistics) const {
+  glm::vec3 lightAt(const TracedSurface& v, glm::uvec2 block, uint32_t turn, Row& statistics) const {
     const glm::uvec2 group = block / 4u, place = block % 4u;
     const uint32_t order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
     const uint32_t stream = randomStream(settings_.seed, group.x, kNearStream, group.y);
@@ -104,14 +109,28 @@ class Tracer {
     const float cosine = cosineDensity(v, direction);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
     radiance += surfaces_.emitted(hit) * (cosine / (cosine + surfaces_.emitterDensity(v, hit)));
-    radiance += rho * surfaces_.gather(hit, settings_.bounces - 1, 1,
-                                       randomStream(stream, turn, kGatherStream, order), statistics.rays);
+    radiance += rho * gathered(hit, randomStream(stream, turn, kGatherStream, order), statistics);
     return light + radiance * (partAt(distance) / probability);
   }
 
+  // The mean radiance that reaches v after further bounces and from emissive surfaces.
+  glm::vec3 gathered(const TracedSurface& v, uint32_t stream, Row& statistics) const {
+    uint64_t cell = 0;
+    std::optional<glm::vec3> known;
+    if (settings_.cache) {
+      const auto number = [&](uint32_t i) { return uniformFloat(randomStream(stream, i, kCellStream, 0)); };
+      cell = settings_.cache->cellOf(v.position, v.face, glm::vec3(number(0), number(1), number(2)) - 0.5f);
+      known = settings_.cache->find(cell);
+      if (known && number(3) >= kRenewed) return *known;
+    }
+    ++statistics.gathered;
+    const glm::vec3 light = surfaces_.gather(v, settings_.bounces - 1, 1, stream, statistics.rays);
+    if (settings_.cache) statistics.samples.push_back({cell, light});
+    return known.value_or(light);
+  }
+
   // The part of a ray aimed at an emissive surface, beside the cosine-weighted one, which may hit it by chance.
-  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, float reach,
-                        NearFieldStatistics& statistics) const {
+  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, float reach, Row& statistics) const {
     const SurfaceTracer::EmitterRay to = surfaces_.towardsEmitter(v, stream);
     if (!to.there || to.distance > reach || !surfaces_.sees(v, to, statistics.rays)) return glm::vec3(0);
     const float cosine = cosineDensity(v, to.direction);
@@ -137,20 +156,22 @@ class Tracer {
   Fovea fovea_;
 };
 
-// Calls trace(row, statistics) for all rows, on several threads, and returns the sum of the statistics.
+// Calls trace(row, sums) for all rows, on several threads, fills the cache and returns the sum of the statistics.
 template <class Trace>
-NearFieldStatistics traceRows(uint32_t count, uint32_t threads, const Trace& trace) {
-  std::vector<NearFieldStatistics> rows(count);
+NearFieldStatistics traceRows(uint32_t count, const NearFieldSettings& settings, const Trace& trace) {
+  std::vector<Row> rows(count);
   std::atomic<uint32_t> next = 0;
-  onThreads(std::min(threadCount(threads), count), [&] {
+  onThreads(std::min(threadCount(settings.threads), count), [&] {
     for (uint32_t row = next++; row < count; row = next++) trace(row, rows[row]);
   });
   NearFieldStatistics sum;  // summed in a fixed order
-  for (const NearFieldStatistics& row : rows) {
+  for (const Row& row : rows) {
     sum.rays += row.rays;
     sum.shaded += row.shaded;
+    sum.gathered += row.gathered;
     sum.hits += row.hits;
     sum.length += row.length;
+    if (settings.cache) settings.cache->add(row.samples);
   }
   return sum;
 }
@@ -170,8 +191,7 @@ glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
 NearFieldStatistics traceNearField(const Frame& frame, const View& view, const RayScene& rays,
                                    const NearFieldSettings& settings, std::span<glm::vec4> image) {
   const Tracer tracer(frame, view, rays, settings, image);
-  return traceRows(tracer.tileRows(), settings.threads,
-                   [&](uint32_t row, NearFieldStatistics& sum) { tracer.traceTiles(row, sum); });
+  return traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row& sum) { tracer.traceTiles(row, sum); });
 }
 
 NearFieldStatistics traceNearFieldPixels(const Frame& frame, const View& view, const RayScene& rays,
@@ -179,11 +199,10 @@ NearFieldStatistics traceNearFieldPixels(const Frame& frame, const View& view, c
                                          std::span<const glm::uvec2> pixels, std::span<glm::vec4> light) {
   constexpr size_t kChunk = 256;
   const Tracer tracer(frame, view, rays, settings, {});
-  return traceRows(uint32_t((pixels.size() + kChunk - 1) / kChunk), settings.threads,
-                   [&](uint32_t row, NearFieldStatistics& sum) {
-                     const size_t end = std::min((row + 1) * kChunk, pixels.size());
-                     for (size_t i = row * kChunk; i < end; ++i) light[i] = tracer.pixelLight(pixels[i], sum);
-                   });
+  return traceRows(uint32_t((pixels.size() + kChunk - 1) / kChunk), settings, [&](uint32_t row, Row& sum) {
+    const size_t end = std::min((row + 1) * kChunk, pixels.size());
+    for (size_t i = row * kChunk; i < end; ++i) light[i] = tracer.pixelLight(pixels[i], sum);
+  });
 }
 
 }  // namespace fovea::passes

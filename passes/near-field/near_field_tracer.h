@@ -9,6 +9,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "passes/near-field/gather_cache.h"
 
 namespace fovea::passes {
 
@@ -20,11 +21,14 @@ struct NearFieldSettings {
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
   uint32_t seed = 0;
   uint32_t threads = 0;  // 0 uses one per core; the result does not depend on it
+  // If given, light of further bounces comes from here where it is known, and what is gathered is added.
+  GatherCache* cache = nullptr;
 };
 
 struct NearFieldStatistics {
-  // `shaded` counts rays from visible surfaces at whose ends the light was evaluated.
-  uint64_t rays = 0, shaded = 0;
+  // `shaded` counts rays from visible surfaces at whose ends the light was evaluated, `gathered` those of them that
+  // gathered light of further bounces there.
+  uint64_t rays = 0, shaded = 0, gathered = 0;
   // length / hits is the mean distance, in m, from visible surfaces to the surfaces seen from them.
   double hits = 0, length = 0;
 };
