@@ -8,8 +8,8 @@
 #include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
+#include "passes/acuity.h"
 #include "passes/bundles.h"
-#include "passes/deferred/acuity.h"
 #include "shaders/common/records/vpl.h"
 #include "shaders/deferred/records.h"
 
@@ -115,7 +115,7 @@ class Deferred : public Pass {
     if (masked_) ctx.copy("base", "irradiance");  // for the pixels outside the blocks
     const VkExtent3D size = ctx.extent("partial");
     const int reach = int(2 * side_);  // of the filter beyond a pixel, where it searches for missing subsets
-    const Square fine = fineSquare(ctx);
+    const Square fine = fineSquare(ctx.view(), ctx.parameters(), kTileWidth);
     shade(ctx, pages_, fine.grown(reach).within(size), {});
     if (!coarsePages_.empty())
       shade(ctx, coarsePages_, Square{}.grown(1 << 20).within(ctx.extent("coarse")),
@@ -126,14 +126,6 @@ class Deferred : public Pass {
 
  private:
   static SizeExpr coarse() { return parameter("periphery") - 1; }  // 0 or 1
-
-  // The part of the picture that is shaded at all pixels.
-  static Square fineSquare(const RecordContext& ctx) {
-    const Parameters& p = ctx.parameters();
-    if (ctx.evaluate(coarse()) == 0) return Square{}.grown(1 << 20);
-    return fullDensity(ctx.view(), float(p.real("fovea_radius")), float(p.real("pixels_per_degree")),
-                       kTileWidth);
-  }
 
   // Shades the part `area` of the grid of samples, without its part `hole`.
   void shade(RecordContext& ctx, const std::vector<Kernel>& pages, const Square& area, const Square& hole) {
@@ -176,16 +168,10 @@ class Deferred : public Pass {
                 "subset would hold fewer than 4 VPLs");
     d.parameter("shadow_bias", real(1, 0, 100),
                 "tolerance of the shadow test, in half texels of the map's footprint at the surface");
-    d.parameter("periphery", integer(1, 1, 2),
-                "outside the fovea, where the eye resolves no more than every second pixel, one pixel of "
-                "each square of "
-                "this width is shaded, and the filter interpolates; 1 shades all pixels");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
-                "radius around the gaze within which all pixels are shaded, whatever `periphery` is");
-    d.parameter("pixels_per_degree", real(0, 0, 1000),
-                "pixels of the picture in a degree of what the eye sees, by which `periphery` knows what it "
-                "resolves; 0 "
-                "means that the picture is seen from where its perspective is right");
+    declarePeriphery(
+        d,
+        "outside the fovea, where the eye resolves no more than every second pixel, one pixel of each "
+        "square of this width is shaded, and the filter interpolates; 1 shades all pixels");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),
@@ -212,7 +198,10 @@ class Deferred : public Pass {
       d.fill("edges", 1).called(scale == 1 ? "fill edges" : "fill coarse edges").when(runs);
       filter(scale == 1 ? "filter" : "filter coarse", false, scale)
           .when(runs)
-          .constant("fine", [](const RecordContext& ctx) { return fineSquare(ctx).corners(); })
+          .constant("fine",
+                    [](const RecordContext& ctx) {
+                      return fineSquare(ctx.view(), ctx.parameters(), kTileWidth).corners();
+                    })
           .groups(ceilDiv(widthOf("partial"), kTileWidth), ceilDiv(heightOf("partial"), kTileHeight));
       filter(scale == 1 ? "filter edges" : "filter coarse edges", true, scale).when(runs).indirect("edges");
     }

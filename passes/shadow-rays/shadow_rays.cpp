@@ -10,6 +10,7 @@
 #include "framework/base/threads.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
+#include "passes/acuity.h"
 
 namespace fovea::passes {
 namespace {
@@ -25,8 +26,13 @@ class ShadowRays : public Pass {
                       PassKind::Host);
     d.view();
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
-            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1");
-    d.counter("pixels", "pixels that were in doubt");
+            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
+            "where rays decide");
+    declarePeriphery(
+        d,
+        "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves no more "
+        "than every second pixel");
+    d.counter("pixels", "pixels that were in doubt and traced");
     d.counter("rays", "rays traced, from the eye and towards lights");
     return d;
   }
@@ -43,18 +49,21 @@ class ShadowRays : public Pass {
                   "pass `shadow-rays`: `direct` has " + std::to_string(width) + "x" + std::to_string(height) +
                       " pixels, its view " + std::to_string(size.x) + "x" + std::to_string(size.y),
                   "wire direct light of the view that the pass looks through");
-    std::atomic<uint32_t> next = 0;
+    const Square fine = fineSquare(ctx.view(), ctx.parameters(), 1).within(ctx.extent("direct"));
+    const uint32_t first = uint32_t(fine.low.x), last = uint32_t(fine.high.x), end = uint32_t(fine.high.y);
+    std::atomic<uint32_t> next = uint32_t(fine.low.y);
     std::atomic<uint64_t> pixels = 0, traced = 0;
     onThreads(std::min(threadCount(0), height), [&] {
       uint64_t doubted = 0, count = 0;
-      for (uint32_t y = next++; y < height; y = next++)
-        for (uint32_t x = 0; x < width; ++x) {
+      for (uint32_t y = next++; y < end; y = next++)
+        for (uint32_t x = first; x < last; ++x) {
           uint64_t& pixel = direct[size_t(y) * width + x];
           if (pixel >> 48 == kSure) continue;
           ++doubted;
           const scene::TracedSurface v = surfaces.look(glm::vec2(x, y) + 0.5f, count);
           if (v.there) {
-            const glm::vec3 radiance = surfaces.direct(v, surfaces.reflectance(v), count);
+            const glm::vec3 radiance =
+                surfaces.emitted(v) + surfaces.direct(v, surfaces.reflectance(v), count);
             pixel = glm::packHalf4x16(glm::vec4(glm::min(radiance, 65504.0f), 1));
           } else {  // the ray falls between two triangles, so the map's result stays
             pixel = (pixel & 0xffffffffffffu) | kSure << 48;

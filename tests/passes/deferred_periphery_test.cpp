@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fovea/error.h"
-#include "passes/deferred/acuity.h"
+#include "passes/acuity.h"
 #include "tests/passes/deferred_scenes.h"
 
 namespace fovea::test {

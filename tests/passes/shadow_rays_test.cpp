@@ -87,6 +87,25 @@ TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
 }
 
+// Where the eye resolves little, the shadow map's answer stays.
+TEST(ShadowRays, LeavesThePeripheryOut) {
+  const Room room = litBoxes();
+  const uint64_t doubt = glm::packHalf4x16({1, 2, 3, 0});
+  PassTest test("shadow-rays");
+  test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
+  test.param("periphery", 2).param("fovea_radius", 0.1).param("pixels_per_degree", 200.0);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
+             std::vector<uint64_t>(room.pixels.size(), doubt));
+  test.run();
+  const auto after = test.values<uint64_t>("direct");
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const bool fine = std::abs(float(x) + 0.5f - 40) < 8 && std::abs(float(y) + 0.5f - 30) < 8;
+      EXPECT_EQ(after[size_t(y * kSize.x + x)] == doubt, !fine) << x << ", " << y;
+    }
+  EXPECT_EQ(test.counter("pixels"), 16 * 16);
+}
+
 TEST(ShadowRays, SizeIsTheViews) {
   PassTest test("shadow-rays");
   test.viewSize(16, 8).scene(litBoxes().scene);

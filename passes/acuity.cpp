@@ -1,4 +1,4 @@
-#include "passes/deferred/acuity.h"
+#include "passes/acuity.h"
 
 #include <algorithm>
 #include <glm/trigonometric.hpp>
@@ -12,6 +12,21 @@ namespace {
 constexpr float kSmallestPeriod = 1.0f / 48, kPeriodSlope = 0.022f;
 
 }  // namespace
+
+void declarePeriphery(graph::PassDeclaration& d, const char* what) {
+  d.parameter("periphery", graph::integer(1, 1, 2), what);
+  d.parameter("fovea_radius", graph::real(0.25, 0.001, 4, "image widths"),
+              "radius around the gaze within which no pixel is spared, whatever `periphery` is");
+  d.parameter("pixels_per_degree", graph::real(0, 0, 1000),
+              "pixels of the picture in a degree of what the eye sees, by which `periphery` knows what it "
+              "resolves; 0 "
+              "means that the picture is seen from where its perspective is right");
+}
+
+Square fineSquare(const scene::View& view, const graph::Parameters& p, int tile) {
+  if (p.integer("periphery") == 1) return Square{}.grown(1 << 20);
+  return fullDensity(view, float(p.real("fovea_radius")), float(p.real("pixels_per_degree")), tile);
+}
 
 Square fullDensity(const scene::View& view, float foveaRadius, float pixelsPerDegree, int tile) {
   const glm::vec2 size(view.size);
