@@ -202,15 +202,18 @@ class Lists(CliTest):
         self.assertRegex(self.succeeds("passes", "tonemap").stdout, r"(?m)^  exposure +0 \(")
         self.fails(BAD_INPUT, "passes", "tonemapp", says=["`tonemap`"])
 
+    def graphs(self):
+        folder = SOURCE / "graphs"
+        return [path for path in sorted([*folder.glob("*.json"), *folder.glob("debug/*.json")])
+                if not path.name.endswith(".schema.json")]
+
     def test_schema_accepts_the_graphs(self):
         schema = json.loads(self.succeeds("schema").stdout)
         self.assertIn("properties", schema)
         import jsonschema
         validator = jsonschema.validators.validator_for(schema)
         validator.check_schema(schema)
-        for path in sorted((SOURCE / "graphs").glob("*.json")):
-            if path.name.endswith(".schema.json"):
-                continue
+        for path in self.graphs():
             with self.subTest(graph=path.name):
                 graph = json.loads(path.read_text())
                 validator(schema).validate(graph)
@@ -223,11 +226,10 @@ class Lists(CliTest):
                          "graphs/fovea-graph.schema.json is out of date: write `fovea schema` into it")
 
     def test_check(self):
-        for path in sorted((SOURCE / "graphs").glob("*.json")):
-            if path.name.endswith(".schema.json"):
-                continue
-            with self.subTest(graph=path.name):
-                self.assertIn(path.stem, self.succeeds("check", path.stem).stdout)
+        for path in self.graphs():
+            name = str(path.relative_to(SOURCE / "graphs").with_suffix(""))
+            with self.subTest(graph=name):
+                self.assertIn(path.stem, self.succeeds("check", name).stdout)
 
     def test_plans(self):
         self.assertIn("tonemap", self.succeeds("check", "direct", "--plan", "text").stdout)

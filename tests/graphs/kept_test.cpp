@@ -117,7 +117,7 @@ void expectSame(const char* graph, const scene::Scene& scene, const std::vector<
   EXPECT_GT(moved, kFrames / 2);
 }
 
-TEST(Kept, LightOfWhatStands) { expectSame("debug_voxels", movingScene(), {"show=radiance"}); }
+TEST(Kept, LightOfWhatStands) { expectSame("debug/voxels", movingScene(), {"show=radiance"}); }
 
 TEST(Kept, PicturesFromWhatIsKept) { expectSame("ours", movingScene(), {}); }
 
