@@ -22,7 +22,7 @@ struct EyePathEnd {
   vec3 position SHARED_ZERO;  // world space, m
   // 1 without direct light, 2 with direct light, 3 where the surface emits more than it reflects of direct light.
   float kind SHARED_ZERO;
-  vec3 normal SHARED_ZERO;    // unit, on the side from which the path came
+  vec3 normal SHARED_ZERO;  // unit, on the side from which the path came
   // Number of cosine-weighted paths that this one stands for; 1 unless some paths are aimed at emissive surfaces.
   float weight SHARED_ZERO;
   vec3 radiance SHARED_ZERO;  // leaves towards the start of the path, W/(sr m^2)
