@@ -25,6 +25,9 @@ class Candidates : public Pass {
     d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead,
             "radiance of each voxel side; if not wired, the candidates' luminance is 0")
         .makeOptional();
+    d.input("traced", "eye-paths", eyePathMembers(),
+            "paths of pass eye-paths; where some end on surfaces that shine, some candidates lie there")
+        .makeOptional();
     d.output("candidates", candidateBuffer(parameter("count")), Usage::StorageWrite,
              "one entry per attempt; an attempt that hit nothing has no side and is otherwise zero");
     d.parameter("count", integer(1000, 1, 65536), "number of attempts, with one pixel and one ray each");
@@ -48,6 +51,7 @@ class Candidates : public Pass {
     d.step("candidates/candidates.comp")
         .define("TWO_EYES", wired("gbuffer2"))
         .define("HAS_RADIANCE", wired("radiance"))
+        .define("TRACED", wired("traced"))
         .constant("imageShare64ths",
                   [](const RecordContext& ctx) {
                     return scene::imageShare64ths(ctx.parameters().real("image_share"));

@@ -1,5 +1,7 @@
 // One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
-// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye.
+// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
+// first takes an eye path at random, and if that ends on a surface that shines, the candidate lies there. Such
+// surfaces are often smaller than voxels, whose averages would all be the same few places.
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/diffuse_bounce.glsl"
@@ -20,11 +22,15 @@ uniform texture2D gbuffer2Face;
 #if HAS_RADIANCE
 uniform samplerBuffer radiance;
 #endif
+#if TRACED
+#include "common/eye_paths.glsl"
+uniform samplerBuffer tracedEnds;
+#endif
 layout(std430) writeonly buffer Candidates { Candidate candidates[]; };
 layout(std430) buffer Counters { uint counters[]; };  // in the order below
 
 const uint kRays = 0u, kCandidates = 1u, kEscaped = 2u, kBackground = 3u;
-const uint kCandidateStream = 0x63616e64u;  // keeps the random numbers of this pass apart from others
+const uint kCandidateStream = 0x63616e64u, kPathStream = 0x63617074u;  // keep the random numbers of this pass apart from others
 
 layout(push_constant) uniform Push {
   vec2 secondGaze;
@@ -48,11 +54,65 @@ Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uin
   return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
 }
 
+#if TRACED
+// The side of the voxel at `position` whose surface faces most as `normal` says.
+uint sideAt(vec3 position, vec3 normal) {
+  VoxelGrid grid = voxelsGrid();
+  uint voxel = voxelAt(grid, ivec3(floor(worldToVoxel(grid, position)))), found = kNoSide;
+  float best = 0.0;
+  for (uint side = 2u * voxel - 2u; voxel > 0u && side < 2u * voxel; ++side) {
+    VoxelSide s = loadSide(side);
+    float cosine = dot(s.normal, normal);
+    if (s.area > 0.0 && cosine > best) {
+      best = cosine;
+      found = side;
+    }
+  }
+  return found;
+}
+#endif
+
+// The candidate on a voxel side, at a place of its surface.
+Candidate candidateOn(uint number, vec3 place) {
+  VoxelSide side = loadSide(number);
+  Candidate candidate = kNoCandidate;
+  candidate.position = place;
+  candidate.side = number;
+  candidate.normal = side.normal;
+  candidate.object = side.object;
+  candidate.reflectance = side.reflectance;
+#if HAS_RADIANCE
+  candidate.luminance = texelFetch(radiance, int(number)).w;
+#endif
+  uint object = uint(side.object);
+  if (objectDeforms(object)) {  // its place on the surface does not change
+    candidate.localPosition = attach(uint(side.triangle), place);
+    candidate.position = attachedPosition(candidate.localPosition);
+  } else {
+    candidate.localPosition = toObject(object, place);
+  }
+  return candidate;
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   Candidate candidate = kNoCandidate;
   uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
+#if TRACED
+  if (i % 4u == 3u) {
+    uint paths = uint(textureSize(tracedEnds)) / 3u;
+    EyePathEnd end = loadEyePathEnd(tracedEnds, randomStream(seed, streamFrame, kPathStream, i) % paths);
+    uint side = end.kind == kShining ? sideAt(end.position, end.normal) : kNoSide;
+    if (side != kNoSide) {
+      candidate = candidateOn(side, end.position);
+      candidate.luminance = end.weight * luminanceOf(end.radiance);
+      candidates[i] = candidate;
+      atomicAdd(counters[kCandidates], 1u);
+      return;
+    }
+  }
+#endif
   uint number, from = regionOf(region, imageShare64ths, TWO_EYES != 0 ? i / 2u : i, number);
 #if TWO_EYES
   Seen seen;
@@ -77,21 +137,5 @@ void main() {
     return;
   }
   atomicAdd(counters[kCandidates], 1u);
-  VoxelSide side = loadSide(hit.side);
-  candidate.position = side.position;
-  candidate.side = hit.side;
-  candidate.normal = side.normal;
-  candidate.object = side.object;
-  candidate.reflectance = side.reflectance;
-#if HAS_RADIANCE
-  candidate.luminance = texelFetch(radiance, int(hit.side)).w;
-#endif
-  uint object = uint(side.object);
-  if (objectDeforms(object)) {  // its place on the surface does not change
-    candidate.localPosition = attach(uint(side.triangle), side.position);
-    candidate.position = attachedPosition(candidate.localPosition);
-  } else {
-    candidate.localPosition = toObject(object, side.position);
-  }
-  candidates[i] = candidate;
+  candidates[i] = candidateOn(hit.side, loadSide(hit.side).position);
 }

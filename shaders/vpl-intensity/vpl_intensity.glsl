@@ -2,7 +2,7 @@
 #ifndef FOVEA_WEIGHTS_GLSL
 #define FOVEA_WEIGHTS_GLSL
 
-#include "common/records/eye_paths.h"
+#include "common/eye_paths.glsl"
 #include "common/voxel_trace.glsl"
 #include "vpl-intensity/records.h"
 
@@ -23,14 +23,10 @@ float unitsToArea(VoxelGrid grid, uint low, uint high) {
 }
 
 // VPLs and ends of eye paths on sides with direct light are kept apart from the others, and so are those on sides that
-// shine themselves, by which is meant that most of their radiance is emission.
-const float kShining = 3.0;
-
+// shine themselves (kShining), by which is meant that most of their radiance is emission.
 float siteKind(float light, float emission) {
   return emission > 0.5 * light ? kShining : light > 0.0 ? 2.0 : 1.0;
 }
-
-float luminanceOf(vec3 colour) { return dot(colour, vec3(0.2126, 0.7152, 0.0722)); }
 
 // Paths are counted in fixed point, as they may be divided. The direct light at the end of a path is relative to that
 // of a VPL, with an upper limit.
@@ -56,12 +52,6 @@ EyePathStart loadStart(samplerBuffer list, uint point) {
   int first = 3 * int(point);
   vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
   return EyePathStart(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
-}
-
-EyePathEnd loadEyePathEnd(samplerBuffer list, uint path) {
-  int first = 3 * int(path);
-  vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
-  return EyePathEnd(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 }
 
 PathEnd loadPathEnd(samplerBuffer list, uint path) {
