@@ -1,6 +1,7 @@
 #include "framework/scene/frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
@@ -40,6 +41,25 @@ glm::mat4 shifted(const glm::mat4& projection, glm::vec2 offset) {
   glm::mat4 m = projection;
   for (int c = 0; c < 4; ++c) m[c] += glm::vec4(offset * projection[c].w, 0, 0);
   return m;
+}
+
+constexpr size_t kViews = std::size(kViewNames);
+
+// Where each view's eye looks.
+std::array<glm::vec2, kViews> gazesAt(const Scene& scene, double time) {
+  const GazeSample gaze = gazeAt(scene.gaze, time, scene.gazeGap);
+  return {gaze.position, gaze.left.value_or(gaze.position), gaze.right.value_or(gaze.position)};
+}
+
+// Frame::saccade of frame `index` of a sequence, for whichever eye jumped last.
+float saccadeAt(const Scene& scene, uint64_t index, double framesPerSecond) {
+  for (uint64_t age = 0; age < std::min<uint64_t>(kSaccadeFrames, index); ++age) {
+    const auto now = gazesAt(scene, double(index - age) / framesPerSecond),
+               before = gazesAt(scene, double(index - age - 1) / framesPerSecond);
+    for (size_t i = 0; i < kViews; ++i)
+      if (glm::distance(now[i], before[i]) > kGazeJump) return 1 - float(age) / float(kSaccadeFrames);
+  }
+  return 0;
 }
 
 }  // namespace
@@ -122,16 +142,15 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
   f.seed = seed;
   f.exposure = scene.exposure;
   f.cameraCut = index == 0;
+  f.saccade = saccadeAt(scene, index, framesPerSecond);
   f.lights = lightsAt(scene, f.time);
   f.scene = &scene;
   f.geometry = &geometry;
   const double before = index > 0 ? double(index - 1) / framesPerSecond : f.time;
   const Camera camera = cameraAt(scene, f.time), previousCamera = cameraAt(scene, before);
-  const GazeSample gaze = gazeAt(scene.gaze, f.time);
-  const glm::vec2 gazes[] = {gaze.position, gaze.left.value_or(gaze.position),
-                             gaze.right.value_or(gaze.position)};
+  const auto gazes = gazesAt(scene, f.time);
   const float sides[] = {0, -1, 1};
-  for (size_t i = 0; i < std::size(kViewNames); ++i) {
+  for (size_t i = 0; i < kViews; ++i) {
     std::optional<Frustum> frustum;
     if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
     View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i], frustum);

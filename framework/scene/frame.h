@@ -35,6 +35,9 @@ inline constexpr const char* kViewNames[] = {"main", "left", "right"};
 // These views, each as large as the picture, for binding a graph.
 std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
 
+// Frames until Frame::saccade is 0 again.
+inline constexpr uint32_t kSaccadeFrames = 8;
+
 // Camera, eyes, gaze, lights and objects at frame `index` of a sequence at `framesPerSecond`; the paper's rate is 42
 // Hz. The geometry is not changed: moveObjects() brings it to the frame.
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,

@@ -9,6 +9,7 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/near-field/near_field_tracer.h"
+#include "passes/saccade.h"
 
 namespace fovea::passes {
 namespace {
@@ -45,6 +46,9 @@ class NearField : public Pass {
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
     d.parameter("first_samples", integer(16, 1, 1024),
                 "rays per sample after a camera cut, when there is no history to build on");
+    d.parameter("saccade_samples", integer(1, 1, 16),
+                "rays per sample in the fovea in the frame in which the gaze has jumped, as the history of a "
+                "new fovea has wide blocks only; their number falls to one over the next 8 frames");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
     d.counter("gathered",
@@ -86,6 +90,8 @@ class NearField : public Pass {
         length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
         settings.samples = uint32_t(p.integer("first_samples"));
         trace();
+      } else {
+        settings.foveaFactor = raysPerSample(frame, uint32_t(p.integer("saccade_samples")));
       }
       statistics = trace();
       if (statistics.hits > 0)

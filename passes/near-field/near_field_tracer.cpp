@@ -69,9 +69,10 @@ class Tracer {
   // Returns the mean over the turns whose pixel shows a surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, Row& statistics) const {
     const glm::uvec2 block = corner / side;
+    const uint32_t factor = side == 2 ? settings_.foveaFactor : 1, first = factor * settings_.turn;
     glm::vec3 sum(0);
     uint32_t found = 0;
-    for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn) {
+    for (uint32_t turn = first; turn < first + factor * settings_.samples; ++turn) {
       const glm::uvec2 pixel = corner + samplePixel(turn, side, block);
       if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
@@ -80,7 +81,7 @@ class Tracer {
       sum += lightAt(v, block, turn, statistics);
     }
     return {sum / float(std::max(found, 1u)),
-            float(sampleCode(side, samplePixel(settings_.turn, side, block), found > 0))};
+            float(sampleCode(side, samplePixel(first, side, block), found > 0))};
   }
 
   // Adjacent blocks, 4 x 4 of them, take turns in one sequence.

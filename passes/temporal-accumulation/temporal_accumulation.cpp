@@ -6,6 +6,7 @@
 
 #include "fovea/pass.h"
 #include "passes/bundles.h"
+#include "passes/saccade.h"
 
 namespace fovea::passes {
 namespace {
@@ -38,6 +39,9 @@ class TemporalAccumulation : public Pass {
         "a texel of `samples`, which change all at once, as many times more as they are wider");
     d.parameter("first_samples", integer(16, 1, 1024),
                 "weight of a sample after a camera cut, as in pass near-field");
+    d.parameter("saccade_samples", integer(1, 1, 16),
+                "weight of a sample in the fovea in the frame in which the gaze has jumped, as in pass "
+                "near-field");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
                 "the pixel's distance from the eye");
@@ -55,11 +59,14 @@ class TemporalAccumulation : public Pass {
     const auto shift =
         int32_t(std::bit_width((pixels + texels - 1) / texels - 1));  // a texel is 2^shift pixels wide
     Commands commands = ctx.step("temporal_accumulation");
-    commands.constant("weight", ctx.firstFrame() ? float(p.integer("first_samples")) : 1.0f)
-        .constant("frames", float(p.real("frames")));
+    const bool first = ctx.firstFrame();
+    const uint32_t rays = uint32_t(p.integer("first_samples")),
+                   foveal = raysPerSample(ctx.frame(), uint32_t(p.integer("saccade_samples")));
+    commands.constant("weight", float(first ? rays : foveal)).constant("frames", float(p.real("frames")));
     if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
-          .constant("shift", shift);
+          .constant("shift", shift)
+          .constant("wideWeight", float(first ? rays : 1));
     commands.drawFullscreen();
   }
 };

@@ -69,7 +69,6 @@ class Render {
   void takeFinished();
   void writeResults();
   void report() const;
-  scene::Frame frame(uint64_t index) const;
   void submit(uint64_t index, bool readOutputs);
   void showFovea();
   image::Metadata metadata(uint64_t index) const;
@@ -142,6 +141,8 @@ void Render::loadInputs() {
   }
   geometry_ = scene::flatten(scene_);
   if (!options_.gazeTrace.empty()) scene_.gaze = std::move(trace);
+  if (gaze_) scene_.gaze = {{0, *gaze_, true, {}, {}}};
+  scene_.gazeGap = 0.001 * options_.gazeGapMs;
   if (options_.foveaDegrees > 0) useFoveaAngle(bound);
   chooseOutputs();
   stopIfInterrupted();
@@ -198,19 +199,6 @@ void Render::buildExecutor() {
   stopIfInterrupted();
 }
 
-scene::Frame Render::frame(uint64_t index) const {
-  scene::Frame f = run_->frame(index);
-  if (!options_.gazeTrace.empty() && options_.gazeGapMs != 1000 * scene::kGazeGap) {
-    const scene::GazeSample sample = scene::gazeAt(scene_.gaze, f.time, 0.001 * options_.gazeGapMs);
-    const glm::vec2 eyes[] = {sample.position, sample.left.value_or(sample.position),
-                              sample.right.value_or(sample.position)};
-    for (size_t i = 0; i < f.views.size() && i < std::size(eyes); ++i) f.views[i].gaze = eyes[i];
-  }
-  if (gaze_)
-    for (scene::View& view : f.views) view.gaze = *gaze_;
-  return f;
-}
-
 // Gaze of the eye that the picture `image` shows.
 void Render::showFovea() {
   if (!options_.showFovea) return;
@@ -222,7 +210,7 @@ void Render::showFovea() {
         if (output.name == "image" && access.writes && access.resource == output.resource)
           eye = graph.views[pass.view];
   outputs_->setOverlay([this, eye](image::Image& picture, uint64_t index) {
-    const scene::Frame shown = frame(index);
+    const scene::Frame shown = run_->frame(index);
     const scene::Fovea fovea =
         scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
                          float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
@@ -230,10 +218,10 @@ void Render::showFovea() {
   });
 }
 
-void Render::submit(uint64_t index, bool readOutputs) { run_->submit(frame(index), readOutputs); }
+void Render::submit(uint64_t index, bool readOutputs) { run_->submit(run_->frame(index), readOutputs); }
 
 image::Metadata Render::metadata(uint64_t index) const {
-  const scene::Frame shown = frame(index);
+  const scene::Frame shown = run_->frame(index);
   std::string set;
   for (const std::string& text : options_.graph.set) set += (set.empty() ? "" : " ") + text;
   image::Metadata data = {{"version", FOVEA_VERSION},

@@ -18,6 +18,7 @@ layout(push_constant) uniform Constants {
   float planeTolerance;  // relative to the distance from the eye
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
+  float wideWeight;      // of a sample whose block is wider than that
 #endif
 };
 
@@ -64,21 +65,21 @@ void add(inout Around around, Sample s, bool wanted) {
 
 // Mean of single rays without the brightest, if there are others: one that hits something sunlit would be a firefly.
 // Samples that are means of several rays would lose light that way, and need it less.
-vec3 robustMean(Around around) {
+vec3 robustMean(Around around, float weight) {
   bool dropped = weight < 2.0 && around.sum.a > 1.0;
   return dropped ? (around.sum.rgb - around.brightest) / (around.sum.a - 1.0) : around.sum.rgb / max(around.sum.a, 1.0);
 }
 
 // Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks.
 // If there are none, samples of other surfaces are used, but with no weight.
-vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side) {
+vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float weight) {
   Around own = Around(vec4(0.0), vec3(0.0)), all = own;
   for (int i = 0; i < 9; ++i) {
     Sample s = sampleAt(p + max(side, 1 << shift) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
     add(own, s, s.own);
     add(all, s, s.found);
   }
-  return own.sum.a > 0.0 ? vec4(robustMean(own), own.sum.a * weight) : vec4(robustMean(all), 0.0);
+  return own.sum.a > 0.0 ? vec4(robustMean(own, weight), own.sum.a * weight) : vec4(robustMean(all, weight), 0.0);
 }
 
 void main() {
@@ -90,10 +91,11 @@ void main() {
   Sample s = sampleAt(p, position, normal, size);
   // All pixels of a larger block change at once, so they change less each time.
   float most = frames * float(max(s.side >> shift, 1));
-  float count = s.own ? min(old.a + weight, most) : old.a;
-  vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(weight / count, 1.0)), count) : old;
+  float its = s.side >> shift > 1 ? wideWeight : weight;
+  float count = s.own ? min(old.a + its, most) : old.a;
+  vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(its / count, 1.0)), count) : old;
   int without = surface && !(old.a > 0.0) ? 1 : 0;  // a CPU device skips a loop of zero turns, but not a branch
-  for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side);
+  for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side, its);
   mean = surface ? result : vec4(0.0);
 }
 #else

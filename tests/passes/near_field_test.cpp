@@ -194,6 +194,26 @@ TEST(NearField, TheSameWhateverTheThreads) {
   EXPECT_EQ(look.statistics.length, statistics.length);
 }
 
+// A new fovea takes more rays for each sample, the same as if it had waited for them; outside nothing changes.
+TEST(NearField, MoreRaysForANewFovea) {
+  Look look(shiningRoom(true));
+  NearFieldSettings more, later, plain;
+  more.spacing = later.spacing = plain.spacing = 8;
+  more.turn = plain.turn = 3;
+  more.foveaFactor = 4;
+  later.turn = 12;
+  later.samples = 4;
+  const auto got = look.trace(more), fovea = look.trace(later), outside = look.trace(plain);
+  int inside = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    const bool fine = (int(got[i].a) & 15) == 2;
+    EXPECT_EQ(got[i], fine ? fovea[i] : outside[i]) << i;
+    inside += fine;
+  }
+  EXPECT_GT(inside, 20);
+  EXPECT_LT(inside, int(got.size()) - 20);
+}
+
 TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
   const Look look(shiningRoom(false), glm::ivec2(16));
   double length = 0;

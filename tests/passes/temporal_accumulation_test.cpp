@@ -26,9 +26,10 @@ std::vector<uint32_t> ownPlaces() {
 // One frame of the pass; `samples` holds one per block of 2 x 2 pixels, or one per pixel.
 std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samples,
                               const std::vector<glm::vec4>& history, int firstSamples = 1,
-                              const std::vector<uint32_t>& origin = ownPlaces()) {
+                              const std::vector<uint32_t>& origin = ownPlaces(), float saccade = 0) {
   PassTest test("temporal-accumulation");
-  test.param("frames", 8.0).param("first_samples", firstSamples);
+  test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 5);
+  test.beforeFrame([saccade](PassTest&, scene::Frame& f) { f.saccade = saccade; });
   eye.seen.wire(test, "gbuffer", 2);
   const uint32_t block = samples.size() == history.size() ? 1 : 2;
   test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, origin);
@@ -82,6 +83,26 @@ TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
     own += got[i + 3] == 32;
   }
   EXPECT_GT(own, 1000);
+}
+
+// When the gaze has just jumped, a sample in the fovea is the mean of more rays and counts as many times; blocks outside
+// have one ray as ever. Their number falls with the saccade.
+TEST(TemporalAccumulation, SamplesOfANewFoveaCountMore) {
+  const Eye eye({0, 0, 0});
+  for (const auto& [saccade, rays] : {std::pair(1.0f, 5.0f), {0.5f, 3.0f}, {0.0f, 1.0f}})
+    for (const int side : {2, 8}) {
+      const auto got = accumulate(eye, everywhere(kSize / 2, {9, 9, 9, float(side)}),
+                                  everywhere(kSize, {1, 1, 1, 2}), 1, ownPlaces(), saccade);
+      const float its = side == 2 ? rays : 1, count = std::min(2 + its, side == 2 ? 8.0f : 32.0f);
+      int own = 0;
+      for (size_t i = 0; i < got.size(); i += 4) {
+        if (got[i + 3] == 2) continue;
+        ++own;
+        EXPECT_EQ(got[i + 3], count) << saccade << ", " << side;
+        EXPECT_NEAR(got[i], 1 + 8 * its / count, 2e-2) << saccade << ", " << side;
+      }
+      EXPECT_GT(own, 1000);
+    }
 }
 
 // Where there is no mean yet, the samples around the pixel make one; if they are single rays, the brightest is left

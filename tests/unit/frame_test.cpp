@@ -209,6 +209,25 @@ TEST(View, JitterFillsThePixel) {
   }
 }
 
+// The frame in which the gaze jumps has 1, and the following ones less; slow movement and the first frame have 0.
+TEST(Frame, SaccadesFade) {
+  Scene s;
+  s.cameras.emplace_back();
+  s.gaze = {{0, {0.2f, 0.2f}, true},
+            {0.5f, {0.2f, 0.2f}, true},
+            {1, {0.7f, 0.6f}, true},
+            {3, {0.7f, 0.6f}, true},
+            {3.04f, {0.72f, 0.6f}, true}};
+  const Geometry g;
+  const auto saccade = [&](uint64_t i) { return makeFrame(s, g, {8, 8}, i, 0, 10.0).saccade; };
+  EXPECT_EQ(saccade(0), 0);
+  EXPECT_EQ(saccade(9), 0);
+  for (uint32_t age = 0; age < kSaccadeFrames; ++age)
+    EXPECT_FLOAT_EQ(saccade(10 + age), 1 - float(age) / float(kSaccadeFrames)) << age;
+  EXPECT_EQ(saccade(10 + kSaccadeFrames), 0);
+  EXPECT_EQ(saccade(31), 0);  // from 0.70 to 0.72
+}
+
 TEST(Frame, GazeHoldsThroughBlinks) {
   Scene s;
   s.cameras.emplace_back();

@@ -207,6 +207,8 @@ struct LightMotion {
   std::vector<LightKey> keys;
 };
 
+inline constexpr double kGazeGap = 0.05;  // s; exceeded by slow trackers, pauses and blinks
+
 struct Scene {
   std::string name, source;  // source: scene file or model
   std::vector<Texture> textures;
@@ -217,6 +219,7 @@ struct Scene {
   std::vector<Camera> cameras;        // world space; [0] is used
   std::vector<CameraKey> cameraPath;  // empty for a still camera
   std::vector<GazeSample> gaze;
+  double gazeGap = kGazeGap;  // s; consecutive samples of the gaze are not joined if they lie further apart
   std::vector<Mover> movers;  // their nodes are dynamic
   std::vector<Skin> skins;
   std::vector<Animation> animations;  // their nodes, all nodes below and meshes they bend are dynamic
@@ -332,6 +335,7 @@ struct Frame {
   uint32_t seed = 0;
   float exposure = 1;
   bool cameraCut = false;  // the history of the views is invalid
+  float saccade = 0;       // 1 in the frame in which the gaze has jumped, then falling linearly to 0
   std::vector<View> views;
   std::vector<Light> lights;
   std::vector<ObjectTransform> objects;  // parallel to Geometry::objects

@@ -12,8 +12,8 @@ namespace fovea::scene {
 // The camera on its path or, without a path, the first camera, which moves with its node.
 Camera cameraAt(const Scene& scene, double time);
 
-// Consecutive samples of an eye tracker are not joined if they lie further apart than this in time or in the image.
-inline constexpr double kGazeGap = 0.05;   // s; exceeded by slow trackers, pauses and blinks
+// Consecutive samples of an eye tracker are not joined if they lie further apart than this in the image, or than
+// kGazeGap in time.
 inline constexpr float kGazeJump = 0.05f;  // normalised image coordinates; exceeded by saccades
 
 // Gaze at `time`: the last valid sample at or before it, or the first one if `time` precedes them all. The gaze is
