@@ -41,6 +41,8 @@ class EyePaths : public Pass {
     d.parameter("renew_frames", integer(1, 1, 1000),
                 "frames in which all paths get new starts, a share of the points in each frame; the others "
                 "keep theirs, so that the effect of a gaze jump comes in gradually");
+    d.parameter("saccade_renew_frames", integer(0, 0, 1000),
+                "in place of `renew_frames` for 8 frames after a jump of the gaze; 0 means no other");
     d.parameter("stray", real(0, 0, 1, "image widths"),
                 "how far a start may be on screen from its place; a closer one that the eye still sees is "
                 "kept, with the light it found, when it is due for renewal");
@@ -65,7 +67,10 @@ class EyePaths : public Pass {
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.gathered = uint32_t(p.integer("gathered"));
-    settings.renewFrames = ctx.firstFrame() ? 1 : uint32_t(p.integer("renew_frames"));
+    const bool hurries = frame.saccade > 0 && p.integer("saccade_renew_frames") > 0;
+    settings.renewFrames = ctx.firstFrame() ? 1
+                           : hurries        ? uint32_t(p.integer("saccade_renew_frames"))
+                                            : uint32_t(p.integer("renew_frames"));
     settings.stray = ctx.firstFrame() ? 0 : float(p.real("stray"));
     settings.traceFrames = uint32_t(p.integer("trace_frames"));
     settings.turn = uint32_t(ctx.frameNumber());

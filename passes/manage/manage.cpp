@@ -62,6 +62,7 @@ void setConstants(const RecordContext& ctx, Commands& commands) {
       .constant("listLimit", limit)
       .constant("keepCount", keep)
       .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
+      .constant("contested", uint32_t(std::ceil(p.real("saccade_turnover") * ctx.frame().saccade * slots)))
       .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
       .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
 }
@@ -117,6 +118,11 @@ PassDeclaration Manage::declaration() {
   d.parameter("turnover", real(1, 0, 1, "slots' share"),
               "most VPLs deleted per frame for failing Eq. 1 (rounded up); if more fail, the least important "
               "are deleted and the others are tested against their former importance again");
+  d.parameter(
+      "saccade_turnover", real(0, 0, 1, "slots' share"),
+      "VPLs that lose their place in the frame in which the gaze has jumped although Eq. 1 keeps them, "
+      "the least important ones: they are treated as if they had failed it; their number falls to 0 "
+      "over the next 8 frames");
   d.parameter("order", choice("literal", {"literal", "fixed"}),
               "variant of Algorithm 2; literal: as printed; fixed: when more old VPLs failed Eq. 1 than "
               "there are candidates, the best of those that the loop never reaches are tried as well");

@@ -9,7 +9,6 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/near-field/near_field_tracer.h"
-#include "passes/saccade.h"
 
 namespace fovea::passes {
 namespace {
@@ -47,8 +46,8 @@ class NearField : public Pass {
     d.parameter("first_samples", integer(16, 1, 1024),
                 "rays per sample after a camera cut, when there is no history to build on");
     d.parameter("saccade_samples", integer(1, 1, 16),
-                "rays per sample in the fovea in the frame in which the gaze has jumped, as the history of a "
-                "new fovea has wide blocks only; their number falls to one over the next 8 frames");
+                "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
+                "fovea is that of wide blocks");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
     d.counter("gathered",
@@ -90,8 +89,8 @@ class NearField : public Pass {
         length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
         settings.samples = uint32_t(p.integer("first_samples"));
         trace();
-      } else {
-        settings.foveaFactor = raysPerSample(frame, uint32_t(p.integer("saccade_samples")));
+      } else if (frame.saccade > 0) {
+        settings.foveaFactor = uint32_t(p.integer("saccade_samples"));
       }
       statistics = trace();
       if (statistics.hits > 0)

@@ -69,11 +69,12 @@ class Tracer {
   // Returns the mean over the turns whose pixel shows a surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, Row& statistics) const {
     const glm::uvec2 block = corner / side;
-    const uint32_t factor = side == 2 ? settings_.foveaFactor : 1, first = factor * settings_.turn;
+    const uint32_t factor = side == 2 ? settings_.foveaFactor : 1;
     glm::vec3 sum(0);
     uint32_t found = 0;
-    for (uint32_t turn = first; turn < first + factor * settings_.samples; ++turn) {
-      const glm::uvec2 pixel = corner + samplePixel(turn, side, block);
+    for (uint32_t i = 0; i < factor * settings_.samples; ++i) {
+      const uint32_t turn = factor * settings_.turn + i;
+      const glm::uvec2 pixel = corner + samplePixel(settings_.turn + i / factor, side, block);
       if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
       if (!v.there) continue;
@@ -81,7 +82,7 @@ class Tracer {
       sum += lightAt(v, block, turn, statistics);
     }
     return {sum / float(std::max(found, 1u)),
-            float(sampleCode(side, samplePixel(first, side, block), found > 0))};
+            float(sampleCode(side, samplePixel(settings_.turn, side, block), found > 0))};
   }
 
   // Adjacent blocks, 4 x 4 of them, take turns in one sequence.

@@ -19,8 +19,7 @@ struct NearFieldSettings {
   uint32_t bounces = 2;       // reflections of light on its way to the visible surface
   float area = 1;             // area of the discs, m^2; if 0, only `length` is found, no light
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
-  uint32_t foveaFactor =
-      1;  // blocks of 2 x 2 pixels take this many times as many, from `turn` times as far on
+  uint32_t foveaFactor = 1;        // rays per sample in blocks of 2 x 2 pixels; they use up as many turns
   uint32_t seed = 0;
   uint32_t threads = 0;  // 0 uses one per core; the result does not depend on it
   // If given, light of further bounces comes from here where it is known, and what is gathered is added.

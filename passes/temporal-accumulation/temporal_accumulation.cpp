@@ -5,8 +5,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "fovea/pass.h"
+#include "framework/scene/frame.h"
 #include "passes/bundles.h"
-#include "passes/saccade.h"
 
 namespace fovea::passes {
 namespace {
@@ -39,9 +39,11 @@ class TemporalAccumulation : public Pass {
         "a texel of `samples`, which change all at once, as many times more as they are wider");
     d.parameter("first_samples", integer(16, 1, 1024),
                 "weight of a sample after a camera cut, as in pass near-field");
-    d.parameter("saccade_samples", integer(1, 1, 16),
-                "weight of a sample in the fovea in the frame in which the gaze has jumped, as in pass "
-                "near-field");
+    d.parameter(
+        "saccade_samples", integer(1, 1, 16),
+        "weight of a sample for 8 frames after a jump of the gaze, as in pass near-field; samples for "
+        "blocks wider than a texel of `samples` keep the weight 1, and what they have left in the mean "
+        "counts less where a narrower block follows");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
                 "the pixel's distance from the eye");
@@ -61,8 +63,8 @@ class TemporalAccumulation : public Pass {
     Commands commands = ctx.step("temporal_accumulation");
     const bool first = ctx.firstFrame();
     const uint32_t rays = uint32_t(p.integer("first_samples")),
-                   foveal = raysPerSample(ctx.frame(), uint32_t(p.integer("saccade_samples")));
-    commands.constant("weight", float(first ? rays : foveal)).constant("frames", float(p.real("frames")));
+                   saccade = ctx.frame().saccade > 0 ? uint32_t(p.integer("saccade_samples")) : 1;
+    commands.constant("weight", float(first ? rays : saccade)).constant("frames", float(p.real("frames")));
     if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift)

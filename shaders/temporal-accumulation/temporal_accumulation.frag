@@ -91,7 +91,11 @@ void main() {
   Sample s = sampleAt(p, position, normal, size);
   // All pixels of a larger block change at once, so they change less each time.
   float most = frames * float(max(s.side >> shift, 1));
-  float its = s.side >> shift > 1 ? wideWeight : weight;
+  bool wide = s.side >> shift > 1;
+  float its = wide ? wideWeight : weight;
+  // Where the gaze has jumped. Only wide blocks leave counts above `frames`, by the ratio of the widths; each of their
+  // samples covers as many narrow blocks as the square of it.
+  if (!wide && its > 1.0 && old.a > frames) old.a = frames * frames / old.a;
   float count = s.own ? min(old.a + its, most) : old.a;
   vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(its / count, 1.0)), count) : old;
   int without = surface && !(old.a > 0.0) ? 1 : 0;  // a CPU device skips a loop of zero turns, but not a branch

@@ -206,5 +206,43 @@ TEST(GazeJump, LightDoesNotJumpWithIt) {
   }
 }
 
+// Four frames after a jump the new fovea is better with the share of work that a saccade adds than without it.
+TEST(GazeJump, TheNewFoveaIsSoonGood) {
+  constexpr uint64_t kJump = 24;
+  Diagnostics warnings;
+  const scene::Scene s = scene::load("cornellbox", warnings);
+  const glm::vec2 gazes[] = {{0.25f, 0.3f}, {0.7f, 0.65f}};
+  GraphRunOptions options;
+  options.size = {kSide, kSide};
+  options.outputs = {"indirect"};
+  options.everyFrame = true;
+  options.set = {"spp=256"};
+  const image::Picture truth =
+      picture(runGraph("reference", s, options).frames.back(), "indirect", s.exposure);
+  const auto errorOf = [&](std::vector<std::string> set) {
+    set.insert(set.end(), {"shadow_map_size=512", "map_size=32", "vpl_count=200", "voxels=48"});
+    options.frames = kJump + 5;
+    options.set = std::move(set);
+    options.beforeFrame = [&](scene::Frame& frame) {
+      frame.views[0].gaze = gazes[frame.index >= kJump];
+      frame.saccade = frame.index >= kJump ? 1 - float(frame.index - kJump) / scene::kSaccadeFrames : 0;
+    };
+    const image::Picture seen = picture(runGraph("foveal", s, options).frames.back(), "indirect", s.exposure);
+    double sum = 0;
+    int pixels = 0;
+    for (uint32_t y = 0; y < kSide; ++y)
+      for (uint32_t x = 0; x < kSide; ++x) {
+        if (glm::distance(glm::vec2(x, y) + 0.5f, gazes[1] * float(kSide)) > 0.25f * kSide) continue;
+        for (uint32_t c = 0; c < 3; ++c)
+          sum += std::pow(seen.display.at(x, y, c) - truth.display.at(x, y, c), 2) / 3;
+        ++pixels;
+      }
+    return sum / pixels;
+  };
+  const double with = errorOf({}), without = errorOf({"saccade_samples=1", "saccade_renew_frames=8"});
+  std::printf("error four frames after a jump: %.6f, without a saccade's share %.6f\n", with, without);
+  EXPECT_LT(with, 0.9 * without);
+}
+
 }  // namespace
 }  // namespace fovea::test

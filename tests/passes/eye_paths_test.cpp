@@ -351,6 +351,26 @@ TEST(EyePaths, PathsAreTracedInTurns) {
   }
 }
 
+// For the frames after a jump of the gaze, points move on as fast as `saccade_renew_frames` says.
+TEST(EyePaths, StartsHurryAfterASaccade) {
+  const Look look(litRoom(true), {32, 32});
+  const auto ends = [&](uint32_t renewFrames, float saccade) {
+    PassTest test("eye-paths");
+    test.param("paths", 256).param("points", 64).param("renew_frames", int(renewFrames));
+    test.param("saccade_renew_frames", 2).viewSize(32, 32).scene(look.scene);
+    test.beforeFrame([saccade](PassTest&, scene::Frame& f) {
+      f.views[0].gaze = f.index < 2 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f);
+      f.saccade = f.index < 2 ? 0 : saccade;
+    });
+    test.run(4);
+    std::vector<glm::vec3> positions;
+    for (const EyePathEnd& e : test.values<EyePathEnd>("paths.ends")) positions.push_back(e.position);
+    return positions;
+  };
+  EXPECT_EQ(ends(64, 0.125f), ends(1, 0));
+  EXPECT_NE(ends(64, 0), ends(1, 0));
+}
+
 // After a cut of the camera nothing stays.
 TEST(EyePaths, ACutMovesAllStarts) {
   const Look look(litRoom(true), {32, 32});

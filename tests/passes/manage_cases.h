@@ -125,7 +125,8 @@ class Manager {
     test_->param("count", int(in.vpls.size())).param("max_density", int(settings.maxDensity));
     test_->param("density_constant", settings.densityConstant).param("cell", settings.cell);
     test_->param("placement", settings.placement.c_str()).param("light_floor", settings.lightFloor);
-    test_->param("turnover", settings.turnover);
+    test_->param("turnover", settings.turnover).param("saccade_turnover", settings.saccadeTurnover);
+    test_->beforeFrame([this](PassTest&, scene::Frame& frame) { frame.saccade = saccade_; });
     test_->buffer("candidates", in.candidates, "Candidate");
     test_->buffer("candidate_importance", in.candidateImportance, "float");
     test_->buffer("vpls", in.vpls, "VplState");
@@ -135,6 +136,7 @@ class Manager {
   // Runs one frame, which fails unless the pass gives the same bits as the reference.
   ManageOutput run(ManageInput in) {
     set(in);
+    saccade_ = in.saccade;
     test_->run(1);
     in.seed = test_->lastFrame().seed;
     in.frame = uint32_t(test_->lastFrame().index);
@@ -172,6 +174,7 @@ class Manager {
     EXPECT_EQ(test_->counter("dense"), want.dense);
   }
   ManageSettings settings_;
+  float saccade_ = 0;
   std::unique_ptr<PassTest> test_;
 };
 

@@ -18,7 +18,7 @@ struct ManageSettings {
   uint32_t keep = 0, limit = 0, maxDensity = 0;
   double densityConstant = 1, cell = 1.0 / 48;
   std::string placement = "importance";
-  double lightFloor = 0.25, turnover = 1;
+  double lightFloor = 0.25, turnover = 1, saccadeTurnover = 0;
 };
 
 struct ManageInput {
@@ -28,7 +28,7 @@ struct ManageInput {
   std::vector<float> vplImportance;
   uint32_t seed = 1, frame = 0;
   glm::vec3 boundsMin{0}, boundsMax{1};
-  float exposure = 1;
+  float exposure = 1, saccade = 0;
 };
 
 struct ManageOutput {
@@ -127,7 +127,9 @@ class ManageReference {
       if (limited && !random) return key(a) < key(b);
       return random ? this->random(a, 1) < this->random(b, 1) : oldImportance(a) > oldImportance(b);
     });
-    order.resize(std::min<size_t>(accepted, limit_));
+    const double contested = std::ceil(s_.saccadeTurnover * in_.saccade * double(alive_.size()));
+    const size_t reused = std::min<size_t>(accepted, limit_);
+    order.resize(reused - std::min(reused, size_t(contested)));
     for (uint32_t slot : order) stay(slot);
   }
 

@@ -91,6 +91,61 @@ TEST(Manage, LightAndTurnoverEqualTheSerialAlgorithm) {
   }
 }
 
+TEST(Manage, SaccadesEqualTheSerialAlgorithm) {
+  Dice dice(60);
+  for (uint32_t seed = 600; seed < 606; ++seed) {
+    SCOPED_TRACE(seed);
+    const Content content{dice.any<uint32_t>({7, 40, 300}), dice.any<uint32_t>({3, 200, 700}), 0.8f};
+    ManageSettings settings;
+    settings.placement = seed % 3 == 0 ? "light" : "importance";
+    settings.order = seed % 2 == 0 ? "fixed" : "literal";
+    settings.turnover = dice.any({0.05, 0.4, 1.0});
+    settings.saccadeTurnover = dice.any({0.1, 0.5, 1.0});
+    ManageInput in = randomInput(dice, content);
+    Manager manager(settings, in, seed);
+    for (const float saccade : {0.0f, 1.0f, 0.875f, 0.25f, 0.0f}) {
+      if (testing::Test::HasFailure()) return;
+      in.saccade = saccade;
+      const ManageOutput out = manager.run(in);
+      nextFrame(in, out.vpls, dice);
+      newCandidates(in, dice, content);
+    }
+  }
+}
+
+// The list is full and nothing changes its importance, so that Eq. 1 keeps all of it. After a jump the least important
+// VPLs give way to better candidates, fewer in each frame, and those that are better than the candidates stay.
+TEST(Manage, AFullListFollowsTheGaze) {
+  Dice dice(61);
+  ManageInput in = randomInput(dice, {100, 400, 0.9f, Importance::Fine, 0.0f});
+  for (size_t i = 0; i < in.vpls.size(); ++i) {
+    in.vplImportance[i] = in.vpls[i].previousImportance = i < 60 ? 0.9f : 0.1f;
+    in.vpls[i].importance = in.vplImportance[i];
+  }
+  std::fill(in.candidateImportance.begin(), in.candidateImportance.end(), 0.5f);
+  ManageSettings settings;
+  settings.order = "fixed";
+  settings.maxDensity = 1000;
+  settings.densityConstant = 1024;  // the importance alone decides
+  settings.saccadeTurnover = 0.2;
+  Manager manager(settings, in);
+  uint32_t added = 0;
+  for (const float saccade : {0.0f, 1.0f, 0.5f, 0.25f, 0.0f, 1.0f, 1.0f}) {
+    in.saccade = saccade;
+    const ManageOutput out = manager.run(in);
+    EXPECT_EQ(out.alive, 100u);
+    EXPECT_EQ(out.added, std::min(uint32_t(20 * saccade), 40u - added)) << saccade;
+    added += out.added;
+    for (size_t i = 0; i < in.vpls.size(); ++i) {
+      EXPECT_TRUE(i >= 60 || out.vpls[i].life > 1) << i;
+      in.vplImportance[i] = out.vpls[i].importance;
+    }
+    nextFrame(in, out.vpls, dice);
+    for (size_t i = 0; i < in.vpls.size(); ++i) in.vplImportance[i] = in.vpls[i].importance;
+  }
+  EXPECT_EQ(added, 40u);
+}
+
 // Two lights: the VPLs are in proportion to them, and to the floor.
 TEST(Manage, PlacesVplsInProportionToLight) {
   Dice dice(51);

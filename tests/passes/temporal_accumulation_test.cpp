@@ -28,7 +28,7 @@ std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samp
                               const std::vector<glm::vec4>& history, int firstSamples = 1,
                               const std::vector<uint32_t>& origin = ownPlaces(), float saccade = 0) {
   PassTest test("temporal-accumulation");
-  test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 5);
+  test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 3);
   test.beforeFrame([saccade](PassTest&, scene::Frame& f) { f.saccade = saccade; });
   eye.seen.wire(test, "gbuffer", 2);
   const uint32_t block = samples.size() == history.size() ? 1 : 2;
@@ -85,24 +85,29 @@ TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   EXPECT_GT(own, 1000);
 }
 
-// When the gaze has just jumped, a sample in the fovea is the mean of more rays and counts as many times; blocks outside
-// have one ray as ever. Their number falls with the saccade.
-TEST(TemporalAccumulation, SamplesOfANewFoveaCountMore) {
+// For the frames after a jump of the gaze, a sample in the fovea is the mean of more rays and counts as many times, and
+// the history of wide blocks counts less; blocks outside have one ray as ever.
+TEST(TemporalAccumulation, SamplesWeighMoreAfterASaccade) {
   const Eye eye({0, 0, 0});
-  for (const auto& [saccade, rays] : {std::pair(1.0f, 5.0f), {0.5f, 3.0f}, {0.0f, 1.0f}})
-    for (const int side : {2, 8}) {
-      const auto got = accumulate(eye, everywhere(kSize / 2, {9, 9, 9, float(side)}),
-                                  everywhere(kSize, {1, 1, 1, 2}), 1, ownPlaces(), saccade);
-      const float its = side == 2 ? rays : 1, count = std::min(2 + its, side == 2 ? 8.0f : 32.0f);
+  struct Case {
+    float side, history, count, weight;  // width of the blocks, samples in the history, in the mean; weight
+  };
+  for (const Case& c : {Case{2, 4, 7, 3 / 7.0f}, Case{2, 7, 8, 3 / 8.0f},
+                        Case{2, 16, 7, 3 / 7.0f},  // of wide blocks: 16 samples count as 8 * 8 / 16
+                        Case{8, 16, 17, 1 / 17.0f}}) {
+    for (const float saccade : {1.0f, 0.125f}) {
+      const auto got = accumulate(eye, everywhere(kSize / 2, {9, 9, 9, c.side}),
+                                  everywhere(kSize, {1, 1, 1, c.history}), 1, ownPlaces(), saccade);
       int own = 0;
       for (size_t i = 0; i < got.size(); i += 4) {
-        if (got[i + 3] == 2) continue;
+        if (got[i] == 1) continue;  // another surface than its block's sample
+        EXPECT_NEAR(got[i], 1 + 8 * c.weight, 5e-3f) << c.side << " " << c.history;
+        EXPECT_EQ(got[i + 3], c.count) << c.side << " " << c.history;
         ++own;
-        EXPECT_EQ(got[i + 3], count) << saccade << ", " << side;
-        EXPECT_NEAR(got[i], 1 + 8 * its / count, 2e-2) << saccade << ", " << side;
       }
       EXPECT_GT(own, 1000);
     }
+  }
 }
 
 // Where there is no mean yet, the samples around the pixel make one; if they are single rays, the brightest is left
