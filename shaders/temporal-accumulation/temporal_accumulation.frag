@@ -106,7 +106,8 @@ void main() {
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   vec4 old = fromHistory(p);
-  float count = min(old.a + weight, frames);
-  mean = vec4(mix(old.rgb, imageLoad(samples, p).rgb, min(weight / count, 1.0)), count);
+  vec4 its = imageLoad(samples, p);  // a: by how many times the mean is longer than `frames`, if above 1
+  float count = min(old.a + weight, frames * max(its.a, 1.0));
+  mean = vec4(mix(old.rgb, its.rgb, min(weight / count, 1.0)), count);
 }
 #endif

@@ -167,6 +167,20 @@ TEST(TemporalAccumulation, ASampleForEveryPixel) {
   }
 }
 
+// A sample for a single pixel may ask for a longer mean; one that no longer does so shortens it again.
+TEST(TemporalAccumulation, SamplesThatAskForALongerMean) {
+  const Eye eye({0, 0, 0});
+  const struct {
+    float longer, before, after;
+  } cases[] = {{3, 5, 6}, {3, 20, 21}, {3, 24, 24}, {3, 30, 24}, {1, 20, 8}, {0, 20, 8}};
+  for (const auto& [longer, before, after] : cases) {
+    const auto got =
+        accumulate(eye, everywhere(kSize, {4, 2, 1, longer}), everywhere(kSize, {1, 1, 3, before}));
+    EXPECT_EQ(got[3], after);
+    EXPECT_NEAR(got[0], 1 + 3 / after, 4e-3) << longer << ", " << before;
+  }
+}
+
 // The history comes from the surface's previous position, with samples for all pixels and for blocks. Where there is
 // no such position there is no history.
 TEST(TemporalAccumulation, TakesOverWhatItsOriginHad) {
