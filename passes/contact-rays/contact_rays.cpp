@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
+#include <mutex>
 #include <vector>
 
 #include "fovea/pass.h"
@@ -21,11 +22,13 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kContactStream = 0x636f6e74u;
-constexpr size_t kSubsets = 4;       // a pixel looks at one of so many subsets of the VPLs in a frame
-constexpr float kRise = 0.3f;        // least slope at which a surface rises over another one's tangent plane
-constexpr float kRounding = 1e-4f;   // least height of the rise, relative to the distance from the eye
-constexpr float kWidest = 1 / 32.f;  // how far away on the screen rising surfaces are searched, image widths
-constexpr float kRayEnd = 0.999f;    // rays end just before the VPL's surface
+constexpr size_t kSubsets = 4;        // a pixel looks at one of so many subsets of the VPLs in a frame
+constexpr float kRise = 0.3f;         // least slope at which a surface rises over another one's tangent plane
+constexpr float kRounding = 1e-4f;    // least height of the rise, relative to the distance from the eye
+constexpr float kWidest = 1 / 32.f;   // how far away on the screen rising surfaces are searched, image widths
+constexpr float kLeastChance = 0.1f;  // of a VPL that no ray has reached, relative to one that all reach
+constexpr float kKept = 0.75f;        // share of the tallies that is kept from frame to frame
+constexpr float kRayEnd = 0.999f;     // rays end just before the VPL's surface
 
 // What the choice of a VPL and its light need.
 struct PointLight {
@@ -34,19 +37,28 @@ struct PointLight {
   glm::vec3 normal;
   float power;  // sum over the channels of its intensity
   glm::vec3 intensity;
+  float chance;  // that a ray reaches it, by those of the frames before
+  uint32_t slot;
+};
+
+// How many rays went to the VPL in a slot, and how many of them reached it.
+struct Tally {
+  float rays = 0, reached = 0;
 };
 
 // The VPLs that shine, those of a subset side by side.
 class Subsets {
  public:
-  explicit Subsets(std::span<const scene::Vpl> vpls) {
+  Subsets(std::span<const scene::Vpl> vpls, std::span<const Tally> tallies) {
     for (size_t subset = 0; subset < kSubsets; ++subset) {
       starts_[subset] = lights_.size();
       for (size_t i = subset; i < vpls.size(); i += kSubsets) {
         const scene::Vpl& v = vpls[i];
         const float power = v.intensity.x + v.intensity.y + v.intensity.z;
+        const float chance = (tallies[i].reached + 1) / (tallies[i].rays + 1);
         if (power > 0)
-          lights_.push_back({v.position, v.area * glm::one_over_pi<float>(), v.normal, power, v.intensity});
+          lights_.push_back({v.position, v.area * glm::one_over_pi<float>(), v.normal, power, v.intensity,
+                             std::max(chance, kLeastChance), uint32_t(i)});
       }
     }
     starts_[kSubsets] = lights_.size();
@@ -106,16 +118,17 @@ struct Sampling {
   glm::vec3 eye;
   uint32_t count, seed, turn;
 
-  // Irradiance / pi from VPLs of one subset that are chosen by the light they would send if nothing hid them, in
-  // strata of it. Over the frames, subsets and places in the strata follow one low-discrepancy sequence.
-  glm::vec3 light(glm::ivec2 pixel, glm::vec3 position, glm::vec3 normal, std::vector<float>& sums) const {
+  // Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance
+  // that nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence.
+  glm::vec3 light(glm::ivec2 pixel, glm::vec3 position, glm::vec3 normal, std::vector<float>& sums,
+                  std::vector<Tally>& tallies) const {
     const uint32_t stream = randomStream(seed, uint32_t(pixel.x), kContactStream, uint32_t(pixel.y));
     const glm::vec2 u = scene::streamSequence(stream, turn);
     const auto lights = subsets[std::min(size_t(u.y * float(kSubsets)), kSubsets - 1)];
     sums.resize(lights.size());
     float sum = 0;
     for (size_t i = 0; i < lights.size(); ++i)
-      sums[i] = sum += lights[i].power * transfer(lights[i], position, normal);
+      sums[i] = sum += lights[i].chance * lights[i].power * transfer(lights[i], position, normal);
     if (!(sum > 0)) return glm::vec3(0);
     const glm::vec3 origin = position + (normal - glm::normalize(position - eye)) * rays.epsilon();
     glm::vec3 colours(0);
@@ -123,8 +136,11 @@ struct Sampling {
       const float place = (float(k) + u.x) / float(count) * sum;
       const size_t i =
           std::min(size_t(std::ranges::upper_bound(sums, place) - sums.begin()), lights.size() - 1);
-      if (!rays.occluded({origin, lights[i].position - origin, 0, kRayEnd}))
-        colours += lights[i].intensity / lights[i].power;
+      const PointLight& l = lights[i];
+      ++tallies[l.slot].rays;
+      if (rays.occluded({origin, l.position - origin, 0, kRayEnd})) continue;
+      ++tallies[l.slot].reached;
+      colours += l.intensity / (l.power * l.chance);
     }
     return colours * (sum * float(kSubsets) / float(count) * glm::one_over_pi<float>());
   }
@@ -151,6 +167,10 @@ class ContactRays : public Pass {
             "rgb: irradiance / pi from nearby surfaces, which VPLs shaded as discs leave out");
     d.input("spread", spreadBuffer(), Usage::HostRead,
             "x: least area of a VPL's disc, m^2 (pass near-field)");
+    const ResourceSpec tallies = buffer("VplTally", sizeof(Tally), countOf("vpls"));
+    d.input("history", buffer("VplTally", sizeof(Tally)), Usage::HostRead, "`tallies` of the previous frame");
+    d.output("tallies", tallies, Usage::HostWrite,
+             "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("rays", integer(2, 1, 1024), "rays per pixel");
     d.parameter("reach", real(0.5, 0, 1000),
@@ -166,12 +186,16 @@ class ContactRays : public Pass {
     const scene::Frame& frame = ctx.frame();
     const Parameters& p = ctx.parameters();
     const auto irradiance = ctx.outputAs<uint64_t>("irradiance");
+    const auto tallies = ctx.outputAs<Tally>("tallies");
+    std::ranges::fill(tallies, Tally{});
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
     const VkExtent3D extent = ctx.extent("irradiance");
     const Surfaces surfaces{ctx.inputAs<glm::vec4>("gbuffer.position"),
                             ctx.inputAs<uint64_t>("gbuffer.normal"), glm::ivec2(extent.width, extent.height)};
     const auto nearField = ctx.inputAs<uint64_t>("near_field");
-    const Subsets subsets(ctx.inputAs<scene::Vpl>("vpls"));
+    const auto vpls = ctx.inputAs<scene::Vpl>("vpls");
+    const auto before = ctx.inputAs<Tally>("history");
+    const Subsets subsets(vpls, before);
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
     const scene::Fovea fovea =
         scene::makeFovea(ctx.view().gaze, glm::vec2(surfaces.size), float(p.real("fovea_radius")));
@@ -184,8 +208,10 @@ class ContactRays : public Pass {
         *rays, subsets, ctx.view().eye, uint32_t(p.integer("rays")), frame.seed, uint32_t(ctx.frameNumber())};
     std::atomic<int> next = low.y;
     std::atomic<uint64_t> pixels = 0;
+    std::mutex mutex;
     onThreads(threadCount(0), [&] {
       std::vector<float> sums;
+      std::vector<Tally> own(vpls.size());
       uint64_t found = 0;
       for (int y = next++; y < high.y; y = next++)
         for (int x = low.x; x < high.x; ++x) {
@@ -197,12 +223,21 @@ class ContactRays : public Pass {
           const glm::vec3 normal = surfaces.normal(at);
           if (!surfaces.inContact(at, normal, reach, widest)) continue;
           ++found;
-          const glm::vec3 light = sampling.light(at, glm::vec3(surfaces.positions[i]), normal, sums) +
+          const glm::vec3 light = sampling.light(at, glm::vec3(surfaces.positions[i]), normal, sums, own) +
                                   glm::vec3(glm::unpackHalf4x16(nearField[i]));
           irradiance[i] = glm::packHalf4x16(glm::vec4(glm::min(light, 65504.0f), p.real("longer")));
         }
       pixels += found;
+      const std::lock_guard lock(mutex);
+      for (size_t i = 0; i < own.size(); ++i) {  // whole numbers, so the order does not matter
+        tallies[i].rays += own[i].rays;
+        tallies[i].reached += own[i].reached;
+      }
     });
+    for (size_t i = 0; i < tallies.size(); ++i) {
+      tallies[i].rays += kKept * before[i].rays;
+      tallies[i].reached += kKept * before[i].reached;
+    }
     ctx.counter("pixels", double(pixels));
     ctx.counter("rays", double(pixels) * double(p.integer("rays")));
   }

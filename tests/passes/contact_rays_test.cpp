@@ -45,11 +45,14 @@ bool inContact(const GBuffer& seen, int x, int y, float reach) {
 
 struct Result {
   std::vector<uint64_t> before, after;
+  std::vector<glm::vec2> tallies;
   double pixels = 0;
 };
 
-Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, double reach, double foveaRadius = 2) {
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, double reach, double foveaRadius = 2,
+           std::vector<glm::vec2> history = {}) {
   Result result;
+  history.resize(vpls.size());
   const auto w = uint32_t(kSize.x), h = uint32_t(kSize.y);
   result.before.assign(size_t(w) * h, glm::packHalf4x16({0.25f, 0.5f, 0.75f, 0}));
   PassTest test("contact-rays");
@@ -60,18 +63,18 @@ Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, double reach, do
   test.image("near_field", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1,
              std::vector<uint64_t>(result.before.size(), glm::packHalf4x16(glm::vec4(kNear))));
   test.buffer("vpls", vpls, "Vpl");
+  test.buffer("history", history, "VplTally");
   test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");
   test.scene(eye.scene).run();
+  result.tallies = test.values<glm::vec2>("tallies");
   result.after = test.values<uint64_t>("irradiance");
   result.pixels = test.counter("pixels");
   EXPECT_EQ(test.counter("rays"), 1024 * result.pixels);
   return result;
 }
 
-TEST(ContactRays, LightOfAllVplsThatRaysReach) {
-  const Eye eye({0.3f, 0.2f, 0});
-  const auto vpls = lamps();
-  const Result got = run(eye, vpls, 3);
+// Compares all pixels in contact with rays to all VPLs.
+void expectLightOfAllVpls(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Result& got) {
   int hidden = 0, contacts = 0;
   for (int y = 0; y < kSize.y; ++y)
     for (int x = 0; x < kSize.x; ++x) {
@@ -101,6 +104,31 @@ TEST(ContactRays, LightOfAllVplsThatRaysReach) {
   EXPECT_EQ(got.pixels, contacts);
   EXPECT_GT(contacts, 30);
   EXPECT_GT(hidden, 5);
+}
+
+TEST(ContactRays, LightOfAllVplsThatRaysReach) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  expectLightOfAllVpls(eye, vpls, run(eye, vpls, 3));
+}
+
+// What rays of former frames have met changes which VPLs are chosen, but not the light on average.
+TEST(ContactRays, AnyHistoryGivesTheSameLight) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  std::vector<glm::vec2> history;
+  for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, i % 3 == 0 ? 0 : 40 * (i % 3));
+  const Result got = run(eye, vpls, 3, 2, history);
+  expectLightOfAllVpls(eye, vpls, got);
+  double rays = 0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const glm::vec2 added = got.tallies[i] - 0.75f * history[i];
+    rays += added.x;
+    EXPECT_GE(added.y, 0);
+    EXPECT_LE(added.y, added.x);
+    if (vpls[i].intensity == glm::vec3(0)) EXPECT_EQ(added, glm::vec2(0));
+  }
+  EXPECT_EQ(rays, 1024 * got.pixels);
 }
 
 TEST(ContactRays, OnlyWhatIsClose) {
@@ -148,6 +176,7 @@ TEST(ContactRays, SubsetsTakeTurns) {
   test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, before);
   test.image("near_field", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, before);
   test.buffer("vpls", vpls, "Vpl");
+  test.buffer("history", std::vector<glm::vec2>(vpls.size()), "VplTally");
   test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");
   test.scene(eye.scene);
   test.run();
