@@ -1,6 +1,7 @@
-// Compares the light of VPLs where surfaces meet with a plain sum over rays, and checks which pixels get it.
+// Compares the light of VPLs where surfaces meet with a plain sum over rays.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "fovea/error.h"
@@ -10,7 +11,7 @@
 namespace fovea::test {
 namespace {
 
-constexpr float kArea = 0.5f, kNear = 0.125f;
+constexpr float kArea = 0.5f;
 constexpr int kSubsets = 4;  // of which a frame uses one for each pixel
 
 // Six VPLs around the box that shine at the wall, so that it hides some of them from parts of the wall; four copies of each, so
@@ -29,87 +30,72 @@ std::vector<scene::Vpl> lamps() {
   return list;
 }
 
-// Whether the box rises over the tangent plane of a pixel within `reach` metres and a 32nd of the picture's width,
-// here one pixel, in the four directions along the axes.
-bool inContact(const GBuffer& seen, int x, int y, float reach) {
-  const SurfacePixel& p = seen.at(x, y);
-  for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}}) {
-    const SurfacePixel& q =
-        seen.at(std::clamp(x + dx, 0, seen.width - 1), std::clamp(y + dy, 0, seen.height - 1));
-    const glm::vec3 to = q.position - p.position;
-    if (q.distance > 0 && glm::dot(to, p.normal) > 0.3f * glm::length(to) && glm::length(to) < reach)
-      return true;
-  }
-  return false;
+constexpr uint32_t kWidth = uint32_t(kSize.x), kHeight = uint32_t(kSize.y);
+
+// Every third pixel of the eye's picture is in contact.
+std::vector<glm::uvec2> everyThird(const GBuffer& seen) {
+  std::vector<glm::uvec2> contacts(seen.pixels.size(), glm::uvec2(0));
+  for (size_t i = 0; i < contacts.size(); i += 3)
+    contacts[i] = {std::bit_cast<uint32_t>(seen.pixels[i].distance),
+                   glm::packSnorm2x16(octEncode(seen.pixels[i].normal))};
+  return contacts;
 }
 
 struct Result {
-  std::vector<uint64_t> before, after;
+  std::vector<uint64_t> light;
   std::vector<glm::vec2> tallies;
   double pixels = 0;
 };
 
-Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, double reach, double foveaRadius = 2,
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, int rays = 1024,
            std::vector<glm::vec2> history = {}) {
-  Result result;
   history.resize(vpls.size());
-  const auto w = uint32_t(kSize.x), h = uint32_t(kSize.y);
-  result.before.assign(size_t(w) * h, glm::packHalf4x16({0.25f, 0.5f, 0.75f, 0}));
   PassTest test("contact-rays");
-  test.param("rays", 1024).param("longer", 3.0).param("fovea_radius", foveaRadius);
-  test.param("reach", reach / std::sqrt(kArea / glm::pi<double>()));
-  eye.seen.wire(test, "gbuffer", 2);
-  test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, result.before);
-  test.image("near_field", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1,
-             std::vector<uint64_t>(result.before.size(), glm::packHalf4x16(glm::vec4(kNear))));
+  test.param("rays", rays);
+  test.viewSize(kWidth, kHeight).scene(eye.scene);
+  test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0] = eye.view; });
+  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, everyThird(eye.seen));
   test.buffer("vpls", vpls, "Vpl");
   test.buffer("history", history, "VplTally");
-  test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");
-  test.scene(eye.scene).run();
-  result.tallies = test.values<glm::vec2>("tallies");
-  result.after = test.values<uint64_t>("irradiance");
-  result.pixels = test.counter("pixels");
-  EXPECT_EQ(test.counter("rays"), 1024 * result.pixels);
+  test.run();
+  Result result{test.values<uint64_t>("light"), test.values<glm::vec2>("tallies"), test.counter("pixels")};
+  EXPECT_EQ(result.pixels, double((eye.seen.pixels.size() + 2) / 3));
+  EXPECT_EQ(test.counter("rays"), rays * result.pixels);
   return result;
 }
 
 // Compares all pixels in contact with rays to all VPLs.
 void expectLightOfAllVpls(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Result& got) {
-  int hidden = 0, contacts = 0;
-  for (int y = 0; y < kSize.y; ++y)
-    for (int x = 0; x < kSize.x; ++x) {
-      const size_t i = size_t(y * kSize.x + x);
-      const SurfacePixel& p = eye.seen.at(x, y);
-      if (!inContact(eye.seen, x, y, 3)) {
-        EXPECT_EQ(got.after[i], got.before[i]) << x << ", " << y;
-        continue;
-      }
-      ++contacts;
-      DeferredReference reference;
-      reference.disc = true;
-      glm::dvec3 want(kNear), open(kNear);
-      for (const scene::Vpl& v : vpls) {
-        const glm::dvec3 light = reference.shade(p, {v}, 0, 1),
-                         from = glm::dvec3(p.position) + 1e-4 * glm::dvec3(p.normal);
-        RayOptions options;
-        options.tMax = 0.999;
-        open += light;
-        if (!castRay(eye.scene, eye.geometry, from, glm::dvec3(v.position) - from, options)) want += light;
-      }
-      hidden += want.g < 0.9 * open.g;
-      const glm::vec4 light = glm::unpackHalf4x16(got.after[i]);
-      EXPECT_EQ(light.a, 3);
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], want[c], 0.01 * open[c] + 1e-3) << x << ", " << y;
+  int hidden = 0;
+  for (size_t i = 0; i < got.light.size(); ++i) {
+    if (i % 3 != 0) {
+      EXPECT_EQ(got.light[i], 0u) << i;
+      continue;
     }
-  EXPECT_EQ(got.pixels, contacts);
-  EXPECT_GT(contacts, 30);
-  EXPECT_GT(hidden, 5);
+    const SurfacePixel& p = eye.seen.pixels[i];
+    DeferredReference reference;
+    reference.disc = true;
+    glm::dvec3 want(0), open(0);
+    for (const scene::Vpl& v : vpls) {
+      const glm::dvec3 light = reference.shade(p, {v}, 0, 1);
+      const glm::dvec3 from = glm::dvec3(p.position) + 1e-4 * glm::dvec3(p.normal);
+      RayOptions options;
+      options.tMax = 0.999;
+      open += light;
+      if (!castRay(eye.scene, eye.geometry, from, glm::dvec3(v.position) - from, options)) want += light;
+    }
+    hidden += want.g < 0.9 * open.g;
+    const glm::vec4 light = glm::unpackHalf4x16(got.light[i]);
+    EXPECT_EQ(light.a, 1);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], want[c], 0.01 * open[c] + 1e-3) << "pixel " << i;
+  }
+  EXPECT_GT(hidden, 20);
 }
 
 TEST(ContactRays, LightOfAllVplsThatRaysReach) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();
-  expectLightOfAllVpls(eye, vpls, run(eye, vpls, 3));
+  expectLightOfAllVpls(eye, vpls, run(eye, vpls));
 }
 
 // What rays of former frames have met changes which VPLs are chosen, but not the light on average.
@@ -117,8 +103,8 @@ TEST(ContactRays, AnyHistoryGivesTheSameLight) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();
   std::vector<glm::vec2> history;
-  for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, i % 3 == 0 ? 0 : 40 * (i % 3));
-  const Result got = run(eye, vpls, 3, 2, history);
+  for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, 40 * (i % 3));
+  const Result got = run(eye, vpls, 1024, history);
   expectLightOfAllVpls(eye, vpls, got);
   double rays = 0;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -126,63 +112,53 @@ TEST(ContactRays, AnyHistoryGivesTheSameLight) {
     rays += added.x;
     EXPECT_GE(added.y, 0);
     EXPECT_LE(added.y, added.x);
-    if (vpls[i].intensity == glm::vec3(0)) EXPECT_EQ(added, glm::vec2(0));
+    EXPECT_TRUE(vpls[i].intensity != glm::vec3(0) || added == glm::vec2(0)) << "a ray to an empty slot";
   }
-  EXPECT_EQ(rays, 1024 * got.pixels);
+  EXPECT_GT(rays, 0.9 * 1024 * got.pixels) << "few pixels lie in no VPL's light";
 }
 
-TEST(ContactRays, OnlyWhatIsClose) {
-  const Eye eye({0.3f, 0.2f, 0});  // the box is at least a metre in front of the wall
-  const Result got = run(eye, lamps(), 0.9);
-  EXPECT_EQ(got.pixels, 0);
-  EXPECT_EQ(got.after, got.before);
-}
-
-TEST(ContactRays, OnlyInTheFovea) {
-  const Eye eye({0.3f, 0.2f, 0});
-  constexpr float kRadius = 0.2f;
-  const Result got = run(eye, lamps(), 3, kRadius);
-  EXPECT_GT(got.pixels, 0);
-  for (int y = 0; y < kSize.y; ++y)
-    for (int x = 0; x < kSize.x; ++x) {
-      const bool fovea =
-          glm::distance(glm::vec2(x, y) + 0.5f, 0.5f * glm::vec2(kSize)) <= kRadius * float(kSize.x);
-      const size_t i = size_t(y * kSize.x + x);
-      EXPECT_EQ(got.after[i] != got.before[i], fovea && inContact(eye.seen, x, y, 3)) << x << ", " << y;
-    }
-}
-
-TEST(ContactRays, WithoutVplsOnlyTheNearField) {
-  const Eye eye({0.3f, 0.2f, 0});
-  const Result got = run(eye, std::vector<scene::Vpl>(8), 3);
-  EXPECT_GT(got.pixels, 30);
-  for (size_t i = 0; i < got.after.size(); ++i) {
-    if (got.after[i] == got.before[i]) continue;
-    EXPECT_EQ(glm::unpackHalf4x16(got.after[i]), glm::vec4(kNear, kNear, kNear, 3));
-  }
-}
-
-// Each frame one subset stands for all; their mean is the light of all VPLs.
+// In each frame one subset stands for all.
 TEST(ContactRays, SubsetsTakeTurns) {
   const Eye eye({0.3f, 0.2f, 0});
   std::vector<scene::Vpl> vpls = lamps();
+  const auto litShare = [&] {
+    int lit = 0, all = 0;
+    const Result got = run(eye, vpls, 256);
+    for (size_t i = 0; i < got.light.size(); i += 3, ++all) lit += glm::unpackHalf4x16(got.light[i]).g > 0;
+    return double(lit) / all;
+  };
+  EXPECT_GT(litShare(), 0.6);
   for (size_t i = 0; i < vpls.size(); ++i)
     if (i % kSubsets != 1) vpls[i].intensity = glm::vec3(0);
-  const auto w = uint32_t(kSize.x), h = uint32_t(kSize.y);
-  const std::vector<uint64_t> before(size_t(w) * h, glm::packHalf4x16(glm::vec4(0)));
+  EXPECT_NEAR(litShare(), 0.9 / kSubsets, 0.1);
+}
+
+TEST(ContactRays, WithoutVplsThereIsNoLight) {
+  const Eye eye({0.3f, 0.2f, 0});
   PassTest test("contact-rays");
-  test.param("rays", 256).param("fovea_radius", 2.0).param("reach", 10.0);
-  eye.seen.wire(test, "gbuffer", 2);
-  test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, before);
-  test.image("near_field", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, before);
-  test.buffer("vpls", vpls, "Vpl");
-  test.buffer("history", std::vector<glm::vec2>(vpls.size()), "VplTally");
-  test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");
-  test.scene(eye.scene);
+  test.viewSize(kWidth, kHeight).scene(eye.scene);
+  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, everyThird(eye.seen));
+  test.buffer("vpls", std::vector<scene::Vpl>(8), "Vpl");
+  test.buffer("history", std::vector<glm::vec2>(8, {100, 50}), "VplTally");
   test.run();
-  int lit = 0;
-  for (const uint64_t value : test.values<uint64_t>("irradiance")) lit += glm::unpackHalf4x16(value).g > 0;
-  EXPECT_NEAR(lit / test.counter("pixels"), 1.0 / kSubsets, 0.15);
+  for (const uint64_t value : test.values<uint64_t>("light"))
+    EXPECT_TRUE(value == 0 || glm::unpackHalf4x16(value) == glm::vec4(0, 0, 0, 1));
+  for (const glm::vec2 tally : test.values<glm::vec2>("tallies")) EXPECT_EQ(tally, glm::vec2(75, 37.5f));
+}
+
+TEST(ContactRays, SizeIsTheViews) {
+  PassTest test("contact-rays");
+  test.viewSize(16, 8).scene(Eye({0, 0, 0}).scene);
+  test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));
+  test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
+  test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("8x8 pixels, its view 16x8"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
