@@ -23,7 +23,7 @@ graph::ResourceSpec radiosityBuffer(const graph::SizeExpr& count = 1);
 graph::ResourceSpec voxelRadianceBuffer(const graph::SizeExpr& count = 1);
 // Foveated weight of a voxel side, in [0, 1].
 graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
-// x: least area of a VPL's disc, m^2.
+// x: least area of a VPL's disc, y: of one on a surface that shines, if it is larger, m^2.
 graph::ResourceSpec spreadBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------

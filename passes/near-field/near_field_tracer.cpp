@@ -97,7 +97,7 @@ class Tracer {
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
-      light = fromEmitter(v, randomStream(stream, turn, kAimStream, order), reach, statistics);
+      light = fromEmitter(v, randomStream(stream, turn, kAimStream, order), statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
     const TracedSurface hit = surfaces_.arrive(v.origin, direction, reach, statistics.rays);
     if (!hit.there) return light;
@@ -108,10 +108,13 @@ class Tracer {
     if (!(radius2 > 0)) return light;
     ++statistics.shaded;
     const glm::vec3 rho = surfaces_.reflectance(hit);
-    const float cosine = cosineDensity(v, direction);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
-    radiance += surfaces_.emitted(hit) * (cosine / (cosine + surfaces_.emitterDensity(v, hit)));
     radiance += rho * gathered(hit, randomStream(stream, turn, kGatherStream, order), statistics);
+    if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
+      const float cosine = cosineDensity(v, direction);
+      light += emitted *
+               (emittedPartAt(distance) * cosine / (cosine * probability + surfaces_.emitterDensity(v, hit)));
+    }
     return light + radiance * (partAt(distance) / probability);
   }
 
@@ -131,21 +134,28 @@ class Tracer {
     return known.value_or(light);
   }
 
-  // The part of a ray aimed at an emissive surface, beside the cosine-weighted one, which may hit it by chance.
-  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, float reach, Row& statistics) const {
+  // The part of a ray aimed at an emissive surface, in the balance heuristic beside the cosine-weighted one, which may
+  // go as far and hit it by chance.
+  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, Row& statistics) const {
     const SurfaceTracer::EmitterRay to = surfaces_.towardsEmitter(v, stream);
-    if (!to.there || to.distance > reach || !surfaces_.sees(v, to, statistics.rays)) return glm::vec3(0);
+    if (!to.there || !surfaces_.sees(v, to, statistics.rays)) return glm::vec3(0);
     const float cosine = cosineDensity(v, to.direction);
-    return to.radiance * (cosine / (cosine + to.density) * partAt(to.distance) / probabilityAt(to.distance));
+    return to.radiance *
+           (emittedPartAt(to.distance) * cosine / (cosine * probabilityAt(to.distance) + to.density));
   }
 
-  // The part of the light from this distance that discs leave out, and the probability with which a ray goes so far.
-  float partAt(float distance) const {
-    const float radius2 = settings_.area * glm::one_over_pi<float>();
-    return radius2 / (distance * distance + radius2);
+  // The part of the light from this distance that discs leave out, that from surfaces that shine, and the probability
+  // with which a cosine-weighted ray goes so far.
+  float partAt(float distance) const { return leftOut(settings_.area, distance); }
+  float emittedPartAt(float distance) const {
+    return leftOut(std::max(settings_.area, settings_.emitterArea), distance);
   }
   float probabilityAt(float distance) const { return std::min(kSure * partAt(distance), 1.0f); }
 
+  static float leftOut(float area, float distance) {
+    const float radius2 = area * glm::one_over_pi<float>();
+    return radius2 / (distance * distance + radius2);
+  }
   static float cosineDensity(const TracedSurface& v, glm::vec3 direction) {
     return glm::dot(v.normal, direction) * glm::one_over_pi<float>();
   }

@@ -18,6 +18,7 @@ struct NearFieldSettings {
   uint32_t spacing = 4;       // outside the fovea one pixel of each block of this width has a ray: 2, 4 or 8
   uint32_t bounces = 2;       // reflections of light on its way to the visible surface
   float area = 1;             // area of the discs, m^2; if 0, only `length` is found, no light
+  float emitterArea = 0;      // area of those on surfaces that shine, if it is larger, m^2
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
   uint32_t foveaFactor = 1;        // rays per sample in blocks of 2 x 2 pixels; they use up as many turns
   uint32_t seed = 0;

@@ -12,7 +12,8 @@ layout(std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(std430) writeonly buffer EmittersBlock { Vpl list[]; } emitters;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 #if NEAR
-uniform samplerBuffer spread;  // x: area, m^2
+uniform samplerBuffer spread;  // areas, m^2
+uniform samplerBuffer sites;   // VplSite
 #endif
 layout(std430) buffer CountersBlock { uint alive; } counters;
 
@@ -73,7 +74,7 @@ void main() {
 #endif
   if (place.area > 0.0 && finite(vec4(intensity, area))) {
 #if NEAR
-    area = max(area, texelFetch(spread, 0).x);
+    area = max(area, leastDisc(texelFetch(spread, 0), loadSite(sites, slot).light < 0.0));
 #endif
     vpl = place;
     vpl.area = area;

@@ -38,7 +38,7 @@ layout(std430) readonly buffer KeptBlock { Kept value; } kept;
 
 #if NEAR
 uniform samplerBuffer screen;  // EyePathStart
-uniform samplerBuffer spread;  // x: area, m^2
+uniform samplerBuffer spread;  // areas, m^2
 #endif
 
 layout(push_constant) uniform Constants {
@@ -75,7 +75,7 @@ void give(uint vpl, uint path, float part) {
   // The part of it that pass near-field supplies comes from no VPL.
   vec3 away = end.position - loadStart(screen, path % points).position;
   float d2 = dot(away, away);
-  end.radiance *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
+  end.radiance *= kPi * d2 / (kPi * d2 + leastDisc(texelFetch(spread, 0), end.kind == kShining));
 #endif
   uvec3 light = uvec3(end.radiance / end.unit * part + 0.5);
   atomicAdd(sums.list[vpl].lightX, light.x);

@@ -68,8 +68,13 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
   settings.foveaRadius = 2;
   settings.samples = 32768;  // each pixel of a block gets a quarter of them
   const double series[] = {1.5, 1.75, 1.875};
-  for (const auto& [area, bounces] : {std::pair(0.05f, 2u), {0.5f, 1u}, {0.5f, 2u}, {0.5f, 3u}, {5.0f, 2u}}) {
+  const struct {
+    float area, emitterArea;
+    uint32_t bounces;
+  } cases[] = {{0.05f, 0, 2}, {0.5f, 0, 1}, {0.5f, 0, 2}, {0.5f, 0, 3}, {5, 0, 2}, {0.2f, 1, 2}};
+  for (const auto& [area, emitterArea, bounces] : cases) {
     settings.area = area;
+    settings.emitterArea = emitterArea;
     settings.bounces = bounces;
     const auto got = look.trace(settings);
     double all = 0, wantAll = 0;
@@ -79,10 +84,12 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
     };
     for (int i = 0; i < 16; ++i) {
       double want = 0;
-      for (int k = 0; k < 4; ++k)
-        want += look.part(look.room.pixels[size_t((i / 4 * 2 + k / 2) * 8 + i % 4 * 2 + k % 2)], area, 2000)
-                    .first /
-                4;
+      for (int k = 0; k < 4; ++k) {
+        const Seen& seen = look.room.pixels[size_t((i / 4 * 2 + k / 2) * 8 + i % 4 * 2 + k % 2)];
+        const double emitted = look.part(seen, std::max(area, emitterArea), 2000).first,
+                     reflected = look.part(seen, area, 2000).first;
+        want += (emitted + (series[bounces - 1] - 1) * reflected) / series[bounces - 1] / 4;
+      }
       EXPECT_EQ(int(got[i].a) & 15, 2);
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(got[i][c] / (series[bounces - 1] * (1 << c) * want), 1, bound(want, 1))
