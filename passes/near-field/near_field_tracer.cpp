@@ -19,12 +19,20 @@ using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
                    kAimStream = 0x6e656169u, kCellStream = 0x6e656363u;
-constexpr float kRenewed = 0.25f;  // probability of gathering anew what the cache knows
+constexpr float kRenewed = 0.25f;                    // probability of gathering anew what the cache knows
+constexpr float kSameCos = 0.9f, kSameSlope = 0.1f;  // least and largest of two samples on the same surface
 constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
 
 // What one row of the picture, or one part of a list, adds.
 struct Row : NearFieldStatistics {
   std::vector<GatherCache::Sample> samples;
+};
+
+// The sample of `spacing` x `spacing` pixels outside the fovea, and where it was taken.
+struct Tile {
+  glm::vec4 sample{0};
+  TracedSurface at;
+  bool inFovea = false;
 };
 
 class Tracer {
@@ -37,24 +45,42 @@ class Tracer {
         image_(image),
         columns_((view.size.x + 1) / 2),
         rows_((view.size.y + 1) / 2),
-        fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)) {}
+        fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)),
+        tiles_(image.empty() ? 0 : size_t(tileColumns()) * tileRows()) {}
+
+  uint32_t tileColumns() const { return (view_.size.x + settings_.spacing - 1) / settings_.spacing; }
+  uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
 
   // Traces all tiles of `spacing` pixels in one row.
-  void traceTiles(uint32_t row, Row& statistics) const {
-    const uint32_t spacing = settings_.spacing, step = spacing / 2;
-    for (uint32_t x = 0; x < view_.size.x; x += spacing) {
-      const glm::uvec2 tile(x, row * spacing);
-      const glm::vec2 nearest = glm::clamp(fovea_.centre, glm::vec2(tile), glm::vec2(tile) + float(spacing));
-      const bool inFovea = glm::distance(nearest, fovea_.centre) <= fovea_.radius;
-      const glm::vec4 shared = inFovea ? glm::vec4(0) : sampleOf(tile, spacing, statistics);
-      for (uint32_t i = 0; i < step * step; ++i) {
-        const glm::uvec2 texel = tile / 2u + glm::uvec2(i % step, i / step);
-        if (texel.x >= columns_ || texel.y >= rows_) continue;
-        image_[size_t(texel.y) * columns_ + texel.x] = inFovea ? sampleOf(2u * texel, 2, statistics) : shared;
+  void traceTiles(uint32_t row, Row& statistics) {
+    const uint32_t spacing = settings_.spacing;
+    for (uint32_t column = 0; column < tileColumns(); ++column) {
+      const glm::uvec2 corner = spacing * glm::uvec2(column, row);
+      const glm::vec2 nearest =
+          glm::clamp(fovea_.centre, glm::vec2(corner), glm::vec2(corner) + float(spacing));
+      Tile& tile = tiles_[row * tileColumns() + column];
+      tile.inFovea = glm::distance(nearest, fovea_.centre) <= fovea_.radius;
+      if (!tile.inFovea) {
+        tile.sample = sampleOf(corner, spacing, tile.at, statistics);
+      } else {
+        forTexels({column, row}, [&](glm::uvec2 texel, glm::vec4& value) {
+          TracedSurface at;
+          value = sampleOf(2u * texel, 2, at, statistics);
+        });
       }
     }
   }
-  uint32_t tileRows() const { return (view_.size.y + settings_.spacing - 1) / settings_.spacing; }
+
+  // Gives the tiles of one row outside the fovea the mean of the 5 x 5 tiles around them, as far as they lie on the same
+  // surface. A ray is a poor estimate, and one that hits something bright would be seen as a spot for many frames.
+  void spreadTiles(uint32_t row) {
+    for (uint32_t column = 0; column < tileColumns(); ++column) {
+      const Tile& tile = tiles_[row * tileColumns() + column];
+      if (tile.inFovea) continue;
+      const glm::vec4 shared(tile.at.there ? meanAround(int(column), int(row)) : glm::vec3(0), tile.sample.a);
+      forTexels({column, row}, [&](glm::uvec2, glm::vec4& value) { value = shared; });
+    }
+  }
 
   glm::vec4 pixelLight(glm::uvec2 pixel, Row& statistics) const {
     const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
@@ -66,8 +92,37 @@ class Tracer {
   }
 
  private:
-  // Returns the mean over the turns whose pixel shows a surface.
-  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, Row& statistics) const {
+  template <class Function>
+  void forTexels(glm::uvec2 tile, const Function& function) const {
+    const uint32_t step = settings_.spacing / 2;
+    for (uint32_t i = 0; i < step * step; ++i) {
+      const glm::uvec2 texel = step * tile + glm::uvec2(i % step, i / step);
+      if (texel.x < columns_ && texel.y < rows_)
+        function(texel, image_[size_t(texel.y) * columns_ + texel.x]);
+    }
+  }
+
+  // With binomial weights.
+  glm::vec3 meanAround(int column, int row) const {
+    static constexpr float kWeights[] = {1, 4, 6, 4, 1};
+    const TracedSurface& at = tiles_[size_t(row) * tileColumns() + size_t(column)].at;
+    glm::vec4 sum(0);
+    for (int y = std::max(row - 2, 0); y <= std::min(row + 2, int(tileRows()) - 1); ++y)
+      for (int x = std::max(column - 2, 0); x <= std::min(column + 2, int(tileColumns()) - 1); ++x) {
+        const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
+        if (other.inFovea || !other.at.there || !onSamePlane(at, other.at)) continue;
+        sum += kWeights[x - column + 2] * kWeights[y - row + 2] * glm::vec4(glm::vec3(other.sample), 1);
+      }
+    return glm::vec3(sum) / sum.w;
+  }
+  static bool onSamePlane(const TracedSurface& a, const TracedSurface& b) {
+    const glm::vec3 to = b.position - a.position;
+    return glm::dot(a.normal, b.normal) > kSameCos &&
+           std::abs(glm::dot(to, a.normal)) <= kSameSlope * glm::length(to);
+  }
+
+  // Returns the mean over the turns whose pixel shows a surface; `at` becomes the last of these surfaces.
+  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, TracedSurface& at, Row& statistics) const {
     const glm::uvec2 block = corner / side;
     const uint32_t factor = side == 2 ? settings_.foveaFactor : 1;
     glm::vec3 sum(0);
@@ -79,6 +134,7 @@ class Tracer {
       const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
       if (!v.there) continue;
       ++found;
+      at = v;
       sum += lightAt(v, block, turn, statistics);
     }
     return {sum / float(std::max(found, 1u)),
@@ -166,6 +222,7 @@ class Tracer {
   std::span<glm::vec4> image_;
   uint32_t columns_, rows_;
   Fovea fovea_;
+  std::vector<Tile> tiles_;
 };
 
 // Calls trace(row, sums) for all rows, on several threads, fills the cache and returns the sum of the statistics.
@@ -202,8 +259,11 @@ glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
 
 NearFieldStatistics traceNearField(const Frame& frame, const View& view, const RayScene& rays,
                                    const NearFieldSettings& settings, std::span<glm::vec4> image) {
-  const Tracer tracer(frame, view, rays, settings, image);
-  return traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row& sum) { tracer.traceTiles(row, sum); });
+  Tracer tracer(frame, view, rays, settings, image);
+  const NearFieldStatistics statistics =
+      traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row& sum) { tracer.traceTiles(row, sum); });
+  traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row&) { tracer.spreadTiles(row); });
+  return statistics;
 }
 
 NearFieldStatistics traceNearFieldPixels(const Frame& frame, const View& view, const RayScene& rays,

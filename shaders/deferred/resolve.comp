@@ -132,7 +132,12 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first) {
   ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
   for (int dx = -kBefore; dx < INTERLEAVE - kBefore; ++dx) {
     for (int row = -kBefore; row < INTERLEAVE - kBefore + (kPixels - 1) / SCALE; ++row) {
-      ivec2 q = first / SCALE + ivec2(dx, row), inside = clamp(q, ivec2(0), size - 1), at = samplePixel(inside, pixels);
+      ivec2 q = first / SCALE + ivec2(dx, row);
+#if SCALE > 1
+      // At the border of the picture, the sample of the same subset on the other side of the window.
+      q += INTERLEAVE * (ivec2(lessThan(q, ivec2(0))) - ivec2(greaterThanEqual(q, size)));
+#endif
+      ivec2 inside = clamp(q, ivec2(0), size - 1), at = samplePixel(inside, pixels);
       vec4 position = imageLoad(gbufferPosition, at);
       if (q != inside) position.w = 0.0;
       vec3 normal = imageLoad(gbufferNormal, at).xyz;

@@ -222,14 +222,17 @@ struct DeferredReference {
     std::vector<glm::ivec2> missing;
     for (int dy = -(n / 2); dy < n - n / 2; ++dy)
       for (int dx = -(n / 2); dx < n - n / 2; ++dx) {
-        const int qx = std::clamp(x + dx, 0, grid.width - 1), qy = std::clamp(y + dy, 0, grid.height - 1);
-        all += glm::dvec4(partial[size_t(qy * grid.width + qx)], 1);
-        if (strict.sameSurface(x + dx, y + dy)) {
-          sum += glm::dvec4(strict.value(x + dx, y + dy), 1);
+        const int atX = std::clamp(x + dx, 0, grid.width - 1), atY = std::clamp(y + dy, 0, grid.height - 1);
+        all += glm::dvec4(partial[size_t(atY * grid.width + atX)], 1);
+        // Beyond the border the window goes on at its other side.
+        const auto within = [n](int q, int size) { return q < 0 ? q + n : q >= size ? q - n : q; };
+        const int qx = within(x + dx, grid.width), qy = within(y + dy, grid.height);
+        if (strict.sameSurface(qx, qy)) {
+          sum += glm::dvec4(strict.value(qx, qy), 1);
           continue;
         }
         missing.push_back({(dx + n) % n, (dy + n) % n});
-        if (loose.sameSurface(x + dx, y + dy)) others += glm::dvec4(strict.value(x + dx, y + dy), 1);
+        if (loose.sameSurface(qx, qy)) others += glm::dvec4(strict.value(qx, qy), 1);
       }
     if (4 * (sum.w + others.w) >= n * n) return glm::dvec3(sum + others) / (sum.w + others.w);
     search(strict, n, missing, sum);

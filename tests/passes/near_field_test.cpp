@@ -165,6 +165,34 @@ TEST(NearField, SamplesWhereTheEyeLooks) {
   }
 }
 
+// Mean and variance of the red channel of samples.
+glm::dvec2 meanAndVariance(const std::vector<float>& samples) {
+  glm::dvec2 sums(0);
+  for (const float v : samples) sums += glm::dvec2(v, double(v) * v) / double(samples.size());
+  return {sums.x, sums.y - sums.x * sums.x};
+}
+
+// Outside the fovea single rays, many of which bring nothing, become means over what lies on the same wall.
+TEST(NearField, BlocksOutsideTheFoveaShareTheirRays) {
+  Look look(shiningRoom(false), glm::ivec2(256));  // the far wall fills the picture
+  NearFieldSettings settings;
+  settings.foveaRadius = 1e-3f;
+  settings.spacing = 8;
+  settings.area = 0.1f;
+  std::vector<float> alone, shared;
+  std::vector<glm::uvec2> pixels;
+  for (uint32_t y = 4; y < 256; y += 8)
+    for (uint32_t x = 4; x < 256; x += 8) pixels.emplace_back(x, y);
+  std::vector<glm::vec4> light(pixels.size());
+  passes::traceNearFieldPixels(look.frame, look.frame.views[0], *look.rays, settings, pixels, light);
+  for (const glm::vec4& v : light) alone.push_back(v.r);
+  const auto image = look.trace(settings);
+  for (const glm::uvec2 p : pixels) shared.push_back(image[p.y / 2 * 128 + p.x / 2].r);
+  const glm::dvec2 one = meanAndVariance(alone), many = meanAndVariance(shared);
+  EXPECT_NEAR(many.x, one.x, 4 * std::sqrt(one.y / double(pixels.size())));
+  EXPECT_LT(many.y, 0.15 * one.y) << "binomial weights over 5 x 5 blocks leave 0.075 of it";
+}
+
 TEST(NearField, EveryPixelOfABlockHasItsTurn) {
   for (const uint32_t side : {2u, 4u, 8u})
     for (const glm::uvec2 block : {glm::uvec2(0, 0), {5, 0}, {2, 3}, {1, 1}}) {
