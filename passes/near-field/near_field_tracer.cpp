@@ -71,7 +71,7 @@ class Tracer {
     }
   }
 
-  // Gives the tiles of one row outside the fovea the mean of the 5 x 5 tiles around them, as far as they lie on the same
+  // Gives the tiles of one row outside the fovea the mean of the 3 x 3 tiles around them, as far as they lie on the same
   // surface. A ray is a poor estimate, and one that hits something bright would be seen as a spot for many frames.
   void spreadTiles(uint32_t row) {
     for (uint32_t column = 0; column < tileColumns(); ++column) {
@@ -104,14 +104,14 @@ class Tracer {
 
   // With binomial weights.
   glm::vec3 meanAround(int column, int row) const {
-    static constexpr float kWeights[] = {1, 4, 6, 4, 1};
+    static constexpr float kWeights[] = {1, 2, 1};
     const TracedSurface& at = tiles_[size_t(row) * tileColumns() + size_t(column)].at;
     glm::vec4 sum(0);
-    for (int y = std::max(row - 2, 0); y <= std::min(row + 2, int(tileRows()) - 1); ++y)
-      for (int x = std::max(column - 2, 0); x <= std::min(column + 2, int(tileColumns()) - 1); ++x) {
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
+      for (int x = std::max(column - 1, 0); x <= std::min(column + 1, int(tileColumns()) - 1); ++x) {
         const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
         if (other.inFovea || !other.at.there || !onSamePlane(at, other.at)) continue;
-        sum += kWeights[x - column + 2] * kWeights[y - row + 2] * glm::vec4(glm::vec3(other.sample), 1);
+        sum += kWeights[x - column + 1] * kWeights[y - row + 1] * glm::vec4(glm::vec3(other.sample), 1);
       }
     return glm::vec3(sum) / sum.w;
   }
