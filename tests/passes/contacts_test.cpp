@@ -61,11 +61,15 @@ void forAll(const std::vector<glm::uvec2>& contacts, const Check& check) {
 
 TEST(Contacts, SurfacesThatRiseCloseBy) {
   const Eye eye({0.3f, 0.2f, 0});
-  for (const auto& [reach, widest] : {std::pair(3.0f, 1), {3.0f, 4}, {2.2f, 8}}) {
+  const struct {
+    float reach;
+    int widest;
+  } cases[] = {{3, 1}, {3, 4}, {2.2f, 8}};
+  for (const auto& c : cases) {
     int found = 0;
-    forAll(find(eye.seen, reach, (widest + 0.5) / kSize.x), [&](int x, int y, glm::uvec2 contact) {
+    forAll(find(eye.seen, c.reach, (c.widest + 0.5) / kSize.x), [&](int x, int y, glm::uvec2 contact) {
       const SurfacePixel& p = eye.seen.at(x, y);
-      ASSERT_EQ(contact.x != 0, inContact(eye.seen, x, y, reach, widest)) << x << ", " << y;
+      ASSERT_EQ(contact.x != 0, inContact(eye.seen, x, y, c.reach, c.widest)) << x << ", " << y;
       if (contact.x == 0) {
         EXPECT_EQ(contact.y, 0u);
         return;
@@ -75,7 +79,7 @@ TEST(Contacts, SurfacesThatRiseCloseBy) {
       EXPECT_EQ(glm::unpackSnorm2x16(contact.y),
                 glm::unpackSnorm2x16(glm::packSnorm2x16(octEncode(p.normal))));
     });
-    EXPECT_GT(found, 30) << reach << ", " << widest;
+    EXPECT_GT(found, 30) << c.reach << ", " << c.widest;
   }
 }
 
