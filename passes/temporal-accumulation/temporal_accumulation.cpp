@@ -13,6 +13,12 @@ namespace {
 
 using namespace graph;
 
+// How many frames the history of another estimate may count: after a jump of the gaze two, and one more in each frame.
+float mostOfOthers(const scene::Frame& frame) {
+  if (!(frame.saccade > 0)) return 1e6f;
+  return 2 + float(scene::kSaccadeFrames) * (1 - frame.saccade);
+}
+
 class TemporalAccumulation : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -71,6 +77,8 @@ class TemporalAccumulation : public Pass {
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift)
           .constant("wideWeight", float(first ? rays : 1));
+    else
+      commands.constant("mostOfOthers", mostOfOthers(ctx.frame()));
     commands.drawFullscreen();
   }
 };

@@ -19,6 +19,8 @@ layout(push_constant) uniform Constants {
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
   float wideWeight;      // of a sample whose block is wider than that
+#else
+  float mostOfOthers;    // frames that the history of another estimate may count
 #endif
 };
 
@@ -107,6 +109,8 @@ void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   vec4 old = fromHistory(p);
   vec4 its = imageLoad(samples, p);  // a: by how many times the mean is longer than `frames`, if above 1
+  // After a jump of the gaze, what comes from a mean that was not longer is another estimate, and a worse one.
+  if (its.a > 1.0 && old.a <= frames) old.a = min(old.a, mostOfOthers);
   float count = min(old.a + weight, frames * max(its.a, 1.0));
   mean = vec4(mix(old.rgb, its.rgb, min(weight / count, 1.0)), count);
 }

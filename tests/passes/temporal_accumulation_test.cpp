@@ -173,11 +173,29 @@ TEST(TemporalAccumulation, SamplesThatAskForALongerMean) {
   const struct {
     float longer, before, after;
   } cases[] = {{3, 5, 6}, {3, 20, 21}, {3, 24, 24}, {3, 30, 24}, {1, 20, 8}, {0, 20, 8}};
-  for (const auto& [longer, before, after] : cases) {
+  for (const auto& c : cases) {
     const auto got =
-        accumulate(eye, everywhere(kSize, {4, 2, 1, longer}), everywhere(kSize, {1, 1, 3, before}));
-    EXPECT_EQ(got[3], after);
-    EXPECT_NEAR(got[0], 1 + 3 / after, 4e-3) << longer << ", " << before;
+        accumulate(eye, everywhere(kSize, {4, 2, 1, c.longer}), everywhere(kSize, {1, 1, 3, c.before}));
+    EXPECT_EQ(got[3], c.after);
+    EXPECT_NEAR(got[0], 1 + 3 / c.after, 4e-3) << c.longer << ", " << c.before;
+  }
+}
+
+// After a jump of the gaze, a mean that was not longer, and hence of other samples, counts as few frames.
+TEST(TemporalAccumulation, LongerMeansBeginAnewAfterASaccade) {
+  const Eye eye({0, 0, 0});
+  const struct {
+    float longer, before, saccade, after;
+  } cases[] = {{3, 8, 1, 2 + 3},     // samples have the weight 3
+               {3, 8, 0.5f, 6 + 3},  // four frames later
+               {3, 1, 1, 1 + 3},
+               {3, 12, 1, 12 + 3},  // was longer already
+               {1, 8, 1, 8}};
+  for (const auto& c : cases) {
+    const auto got = accumulate(eye, everywhere(kSize, {4, 2, 1, c.longer}),
+                                everywhere(kSize, {1, 1, 3, c.before}), 1, ownPlaces(), c.saccade);
+    EXPECT_EQ(got[3], c.after) << c.longer << ", " << c.before;
+    EXPECT_NEAR(got[0], 1 + 3 * std::min(3 / c.after, 1.0f), 4e-3) << c.longer << ", " << c.before;
   }
 }
 
