@@ -70,8 +70,10 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
                 fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size.x,
                             size.y, limit),
                 "render a smaller picture");
-  auto bound = std::make_shared<const graph::BoundGraph>(
-      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages));
+  graph::BoundGraph made =
+      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages);
+  for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
+  auto bound = std::make_shared<const graph::BoundGraph>(std::move(made));
   if (options_.readback) readback_ = options_.readback(*bound);
   plan_ =
       std::make_shared<const graph::Plan>(graph::compile(bound, graph::deviceCompileOptions(device_, bound)));
@@ -90,8 +92,12 @@ void GraphRun::prepare() {
 }
 
 scene::Frame GraphRun::frame(uint64_t index) const {
-  scene::Frame f =
-      scene::makeFrame(scene_, geometry_, options_.size, index, options_.seed, options_.frameRate);
+  return frame(scene::momentAt(scene_, index, options_.frameRate));
+}
+
+scene::Frame GraphRun::frame(const scene::Moment& moment) const {
+  const uint64_t index = moment.index;
+  scene::Frame f = scene::makeFrame(scene_, geometry_, options_.size, moment, options_.seed);
   f.gpu = gpuScene_.get();
   for (size_t i = 0; i < graph().passes.size(); ++i) {
     const graph::BoundPass& pass = graph().passes[i];
@@ -106,9 +112,9 @@ scene::Frame GraphRun::frame(uint64_t index) const {
   return f;
 }
 
-void GraphRun::submit(const scene::Frame& frame, bool readOutputs) {
+void GraphRun::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
   if (executor_->readsGeometry()) scene::moveObjects(frame, geometry_);
-  executor_->submit(frame, readOutputs);
+  executor_->submit(frame, readOutputs, observe);
 }
 
 }  // namespace fovea::session

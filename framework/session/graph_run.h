@@ -46,6 +46,8 @@ class GraphRun {
     // Whether the caller fills the inputs that the graph itself has, with Executor::setInput. If not, a graph that has
     // any is refused.
     bool givesInputs = false;
+    // Whether what passes make can be read back in the middle of a frame (graph::Executor::observe).
+    bool observable = false;
   };
   // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.
@@ -60,8 +62,9 @@ class GraphRun {
   // Frame `index` of the scene. A view is jittered (scene::jitterAt) if a pass that runs looks through it and has a
   // parameter `jitter`, the number of places that take turns; otherwise every view looks through the pixels' centres.
   scene::Frame frame(uint64_t index) const;
+  scene::Frame frame(const scene::Moment& moment) const;
   // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.
-  void submit(const scene::Frame& frame, bool readOutputs);
+  void submit(const scene::Frame& frame, bool readOutputs, bool observe = false);
   graph::Executor& executor() { return *executor_; }
   uint32_t inFlight() const { return inFlight_; }
 

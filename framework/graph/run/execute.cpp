@@ -256,6 +256,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   recorded.hostMs = waited ? recorded.cpuMs : 0;
   recorded.counterValues = pass.counterValues;
   recorded.counterSet = pass.counterSet;
+  if (slot.observe) slot.recordObserved(cmd, pass);
 }
 
 bool Executor::Impl::isFinished(uint32_t slotIndex) const {
@@ -305,7 +306,16 @@ void Executor::setInput(const std::string& name, std::span<const std::byte> byte
   throw Error(ExitCode::BadInput, "graph " + graph.name + " has no input `" + name + "`");
 }
 
-void Executor::submit(const scene::Frame& frame, bool readOutputs) {
+void Executor::observe(std::vector<Observation> observations) {
+  Impl& e = *impl_;
+  while (!e.inFlight.empty()) {
+    e.finish(e.inFlight.front());
+    e.inFlight.pop_front();
+  }
+  for (FrameSlot& slot : e.slots) slot.setObserved(observations, e.passes);
+}
+
+void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
   Impl& e = *impl_;
   const uint32_t slotIndex = static_cast<uint32_t>(e.frameCount % e.slots.size());
   FrameSlot& slot = e.slots[slotIndex];
@@ -317,6 +327,8 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   gpu::check(vkResetFences(e.device.handle(), 1, &slot.fence), "resetting a fence");
   gpu::check(vkResetCommandPool(e.device.handle(), slot.pool, 0), "resetting a command pool");
   slot.readOutputs = readOutputs;
+  slot.observe = observe && !slot.observed.empty();
+  slot.observeTimes.clear();
   slot.number = e.frameCount;
   slot.frame = frame.index;
   slot.submitted = start;

@@ -39,6 +39,17 @@ struct ExecutorOptions {
   HostProgress hostProgress;          // called inside submit()
 };
 
+// A resource as one pass leaves it, to be read back right after that pass, before anything overwrites it. Of an image
+// with several mips or layers (or slices of a volume), one is read; of a buffer, at most the first kObservedBytes.
+struct Observation {
+  std::string name;     // of the result among FrameResult::outputs
+  uint32_t pass = 0;    // index into BoundGraph::passes
+  uint32_t access = 0;  // index into BoundPass::accesses
+  uint32_t mip = 0, layer = 0;
+  bool operator==(const Observation&) const = default;
+};
+inline constexpr uint64_t kObservedBytes = uint64_t(4) << 20;
+
 // The device memory that a bound resource needs; input to the aliasing phase.
 MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
 
@@ -64,9 +75,14 @@ class Executor {
   // again. Waits for the device.
   void setInput(const std::string& name, std::span<const std::byte> bytes);
 
+  // Chooses what frames that are submitted with `observe` read back besides the outputs. Finishes the frames under way
+  // and allocates, so that frames do neither. Throws Error(BadInput) for a pass that does not run and for an image
+  // that was not bound as observable.
+  void observe(std::vector<Observation> observations);
+
   // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that
   // reads what this frame's GPU passes wrote.
-  void submit(const scene::Frame& frame, bool readOutputs = false);
+  void submit(const scene::Frame& frame, bool readOutputs = false, bool observe = false);
 
   // The oldest finished frame that was not returned yet; nullopt if there is none. Never blocks.
   std::optional<FrameResult> poll();

@@ -128,7 +128,7 @@ gpu::ImageDesc imageDesc(const BoundResource& resource) {
   if (has(u, Usage::StorageRead) || has(u, Usage::StorageWrite)) desc.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   if (has(u, Usage::ColorAttachment)) desc.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if (has(u, Usage::DepthAttachment)) desc.usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if (has(u, Usage::TransferRead) || has(u, Usage::HostRead) || resource.output)
+  if (has(u, Usage::TransferRead) || has(u, Usage::HostRead) || resource.output || resource.observable)
     desc.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   const bool zeroed = resource.history || resource.lifetime != Lifetime::Transient;
   if (has(u, Usage::TransferWrite) || has(u, Usage::HostWrite) || zeroed || resource.external)
