@@ -1,0 +1,23 @@
+// A running graph as JSON for the page.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "framework/graph/run/execute.h"
+#include "framework/session/graph_run.h"
+#include "samples/fovea/view/graph/changes.h"
+
+namespace fovea::view {
+
+// Passes with parameters and ports, edges, outputs, graph parameters and memory.
+nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
+                             const json::Value& merged, const Changes& changes);
+
+// Times of one frame: for each pass of the graph that ran its GPU and CPU milliseconds, and the counters.
+nlohmann::json describeTimes(const graph::FrameResult& frame);
+
+// Messages, each with the line of the file that it is about.
+nlohmann::json describeMessages(const std::vector<Diagnostic>& messages);
+
+}  // namespace fovea::view
