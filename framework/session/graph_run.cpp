@@ -80,15 +80,18 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
   graph::warnAboutPlan(*plan_, messages);
 }
 
-void GraphRun::prepare() {
+void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
-  gpuScene_ = std::make_unique<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
+  if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
+  gpuScene_ =
+      before ? before->gpuScene_ : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
   executorOptions.hostProgress = options_.hostProgress;
+  executorOptions.keepContents = keepContents;
   executor_ = std::make_unique<graph::Executor>(device_, plan_, graph::Registry::global(), *gpuScene_,
-                                                executorOptions);
+                                                executorOptions, before ? before->executor_.get() : nullptr);
 }
 
 scene::Frame GraphRun::frame(uint64_t index) const {

@@ -53,8 +53,10 @@ class GraphRun {
   // and geometry must outlive the run, which moves the geometry.
   GraphRun(gpu::Device& device, const graph::Description& description, const scene::Scene& scene,
            scene::Geometry& geometry, Options options, Diagnostics& messages);
-  // Allocates memory, uploads the scene and compiles shaders. Throws as graph::Executor does.
-  void prepare();
+  // Allocates memory, uploads the scene and compiles shaders. Throws as graph::Executor does. A run of the same scene
+  // on the same device that this one replaces hands over the scene on the device, pipelines, and what passes keep
+  // (graph::Executor), the latter if `keepContents`; it is of no use afterwards, unless this throws.
+  void prepare(GraphRun* before = nullptr, bool keepContents = true);
 
   const std::shared_ptr<const graph::Plan>& plan() const { return plan_; }
   const graph::BoundGraph& graph() const { return *plan_->graph; }
@@ -76,7 +78,7 @@ class GraphRun {
   std::shared_ptr<const graph::Plan> plan_;
   std::vector<std::string> readback_;
   uint32_t inFlight_ = 2;
-  std::unique_ptr<scene::GpuScene> gpuScene_;
+  std::shared_ptr<scene::GpuScene> gpuScene_;
   std::unique_ptr<graph::Executor> executor_;
 };
 

@@ -178,6 +178,281 @@ void main() {
         self.wait(lambda: self.find("#numbers").get_attribute("data-nan") == str(4 * 64 * 256), "the number of NaNs")
 
 
+class Move(ViewTest):
+    def tick(self):
+        return self.script("return import('./store.js').then((m) => m.store.tick)")
+
+    def test_keys_and_mouse_move_the_camera(self):
+        viewer = self.view("direct")
+        self.open(viewer)
+        before = self.tick()["camera"]
+        self.assertFalse(before["own"])
+        hold = ActionChains(self.driver).click(self.find("#stage"))
+        hold.key_down("w").pause(0.5).key_up("w").perform()
+        flown = self.wait(lambda: (now := self.tick()["camera"])["own"] and now, "a camera of its own")
+        self.assertLess(flown["position"][2], before["position"][2] - 0.05)  # ahead, which is -Z here
+        stage = self.find("#stage")
+        ActionChains(self.driver).move_to_element(stage).click_and_hold().move_by_offset(80, 0).release().perform()
+        turned = self.wait(lambda: abs((now := self.tick()["camera"])["yaw"] - flown["yaw"]) > 0.05 and now, "a turn")
+        self.assertGreater(turned["yaw"], flown["yaw"])  # the picture follows the hand
+        self.press("o")
+        ActionChains(self.driver).move_to_element(stage).click_and_hold().move_by_offset(0, 60).release().perform()
+        self.wait(lambda: abs(self.tick()["camera"]["position"][1] - turned["position"][1]) > 0.05, "an orbit")
+        self.press("c")
+        self.wait(lambda: not self.tick()["camera"]["own"], "the scene's camera")
+
+    def test_time_runs_stands_still_and_steps(self):
+        viewer = self.view("direct")
+        self.open(viewer)
+        self.wait(lambda: self.tick()["time"] > 0, "time")
+        self.press(" ")
+        still = self.wait(lambda: not (now := self.tick())["playing"] and now, "time to stand still")
+        later = self.wait(lambda: (now := self.tick())["frame"] > still["frame"] + 2 and now, "frames that go on")
+        self.assertEqual(later["time"], still["time"])
+        self.press("f")
+        self.wait(lambda: self.tick()["frozen"], "the run to freeze")
+        time.sleep(0.3)
+        frozen = self.tick()
+        time.sleep(0.5)
+        self.assertEqual(self.tick()["frame"], frozen["frame"])
+        self.find("#step").click()
+        stepped = self.wait(lambda: (now := self.tick())["frame"] > frozen["frame"] and now, "a step")
+        self.assertEqual(stepped["frame"], frozen["frame"] + 1)
+        self.assertAlmostEqual(stepped["time"], frozen["time"] + 1 / 42, places=6)
+        self.choose("#speed", "4")
+        self.find("#step").click()
+        self.wait(lambda: abs(self.tick()["time"] - stepped["time"] - 4 / 42) < 1e-6, "a larger step")
+
+    def test_a_recorded_gaze_replays_to_the_same_pictures(self):
+        # Shows the gaze itself, through a pass whose picture depends on it.
+        viewer = self.view("ours", "--set", "vpl_count=32", size="64x64")
+        self.open(viewer)
+        self.press("g")
+        self.find("#record").click()
+        self.wait(lambda: self.tick()["recording"], "the recording")
+        canvas = self.find("#canvas")
+        for x, y in ((-60, -40), (-50, -40), (120, 90), (125, 80), (0, 0)):
+            ActionChains(self.driver).move_to_element_with_offset(canvas, x, y).perform()
+            count = self.tick()["recorded"]
+            self.wait(lambda: self.tick()["recorded"] >= count + 2, "frames")
+        viewer.control(frozen=True)
+        self.wait(lambda: self.tick()["frozen"], "the run to freeze")
+        frame, channels, words = viewer.pixels("radiance", 0, 0, 64, 64)
+        table = viewer.request("gaze.csv")[2].decode()
+        rows = [line for line in table.splitlines() if line and not line.startswith(("#", "t"))]
+        self.assertGreater(len({row.split(",", 1)[1] for row in rows}), 3)
+        self.write("gaze.csv", table)
+        self.render("ours", "--scene", "cornellbox", "--size", "64x64", "--set", "vpl_count=32", "--frames", frame + 1,
+                    "--gaze-trace", "gaze.csv", "--gaze-gap", 0, "-o", "truth.exr", "-q")
+        seen = tuple(word for i, word in enumerate(words) if i % channels < 3)
+        self.assertEqual(seen == read_exr(self.folder / "truth.exr", "radiance"), True, "the pictures differ")
+
+
+class Understand(ViewTest):
+    def test_passes_are_timed_drawn_previewed_and_locked(self):
+        viewer = self.view("ours", "--set", "vpl_count=64", size="64x64")
+        self.open(viewer)
+        names = [p["name"] for p in viewer.state()["graph"]["passes"] if p["level"] is not None]
+        self.wait(lambda: len(self.find_all("#timings tr[data-pass]")) == len(names), "the rows of the passes")
+        self.assertEqual(len(self.find_all("#graph-view .node")), len(viewer.state()["graph"]["passes"]))
+        self.assertGreater(len(self.find_all("#graph-view .edge")), len(names))
+        self.wait(lambda: float(self.find("#total").text or 0) > 0, "the time of the frame")
+        row = self.find("#timings tr[data-pass='gbuffer']")
+        ActionChains(self.driver).move_to_element(row).perform()
+        self.wait(lambda: self.find("#preview").is_displayed() and
+                  self.find("#preview img").get_attribute("src").startswith("blob:"), "the preview")
+        row.click()
+        self.wait(lambda: self.find("#canvas").get_attribute("data-source").startswith("gbuffer:"), "the locked port")
+        self.assertIn("shown", self.find("#graph-view .node[data-pass='gbuffer']").get_attribute("class"))
+        self.script("document.querySelector(\"#graph-view .node[data-pass='direct']\").focus()")
+        self.driver.switch_to.active_element.send_keys(Keys.ENTER)
+        self.wait(lambda: self.find("#canvas").get_attribute("data-source").startswith("direct:"), "the pass by keyboard")
+        self.find("#pin").click()
+        self.wait(lambda: any(cell.text for cell in self.find_all("#timings td.delta")), "a comparison with the baseline")
+
+    def test_the_plan_shows_every_resource(self):
+        viewer = self.view("direct")
+        self.open(viewer)
+        self.find("#plan-panel summary").click()
+        self.assertEqual(len(self.find_all("#plan rect")), len(viewer.state()["graph"]["plan"]["resources"]))
+
+    def test_buffers_are_tables(self):
+        viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 2, size="64x64")
+        self.open(viewer)
+        source = next(p["source"] for q in viewer.state()["graph"]["passes"] for p in q["ports"]
+                      if q["name"] == "emit" and p["buffer"] and p["made"])
+        self.choose("#source", source)
+        self.wait(lambda: len(self.find_all("#table tbody tr")) >= 20, "the table")
+
+
+class Change(ViewTest):
+    def test_a_parameter_changes_the_picture_and_the_saved_graph(self):
+        graph = self.write("mine.json", {"extends": "ir_1000.json"})
+        viewer = self.view(graph, "--frames", 2)
+        self.open(viewer)
+        before = self.canvas()
+        self.choose("#parameter-vpl_count", "7")
+        self.wait(lambda: viewer.state()["set"] == ["vpl_count=7"], "the change")
+        self.wait(lambda: self.canvas() != before, "another picture")
+        self.assertEqual(viewer.state()["graph"]["parameters"][0]["default"] is None, False)
+        self.choose("#find-parameter", "exposure")
+        self.wait(lambda: self.find_all("[id='parameter-tonemap.exposure']"), "the parameter")
+        self.choose("[id='parameter-tonemap.exposure']", "2")
+        self.wait(lambda: len(viewer.state()["set"]) == 2, "the second change")
+        self.find("#copy").click()
+        self.wait(lambda: self.find("#copy").get_attribute("data-text") ==
+                  "--set tonemap.exposure=2 --set vpl_count=7", "the options")
+        self.find("#save-name").send_keys("saved")
+        self.find("#save").click()
+        self.wait(lambda: (self.folder / "saved.json").exists(), "the file")
+        saved = json.loads((self.folder / "saved.json").read_text())
+        self.assertEqual({k: v for k, v in saved.items() if k != "$schema"},
+                         {"extends": "mine.json", "parameters": {"vpl_count": 7},
+                          "passes": {"tonemap": {"params": {"exposure": 2}}}})
+        # It runs like what was shown, and is not written over.
+        frame, _, words = viewer.pixels("radiance", 0, 0, 256, 256)
+        self.render("saved.json", "--scene", "cornellbox", "--size", "256x256", "--frames", frame + 1, "-o", "saved.exr", "-q")
+        seen = tuple(word for i, word in enumerate(words) if i % 4 != 3)
+        self.assertEqual(seen == read_exr(self.folder / "saved.exr", "radiance"), True, "the pictures differ")
+        viewer.control(save="saved")
+        self.wait(lambda: "exists already" in json.dumps(viewer.state()["messages"]), "the refusal")
+        viewer.control(set={"vpl_count": None})
+        self.wait(lambda: viewer.state()["set"] == ["tonemap.exposure=2"], "the reset of one")
+        viewer.control(reset=True)
+        self.wait(lambda: viewer.state()["set"] == [], "the reset of all")
+
+    def test_a_wrong_value_is_told_and_the_last_graph_goes_on(self):
+        viewer = self.view("ir_1000", "--set", "vpl_count=20", size="64x64")
+        self.open(viewer)
+        viewer.control(set={"vpl_count": -3})
+        message = self.wait(lambda: self.find_all(".message.error") and self.find(".message.error").text, "the message")
+        self.assertIn("vpl_count", message)
+        self.assertEqual(viewer.state()["set"], ["vpl_count=20"])
+        frame = self.shown_frame()
+        self.wait(lambda: self.shown_frame() > frame + 2, "the last good graph")
+
+    def test_another_graph_scene_and_size(self):
+        viewer = self.view("direct", size="64x64")
+        self.open(viewer)
+        self.choose("#size", "128x128")
+        self.wait(lambda: self.script("return document.getElementById('canvas').width") == 128, "another size")
+        self.choose("#graph", "ir_1000")
+        self.wait(lambda: viewer.state()["graph_name"] == "ir_1000", "another graph")
+        self.choose("#scene", "cornellbox_moving")
+        self.wait(lambda: viewer.state()["scene"] == "cornellbox_moving", "another scene")
+        status, _, _ = viewer.request("control", "POST", '{"graph": "../../etc/passwd"}')
+        self.assertEqual(status, 204)
+        self.wait(lambda: "there is no graph" in json.dumps(viewer.state()["messages"]), "the refusal")
+        self.assertEqual(viewer.state()["graph_name"], "ir_1000")
+
+
+class Reload(ViewTest):
+    PASS = {"doc": "Shows one colour.", "outputs": {"image": {"doc": "the colour", "format": "rgba8"}},
+            "params": {"level": {"doc": "of red", "type": "real", "default": 1, "min": 0, "max": 1}},
+            "steps": [{"shader": "plain.frag", "fullscreen": ["image"]}]}
+    SHADER = """layout(push_constant) uniform Constants { float level; };
+layout(location = 0) out vec4 image;
+void main() { image = vec4(level, COLOUR, 1.0); }
+"""
+
+    def plain(self):
+        (self.folder / "passes").mkdir()
+        self.write("passes/plain.pass.json", self.PASS)
+        self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "0.0, 0.0"))
+        return self.write("plain.json", {"passes": {"plain": {"type": "plain"}}, "outputs": {"image": "plain"}})
+
+    def colour(self):
+        return self.script("const c = document.getElementById('canvas');"
+                           "return [...c.getContext('2d').getImageData(9, 9, 1, 1).data].slice(0, 3)"
+                           ".map((v) => Math.round(v / 51))")
+
+    def errors(self):
+        return " ".join(e.text for e in self.find_all(".message.error"))
+
+    def test_shader_pass_and_graph_show_at_once_and_mistakes_are_located(self):
+        viewer = self.view(self.plain(), size="64x64")
+        self.open(viewer)
+        self.wait(lambda: self.colour() == [5, 0, 0], "red")
+        # A shader.
+        start = time.monotonic()
+        self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "1.0, 0.0"))
+        self.wait(lambda: self.colour() == [5, 5, 0], "yellow")
+        self.assertLess(time.monotonic() - start, 5)  # a second, on a machine that does nothing else
+        # A mistake in it: file, line and the line itself are told, and the last picture goes on.
+        self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "nothing, 0.0"))
+        text = self.wait(lambda: "nothing" in self.errors() and self.errors(), "the mistake")
+        self.assertIn("plain.frag:3", text)
+        self.assertIn("image = vec4(level, nothing", text)
+        frame = self.shown_frame()
+        self.wait(lambda: self.shown_frame() > frame + 2, "the last good graph")
+        self.assertEqual(self.colour(), [5, 5, 0])
+        self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "0.0, 1.0"))
+        self.wait(lambda: self.colour() == [5, 0, 1 * 5] and not self.errors(), "magenta, and no message")
+        # The declaration.
+        changed = json.loads(json.dumps(self.PASS))
+        changed["params"]["level"]["default"] = 0
+        self.write("passes/plain.pass.json", changed)
+        self.wait(lambda: self.colour() == [0, 0, 5], "blue")
+        self.write("passes/plain.pass.json", '{"doc": "Shows one colour.", "outpts": {}}')
+        self.wait(lambda: "outpts" in self.errors(), "the mistake in the declaration")
+        self.write("passes/plain.pass.json", changed)
+        self.wait(lambda: not self.errors(), "no message")
+        # The graph.
+        good = {"passes": {"plain": {"type": "plain", "params": {"level": 0.6}}}, "outputs": {"image": "plain"}}
+        self.write("plain.json", good)
+        self.wait(lambda: self.colour() == [3, 0, 5], "some red")
+        self.write("plain.json", '{\n  "passes": { "plain": { "type": "plan" } }, "outputs": { "image": "plain" } }')
+        text = self.wait(lambda: "plan" in self.errors() and self.errors(), "the mistake in the graph")
+        self.assertIn("plain.json:2:", text)
+        self.assertIn("did you mean", text)
+        self.write("plain.json", good)
+        self.wait(lambda: not self.errors(), "no message")
+
+    def test_what_a_graph_extends_and_the_scene_are_watched(self):
+        self.write("base.json", {"extends": "direct.json"})
+        graph = self.write("mine.json", {"extends": "base.json"})
+        scene = self.write("room.json",
+                           json.loads((SOURCE / "samples/scenes/cornellbox_walk.json").read_text()))
+        viewer = self.view(graph, scene=scene, size="64x64")
+        self.open(viewer)
+        self.write("base.json", {"extends": "direct.json", "passes": {"tonemap": {"params": {"exposure": 3}}}})
+        self.wait(lambda: any(p["name"] == "exposure" and p["value"] == 3 for q in viewer.state()["graph"]["passes"]
+                              for p in q["parameters"]), "the base")
+        build = viewer.state()["build"]
+        changed = json.loads(scene.read_text())
+        changed["exposure"] = 0.01
+        before = sum(self.canvas())
+        self.write("base.json", {"extends": "direct.json"})
+        self.write("room.json", changed)
+        self.wait(lambda: viewer.state()["build"] > build and sum(self.canvas()) < 0.7 * before, "a darker scene")
+
+    def test_many_reloads_leave_memory_flat(self):
+        viewer = self.view(self.plain(), size="64x64")
+        self.open(viewer)
+
+        def resident():
+            for line in open(f"/proc/{viewer.process.pid}/status"):
+                if line.startswith("VmRSS"):
+                    return int(line.split()[1])
+            return 0
+
+        def reload(i):
+            # A new shader, a wrong one, and the graph, in turns; the level tells the builds apart.
+            build = viewer.state()["build"]
+            if i % 2:
+                self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "wrong"))
+            else:
+                self.write("passes/plain.frag", self.SHADER.replace("COLOUR", f"{i % 7}.0 / 7.0, 0.0"))
+            self.wait(lambda: viewer.state()["build"] > build, "a reload")
+
+        for i in range(20):
+            reload(i)
+        before = resident()
+        for i in range(60):
+            reload(i)
+        self.assertLess(resident(), 1.05 * before + 4096)
+
+
 if __name__ == "__main__":
     groups = sys.argv[3:]
     unittest.main(argv=[sys.argv[0], *groups], verbosity=2)

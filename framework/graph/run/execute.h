@@ -37,6 +37,9 @@ struct ExecutorOptions {
   uint32_t framesInFlight = 2;
   std::vector<std::string> readback;  // graph outputs that a frame may ask to have read back
   HostProgress hostProgress;          // called inside submit()
+  // Whether contents are taken over from the executor before, if there is one. If not, only pipelines are, and the next
+  // frame is the first one.
+  bool keepContents = true;
 };
 
 // A resource as one pass leaves it, to be read back right after that pass, before anything overwrites it. Of an image
@@ -67,8 +70,14 @@ class Executor {
  public:
   // Allocates all memory and prepares all passes, which compiles their shaders. Throws Error(OutOfMemory) naming the
   // resource and its size, and Error(BadInput) for shaders that do not compile or bind.
+  //
+  // It takes over from the executor `before`, if there is one: pipelines that both need, and kept and history resources
+  // with their contents. These must have the same name, size and lifetime in both plans, and the passes that write
+  // them the same name, type and shaders. A host pass of which nothing has changed keeps what it remembers. `before`
+  // must belong to the same device and scene, and its frames must have been returned. It is of no use afterwards,
+  // unless this constructor throws.
   Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,
-           scene::FrameDescriptors& scene, const ExecutorOptions& options = {});
+           scene::FrameDescriptors& scene, const ExecutorOptions& options = {}, Executor* before = nullptr);
   ~Executor();
 
   // Sets the contents of an input of the whole graph ("radiance", "surface.position"), which are kept until set

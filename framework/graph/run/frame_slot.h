@@ -79,6 +79,12 @@ struct FrameSlot {
   explicit FrameSlot(ExecutorState& executorState) : state(executorState) {}
 };
 
+// adopt.cpp: what an executor takes over from the one before it.
+std::map<std::string, std::shared_ptr<gpu::Pipeline>, std::less<>> pipelinesOf(const PassInstances& passes);
+// Moves kept and history resources of `before` that are the same in both plans, and tells passes of which all are.
+void adoptResources(ExecutorState& state, PassInstances& passes, ExecutorState& before,
+                    const PassInstances& passesBefore);
+
 // Copies between a resource of the plan and a tightly packed buffer.
 void copyToStaging(VkCommandBuffer cmd, const PhysicalResource& r, uint32_t copy, VkImageLayout layout,
                    const gpu::Buffer& staging, uint64_t bytes);

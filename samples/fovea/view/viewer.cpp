@@ -8,6 +8,8 @@
 #include "benchmarks/runner/interrupt.h"
 #include "framework/base/paths.h"
 #include "framework/base/text_file.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/graph/pass/registry.h"
 #include "framework/scene/scene.h"
 #include "samples/fovea/view/graph/catalog.h"
 #include "samples/fovea/view/graph/describe.h"
@@ -20,7 +22,7 @@ using Json = nlohmann::json;
 using std::chrono::milliseconds;
 
 constexpr auto kTickEvery = milliseconds(50);
-constexpr auto kIdle = milliseconds(200);
+constexpr auto kIdle = milliseconds(100), kRest = milliseconds(60);
 
 Json vectorJson(glm::vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -33,15 +35,17 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   const graph::Description description = bench::loadGraph(settings_.graph, early);
   graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size), early);
   device_ = session::openDevice(options.device, options.validation);
-  build_ = build(settings_, nullptr);
+  build_ = build(settings_, nullptr, false);
   bench::printWarnings(build_->messages);
   report(build_->messages.list());
+  watchFiles();
   sendState();
 }
 
 Viewer::~Viewer() = default;
 
-std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shared_ptr<LoadedScene> scene) {
+std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shared_ptr<LoadedScene> scene,
+                                             bool keepContents) {
   auto made = std::make_unique<Build>();
   graph::LoadOptions load;
   load.searchPaths = dataFolders("graphs");
@@ -62,22 +66,25 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   run.hostProgress = [](const std::string&, double) { return !bench::interrupted(); };
   made->run = std::make_unique<session::GraphRun>(*device_, made->description, made->scene->scene,
                                                   made->scene->geometry, std::move(run), made->messages);
-  made->run->prepare();
+  made->run->prepare(build_ ? build_->run.get() : nullptr, keepContents);
   return made;
 }
 
 // Keeps the graph that runs if another one cannot be built.
-void Viewer::rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene) {
+void Viewer::rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents) {
   drain();
   try {
-    std::unique_ptr<Build> next = build(settings, std::move(scene));
+    std::unique_ptr<Build> next = build(settings, std::move(scene), keepContents);
     const bool otherScene = next->scene != build_->scene;
     build_ = std::move(next);
     settings_ = settings;
     if (otherScene) motion_.restart();
+    watchFiles();
     wanted_.clear();
     observed_.clear();
     exchange_.clearShots();
+    shown_.clear();
+    times_ = nullptr;
     report(build_->messages.list());
   } catch (const Error& error) {
     report(error.diagnostics());
@@ -122,21 +129,23 @@ bool Viewer::change(Settings& settings, const Command& command) const {
 
 void Viewer::follow(std::vector<Command> commands) {
   Settings settings = settings_;
-  bool changed = false, otherScene = false;
+  bool changed = false, otherScene = false, restarts = false;
   for (const Command& command : commands) {
     try {
       changed |= change(settings, command);
       otherScene |= command.scene.has_value();
     } catch (const Error& error) {
       report(error.diagnostics());
+      sendState();
     }
     motion_.apply(command);
+    restarts |= command.restart || command.recording.value_or(false);
     if (command.recording) exchange_.setGazeTable(motion_.gazeTable());
   }
-  if (changed) rebuild(settings, otherScene ? nullptr : build_->scene);
+  if (changed || restarts) rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
   for (const Command& command : commands)
     if (command.save) save(*command.save);
-  if (!commands.empty()) lastTick_ = {};
+  if (!commands.empty()) sendTick();
 }
 
 // Beside the graph, and never over another file.
@@ -222,9 +231,16 @@ void Viewer::take(graph::FrameResult result) {
     shot.data = std::move(data);
     exchange_.publish(name, std::move(shot));
   }
-  sendTick(result);
-  if (!shown_.empty()) shown_.erase(shown_.begin());
+  if (!shown_.empty()) {
+    seen_ = shown_.front();
+    shown_.erase(shown_.begin());
+  }
   throwIfObjected();
+  const auto now = Exchange::Clock::now();
+  if (now - lastTick_ < kTickEvery && !motion_.frozen()) return;
+  lastTick_ = now;
+  times_ = describeTimes(result);
+  sendTick();
 }
 
 void Viewer::throwIfObjected() const {
@@ -235,16 +251,13 @@ void Viewer::throwIfObjected() const {
                                                 objections.size(), objections.front()));
 }
 
-void Viewer::sendTick(const graph::FrameResult& result) {
-  const auto now = Exchange::Clock::now();
-  if (now - lastTick_ < kTickEvery && !motion_.frozen()) return;
-  lastTick_ = now;
-  const scene::Moment& shown = shown_.empty() ? motion_.shown() : shown_.front();
-  const Pose pose = poseOf(shown.camera);
+void Viewer::sendTick() {
+  if (times_.is_null()) return;
+  const Pose pose = poseOf(seen_.camera);
   Json tick{{"build", builds_},
             {"messages", messageNumber_},
-            {"frame", result.frame},
-            {"time", shown.time},
+            {"frame", seen_.index},
+            {"time", seen_.time},
             {"playing", motion_.playing()},
             {"frozen", motion_.frozen()},
             {"speed", motion_.speed()},
@@ -255,13 +268,13 @@ void Viewer::sendTick(const graph::FrameResult& result) {
               {"yaw", pose.yaw},
               {"pitch", pose.pitch},
               {"own", motion_.ownCamera()},
-              {"fov", shown.camera.verticalFov}}},
-            {"gaze", {shown.gazes[0].x, shown.gazes[0].y}},
+              {"fov", seen_.camera.verticalFov}}},
+            {"gaze", {seen_.gazes[0].x, seen_.gazes[0].y}},
             {"own_gaze", motion_.ownGaze()},
-            {"saccade", shown.saccade},
+            {"saccade", seen_.saccade},
             {"fps", framesPerSecond_},
             {"bytes", device_->allocatedBytes()},
-            {"times", describeTimes(result)}};
+            {"times", times_}};
   if (motion_.recording()) exchange_.setGazeTable(motion_.gazeTable());
   exchange_.setTick(tick.dump());
 }
@@ -286,13 +299,58 @@ void Viewer::sendState() {
       {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
       {"messages", describeMessages(messages_)}};
   exchange_.setState(state.dump());
-  Json tick{{"build", builds_}, {"messages", messageNumber_}};
-  exchange_.setTick(tick.dump());
+  exchange_.setTick(Json{{"build", builds_}}.dump());
+}
+
+// Everything from which the run was made.
+void Viewer::watchFiles() {
+  std::set<std::filesystem::path> folders;
+  const auto add = [&](const std::filesystem::path& folder) { folders.merge(withSubfolders(folder)); };
+  const std::filesystem::path beside = build_->file.parent_path();
+  folders.insert(beside.empty() ? "." : beside);
+  add(beside / "passes");
+  for (const char* kind : {"graphs", "shaders", "passes"})
+    for (const std::filesystem::path& folder : dataFolders(kind)) add(folder);
+  for (const std::string& folder : settings_.graph.passes) add(folder);
+  for (const std::filesystem::path& folder : pathsInVariable("FOVEA_PASSES")) add(folder);
+  const std::filesystem::path scene = build_->scene->scene.source;
+  std::error_code ec;
+  if (std::filesystem::is_regular_file(scene, ec))
+    folders.insert(scene.has_parent_path() ? scene.parent_path() : std::filesystem::path("."));
+  watcher_.watch(folders);
+}
+
+// An editor writes several files in a row, or one in several steps; a moment of rest ends that.
+void Viewer::reloadChanged() {
+  const auto now = Exchange::Clock::now();
+  std::set<std::filesystem::path> changed = watcher_.changed();
+  if (!changed.empty()) {
+    changedFiles_.merge(changed);
+    changedAt_ = now;
+  }
+  if (changedFiles_.empty() || now - changedAt_ < kRest) return;
+  const std::set<std::filesystem::path> files = std::exchange(changedFiles_, {});
+  std::error_code ec;
+  const std::filesystem::path source = build_->scene->scene.source;
+  const bool scene = std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
+    const bool model = file.extension() != ".json";
+    return std::filesystem::equivalent(file, source, ec) ||
+           (model && file.parent_path() == source.parent_path() && source.has_parent_path());
+  });
+  device_->shaders().forget();
+  try {
+    graph::Registry::global().rereadFiles();
+    rebuild(settings_, scene ? nullptr : build_->scene);
+  } catch (const Error& error) {
+    report(error.diagnostics());
+    sendState();
+  }
 }
 
 void Viewer::run() {
   while (!bench::interrupted()) {
     follow(exchange_.takeCommands());
+    reloadChanged();
     if (!frameIsDue()) {
       drain();
       exchange_.waitForWork(kIdle);

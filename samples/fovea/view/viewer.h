@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/graph/changes.h"
 #include "samples/fovea/view/motion.h"
+#include "samples/fovea/view/watcher.h"
 
 namespace fovea::view {
 
@@ -56,8 +59,11 @@ class Viewer {
     Diagnostics messages;
   };
 
-  std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene);
-  void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene);
+  std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene,
+                               bool keepContents);
+  void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents = true);
+  void reloadChanged();
+  void watchFiles();
   void follow(std::vector<Command> commands);
   bool change(Settings& settings, const Command& command) const;
   void save(const std::string& name);
@@ -69,7 +75,7 @@ class Viewer {
   void take(graph::FrameResult result);
   void report(std::vector<Diagnostic> messages);
   void sendState();
-  void sendTick(const graph::FrameResult& result);
+  void sendTick();
   void pace();
   void throwIfObjected() const;
 
@@ -83,9 +89,13 @@ class Viewer {
   std::vector<scene::Moment> shown_;            // moments of the frames under way, oldest first
   uint64_t builds_ = 0, submitted_ = 0, messageNumber_ = 0;
   std::vector<Diagnostic> messages_;
-  std::string notice_;  // of something that went well
   Exchange::Clock::time_point lastTick_, nextFrame_;
   double framesPerSecond_ = 0;
+  scene::Moment seen_;    // of the newest finished frame
+  nlohmann::json times_;  // of the same
+  std::set<std::filesystem::path> changedFiles_;
+  Exchange::Clock::time_point changedAt_;
+  Watcher watcher_;
 };
 
 }  // namespace fovea::view
