@@ -1,8 +1,10 @@
 """Tests `fovea view` from outside, in a headless Chromium. Usage: view_test.py PROGRAM SOURCE_DIR [CLASS...]"""
 
 import json
-import socket
+import pathlib
+import re
 import shutil
+import socket
 import struct
 import subprocess
 import sys
@@ -325,7 +327,8 @@ class Change(ViewTest):
         viewer = self.view("ir_1000", "--set", "vpl_count=20", size="64x64")
         self.open(viewer)
         viewer.control(set={"vpl_count": -3})
-        message = self.wait(lambda: self.find_all(".message.error") and self.find(".message.error").text, "the message")
+        message = self.wait(lambda: self.script(
+            "return document.querySelector('.message.error')?.innerText"), "the message")
         self.assertIn("vpl_count", message)
         self.assertEqual(viewer.state()["set"], ["vpl_count=20"])
         frame = self.shown_frame()
@@ -348,8 +351,8 @@ class Change(ViewTest):
 
 class Reload(ViewTest):
     PASS = {"doc": "Shows one colour.", "outputs": {"image": {"doc": "the colour", "format": "rgba8"}},
-            "params": {"level": {"doc": "of red", "type": "real", "default": 1, "min": 0, "max": 1}},
-            "steps": [{"shader": "plain.frag", "fullscreen": ["image"]}]}
+            "params": {"level": {"doc": "of red", "default": 1.0, "min": 0, "max": 1}},
+            "steps": [{"shader": "plain.frag", "colors": ["image"]}]}
     SHADER = """layout(push_constant) uniform Constants { float level; };
 layout(location = 0) out vec4 image;
 void main() { image = vec4(level, COLOUR, 1.0); }
@@ -367,7 +370,7 @@ void main() { image = vec4(level, COLOUR, 1.0); }
                            ".map((v) => Math.round(v / 51))")
 
     def errors(self):
-        return " ".join(e.text for e in self.find_all(".message.error"))
+        return self.script("return [...document.querySelectorAll('.message.error')].map((e) => e.innerText).join(' ')")
 
     def test_shader_pass_and_graph_show_at_once_and_mistakes_are_located(self):
         viewer = self.view(self.plain(), size="64x64")
@@ -390,7 +393,7 @@ void main() { image = vec4(level, COLOUR, 1.0); }
         self.wait(lambda: self.colour() == [5, 0, 1 * 5] and not self.errors(), "magenta, and no message")
         # The declaration.
         changed = json.loads(json.dumps(self.PASS))
-        changed["params"]["level"]["default"] = 0
+        changed["params"]["level"]["default"] = 0.0
         self.write("passes/plain.pass.json", changed)
         self.wait(lambda: self.colour() == [0, 0, 5], "blue")
         self.write("passes/plain.pass.json", '{"doc": "Shows one colour.", "outpts": {}}')
@@ -431,10 +434,8 @@ void main() { image = vec4(level, COLOUR, 1.0); }
         self.open(viewer)
 
         def resident():
-            for line in open(f"/proc/{viewer.process.pid}/status"):
-                if line.startswith("VmRSS"):
-                    return int(line.split()[1])
-            return 0
+            status = pathlib.Path(f"/proc/{viewer.process.pid}/status").read_text()
+            return int(re.search(r"VmRSS:\s*(\d+)", status).group(1))
 
         def reload(i):
             # A new shader, a wrong one, and the graph, in turns; the level tells the builds apart.
