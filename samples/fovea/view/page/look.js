@@ -156,10 +156,10 @@ export function start() {
     row("Channel", "channel", channel),
     row("Exposure", "exposure", exposure, exposureText, element("span", { class: "unit" }, "EV")),
     row("Range", "low", low, element("span", {}, "to"), high),
+    row("", null, element("button", { type: "button", id: "auto-range", onclick: automaticRange }, "Fit to values"),
+      element("button", { type: "button", id: "reset-range", onclick: resetRange }, "Reset")),
     row("Curve", "curve", curve),
-    row("False colour", "false-color", element("div", { class: "pair" }, falseColor,
-      element("button", { type: "button", id: "auto-range", onclick: automaticRange }, "Fit range"),
-      element("button", { type: "button", id: "reset-range", onclick: resetRange }, "Reset"))),
+    row("False colour", "false-color", falseColor),
     histogram, numbers);
   exposure.addEventListener("input", sendExposure);
   for (const input of [low, high]) input.addEventListener("change", sendRange);

@@ -44,9 +44,13 @@ export function portOf(source) {
   return undefined;
 }
 
-// The port of a pass that says most about it: its first picture that is made.
+// The port of a pass that says most about it: an output of the graph, else a picture that another pass reads, else any
+// picture.
 export function mainPort(pass) {
+  const { outputs, edges } = store.state.graph;
   const made = pass.ports.filter((p) => p.made && p.direction !== "in");
   const any = made.length ? made : pass.ports.filter((p) => p.made);
-  return any.find((p) => !p.buffer) ?? any[0];
+  const pictures = any.filter((p) => !p.buffer);
+  return pictures.find((p) => outputs.some((o) => o.source === p.source)) ??
+    pictures.find((p) => edges.some((e) => e.source === p.source)) ?? pictures[0] ?? any[0];
 }
