@@ -349,6 +349,47 @@ class Change(ViewTest):
         self.assertEqual(viewer.state()["graph_name"], "ir_1000")
 
 
+class Compare(ViewTest):
+    def second(self):
+        return self.script("const c = document.getElementById('second');"
+                           "return c.hidden ? null : [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data];")
+
+    def test_a_second_graph_is_split_subtracted_and_measured(self):
+        viewer = self.view("direct", size="64x64")
+        self.open(viewer)
+        self.find("#compare-panel summary").click()
+        self.choose("#source", "radiance")
+        self.choose("#second-graph", "ir_1000")
+        self.wait(self.second, "the second picture")
+        self.assertNotEqual(self.second(), self.canvas())
+        self.wait(lambda: float(self.find("#measures").get_attribute("data-mse") or 0) > 1e-4, "the error")
+        self.assertTrue(self.find("#divider").is_displayed())
+        self.choose("#compare-mode", "difference")
+        self.wait(lambda: self.find("#second").get_attribute("data-mode") == "difference", "the difference")
+        # Of a graph and itself there is none.
+        self.choose("#second-graph", "direct")
+        self.wait(lambda: (now := self.second()) and all(v < 3 for i, v in enumerate(now) if i % 4 != 3), "no difference")
+        self.wait(lambda: self.find("#measures").get_attribute("data-mse") == "0", "no error")
+        self.choose("#second-graph", "")
+        self.wait(lambda: self.second() is None, "the end of the comparison")
+
+    def test_a_reference_fills_up_while_nothing_moves(self):
+        viewer = self.view(self.write("mine.json", {"extends": "reference.json", "parameters": {"spp": 256}}), size="32x32")
+        viewer.control(playing=False, second="reference")
+        self.open(viewer)
+        viewer.control(frozen=False)
+
+        def measured():
+            status, _, body = viewer.request("measures?source=radiance&reference=second!radiance")
+            return json.loads(body) if status == 200 else {"frames": 0}
+
+        first = self.wait(lambda: (m := measured())["frames"] > 0 and m, "the first frames")
+        later = self.wait(lambda: (m := measured())["frames"] > 30 and m, "more frames")
+        self.assertLess(later["whole"]["mse"], 0.5 * first["whole"]["mse"])
+        viewer.control(camera={"position": [0, 2.75, 8], "yaw": 0, "pitch": 0})
+        self.wait(lambda: 0 < measured()["frames"] < later["frames"], "a new start")
+
+
 class Reload(ViewTest):
     PASS = {"doc": "Shows one colour.", "outputs": {"image": {"doc": "the colour", "format": "rgba8"}},
             "params": {"level": {"doc": "of red", "default": 1.0, "min": 0, "max": 1}},

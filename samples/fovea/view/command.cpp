@@ -114,6 +114,8 @@ Command parseCommand(std::string_view text) {
   Command command;
   command.graph = textOf(reader, "graph");
   command.scene = textOf(reader, "scene");
+  command.second = textOf(reader, "second");
+  command.accumulate = flagOf(reader, "accumulate");
   readSize(reader, command);
   if (reader.has("seed")) command.seed = uint32_t(reader.integer("seed", 1, 0, 0xffffffffll));
   readValues(reader, command);

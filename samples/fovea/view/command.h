@@ -20,6 +20,8 @@ struct Pose {
 // Members that were not sent are empty. They are followed in this order.
 struct Command {
   std::optional<std::string> graph, scene;  // names out of the lists that the page was given
+  std::optional<std::string> second;        // a second graph to compare with; "" for none
+  std::optional<bool> accumulate;           // adds up frames of the second graph while nothing moves
   std::optional<glm::uvec2> size;
   std::optional<uint32_t> seed;
   // A parameter's new value as text, or nothing for its value in the file.

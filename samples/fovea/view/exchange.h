@@ -21,9 +21,13 @@ namespace fovea::view {
 struct Shot {
   uint64_t number = 0;  // counts all that were published
   uint64_t frame = 0;   // Frame::index
-  float exposure = 1;   // of the scene in that frame
+  float exposure = 1;   // of the graph or, if it has none, of the scene
+  glm::vec2 gaze{0.5f};
+  float foveaRadius = 0;  // in widths of the picture; 0 without a fovea
+  uint32_t frames = 1;    // of which this is the mean
   graph::OutputData data;
   std::string refusal;  // why there is no picture; empty if there is one
+  bool absent = false;  // there is none for now, for no fault of whoever asks
 };
 using ShotPointer = std::shared_ptr<const Shot>;
 

@@ -21,6 +21,8 @@ namespace {
 using Json = nlohmann::json;
 using std::chrono::milliseconds;
 
+constexpr int kSamplesAFrame = 4;                // of a second graph that has a parameter `spp`
+constexpr std::string_view kSecond = "second!";  // begins the sources of the second graph
 constexpr auto kTickEvery = milliseconds(50);
 constexpr auto kIdle = milliseconds(100), kRest = milliseconds(60);
 
@@ -35,7 +37,7 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   const graph::Description description = bench::loadGraph(settings_.graph, early);
   graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size), early);
   device_ = session::openDevice(options.device, options.validation);
-  build_ = build(settings_, nullptr, false);
+  build_ = build(settings_, nullptr, nullptr, false);
   bench::printWarnings(build_->messages);
   report(build_->messages.list());
   watchFiles();
@@ -45,7 +47,7 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
 Viewer::~Viewer() = default;
 
 std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shared_ptr<LoadedScene> scene,
-                                             bool keepContents) {
+                                             Build* before, bool keepContents) {
   auto made = std::make_unique<Build>();
   graph::LoadOptions load;
   load.searchPaths = dataFolders("graphs");
@@ -66,7 +68,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   run.hostProgress = [](const std::string&, double) { return !bench::interrupted(); };
   made->run = std::make_unique<session::GraphRun>(*device_, made->description, made->scene->scene,
                                                   made->scene->geometry, std::move(run), made->messages);
-  made->run->prepare(build_ ? build_->run.get() : nullptr, keepContents);
+  made->run->prepare(before ? before->run.get() : nullptr, keepContents);
   return made;
 }
 
@@ -74,7 +76,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
 void Viewer::rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents) {
   drain();
   try {
-    std::unique_ptr<Build> next = build(settings, std::move(scene), keepContents);
+    std::unique_ptr<Build> next = build(settings, std::move(scene), build_.get(), keepContents && !broken_);
     const bool otherScene = next->scene != build_->scene;
     build_ = std::move(next);
     settings_ = settings;
@@ -85,11 +87,41 @@ void Viewer::rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scen
     exchange_.clearShots();
     shown_.clear();
     times_ = nullptr;
+    broken_ = false;
     report(build_->messages.list());
+    rebuildSecond(keepContents);
   } catch (const Error& error) {
     report(error.diagnostics());
   }
   sendState();
+}
+
+// Everything but the graph is that of the first.
+void Viewer::rebuildSecond(bool keepContents) {
+  drain();
+  wanted_.clear();
+  means_.clear();
+  if (secondName_.empty()) {
+    second_.reset();
+    return;
+  }
+  Settings settings = settings_;
+  settings.graph.graph = graphByName(build_->file, secondName_).string();
+  settings.graph.set.clear();
+  try {
+    // Frames are added up, so that a reference need not take minutes for each.
+    graph::LoadOptions load;
+    load.searchPaths = dataFolders("graphs");
+    const json::Value merged = graph::loadMerged(settings.graph.graph, load);
+    const json::Value* parameters = merged.find("parameters");
+    if (accumulate_ && parameters && parameters->find("spp"))
+      settings.graph.set.push_back(fmt::format("spp={}", kSamplesAFrame));
+    second_ = build(settings, build_->scene, second_.get(), keepContents);
+  } catch (const Error& error) {
+    second_.reset();
+    secondName_.clear();
+    report(error.diagnostics());
+  }
 }
 
 void Viewer::report(std::vector<Diagnostic> messages) {
@@ -112,6 +144,7 @@ bool Viewer::change(Settings& settings, const Command& command) const {
     known(sceneNames(), *command.scene, "scene");
     settings.scene = *command.scene;
   }
+  if (command.second && !command.second->empty()) known(graphNames(build_->file), *command.second, "graph");
   if (command.size) settings.size = *command.size;
   if (command.seed) settings.seed = *command.seed;
   Changes changes = changesOf(settings.graph.set);
@@ -129,11 +162,14 @@ bool Viewer::change(Settings& settings, const Command& command) const {
 
 void Viewer::follow(std::vector<Command> commands) {
   Settings settings = settings_;
-  bool changed = false, otherScene = false, restarts = false;
+  bool changed = false, otherScene = false, restarts = false, otherSecond = false;
   for (const Command& command : commands) {
     try {
       changed |= change(settings, command);
       otherScene |= command.scene.has_value();
+      otherSecond |= command.second.has_value();
+      if (command.second) secondName_ = *command.second;
+      if (command.accumulate) accumulate_ = *command.accumulate;
     } catch (const Error& error) {
       report(error.diagnostics());
       sendState();
@@ -142,7 +178,12 @@ void Viewer::follow(std::vector<Command> commands) {
     restarts |= command.restart || command.recording.value_or(false);
     if (command.recording) exchange_.setGazeTable(motion_.gazeTable());
   }
-  if (changed || restarts) rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
+  if (changed || restarts) {
+    rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
+  } else if (otherSecond) {
+    rebuildSecond(true);
+    sendState();
+  }
   for (const Command& command : commands)
     if (command.save) save(*command.save);
   if (!commands.empty()) sendTick();
@@ -165,6 +206,7 @@ void Viewer::save(const std::string& name) {
 }
 
 bool Viewer::frameIsDue() {
+  if (broken_) return false;
   if (options_.frames > 0 && submitted_ >= options_.frames) {
     motion_.freeze();
     options_.frames = 0;
@@ -187,10 +229,20 @@ void Viewer::chooseObservations() {
   drain();
   wanted_ = std::move(wanted);
   observed_.clear();
-  std::vector<graph::Observation> observations;
+  std::vector<graph::Observation> first, second;
   for (const std::string& source : wanted_) {
+    const bool ofSecond = source.starts_with(kSecond);
     try {
-      observations.push_back(findSource(*build_->run->plan(), source));
+      if (ofSecond && !second_) {
+        Shot shot;
+        shot.absent = true;
+        exchange_.publish(source, std::move(shot));
+        continue;
+      }
+      graph::Observation found = findSource(*(ofSecond ? second_ : build_)->run->plan(),
+                                            ofSecond ? source.substr(kSecond.size()) : source);
+      found.name = source;
+      (ofSecond ? second : first).push_back(std::move(found));
       observed_.push_back(source);
     } catch (const Error& error) {
       Shot shot;
@@ -198,7 +250,11 @@ void Viewer::chooseObservations() {
       exchange_.publish(source, std::move(shot));
     }
   }
-  build_->run->executor().observe(std::move(observations));
+  build_->run->executor().observe(std::move(first));
+  if (second_) second_->run->executor().observe(std::move(second));
+  std::erase_if(means_, [&](const auto& mean) {
+    return std::find(wanted_.begin(), wanted_.end(), mean.first) == wanted_.end();
+  });
 }
 
 void Viewer::render() {
@@ -206,7 +262,18 @@ void Viewer::render() {
   const scene::Moment moment = motion_.next(build_->scene->scene);
   const bool observe = !observed_.empty() && (motion_.frozen() || exchange_.hungry());
   shown_.push_back(moment);
-  build_->run->submit(build_->run->frame(moment), false, observe);
+  try {
+    build_->run->submit(build_->run->frame(moment), false, observe);
+    // What is added up must not miss a frame.
+    if (second_) second_->run->submit(second_->run->frame(moment), false, observe || accumulate_);
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::DeviceLost || error.code() == ExitCode::OutOfMemory) throw;
+    // A pass fails while it is recorded. Nothing is rendered until the graph or a file of it changes.
+    broken_ = true;
+    report(error.diagnostics());
+    sendState();
+    return;
+  }
   ++submitted_;
   takeFinished();
   if (motion_.frozen() || build_->run->inFlight() == 1) drain();
@@ -220,27 +287,51 @@ void Viewer::drain() {
   while (auto result = build_->run->executor().next()) take(std::move(*result));
 }
 
+void Viewer::publish(const Build& build, const std::string& source, const graph::FrameResult& result,
+                     graph::OutputData data, uint32_t frames) {
+  const double own = session::parameterOr(build.run->graph(), "exposure", 0);  // 0 means the scene's
+  Shot shot;
+  shot.frame = result.frame;
+  shot.exposure = own > 0 ? float(own) : build.scene->scene.exposure;
+  shot.gaze = seen_.gazes[0];
+  shot.foveaRadius = float(session::parameterOr(build_->run->graph(), "fovea_radius", 0));
+  shot.frames = frames;
+  shot.data = std::move(data);
+  exchange_.publish(source, std::move(shot));
+}
+
 void Viewer::take(graph::FrameResult result) {
   const double seconds = result.wallMs / 1000;
   if (seconds > 0)
     framesPerSecond_ = framesPerSecond_ > 0 ? 0.8 * framesPerSecond_ + 0.2 / seconds : 1 / seconds;
-  for (auto& [name, data] : result.outputs) {
-    Shot shot;
-    shot.frame = result.frame;
-    shot.exposure = build_->scene->scene.exposure;
-    shot.data = std::move(data);
-    exchange_.publish(name, std::move(shot));
-  }
   if (!shown_.empty()) {
     seen_ = shown_.front();
     shown_.erase(shown_.begin());
   }
+  for (auto& [name, data] : result.outputs) publish(*build_, name, result, std::move(data), 1);
+  if (second_)
+    if (auto other = second_->run->executor().next()) takeSecond(std::move(*other));
   throwIfObjected();
   const auto now = Exchange::Clock::now();
   if (now - lastTick_ < kTickEvery && !motion_.frozen()) return;
   lastTick_ = now;
   times_ = describeTimes(result);
   sendTick();
+}
+
+// The second graph shows the moment that the first has just shown.
+void Viewer::takeSecond(graph::FrameResult result) {
+  const bool still = meanOf_ && meanOf_->time == seen_.time && meanOf_->gazes == seen_.gazes &&
+                     meanOf_->camera.position == seen_.camera.position &&
+                     meanOf_->camera.orientation == seen_.camera.orientation;
+  if (!still || !accumulate_) means_.clear();
+  meanOf_ = seen_;
+  for (auto& [name, data] : result.outputs) {
+    const bool added = accumulate_ && FrameMean::canAdd(data.desc);
+    FrameMean& mean = means_[name];
+    graph::OutputData shown = added ? mean.add(data) : std::move(data);
+    publish(*second_, name, result, std::move(shown), added ? mean.frames() : 1);
+  }
 }
 
 void Viewer::throwIfObjected() const {
@@ -292,6 +383,9 @@ void Viewer::sendState() {
       {"scene", settings_.scene},
       {"size", {settings_.size.x, settings_.size.y}},
       {"seed", settings_.seed},
+      {"second", secondName_},
+      {"second_graph", second_ ? describeOutputs(second_->run->graph()) : Json::array()},
+      {"accumulate", accumulate_},
       {"graphs", graphNames(build_->file)},
       {"scenes", sceneNames()},
       {"set", overridesOf(build_->changes)},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/graph/changes.h"
 #include "samples/fovea/view/motion.h"
+#include "samples/fovea/view/picture/compare.h"
 #include "samples/fovea/view/watcher.h"
 
 namespace fovea::view {
@@ -59,8 +61,10 @@ class Viewer {
     Diagnostics messages;
   };
 
-  std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene,
+  // What of `before` can be taken over goes on in the build, with its contents if `keepContents`.
+  std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene, Build* before,
                                bool keepContents);
+  void rebuildSecond(bool keepContents);
   void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents = true);
   void reloadChanged();
   void watchFiles();
@@ -73,6 +77,9 @@ class Viewer {
   void takeFinished();
   void drain();
   void take(graph::FrameResult result);
+  void takeSecond(graph::FrameResult result);
+  void publish(const Build& build, const std::string& source, const graph::FrameResult& result,
+               graph::OutputData data, uint32_t frames);
   void report(std::vector<Diagnostic> messages);
   void sendState();
   void sendTick();
@@ -84,6 +91,12 @@ class Viewer {
   Settings settings_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Build> build_;
+  std::string secondName_;  // of a graph; "" for none
+  std::unique_ptr<Build>
+      second_;  // runs after the first in every frame, with a scene of its own on the device
+  bool accumulate_ = true, broken_ = false;
+  std::map<std::string, FrameMean> means_;  // of sources of the second graph
+  std::optional<scene::Moment> meanOf_;     // the view that the means show
   Motion motion_;
   std::vector<std::string> wanted_, observed_;  // sources; those of them that there are
   std::vector<scene::Moment> shown_;            // moments of the frames under way, oldest first

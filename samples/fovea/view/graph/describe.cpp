@@ -231,19 +231,23 @@ std::string lineOf(const SourceLocation& where) {
 
 nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
                              const json::Value& merged, const Changes& changes) {
-  Json outputs = Json::array();
-  for (const graph::BoundOutput& o : plan.graph->outputs)
-    outputs.push_back({{"name", o.name},
-                       {"source", sourceOfOutput(*plan.graph, o)},
-                       {"is", graph::describe(plan.graph->resources[o.resource].desc)}});
   return {{"name", plan.graph->name},
           {"description", plan.graph->description},
           {"passes", passesJson(plan, description, changes)},
           {"edges", edgesJson(plan)},
-          {"outputs", outputs},
+          {"outputs", describeOutputs(*plan.graph)},
           {"parameters", graphParametersJson(plan, description, merged, changes)},
           {"levels", plan.levels.size()},
           {"plan", Json::parse(graph::planJson(plan))}};
+}
+
+nlohmann::json describeOutputs(const graph::BoundGraph& graph) {
+  Json outputs = Json::array();
+  for (const graph::BoundOutput& o : graph.outputs)
+    outputs.push_back({{"name", o.name},
+                       {"source", sourceOfOutput(graph, o)},
+                       {"is", graph::describe(graph.resources[o.resource].desc)}});
+  return outputs;
 }
 
 nlohmann::json describeTimes(const graph::FrameResult& frame) {

@@ -14,6 +14,9 @@ namespace fovea::view {
 nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
                              const json::Value& merged, const Changes& changes);
 
+// The outputs of a graph, each with the source that shows it.
+nlohmann::json describeOutputs(const graph::BoundGraph& graph);
+
 // Times of one frame: for each pass of the graph that ran its GPU and CPU milliseconds, and the counters.
 nlohmann::json describeTimes(const graph::FrameResult& frame);
 

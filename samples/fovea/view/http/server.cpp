@@ -13,6 +13,7 @@
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/http/page.h"
 #include "samples/fovea/view/http/request.h"
+#include "samples/fovea/view/picture/compare.h"
 #include "samples/fovea/view/picture/display.h"
 #include "samples/fovea/view/picture/texels.h"
 
@@ -130,6 +131,10 @@ struct Server::Impl {
   Answer answer(mg_connection* connection, const std::string& method, const std::string& name,
                 std::string_view query);
   ShotPointer shotFor(std::string_view query, Answer& refusal);
+  ShotPointer shotOf(const std::string& source, uint64_t after, Answer& refusal);
+  // Pictures of one frame, for `source` and the one that the query calls `name`.
+  std::pair<ShotPointer, ShotPointer> pairFor(std::string_view query, const char* name, Answer& refusal);
+  Answer measures(std::string_view query);
   Answer picture(std::string_view query);
   Answer pixels(std::string_view query);
   Answer numbersOf(std::string_view query);
@@ -141,6 +146,9 @@ int Server::Impl::onRequest(mg_connection* connection) {
   auto* impl = static_cast<Impl*>(mg_get_request_info(connection)->user_data);
   try {
     return impl->handle(connection);
+  } catch (const Error& e) {
+    send(connection, {404, "text/plain; charset=utf-8", e.what()});
+    return 404;
   } catch (const std::exception& e) {
     send(connection, {503, "text/plain; charset=utf-8", e.what()});
     return 503;
@@ -173,6 +181,7 @@ Answer Server::Impl::answer(mg_connection* connection, const std::string& method
   if (name == "picture") return picture(query);
   if (name == "pixels") return pixels(query);
   if (name == "statistics") return numbersOf(query);
+  if (name == "measures") return measures(query);
   if (name == "state") return {200, "application/json", exchange.state()};
   if (name == "events") return events(connection);
   if (name == "gaze.csv")
@@ -185,8 +194,7 @@ Answer Server::Impl::answer(mg_connection* connection, const std::string& method
 }
 
 // nullptr if there is no picture, with the answer that says so.
-ShotPointer Server::Impl::shotFor(std::string_view query, Answer& refusal) {
-  const std::string source = queryValue(query, "source").value_or("");
+ShotPointer Server::Impl::shotOf(const std::string& source, uint64_t after, Answer& refusal) {
   if (source.empty() || source.size() > 256) {
     refusal = {400, "text/plain; charset=utf-8", "name a source"};
     return nullptr;
@@ -196,14 +204,41 @@ ShotPointer Server::Impl::shotFor(std::string_view query, Answer& refusal) {
     refusal = busy();
     return nullptr;
   }
-  const auto after = uint64_t(queryNumber(query, "after", 0, 9e15, 0));
   ShotPointer shot = exchange.shot(source, after, kPictureWait);
-  if (!shot) refusal = {204, "text/plain", {}};  // ask again
-  if (shot && !shot->refusal.empty()) {
+  if (!shot || shot->absent) {
+    refusal = {204, "text/plain", {}};  // ask again
+    return nullptr;
+  }
+  if (!shot->refusal.empty()) {
     refusal = {404, "text/plain; charset=utf-8", shot->refusal};
     return nullptr;
   }
   return shot;
+}
+
+ShotPointer Server::Impl::shotFor(std::string_view query, Answer& refusal) {
+  return shotOf(queryValue(query, "source").value_or(""), uint64_t(queryNumber(query, "after", 0, 9e15, 0)),
+                refusal);
+}
+
+std::pair<ShotPointer, ShotPointer> Server::Impl::pairFor(std::string_view query, const char* name,
+                                                          Answer& refusal) {
+  constexpr int kTries = 4;
+  const std::string source = queryValue(query, "source").value_or(""),
+                    other = queryValue(query, name).value_or("");
+  auto after = uint64_t(queryNumber(query, "after", 0, 9e15, 0));
+  uint64_t otherAfter = 0;
+  for (int i = 0; i < kTries; ++i) {
+    ShotPointer a = shotOf(source, after, refusal);
+    ShotPointer b = a ? shotOf(other, otherAfter, refusal) : nullptr;
+    if (!b) return {};
+    if (a->frame == b->frame) return {std::move(a), std::move(b)};
+    // Whichever is behind is taken anew.
+    if (a->frame < b->frame) after = a->number;
+    if (b->frame < a->frame) otherAfter = b->number;
+  }
+  refusal = {204, "text/plain", {}};
+  return {};
 }
 
 namespace {
@@ -213,15 +248,22 @@ std::string shotHeaders(const Shot& shot) {
   constexpr const char* kTypes[] = {"float32", "uint32", "int32"};
   return fmt::format(
       "X-Fovea-Number: {}\r\nX-Fovea-Frame: {}\r\nX-Fovea-Size: {}x{}\r\nX-Fovea-Channels: {}\r\n"
-      "X-Fovea-Type: {}\r\nX-Fovea-Encoded: {}\r\n",
+      "X-Fovea-Type: {}\r\nX-Fovea-Encoded: {}\r\nX-Fovea-Frames: {}\r\n",
       shot.number, shot.frame, layout.width, layout.height, layout.channels, kTypes[int(layout.type)],
-      layout.encoded ? 1 : 0);
+      layout.encoded ? 1 : 0, shot.frames);
 }
 
 }  // namespace
 
 Answer Server::Impl::picture(std::string_view query) {
   Answer refusal;
+  if (queryValue(query, "minus")) {
+    const auto [a, b] = pairFor(query, "minus", refusal);
+    if (!a || !b) return refusal;
+    const Display display = parseDisplay(query);
+    return {200, "image/jpeg", jpeg(draw(difference(a->data, b->data), display), display.quality),
+            shotHeaders(*a)};
+  }
   const ShotPointer shot = shotFor(query, refusal);
   if (!shot) return refusal;
   if (shot->data.desc.kind == graph::ResourceKind::Buffer)
@@ -260,6 +302,25 @@ Answer Server::Impl::numbersOf(std::string_view query) {
                         {"histogram", c.histogram}});
   return {200, "application/json", nlohmann::json{{"channels", channels}, {"frame", shot->frame}}.dump(),
           shotHeaders(*shot)};
+}
+
+Answer Server::Impl::measures(std::string_view query) {
+  Answer refusal;
+  const auto [picture, reference] = pairFor(query, "reference", refusal);
+  if (!picture || !reference) return refusal;
+  const auto regions =
+      measure(picture->data, reference->data, picture->exposure, picture->gaze, picture->foveaRadius);
+  const auto json = [](const image::Measures& m) {  // NaN and infinity become null
+    return nlohmann::json{
+        {"pixels", m.pixels}, {"mse", m.mse}, {"psnr", m.psnr}, {"rel_mse", m.relMse}, {"flip", m.flip}};
+  };
+  return {200, "application/json",
+          nlohmann::json{{"fovea", json(regions.fovea)},
+                         {"periphery", json(regions.periphery)},
+                         {"whole", json(regions.whole)},
+                         {"frame", picture->frame},
+                         {"frames", reference->frames}}
+              .dump()};
 }
 
 Answer Server::Impl::command(mg_connection* connection) {

@@ -1,5 +1,6 @@
 // Starts the page: brings the parts together and follows the run.
 import { control, element, getPicture, getState, listen } from "./api.js";
+import * as compare from "./compare.js";
 import * as graph from "./graph.js";
 import * as look from "./look.js";
 import * as move from "./move.js";
@@ -167,9 +168,10 @@ function showKeys() {
 }
 
 function start() {
-  for (const part of [picture, look, move, timings, graph, parameters]) part.start();
+  for (const part of [picture, look, compare, move, timings, graph, parameters]) part.start();
   on("state", drawChoices);
   on("toggle-false-color", look.toggleFalseColor);
+  on("flip", compare.flip);
   choose("graph", (name) => ({ graph: name }));
   choose("scene", (name) => ({ scene: name }));
   choose("size", (name) => ({ size: name.split("x").map(Number) }));

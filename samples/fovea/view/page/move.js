@@ -157,6 +157,7 @@ export const keys = [
   ["n", "N, P", "next and previous source", () => nextSource(1)],
   ["p", null, null, () => nextSource(-1)],
   ["h", "H", "false colour", () => tell("toggle-false-color")],
+  ["b", "B", "the first or the second graph of a comparison", () => tell("flip")],
   ["0", "0", "fit the picture into the window", fitPicture],
   ["+", "+, −", "make the picture larger or smaller", () => zoom(1.25)],
   ["-", null, null, () => zoom(0.8)],
