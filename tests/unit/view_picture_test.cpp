@@ -1,12 +1,15 @@
 // Tests the numbers and pictures that the viewer makes of what was read back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
+#include "fovea/error.h"
 #include "fovea/image.h"
+#include "samples/fovea/view/picture/compare.h"
 #include "samples/fovea/view/picture/display.h"
 #include "samples/fovea/view/picture/texels.h"
 
@@ -143,6 +146,39 @@ TEST(ViewDisplay, PreviewsAreSmallerAndJpegsAreJpegs) {
       image::decode8(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), "preview.jpg");
   EXPECT_EQ(back.width, 16u);
   EXPECT_EQ(back.height, 8u);
+}
+
+TEST(ViewCompare, FramesAddUpToTheirMean) {
+  FrameMean mean;
+  const auto frame = [](float v) {
+    return image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 1, 1, {v, 2 * v, 0, 1});
+  };
+  EXPECT_TRUE(FrameMean::canAdd(frame(1).desc));
+  EXPECT_FALSE(FrameMean::canAdd(image<uint8_t>(VK_FORMAT_R8G8B8A8_UNORM, 1, 1, {1, 2, 3, 4}).desc));
+  EXPECT_EQ(numbers(mean.add(frame(1))), (std::vector<float>{1, 2, 0, 1}));
+  EXPECT_EQ(numbers(mean.add(frame(4))), (std::vector<float>{2.5f, 5, 0, 1}));
+  EXPECT_EQ(mean.frames(), 2u);
+  mean.reset();
+  EXPECT_EQ(numbers(mean.add(frame(8))), (std::vector<float>{8, 16, 0, 1}));
+}
+
+TEST(ViewCompare, DifferencesAreAbsolute) {
+  const auto a = image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 1, 1, {1, 5, 0.5f, 1}),
+             b = image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 1, 1, {3, 2, 0.5f, 0});
+  EXPECT_EQ(numbers(difference(a, b)), (std::vector<float>{2, 3, 0, 1}));
+  EXPECT_THROW(difference(a, image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 2, 1, std::vector<float>(8))),
+               Error);
+  EXPECT_THROW(difference(a, image<float>(VK_FORMAT_R32_SFLOAT, 1, 1, {1})), Error);
+}
+
+TEST(ViewCompare, MeasuresTheFoveaAndWhatIsOutside) {
+  std::vector<float> white(4 * 16, 1), black = white;
+  for (size_t i = 0; i < 8; ++i) std::fill_n(black.begin() + ptrdiff_t(4 * i), 3, 0.0f);  // the upper half
+  const auto m = measure(image(VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4, black),
+                         image(VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4, white), 1, {0.5f, 1}, 0.3f);
+  EXPECT_NEAR(m.whole.mse, 0.5, 1e-6);
+  EXPECT_EQ(m.fovea.mse, 0);
+  EXPECT_GT(m.periphery.mse, 0.5);
 }
 
 }  // namespace
