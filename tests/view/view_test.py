@@ -12,7 +12,7 @@ import time
 import unittest
 
 from selenium.webdriver.common.action_chains import ActionChains
-from viewer import Keys, PATIENCE, SOURCE, ViewTest
+from viewer import Keys, PATIENCE, PROGRAM, SOURCE, ViewTest
 
 
 def read_exr(path, layer):
@@ -101,7 +101,64 @@ class Server(ViewTest):
         self.assertEqual(viewer.process.wait(PATIENCE), 0)
 
 
+    def test_bad_input_ends_with_the_documented_codes(self):
+        for code, arguments in ((3, ["nograph", "--scene", "cornellbox"]), (3, ["direct", "--scene", "nosuch"]),
+                                (2, ["direct"]), (2, ["direct", "--scene", "cornellbox", "--port", "99999"]),
+                                (2, ["direct", "--scene", "cornellbox", "--host", "256.1.1.1"]),
+                                (2, ["direct", "--scene", "cornellbox", "--size", "0x3"]),
+                                (3, ["direct", "--scene", "cornellbox", "--set", "nope=1"]),
+                                (4, ["direct", "--scene", "cornellbox", "--device", "nosuch"])):
+            run = subprocess.run([PROGRAM, "view", *arguments], capture_output=True, text=True, timeout=PATIENCE)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertTrue(run.stderr.startswith("fovea: "), run.stderr)
+            self.assertEqual(run.stdout, "")
+
+    def test_thousands_of_connections_leave_it_as_it_was(self):
+        viewer = self.view("direct", size="32x32")
+
+        def knock(count):
+            for i in range(count):
+                with socket.create_connection(("127.0.0.1", viewer.port)) as client:
+                    client.sendall((b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\x16\x03\x01\x02\x00" * 9,
+                                    b"POST " + viewer.path.encode() + b"control HTTP/1.1\r\nHost: localhost\r\n"
+                                    b"Content-Length: 9999\r\n\r\n{", b"")[i % 4])
+
+        def memory():
+            status = pathlib.Path(f"/proc/{viewer.process.pid}/status").read_text()
+            return int(re.search(r"VmRSS:\s*(\d+)", status).group(1))
+
+        knock(500)
+        before = memory()
+        knock(3000)
+        self.wait(lambda: viewer.request("state")[0] == 200, "an answer")
+        self.assertLess(memory(), 1.05 * before + 4096)
+
+
 class Look(ViewTest):
+    @unittest.skipUnless(shutil.which("oiiotool"), "needs oiiotool")
+    def test_pictures_can_be_kept_with_the_metadata_of_render(self):
+        viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 2, size="64x64")
+        self.open(viewer)
+        self.choose("#source", "radiance")
+        self.assertIn("picture.exr?source=radiance", self.find("#exr").get_attribute("href"))
+        status, headers, body = viewer.request("picture.exr?source=radiance")
+        self.assertEqual(status, 200, body[:200])
+        frame = int(re.search(r"radiance_(\d+)\.exr", headers["Content-Disposition"]).group(1))
+        (self.folder / "kept.exr").write_bytes(body)
+        self.render("ir_1000", "--scene", "cornellbox", "--size", "64x64", "--set", "vpl_count=20", "--frames", frame + 1,
+                    "-o", "radiance=truth.exr", "-q")
+        self.assertEqual(read_exr(self.folder / "kept.exr", "radiance") == read_exr(self.folder / "truth.exr", "radiance"),
+                         True, "the pictures differ")
+
+        def metadata(name):
+            text = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, capture_output=True, text=True).stdout
+            return sorted(line.strip() for line in text.splitlines() if line.strip().startswith("fovea."))
+
+        self.assertGreater(len(metadata("kept.exr")), 8)
+        self.assertEqual(metadata("kept.exr"), metadata("truth.exr"))
+        status, _, body = viewer.request("picture.png?source=radiance&exposure=1")
+        self.assertEqual((status, body[:4]), (200, b"\x89PNG"))
+
     @unittest.skipUnless(shutil.which("oiiotool"), "needs oiiotool")
     def test_pixels_equal_the_exr_of_render_to_the_bit(self):
         viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 3)

@@ -181,4 +181,4 @@ class ViewTest(unittest.TestCase):
         return path
 
 
-__all__ = ["By", "Keys", "PATIENCE", "SOURCE", "ViewTest", "Viewer"]
+__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "SOURCE", "ViewTest", "Viewer"]

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fovea/graph.h"
+#include "fovea/image.h"
 #include "samples/fovea/view/command.h"
 
 namespace fovea::view {
@@ -23,8 +24,9 @@ struct Shot {
   uint64_t frame = 0;   // Frame::index
   float exposure = 1;   // of the graph or, if it has none, of the scene
   glm::vec2 gaze{0.5f};
-  float foveaRadius = 0;  // in widths of the picture; 0 without a fovea
-  uint32_t frames = 1;    // of which this is the mean
+  float foveaRadius = 0;                            // in widths of the picture; 0 without a fovea
+  uint32_t frames = 1;                              // of which this is the mean
+  std::shared_ptr<const image::Metadata> metadata;  // of the frame, as `fovea render` writes it
   graph::OutputData data;
   std::string refusal;  // why there is no picture; empty if there is one
   bool absent = false;  // there is none for now, for no fault of whoever asks

@@ -21,14 +21,14 @@ ExitCode runView(ViewOptions options) {
   options.viewer.settings.size = parseSize(options.size);
   catchInterrupts();
   view::Exchange exchange;
-  view::Viewer viewer(exchange, options.viewer);
   const view::Server server(exchange, options.host, options.port);
-  std::printf("open %s\n", server.address().c_str());
-  std::fflush(stdout);
   const struct Stop {
     view::Exchange& exchange;
     ~Stop() { exchange.stop(); }
   } stop{exchange};
+  view::Viewer viewer(exchange, options.viewer);
+  std::printf("open %s\n", server.address().c_str());  // when there is something to see
+  std::fflush(stdout);
   viewer.run();
   return ExitCode::Ok;
 }

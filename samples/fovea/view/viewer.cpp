@@ -287,6 +287,24 @@ void Viewer::drain() {
   while (auto result = build_->run->executor().next()) take(std::move(*result));
 }
 
+image::Metadata Viewer::metadata(const Build& build, const Shot& shot) const {
+  std::string set;
+  for (const std::string& text : overridesOf(build.changes)) set += (set.empty() ? "" : " ") + text;
+  return {{"version", FOVEA_VERSION},
+          {"graph", build.description.name},
+          {"graph_hash", bench::formatHash(build.run->graph().hash)},
+          {"scene", build.scene->scene.name},
+          {"scene_hash", bench::formatHash(build.scene->scene.hash)},
+          {"set", set},
+          {"device", device_->name()},
+          {"seed", std::to_string(settings_.seed)},
+          {"size", fmt::format("{}x{}", settings_.size.x, settings_.size.y)},
+          {"gaze", fmt::format("{},{}", shot.gaze.x, shot.gaze.y)},
+          {"fovea_radius", fmt::format("{}", float(session::parameterOr(build.run->graph(), "fovea_radius",
+                                                                        bench::kFoveaRadius)))},
+          {"exposure", fmt::format("{}", shot.exposure)}};
+}
+
 void Viewer::publish(const Build& build, const std::string& source, const graph::FrameResult& result,
                      graph::OutputData data, uint32_t frames) {
   const double own = session::parameterOr(build.run->graph(), "exposure", 0);  // 0 means the scene's
@@ -296,6 +314,7 @@ void Viewer::publish(const Build& build, const std::string& source, const graph:
   shot.gaze = seen_.gazes[0];
   shot.foveaRadius = float(session::parameterOr(build_->run->graph(), "fovea_radius", 0));
   shot.frames = frames;
+  shot.metadata = std::make_shared<const image::Metadata>(metadata(build, shot));
   shot.data = std::move(data);
   exchange_.publish(source, std::move(shot));
 }

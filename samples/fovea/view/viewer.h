@@ -78,6 +78,7 @@ class Viewer {
   void drain();
   void take(graph::FrameResult result);
   void takeSecond(graph::FrameResult result);
+  image::Metadata metadata(const Build& build, const Shot& shot) const;
   void publish(const Build& build, const std::string& source, const graph::FrameResult& result,
                graph::OutputData data, uint32_t frames);
   void report(std::vector<Diagnostic> messages);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "samples/fovea/view/http/request.h"
 #include "samples/fovea/view/picture/compare.h"
 #include "samples/fovea/view/picture/display.h"
+#include "samples/fovea/view/picture/export.h"
 #include "samples/fovea/view/picture/texels.h"
 
 namespace fovea::view {
@@ -136,6 +138,7 @@ struct Server::Impl {
   std::pair<ShotPointer, ShotPointer> pairFor(std::string_view query, const char* name, Answer& refusal);
   Answer measures(std::string_view query);
   Answer picture(std::string_view query);
+  Answer file(const std::string& name, std::string_view query);
   Answer pixels(std::string_view query);
   Answer numbersOf(std::string_view query);
   Answer command(mg_connection* connection);
@@ -179,6 +182,7 @@ Answer Server::Impl::answer(mg_connection* connection, const std::string& method
   if (method == "POST")
     return name == "control" ? command(connection) : Answer{404, "text/plain", "not found\n"};
   if (name == "picture") return picture(query);
+  if (name == "picture.png" || name == "picture.exr") return file(name, query);
   if (name == "pixels") return pixels(query);
   if (name == "statistics") return numbersOf(query);
   if (name == "measures") return measures(query);
@@ -270,6 +274,21 @@ Answer Server::Impl::picture(std::string_view query) {
     return {200, "application/octet-stream", {}, shotHeaders(*shot)};
   const Display display = parseDisplay(query);
   return {200, "image/jpeg", jpeg(draw(shot->data, display), display.quality), shotHeaders(*shot)};
+}
+
+Answer Server::Impl::file(const std::string& name, std::string_view query) {
+  Answer refusal;
+  const ShotPointer shot = shotFor(query, refusal);
+  if (!shot) return refusal;
+  std::string source = queryValue(query, "source").value_or("");
+  std::replace_if(
+      source.begin(), source.end(),
+      [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '.'; }, '_');
+  const bool exr = name.ends_with(".exr");
+  return {200, exr ? "image/x-exr" : "image/png",
+          exr ? exrFile(*shot, source) : pngFile(*shot, parseDisplay(query)),
+          fmt::format("Content-Disposition: attachment; filename=\"{}_{:04}.{}\"\r\n", source, shot->frame,
+                      exr ? "exr" : "png")};
 }
 
 Answer Server::Impl::pixels(std::string_view query) {

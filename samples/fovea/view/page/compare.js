@@ -146,6 +146,14 @@ function draw() {
   timer ??= setTimeout(measure, 300);
 }
 
+const splitRow = row("Split", "split", slider);
+const gainRow = row("Gain", "gain", gain);
+
+function showRows() {
+  splitRow.hidden = mode !== "split";
+  gainRow.hidden = mode !== "difference";
+}
+
 function setShare(value) {
   share = Math.min(1, Math.max(0, value));
   slider.value = share;
@@ -155,23 +163,25 @@ function setShare(value) {
 export function flip() {
   if (!active()) return;
   modes.value = mode = mode === "second" ? "split" : "second";
+  showRows();
   if (mode === "split") setShare(1);
   abort?.abort();
   arrange();
 }
 
 export function start() {
-  options.append(row("Show", "compare-mode", modes), row("Split", "split", slider), row("Gain", "gain", gain),
-    row("Add up", "accumulate", element("div", { class: "pair" }, accumulate,
-      element("span", { class: "doc" }, "frames of the second graph, while nothing moves"))), measures);
+  options.append(row("Show", "compare-mode", modes), splitRow, gainRow, row("Add up", "accumulate", element("div", { class: "pair" }, accumulate,
+      element("span", { class: "doc" }, "its frames while nothing moves"))), measures);
   root.append(row("Second", "second-graph", graph), options);
   const ask = (command) => control(command).catch((error) =>
     document.dispatchEvent(new CustomEvent("problem", { detail: error.message })));
   graph.addEventListener("change", () => ask({ second: graph.value }));
   accumulate.addEventListener("change", () => ask({ accumulate: accumulate.checked }));
   slider.addEventListener("input", () => setShare(Number(slider.value)));
+  showRows();
   modes.addEventListener("change", () => {
     mode = modes.value;
+    showRows();
     abort?.abort();
     arrange();
   });

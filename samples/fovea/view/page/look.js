@@ -1,5 +1,5 @@
 // Controls for how a source is shown, and its histogram.
-import { element, floatText, getStatistics, svg } from "./api.js";
+import { element, floatText, getStatistics, queryOf, svg } from "./api.js";
 import { on, portOf, setDisplay, show, store } from "./store.js";
 
 const root = document.getElementById("look");
@@ -37,6 +37,15 @@ function sendPart() {
   const plain = store.source.split("@")[0];
   const chosen = Number(layer.value) || Number(mip.value) ? `@${Number(mip.value)}.${Number(layer.value)}` : "";
   show(plain + chosen);
+}
+
+const png = element("a", { id: "png", class: "button", download: "", title: "The picture as it is shown" }, "PNG");
+const exr = element("a", { id: "exr", class: "button", download: "", title: "Its floats, as fovea render writes them" }, "EXR");
+
+function setFiles() {
+  png.href = `picture.png?${queryOf({ source: store.source, ...store.display })}`;
+  exr.href = `picture.exr?${queryOf({ source: store.source })}`;
+  png.parentElement.parentElement.hidden = portOf(store.source)?.buffer ?? false;
 }
 
 let statistics = null;
@@ -127,6 +136,7 @@ function fillSources() {
 }
 
 function showSource() {
+  setFiles();
   const plain = store.source.split("@")[0];
   source.value = plain;
   const port = portOf(store.source);
@@ -156,10 +166,12 @@ export function start() {
     row("Channel", "channel", channel),
     row("Exposure", "exposure", exposure, exposureText, element("span", { class: "unit" }, "EV")),
     row("Range", "low", low, element("span", {}, "to"), high),
-    row("", null, element("button", { type: "button", id: "auto-range", onclick: automaticRange }, "Fit to values"),
+    row("", null, element("button", { type: "button", id: "auto-range", title: "From the least to the largest value",
+      onclick: automaticRange }, "Fit"),
       element("button", { type: "button", id: "reset-range", onclick: resetRange }, "Reset")),
     row("Curve", "curve", curve),
     row("False colour", "false-color", falseColor),
+    row("Keep", null, png, exr),
     histogram, numbers);
   exposure.addEventListener("input", sendExposure);
   for (const input of [low, high]) input.addEventListener("change", sendRange);
@@ -168,9 +180,12 @@ export function start() {
   on("state", fillSources);
   on("source", () => {
     statistics = null;
+    drawHistogram();
+    numbers.replaceChildren();
     showSource();
     update();
   });
+  on("display", setFiles);
   on("picture", update);
 }
 
