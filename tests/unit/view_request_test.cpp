@@ -116,8 +116,9 @@ TEST(ViewRequest, ReadsQueries) {
 TEST(ViewRequest, RefusesWhateverIsNotRight) {
   std::mt19937 random(1);
   const auto pick = [&](size_t n) { return size_t(random() % n); };
-  const std::vector<std::string> pieces = {"/",  kAccess.token, "picture", "..",   "%2e", "\0x", ":",
-                                           "80", "localhost",   "evil",    "http", "//",  "?",   "é"};
+  const std::vector<std::string> pieces = {
+      "/",    kAccess.token, "picture", "..", "%2e", std::string(1, '\0'), ":", "80", "localhost",
+      "evil", "http",        "//",      "?",  "é"};
   const auto text = [&] {
     std::string made;
     for (size_t i = pick(5); i > 0; --i) made += pieces[pick(pieces.size())];

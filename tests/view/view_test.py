@@ -19,7 +19,8 @@ def read_exr(path, layer):
     """The 32-bit words of the RGB of a layer, pixel after pixel. oiiotool undoes the compression and the layers."""
     plain = path.with_suffix(".plain.exr")
     channels = ",".join(f"{c}={layer}.{c}" for c in "RGB")
-    subprocess.run(["oiiotool", path, "--ch", channels, "--compression", "none", "-d", "float", "-o", plain], check=True)
+    subprocess.run(["oiiotool", path, "--ch", channels, "--compression", "none", "-d", "float", "-o", plain],
+        check=True)
     data = plain.read_bytes()
     at, attributes = 8, {}
     while data[at]:
@@ -145,13 +146,15 @@ class Look(ViewTest):
         self.assertEqual(status, 200, body[:200])
         frame = int(re.search(r"radiance_(\d+)\.exr", headers["Content-Disposition"]).group(1))
         (self.folder / "kept.exr").write_bytes(body)
-        self.render("ir_1000", "--scene", "cornellbox", "--size", "64x64", "--set", "vpl_count=20", "--frames", frame + 1,
+        self.render("ir_1000", "--scene", "cornellbox", "--size", "64x64", "--set", "vpl_count=20", "--frames",
+            frame + 1,
                     "-o", "radiance=truth.exr", "-q")
-        self.assertEqual(read_exr(self.folder / "kept.exr", "radiance") == read_exr(self.folder / "truth.exr", "radiance"),
-                         True, "the pictures differ")
+        kept, truth = (read_exr(self.folder / name, "radiance") for name in ("kept.exr", "truth.exr"))
+        self.assertEqual(kept == truth, True, "the pictures differ")
 
         def metadata(name):
-            text = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, capture_output=True, text=True).stdout
+            text = subprocess.run(["oiiotool", "--info", "-v", name], cwd=self.folder, capture_output=True,
+                text=True).stdout
             return sorted(line.strip() for line in text.splitlines() if line.strip().startswith("fovea."))
 
         self.assertGreater(len(metadata("kept.exr")), 8)
@@ -217,7 +220,8 @@ class Look(ViewTest):
         (self.folder / "passes").mkdir()
         self.write("passes/wrong.pass.json", {
             "doc": "Makes numbers that are none.",
-            "outputs": {"radiance": {"doc": "NaN left, infinity beside it", "format": "rgba32f", "usage": ["storage_write"]}},
+            "outputs": {"radiance": {"doc": "NaN left, infinity beside it", "format": "rgba32f",
+                "usage": ["storage_write"]}},
             "steps": [{"shader": "wrong.comp", "over": "radiance"}]})
         self.write("passes/wrong.comp", """layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform writeonly image2D radiance;
@@ -325,9 +329,11 @@ class Understand(ViewTest):
         self.assertIn("shown", self.find("#graph-view .node[data-pass='gbuffer']").get_attribute("class"))
         self.script("document.querySelector(\"#graph-view .node[data-pass='direct']\").focus()")
         self.driver.switch_to.active_element.send_keys(Keys.ENTER)
-        self.wait(lambda: self.find("#canvas").get_attribute("data-source").startswith("direct:"), "the pass by keyboard")
+        self.wait(lambda: self.find("#canvas").get_attribute("data-source").startswith("direct:"),
+            "the pass by keyboard")
         self.find("#pin").click()
-        self.wait(lambda: any(cell.text for cell in self.find_all("#timings td.delta")), "a comparison with the baseline")
+        self.wait(lambda: any(cell.text for cell in self.find_all("#timings td.delta")),
+            "a comparison with the baseline")
 
     def test_the_plan_shows_every_resource(self):
         viewer = self.view("direct")
@@ -370,7 +376,8 @@ class Change(ViewTest):
                           "passes": {"tonemap": {"params": {"exposure": 2}}}})
         # It runs like what was shown, and is not written over.
         frame, _, words = viewer.pixels("radiance", 0, 0, 256, 256)
-        self.render("saved.json", "--scene", "cornellbox", "--size", "256x256", "--frames", frame + 1, "-o", "saved.exr", "-q")
+        self.render("saved.json", "--scene", "cornellbox", "--size", "256x256", "--frames", frame + 1, "-o",
+            "saved.exr", "-q")
         seen = tuple(word for i, word in enumerate(words) if i % 4 != 3)
         self.assertEqual(seen == read_exr(self.folder / "saved.exr", "radiance"), True, "the pictures differ")
         viewer.control(save="saved")
@@ -409,7 +416,8 @@ class Change(ViewTest):
 class Compare(ViewTest):
     def second(self):
         return self.script("const c = document.getElementById('second');"
-                           "return c.hidden ? null : [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data];")
+                           "return c.hidden ? null :"
+                           " [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data];")
 
     def test_a_second_graph_is_split_subtracted_and_measured(self):
         viewer = self.view("direct", size="64x64")
@@ -425,13 +433,15 @@ class Compare(ViewTest):
         self.wait(lambda: self.find("#second").get_attribute("data-mode") == "difference", "the difference")
         # Of a graph and itself there is none.
         self.choose("#second-graph", "direct")
-        self.wait(lambda: (now := self.second()) and all(v < 3 for i, v in enumerate(now) if i % 4 != 3), "no difference")
+        self.wait(lambda: (now := self.second()) and all(v < 3 for i, v in enumerate(now) if i % 4 != 3),
+            "no difference")
         self.wait(lambda: self.find("#measures").get_attribute("data-mse") == "0", "no error")
         self.choose("#second-graph", "")
         self.wait(lambda: self.second() is None, "the end of the comparison")
 
     def test_a_reference_fills_up_while_nothing_moves(self):
-        viewer = self.view(self.write("mine.json", {"extends": "reference.json", "parameters": {"spp": 256}}), size="32x32")
+        viewer = self.view(self.write("mine.json", {"extends": "reference.json", "parameters": {"spp": 256}}),
+            size="32x32")
         viewer.control(playing=False, second="reference")
         self.open(viewer)
         viewer.control(frozen=False)
@@ -506,6 +516,9 @@ void main() { image = vec4(level, COLOUR, 1.0); }
         text = self.wait(lambda: "plan" in self.errors() and self.errors(), "the mistake in the graph")
         self.assertIn("plain.json:2:", text)
         self.assertIn("did you mean", text)
+        # Bytes that are no text.
+        (self.folder / "plain.json").write_bytes(b'{ "passes": "\xff\xfe" }')
+        self.wait(lambda: self.errors(), "a message")
         self.write("plain.json", good)
         self.wait(lambda: not self.errors(), "no message")
 

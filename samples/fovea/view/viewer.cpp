@@ -386,7 +386,7 @@ void Viewer::sendTick() {
             {"bytes", device_->allocatedBytes()},
             {"times", times_}};
   if (motion_.recording()) exchange_.setGazeTable(motion_.gazeTable());
-  exchange_.setTick(tick.dump());
+  exchange_.setTick(textOf(tick));
 }
 
 void Viewer::sendState() {
@@ -411,8 +411,8 @@ void Viewer::sendState() {
       {"fovea_radius", session::parameterOr(build_->run->graph(), "fovea_radius", 0)},
       {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
       {"messages", describeMessages(messages_)}};
-  exchange_.setState(state.dump());
-  exchange_.setTick(Json{{"build", builds_}}.dump());
+  exchange_.setState(textOf(state));
+  exchange_.setTick(textOf({{"build", builds_}}));
 }
 
 // Everything from which the run was made.

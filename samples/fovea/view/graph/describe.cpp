@@ -264,6 +264,10 @@ nlohmann::json describeTimes(const graph::FrameResult& frame) {
           {"counters", counters}};
 }
 
+std::string textOf(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 nlohmann::json describeMessages(const std::vector<Diagnostic>& messages) {
   Json list = Json::array();
   for (const Diagnostic& d : messages) {

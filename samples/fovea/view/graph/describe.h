@@ -20,6 +20,9 @@ nlohmann::json describeOutputs(const graph::BoundGraph& graph);
 // Times of one frame: for each pass of the graph that ran its GPU and CPU milliseconds, and the counters.
 nlohmann::json describeTimes(const graph::FrameResult& frame);
 
+// The text of what goes to a page. Files may hold bytes that are no UTF-8; those are replaced.
+std::string textOf(const nlohmann::json& json);
+
 // Messages, each with the line of the file that it is about.
 nlohmann::json describeMessages(const std::vector<Diagnostic>& messages);
 

@@ -12,6 +12,7 @@
 
 #include "fovea/error.h"
 #include "samples/fovea/view/exchange.h"
+#include "samples/fovea/view/graph/describe.h"
 #include "samples/fovea/view/http/page.h"
 #include "samples/fovea/view/http/request.h"
 #include "samples/fovea/view/picture/compare.h"
@@ -319,7 +320,7 @@ Answer Server::Impl::numbersOf(std::string_view query) {
                         {"nan", c.nan},
                         {"infinite", c.infinite},
                         {"histogram", c.histogram}});
-  return {200, "application/json", nlohmann::json{{"channels", channels}, {"frame", shot->frame}}.dump(),
+  return {200, "application/json", textOf({{"channels", channels}, {"frame", shot->frame}}),
           shotHeaders(*shot)};
 }
 
@@ -334,12 +335,11 @@ Answer Server::Impl::measures(std::string_view query) {
         {"pixels", m.pixels}, {"mse", m.mse}, {"psnr", m.psnr}, {"rel_mse", m.relMse}, {"flip", m.flip}};
   };
   return {200, "application/json",
-          nlohmann::json{{"fovea", json(regions.fovea)},
-                         {"periphery", json(regions.periphery)},
-                         {"whole", json(regions.whole)},
-                         {"frame", picture->frame},
-                         {"frames", reference->frames}}
-              .dump()};
+          textOf({{"fovea", json(regions.fovea)},
+                  {"periphery", json(regions.periphery)},
+                  {"whole", json(regions.whole)},
+                  {"frame", picture->frame},
+                  {"frames", reference->frames}})};
 }
 
 Answer Server::Impl::command(mg_connection* connection) {
@@ -354,7 +354,7 @@ Answer Server::Impl::command(mg_connection* connection) {
   try {
     return exchange.send(parseCommand(body)) ? Answer{204, "text/plain", {}} : busy();
   } catch (const Error& error) {
-    return {400, "application/json", messagesJson(error).dump()};
+    return {400, "application/json", textOf(messagesJson(error))};
   }
 }
 

@@ -105,7 +105,8 @@ async function run() {
 let timer = null;
 
 function number(value, digits = 3) {
-  return value === null || value === undefined ? "—" : Math.abs(value) < 0.001 && value !== 0 ? value.toExponential(2) : value.toPrecision(digits);
+  return value === null || value === undefined ? "—" : Math.abs(value) < 0.001 && value !== 0
+      ? value.toExponential(2) : value.toPrecision(digits);
 }
 
 async function measure() {
@@ -115,15 +116,18 @@ async function measure() {
     const answer = await fetch(`measures?${queryOf({ source: store.source, reference: sourceOfSecond() })}`);
     if (answer.ok && answer.status !== 204) {
       const m = await answer.json();
-      const line = (name, r) => element("tr", {}, element("td", {}, name), element("td", { class: "number" }, number(r.mse)),
-        element("td", { class: "number" }, r.psnr === null ? "∞" : number(r.psnr)), element("td", { class: "number" }, number(r.flip)));
+      const line = (name, r) => element("tr", {}, element("td", {}, name),
+          element("td", { class: "number" }, number(r.mse)),
+        element("td", { class: "number" }, r.psnr === null ? "∞" : number(r.psnr)),
+            element("td", { class: "number" }, number(r.flip)));
       const rows = [line("whole", m.whole)];
       if (m.fovea.pixels) rows.unshift(line("fovea", m.fovea), line("periphery", m.periphery));
       measures.dataset.frames = m.frames;
       measures.dataset.mse = m.whole.mse;
       measures.replaceChildren(element("table", {}, element("thead", {}, element("tr", {}, element("th", {}, ""),
         ...["MSE", "PSNR", "FLIP"].map((t) => element("th", { class: "number" }, t)))), element("tbody", {}, ...rows)),
-      element("p", { class: "note" }, m.frames > 1 ? `against the mean of ${m.frames} frames of the second graph` : "of one frame"));
+      element("p", { class: "note" }, m.frames > 1
+          ? `against the mean of ${m.frames} frames of the second graph` : "of one frame"));
     } else if (answer.status === 404) {
       measures.replaceChildren(element("p", { class: "note" }, (await answer.text()).trim()));
     }
@@ -170,7 +174,8 @@ export function flip() {
 }
 
 export function start() {
-  options.append(row("Show", "compare-mode", modes), splitRow, gainRow, row("Add up", "accumulate", element("div", { class: "pair" }, accumulate,
+  options.append(row("Show", "compare-mode", modes), splitRow, gainRow,
+      row("Add up", "accumulate", element("div", { class: "pair" }, accumulate,
       element("span", { class: "doc" }, "its frames while nothing moves"))), measures);
   root.append(row("Second", "second-graph", graph), options);
   const ask = (command) => control(command).catch((error) =>

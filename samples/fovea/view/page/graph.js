@@ -97,7 +97,8 @@ function draw() {
     const { x, y } = at(index);
     return drawNode(graph, index, x, y);
   });
-  root.replaceChildren(svg("svg", { width, height }, ...edges.flatMap((e) => [e.hit, e.line]), ...nodes.map((n) => n.node)));
+  root.replaceChildren(svg("svg", { width, height }, ...edges.flatMap((e) => [e.hit, e.line]),
+      ...nodes.map((n) => n.node)));
   showSource();
 }
 
@@ -113,7 +114,8 @@ export function start() {
   on("tick", () => {
     for (const { time, index, pass } of nodes) {
       const ms = medianTime(index);
-      time.textContent = pass.level === null ? "does not run" : `${ms.toFixed(ms < 10 ? 2 : 1)} ms${pass.host ? ", CPU" : ""}`;
+      time.textContent = pass.level === null
+          ? "does not run" : `${ms.toFixed(ms < 10 ? 2 : 1)} ms${pass.host ? ", CPU" : ""}`;
     }
   });
 }

@@ -40,7 +40,8 @@ function sendPart() {
 }
 
 const png = element("a", { id: "png", class: "button", download: "", title: "The picture as it is shown" }, "PNG");
-const exr = element("a", { id: "exr", class: "button", download: "", title: "Its floats, as fovea render writes them" }, "EXR");
+const exr = element("a", { id: "exr", class: "button", download: "",
+    title: "Its floats, as fovea render writes them" }, "EXR");
 
 function setFiles() {
   png.href = `picture.png?${queryOf({ source: store.source, ...store.display })}`;
@@ -73,19 +74,21 @@ function drawHistogram() {
   const paths = [];
   if (statistics) {
     const channels = statistics.channels.slice(0, 4);
-    const most = Math.max(1, ...channels.slice(0, 3).flatMap((c) => c.histogram.slice(1)));
+    const highest = Math.max(1, ...channels.slice(0, 3).flatMap((c) => c.histogram.slice(1)));
     channels.forEach((c, index) => {
       let d = "M0 40";
       c.histogram.forEach((count, i) => {
-        const height = 40 * Math.min(1, Math.log1p(count) / Math.log1p(most));
+        const height = 40 * Math.min(1, Math.log1p(count) / Math.log1p(highest));
         d += `V${(40 - height).toFixed(1)}H${i + 1}`;
       });
       paths.push(svg("path", { d: `${d}V40Z`, class: channels.length > 1 ? `c${index}` : "" }));
     });
     const names = channels.length === 1 ? [""] : ["red ", "green ", "blue ", "alpha "];
     const total = (key) => statistics.channels.reduce((sum, c) => sum + c[key], 0);
-    const lines = channels.map((c, i) => `${names[i]}${floatText(Math.fround(c.min))} to ${floatText(Math.fround(c.max))}, ` +
-      `mean ${c.mean.toPrecision(4)}`);
+    const lines = channels.map((c, i) => {
+      const [least, most] = [c.min, c.max].map((v) => floatText(Math.fround(v)));
+      return `${names[i]}${least} to ${most}, mean ${c.mean.toPrecision(4)}`;
+    });
     const wrong = total("nan") + total("infinite");
     if (wrong) lines.push(`${total("nan")} NaN (magenta), ${total("infinite")} infinite (cyan, −Inf orange)`);
     numbers.replaceChildren(...lines.map((line) => element("div", {}, line)));

@@ -83,7 +83,8 @@ async function loadState() {
     localProblem = null;
     const known = store.state.graph.outputs.map((o) => o.name);
     const plain = store.source.split("@")[0];
-    const there = known.includes(plain) || store.state.graph.passes.some((p) => p.ports.some((q) => q.source === plain));
+    const there = known.includes(plain)
+        || store.state.graph.passes.some((p) => p.ports.some((q) => q.source === plain));
     tell("state", store.state);
     if (!there && known.length) show(known.includes("image") ? "image" : known[0]);
     document.body.removeAttribute("aria-busy");
@@ -125,7 +126,8 @@ async function runPreview(request) {
         if (shot.blob.size > 0) image.src = URL.createObjectURL(shot.blob);
         image.hidden = shot.blob.size === 0;
         if (before.startsWith("blob:")) URL.revokeObjectURL(before);
-        caption.textContent = shot.blob.size > 0 ? request.title : `${request.title}: a buffer; click to see its numbers`;
+        caption.textContent = shot.blob.size > 0
+            ? request.title : `${request.title}: a buffer; click to see its numbers`;
         byId("preview").hidden = false;
       }
     } catch (error) {
@@ -181,7 +183,8 @@ function start() {
   byId("help").addEventListener("click", showKeys);
   for (const [, label, what] of move.keys)
     if (label) byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
-  for (const [label, what] of [...move.held, ["[ ]", "hide and show the panels"], ["X", "more room for the graph"], ["wheel, Shift-drag", "zoom and pan"],
+  for (const [label, what] of [...move.held, ["[ ]", "hide and show the panels"], ["X", "more room for the graph"],
+      ["wheel, Shift-drag", "zoom and pan"],
     ["drag", "turn the camera"]])
     byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
   addEventListener("keydown", (event) => {

@@ -228,7 +228,8 @@ function onKeyDown(event) {
 let drag = null;
 
 export function start() {
-  for (const [id, action] of Object.entries(actions)) button(id).addEventListener("click", () => store.tick && action());
+  for (const [id, action] of Object.entries(actions))
+    button(id).addEventListener("click", () => store.tick && action());
   button("speed").addEventListener("change", () => ask({ speed: Number(button("speed").value) }));
   addEventListener("keydown", onKeyDown);
   addEventListener("keyup", (event) => pressed.delete(event.key.toLowerCase()));
@@ -241,7 +242,8 @@ export function start() {
     stage.setPointerCapture(event.pointerId);
     stage.classList.add("turning");
   });
-  stage.addEventListener("contextmenu", (event) => !event.target.closest("#messages, #table") && event.preventDefault());
+  stage.addEventListener("contextmenu", (event) => !event.target.closest("#messages, #table")
+      && event.preventDefault());
   stage.addEventListener("pointermove", (event) => {
     if (drag) {
       const dx = event.clientX - drag.x;

@@ -24,8 +24,10 @@ function slider(parameter, number, whole) {
     const v = far ? min + ((1 + max - min) ** (t / steps) - 1) : min + ((max - min) * t) / steps;
     return whole ? Math.round(v) : Number(v.toPrecision(4));
   };
-  const toStep = (v) => (far ? (steps * Math.log1p(v - min)) / Math.log1p(max - min) : (steps * (v - min)) / (max - min || 1));
-  const range = element("input", { type: "range", min: 0, max: steps, step: far || !whole || max - min > steps ? 0.5 : "any",
+  const toStep = (v) =>
+    steps * (far ? Math.log1p(v - min) / Math.log1p(max - min) : (v - min) / (max - min || 1));
+  const fine = far || !whole || max - min > steps;
+  const range = element("input", { type: "range", min: 0, max: steps, step: fine ? 0.5 : "any",
     "aria-label": parameter.name, "aria-valuetext": number.value });
   range.value = toStep(Number(number.value));
   range.addEventListener("input", () => {
@@ -45,7 +47,8 @@ function input(parameter, name, id) {
     return [box];
   }
   if (type === "choice") {
-    const select = element("select", { id }, ...parameter.choices.map((c) => element("option", { value: c, selected: c === value }, c)));
+    const options = parameter.choices.map((c) => element("option", { value: c, selected: c === value }, c));
+    const select = element("select", { id }, ...options);
     select.addEventListener("change", () => send(name, select.value));
     return [select];
   }
@@ -73,7 +76,8 @@ function rangeText({ min, max, type, default: standard }) {
 function parameterRow(parameter, name) {
   const id = `parameter-${name}`;
   const reset = parameter.changed
-    ? element("button", { type: "button", class: "link", title: "As in the graph file", onclick: () => send(name, null) }, "reset")
+    ? element("button", { type: "button", class: "link", title: "As in the graph file",
+        onclick: () => send(name, null) }, "reset")
     : null;
   const label = element("div", { class: "name" }, element("label", { for: id }, parameter.name),
     parameter.unit ? element("span", { class: "unit" }, parameter.unit) : null, reset);
@@ -90,15 +94,18 @@ function passGroup(pass) {
   const own = pass.parameters.filter((p) => !p.given_by && matches(`${pass.name}.${p.name} ${p.doc}`));
   if (!own.length) return null;
   const changed = own.some((p) => p.changed);
-  const group = element("details", { class: "group", open: open.has(pass.name) || Boolean(filter) || changed, "data-pass": pass.name },
-    element("summary", {}, `${pass.name} (${own.length})`), ...own.map((p) => parameterRow(p, `${pass.name}.${p.name}`)));
+  const group = element("details", { class: "group", open: open.has(pass.name) || Boolean(filter) || changed,
+      "data-pass": pass.name },
+    element("summary", {}, `${pass.name} (${own.length})`),
+    ...own.map((p) => parameterRow(p, `${pass.name}.${p.name}`)));
   group.addEventListener("toggle", () => (group.open ? open.add(pass.name) : open.delete(pass.name)));
   return group;
 }
 
 function saveForm() {
   const { set } = store.state;
-  const name = element("input", { type: "text", id: "save-name", placeholder: "name", "aria-label": "Name of the new graph",
+  const name = element("input", { type: "text", id: "save-name", placeholder: "name",
+      "aria-label": "Name of the new graph",
     pattern: "[A-Za-z0-9_\\-]+", size: 12 });
   const say = (text) => (note.textContent = text);
   const note = element("span", { class: "note", role: "status" });
@@ -122,7 +129,8 @@ function saveForm() {
       say(text);
     }
   });
-  const reset = element("button", { type: "button", id: "reset-all", onclick: () => control({ reset: true }) }, "Reset all");
+  const reset = element("button", { type: "button", id: "reset-all", onclick: () => control({ reset: true }) },
+      "Reset all");
   for (const b of [save, copy, reset]) b.disabled = set.length === 0;
   return element("div", { class: "actions" }, name, save, copy, reset, note);
 }
@@ -145,7 +153,8 @@ function draw() {
   });
   root.replaceChildren(
     saveForm(), find,
-    ...(shown.length ? [element("fieldset", {}, element("legend", {}, "of the graph"), ...shown.map((p) => parameterRow(p, p.name)))] : []),
+    ...(shown.length ? [element("fieldset", {}, element("legend", {}, "of the graph"),
+        ...shown.map((p) => parameterRow(p, p.name)))] : []),
     element("fieldset", {}, element("legend", {}, "of its passes"), ...graph.passes.map(passGroup).filter(Boolean)));
   if (focused) {
     const again = document.getElementById(focused);

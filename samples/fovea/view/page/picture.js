@@ -120,7 +120,8 @@ async function drawTable(info) {
   }
   const port = portOf(store.source);
   table.replaceChildren(
-    element("p", { class: "note" }, `${port?.is ?? store.source}: the first ${rows} of ${info.width} elements of frame ` +
+    element("p", { class: "note" },
+        `${port?.is ?? store.source}: the first ${rows} of ${info.width} elements of frame ` +
       `${info.frame}. A word is shown as a float where that is plausible, otherwise as a whole number.`),
     element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
 }

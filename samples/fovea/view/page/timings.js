@@ -49,7 +49,8 @@ function passRow(index) {
   const name = element("td", { title: `${pass.type}: ${pass.doc}` }, pass.name);
   const bar = element("td", { class: "bar" });
   bar.append(svg("svg", { viewBox: "0 0 100 20", preserveAspectRatio: "none", "aria-hidden": "true" }, path));
-  const row = element("tr", { "data-pass": pass.name, tabindex: 0, "aria-label": `${pass.name}: show its picture` }, name, bar, time, delta);
+  const row = element("tr", { "data-pass": pass.name, tabindex: 0, "aria-label": `${pass.name}: show its picture` },
+      name, bar, time, delta);
   const preview = () => port && tell("preview", { source: port.source, title: `${pass.name} · ${port.name}` });
   const lock = () => port && show(port.source);
   row.addEventListener("pointerenter", preview);
@@ -84,7 +85,8 @@ function showSteps(cells, index, timing) {
   for (const [name, ms] of timing.steps) {
     if (!cells.steps.has(name)) {
       const time = element("td", { class: "number" });
-      const row = element("tr", { class: "step" }, element("td", { title: name }, name), element("td"), time, element("td"));
+      const row = element("tr", { class: "step" }, element("td", { title: name }, name), element("td"), time,
+          element("td"));
       cells.steps.set(name, { row, time });
       after.after(row);
     }
@@ -102,9 +104,11 @@ function build(times) {
     rows.set(timing.pass, cells);
     body.append(cells.row);
   }
-  total = { gpu: element("td", { class: "number", id: "total" }), delta: element("td", { class: "number delta" }), note: element("p", { class: "note" }) };
+  total = { gpu: element("td", { class: "number", id: "total" }), delta: element("td", { class: "number delta" }),
+      note: element("p", { class: "note" }) };
   body.append(element("tr", { class: "total" }, element("td", {}, "frame"), element("td"), total.gpu, total.delta));
-  const pin = element("button", { type: "button", id: "pin", title: "Compare all times with what they are now" }, "Pin as baseline");
+  const pin = element("button", { type: "button", id: "pin", title: "Compare all times with what they are now" },
+      "Pin as baseline");
   pin.addEventListener("click", () => {
     pinned = pinned ? null : new Map([...histories].map(([key, values]) => [key, median(values)]));
     pin.textContent = pinned ? "Drop baseline" : "Pin as baseline";
@@ -199,8 +203,9 @@ function drawPlan() {
       svg("text", { x: names + levels * cell + 6, y: y + 11, class: "soft" }, bytesText(r.bytes)));
   });
   planRoot.replaceChildren(drawing, element("p", { class: "note" },
-    `${bytesText(plan.memory.transient)} for one frame, ${bytesText(plan.memory.transient_without_aliasing)} if nothing ` +
-    `shared memory; ${bytesText(plan.memory.kept)} kept. Darker bars are kept from frame to frame.`));
+    `${bytesText(plan.memory.transient)} for one frame, ` +
+    `${bytesText(plan.memory.transient_without_aliasing)} if nothing shared memory; ` +
+    `${bytesText(plan.memory.kept)} kept. Darker bars are kept from frame to frame.`));
 }
 
 export function start() {
