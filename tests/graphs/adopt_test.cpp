@@ -23,6 +23,7 @@ class Edited {
     session::GraphRun::Options chosen;
     chosen.size = {48, 48};
     chosen.observable = true;
+    chosen.framesInFlight = 2;  // as on a GPU, where the copies of a history take turns among two slots
     chosen.readback = [](const BoundGraph&) { return std::vector<std::string>{"radiance"}; };
     auto next = std::make_unique<session::GraphRun>(test::testDevice(), description, scene_, geometry_,
                                                     chosen, messages);

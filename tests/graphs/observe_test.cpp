@@ -32,6 +32,7 @@ struct Running {
     session::GraphRun::Options options;
     options.size = {48, 32};
     options.observable = observable;
+    options.framesInFlight = 2;
     options.readback = [](const BoundGraph& graph) {
       std::vector<std::string> names;
       for (const BoundOutput& output : graph.outputs) names.push_back(output.name);

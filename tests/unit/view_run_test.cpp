@@ -135,6 +135,22 @@ TEST(ViewMotion, ARecordedGazeReplays) {
   }
 }
 
+TEST(ViewMotion, ARecordedCameraIsAMemberOfASceneFile) {
+  const scene::Scene s = restlessScene();
+  Motion motion;
+  Command c;
+  c.recording = true;
+  c.pose = Pose{{1, 2, 3}, 0, 0};
+  motion.apply(c);
+  for (int i = 0; i < 3; ++i) motion.next(s);
+  const json::Value file = json::parse(motion.cameraKeys(), "camera.json");
+  const json::Value* path = file.find("camera")->find("path");
+  ASSERT_EQ(path->items.size(), 3u);
+  EXPECT_EQ(path->items[2].find("eye")->items[1].real, 2);
+  EXPECT_NEAR(path->items[2].find("t")->real, 2 / kFrameRate, 1e-6);
+  EXPECT_NEAR(path->items[2].find("target")->items[2].real, 2, 1e-6);
+}
+
 // ---- Exchange --------------------------------------------------------------------------------------------------
 
 Shot shotOf(uint64_t frame) {

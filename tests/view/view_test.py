@@ -387,6 +387,15 @@ class Change(ViewTest):
         viewer.control(reset=True)
         self.wait(lambda: viewer.state()["set"] == [], "the reset of all")
 
+    def test_a_strategy_is_swapped_by_name(self):
+        viewer = self.view("ours", "--set", "vpl_count=32", size="64x64")
+        self.open(viewer)
+        choices = [o.get_attribute("value") for o in self.find_all("#parameter-intensity option")]
+        self.assertEqual(sorted(choices), ["area", "constant", "importance-area", "pdf"])
+        self.choose("#parameter-intensity", "pdf")
+        self.wait(lambda: any(p["type"] == "vpl-intensity-pdf" for p in viewer.state()["graph"]["passes"]),
+                  "the strategy")
+
     def test_a_wrong_value_is_told_and_the_last_graph_goes_on(self):
         viewer = self.view("ir_1000", "--set", "vpl_count=20", size="64x64")
         self.open(viewer)

@@ -72,9 +72,10 @@ void Exchange::setTick(std::string json) {
   news_.notify_all();
 }
 
-void Exchange::setGazeTable(std::string csv) {
+void Exchange::setRecording(std::string gazeTable, std::string cameraKeys) {
   const std::lock_guard lock(mutex_);
-  gazeTable_ = std::move(csv);
+  gazeTable_ = std::move(gazeTable);
+  cameraKeys_ = std::move(cameraKeys);
 }
 
 void Exchange::waitForWork(std::chrono::milliseconds most) {
@@ -135,6 +136,11 @@ std::string Exchange::state() const {
 std::string Exchange::gazeTable() const {
   const std::lock_guard lock(mutex_);
   return gazeTable_;
+}
+
+std::string Exchange::cameraKeys() const {
+  const std::lock_guard lock(mutex_);
+  return cameraKeys_;
 }
 
 std::optional<Exchange::Tick> Exchange::tick(uint64_t after, std::chrono::milliseconds most) {

@@ -53,7 +53,7 @@ class Exchange {
   void clearShots();
   void setState(std::string json);  // what a page has to know once for each build of the graph
   void setTick(std::string json);   // what changes with every frame
-  void setGazeTable(std::string csv);
+  void setRecording(std::string gazeTable, std::string cameraKeys);
   // Waits until a command or a wish for a picture arrives, but not longer than this.
   void waitForWork(std::chrono::milliseconds most);
   // Lets all who wait return at once.
@@ -68,6 +68,7 @@ class Exchange {
   ShotPointer shot(const std::string& source, uint64_t after, std::chrono::milliseconds most);
   std::string state() const;
   std::string gazeTable() const;
+  std::string cameraKeys() const;
   struct Tick {
     uint64_t number = 0;
     std::string json;
@@ -93,7 +94,7 @@ class Exchange {
   std::condition_variable news_, work_;
   std::vector<Command> commands_;
   std::map<std::string, Source> sources_;
-  std::string state_, gazeTable_;
+  std::string state_, gazeTable_, cameraKeys_;
   Tick tick_;
   uint64_t shots_ = 0;
   int watchers_ = 0;

@@ -39,6 +39,7 @@ void Motion::apply(const Command& command) {
   // From the start, so that a replay meets the same frames.
   restart();
   track_.clear();
+  cameraTrack_.clear();
   speed_ = 1;
   playing_ = true;
   frozen_ = false;
@@ -91,8 +92,26 @@ scene::Moment Motion::next(const scene::Scene& scene) {
 void Motion::record(const scene::Moment& moment) {
   float at = float(moment.time);
   if (double(at) > moment.time) at = std::nextafter(at, -std::numeric_limits<float>::infinity());
-  if (track_.empty() || at > track_.back().time)
-    track_.push_back({at, moment.gazes[0], true, moment.gazes[1], moment.gazes[2]});
+  if (!track_.empty() && at <= track_.back().time) return;  // time stands still
+  track_.push_back({at, moment.gazes[0], true, moment.gazes[1], moment.gazes[2]});
+  cameraTrack_.push_back({at, moment.camera});
+}
+
+std::string Motion::cameraKeys() const {
+  std::string text = "{\n  \"camera\": {\n";
+  if (!cameraTrack_.empty())
+    text += fmt::format("    \"fov_deg\": {:.6g},\n", glm::degrees(cameraTrack_[0].camera.verticalFov));
+  text += "    \"path\": [";
+  const char* separator = "\n";
+  for (const scene::CameraKey& key : cameraTrack_) {
+    const glm::vec3 eye = key.camera.position, target = eye + key.camera.orientation * glm::vec3(0, 0, -1);
+    text += fmt::format(
+        "{}      {{ \"t\": {:.9g}, \"eye\": [{:.9g}, {:.9g}, {:.9g}], \"target\": [{:.9g}, {:.9g}, {:.9g}] "
+        "}}",
+        separator, key.time, eye.x, eye.y, eye.z, target.x, target.y, target.z);
+    separator = ",\n";
+  }
+  return text + "\n    ]\n  }\n}\n";
 }
 
 std::string Motion::gazeTable() const {

@@ -38,6 +38,8 @@ class Motion {
 
   // The gaze of the frames since recording began, as `fovea render --gaze-trace FILE --gaze-gap 0` replays it.
   std::string gazeTable() const;
+  // Where the camera was in these frames, as the member `camera` of a scene file.
+  std::string cameraKeys() const;
   size_t recorded() const { return track_.size(); }
 
  private:
@@ -55,6 +57,7 @@ class Motion {
   std::optional<glm::vec2> gaze_;
   scene::Moment shown_;
   std::vector<scene::GazeSample> track_;
+  std::vector<scene::CameraKey> cameraTrack_;  // of the same frames
 };
 
 }  // namespace fovea::view

@@ -176,7 +176,7 @@ void Viewer::follow(std::vector<Command> commands) {
     }
     motion_.apply(command);
     restarts |= command.restart || command.recording.value_or(false);
-    if (command.recording) exchange_.setGazeTable(motion_.gazeTable());
+    if (command.recording) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys());
   }
   if (changed || restarts) {
     rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
@@ -385,7 +385,7 @@ void Viewer::sendTick() {
             {"fps", framesPerSecond_},
             {"bytes", device_->allocatedBytes()},
             {"times", times_}};
-  if (motion_.recording()) exchange_.setGazeTable(motion_.gazeTable());
+  if (motion_.recording()) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys());
   exchange_.setTick(textOf(tick));
 }
 

@@ -192,6 +192,9 @@ Answer Server::Impl::answer(mg_connection* connection, const std::string& method
   if (name == "gaze.csv")
     return {200, "text/csv", exchange.gazeTable(),
             "Content-Disposition: attachment; filename=\"gaze.csv\"\r\n"};
+  if (name == "camera.json")
+    return {200, "application/json", exchange.cameraKeys(),
+            "Content-Disposition: attachment; filename=\"camera.json\"\r\n"};
   for (const PageFile& file : pageFiles())
     if (file.name == (name.empty() ? "index.html" : name))
       return {200, std::string(mediaType(file.name)), std::string(file.text)};

@@ -112,7 +112,7 @@ function showTime() {
   button("camera").setAttribute("aria-pressed", String(!tick.camera.own));
   button("record").setAttribute("aria-pressed", String(tick.recording));
   button("record").textContent = tick.recording ? `Stop (${tick.recorded})` : "Record";
-  button("gaze-file").hidden = !tick.recorded;
+  button("gaze-file").hidden = button("camera-file").hidden = !tick.recorded || tick.recording;
   const rate = tick.fps >= 10 ? tick.fps.toFixed(0) : tick.fps.toFixed(1);
   button("clock").textContent =
     `frame ${tick.frame} · ${tick.time.toFixed(2)} s · ${tick.frozen ? "frozen" : `${rate} frames/s`}`;
