@@ -181,4 +181,28 @@ class ViewTest(unittest.TestCase):
         return path
 
 
-__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "SOURCE", "ViewTest", "Viewer"]
+def read_exr(path, layer):
+    """The 32-bit words of the RGB of a layer, pixel after pixel. oiiotool undoes the compression and the layers."""
+    plain = path.with_suffix(".plain.exr")
+    channels = ",".join(f"{c}={layer}.{c}" for c in "RGB")
+    subprocess.run(["oiiotool", path, "--ch", channels, "--compression", "none", "-d", "float", "-o", plain],
+        check=True)
+    data = plain.read_bytes()
+    at, attributes = 8, {}
+    while data[at]:
+        name, kind, rest = data[at:].split(b"\0", 2)
+        at += len(name) + len(kind) + 2
+        size, = struct.unpack_from("<i", data, at)
+        attributes[name.decode()] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    words = []
+    for offset in struct.unpack_from(f"<{height}Q", data, at + 1):
+        line = struct.unpack_from(f"<{3 * width}I", data, offset + 8)  # channels are sorted by name
+        blue, green, red = line[:width], line[width:2 * width], line[2 * width:]
+        words += [word for pixel in zip(red, green, blue) for word in pixel]
+    return tuple(words)
+
+
+__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "SOURCE", "ViewTest", "Viewer", "read_exr"]

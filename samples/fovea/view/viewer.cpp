@@ -53,7 +53,6 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   load.searchPaths = dataFolders("graphs");
   made->file = graph::findGraph(settings.graph.graph, load.searchPaths);
   made->description = bench::loadGraph(settings.graph, made->messages);
-  made->merged = graph::loadMerged(settings.graph.graph, load);
   made->changes = changesOf(settings.graph.set);
   if (!scene) {
     scene = std::make_shared<LoadedScene>();
@@ -68,6 +67,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   run.hostProgress = [](const std::string&, double) { return !bench::interrupted(); };
   made->run = std::make_unique<session::GraphRun>(*device_, made->description, made->scene->scene,
                                                   made->scene->geometry, std::move(run), made->messages);
+  made->merged = graph::loadMerged(settings.graph.graph, load);
   made->run->prepare(before ? before->run.get() : nullptr, keepContents);
   return made;
 }
@@ -101,6 +101,7 @@ void Viewer::rebuildSecond(bool keepContents) {
   drain();
   wanted_.clear();
   means_.clear();
+  broken_ = false;  // the next frame tells whether it was the second
   if (secondName_.empty()) {
     second_.reset();
     return;
@@ -129,7 +130,9 @@ void Viewer::report(std::vector<Diagnostic> messages) {
   ++messageNumber_;
 }
 
-bool Viewer::change(Settings& settings, const Command& command) const {
+// What a command makes of the settings; nothing if it changes none of them. Throws Error(BadInput) for names that are
+// not in the lists that pages are given.
+std::optional<Settings> Viewer::changed(Settings settings, const Command& command) const {
   const auto known = [](const std::vector<std::string>& names, const std::string& name, const char* what) {
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw Error(ExitCode::BadInput, fmt::format("there is no {} `{}`", what, name),
@@ -156,16 +159,20 @@ bool Viewer::change(Settings& settings, const Command& command) const {
       changes.erase(name);
   }
   settings.graph.set = overridesOf(changes);
-  return command.graph || command.scene || command.size || command.seed || command.resetAll ||
-         !command.set.empty();
+  const bool any = command.graph || command.scene || command.size || command.seed || command.resetAll ||
+                   !command.set.empty();
+  return any ? std::optional(std::move(settings)) : std::nullopt;
 }
 
 void Viewer::follow(std::vector<Command> commands) {
   Settings settings = settings_;
-  bool changed = false, otherScene = false, restarts = false, otherSecond = false;
+  bool changes = false, otherScene = false, restarts = false, otherSecond = false;
   for (const Command& command : commands) {
     try {
-      changed |= change(settings, command);
+      if (std::optional<Settings> next = changed(settings, command)) {
+        settings = std::move(*next);
+        changes = true;
+      }
       otherScene |= command.scene.has_value();
       otherSecond |= command.second.has_value();
       if (command.second) secondName_ = *command.second;
@@ -178,7 +185,7 @@ void Viewer::follow(std::vector<Command> commands) {
     restarts |= command.restart || command.recording.value_or(false);
     if (command.recording) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys());
   }
-  if (changed || restarts) {
+  if (changes || restarts) {
     rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
   } else if (otherSecond) {
     rebuildSecond(true);
@@ -269,6 +276,8 @@ void Viewer::render() {
   } catch (const Error& error) {
     if (error.code() == ExitCode::DeviceLost || error.code() == ExitCode::OutOfMemory) throw;
     // A pass fails while it is recorded. Nothing is rendered until the graph or a file of it changes.
+    drain();
+    shown_.clear();
     broken_ = true;
     report(error.diagnostics());
     sendState();

@@ -69,7 +69,7 @@ class Viewer {
   void reloadChanged();
   void watchFiles();
   void follow(std::vector<Command> commands);
-  bool change(Settings& settings, const Command& command) const;
+  std::optional<Settings> changed(Settings settings, const Command& command) const;
   void save(const std::string& name);
   bool frameIsDue();
   void render();
