@@ -122,6 +122,16 @@ TEST(ViewDisplay, MarksWhatIsNoNumber) {
   EXPECT_EQ(pixel(draw(data, parseDisplay("marks=0")), 1), (Rgb{0, 255, 0}));
 }
 
+TEST(ViewDisplay, FitsTheRangeOfDataButNotOfColours) {
+  const auto depth = image<float>(VK_FORMAT_R32_SFLOAT, 3, 1, {0.99f, kNan, 0.999f});
+  const Pixels shown = draw(depth, parseDisplay("fit=1"));
+  EXPECT_EQ(pixel(shown, 0), (Rgb{0, 0, 0}));
+  EXPECT_EQ(pixel(shown, 1), (Rgb{255, 0, 255}));
+  EXPECT_EQ(pixel(shown, 2), (Rgb{255, 255, 255}));
+  const auto color = image<float>(VK_FORMAT_R32G32B32A32_SFLOAT, 1, 1, {0.5f, 0.5f, 0.5f, 1});
+  EXPECT_EQ(draw(color, parseDisplay("fit=1")).rgb, draw(color, {}).rgb);
+}
+
 TEST(ViewDisplay, FalseColoursGetLighter) {
   std::vector<float> ramp(256);
   for (size_t i = 0; i < ramp.size(); ++i) ramp[i] = float(i);

@@ -52,7 +52,7 @@ function arrange() {
 function request() {
   const { display, source } = store;
   if (mode !== "difference") return { source: sourceOfSecond(), ...display };
-  return { source, minus: sourceOfSecond(), ...display, low: 0, high: 1, exposure: Number(gain.value) };
+  return { source, minus: sourceOfSecond(), ...display, low: 0, high: 1, fit: "", exposure: Number(gain.value) };
 }
 
 async function run() {

@@ -25,7 +25,7 @@ const histogram = svg("svg", { class: "histogram", viewBox: "0 0 64 40", preserv
 const numbers = element("div", { id: "numbers", class: "note" });
 
 function sendRange() {
-  setDisplay({ low: Number(low.value), high: Number(high.value) });
+  setDisplay({ low: Number(low.value), high: Number(high.value), fit: "" });
 }
 
 function sendExposure() {
@@ -67,7 +67,7 @@ function resetRange() {
   high.value = 1;
   exposure.value = 0;
   exposureText.value = "0";
-  setDisplay({ low: 0, high: 1, exposure: 0 });
+  setDisplay({ low: 0, high: 1, exposure: 0, fit: 1 });
 }
 
 function drawHistogram() {
@@ -171,7 +171,9 @@ export function start() {
     row("Range", "low", low, element("span", {}, "to"), high),
     row("", null, element("button", { type: "button", id: "auto-range", title: "From the least to the largest value",
       onclick: automaticRange }, "Fit"),
-      element("button", { type: "button", id: "reset-range", onclick: resetRange }, "Reset")),
+      element("button", { type: "button", id: "reset-range",
+        title: "0 to 1 for colours, the range of their values for all else",
+        onclick: resetRange }, "Reset")),
     row("Curve", "curve", curve),
     row("False colour", "false-color", falseColor),
     row("Keep", null, png, exr),

@@ -118,7 +118,7 @@ async function runPreview(request) {
   let number = 0;
   while (previewed === request) {
     try {
-      const shot = await getPicture({ source: request.source, after: number, width: 240, quality: 85 });
+      const shot = await getPicture({ source: request.source, after: number, width: 240, quality: 85, fit: 1 });
       if (previewed !== request) return;
       if (shot) {
         number = shot.number;

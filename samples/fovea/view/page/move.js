@@ -77,6 +77,13 @@ function sendGaze(x, y) {
   newest.send({ gaze: [Math.min(1, Math.max(0, x)), Math.min(1, Math.max(0, y))] });
 }
 
+// The gaze jumps to the other side of the picture, as an eye does.
+function saccade() {
+  const [x, y] = store.tick.gaze;
+  const far = Math.hypot(x - 0.5, y - 0.5) > 0.15;
+  sendGaze(...(far ? [1 - x, 1 - y] : [0.2, 0.3]));
+}
+
 function setGazing(value) {
   gazing = value;
   button("gaze").setAttribute("aria-pressed", String(value));
@@ -154,6 +161,7 @@ export const keys = [
   ["c", "C", "the scene's own camera", actions.camera],
   ["o", "O", "drag turns around the middle", actions.orbit],
   ["g", "G", "the eye looks where the mouse is", actions.gaze],
+  ["v", "V", "a saccade: the gaze jumps across the picture", saccade],
   ["n", "N, P", "next and previous source", () => nextSource(1)],
   ["p", null, null, () => nextSource(-1)],
   ["h", "H", "false colour", () => tell("toggle-false-color")],

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -56,6 +57,22 @@ class Painter {
                                                       layout.type == Layout::Type::Float && !layout.encoded);
   }
 
+  // The number that a grey or false colour stands for.
+  static float single(const float* texel, uint32_t channels, Display::Channel channel) {
+    switch (channel) {
+      case Display::Channel::Red:
+        return texel[0];
+      case Display::Channel::Green:
+        return texel[std::min(1u, channels - 1)];
+      case Display::Channel::Blue:
+        return texel[std::min(2u, channels - 1)];
+      case Display::Channel::Alpha:
+        return texel[channels - 1];
+      default:
+        return channels >= 3 ? 0.2126f * texel[0] + 0.7152f * texel[1] + 0.0722f * texel[2] : texel[0];
+    }
+  }
+
   void paint(const float* texel, uint8_t* out) const {
     Rgb result;
     if (color_) {
@@ -65,7 +82,7 @@ class Painter {
         for (size_t c = 0; c < 3; ++c) result[c] = level(texel[c]);
       }
     } else {
-      const float v = single(texel);
+      const float v = single(texel, channels_, display_.channel);
       const auto mark = display_.marks ? markOf(&v, 1) : std::nullopt;
       const uint8_t grey = level(v);
       result = mark                  ? *mark
@@ -99,27 +116,28 @@ class Painter {
     if (std::isnan(shown)) return 0;
     return srgb_ ? srgb().at(shown) : to8(shown);
   }
-  float single(const float* texel) const {
-    switch (display_.channel) {
-      case Display::Channel::Red:
-        return texel[0];
-      case Display::Channel::Green:
-        return texel[std::min(1u, channels_ - 1)];
-      case Display::Channel::Blue:
-        return texel[std::min(2u, channels_ - 1)];
-      case Display::Channel::Alpha:
-        return texel[channels_ - 1];
-      default:
-        return channels_ >= 3 ? 0.2126f * texel[0] + 0.7152f * texel[1] + 0.0722f * texel[2] : texel[0];
-    }
-  }
-
-  const Display& display_;
+  Display display_;
   uint32_t channels_;
   bool color_;
   float factor_ = 1, offset_ = 0;
   bool srgb_ = false;
 };
+
+// The range of the picture's own values, where they are no colours.
+Display fitted(const Display& display, const Layout& layout, const std::vector<float>& values) {
+  if (layout.channels >= 3 && !display.falseColor) return display;
+  float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
+  for (size_t i = 0; i + layout.channels <= values.size(); i += layout.channels) {
+    const float v = Painter::single(&values[i], layout.channels, display.channel);
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  Display found = display;
+  found.scale = 1;
+  if (low <= high) found.low = low, found.high = high > low ? high : low + 1;
+  return found;
+}
 
 // Each pixel becomes the mean of those that it covers.
 Pixels shrunk(const Pixels& pixels, uint32_t width) {
@@ -167,6 +185,7 @@ Display parseDisplay(std::string_view query) {
   const std::string curve = queryValue(query, "curve").value_or("");
   if (curve == "srgb") d.curve = Display::Curve::Srgb;
   if (curve == "linear") d.curve = Display::Curve::Linear;
+  d.fit = queryValue(query, "fit") == "1";
   d.falseColor = queryValue(query, "false_color") == "1";
   d.marks = queryValue(query, "marks") != "0";
   d.width = uint32_t(queryNumber(query, "width", 0, 4096, 0));
@@ -179,7 +198,7 @@ Pixels draw(const graph::OutputData& data, const Display& display) {
   const std::vector<float> values = numbers(data);
   Pixels pixels{layout.width, layout.height, {}};
   pixels.rgb.resize(size_t(pixels.width) * pixels.height * 3);
-  const Painter painter(layout, display);
+  const Painter painter(layout, display.fit ? fitted(display, layout, values) : display);
   for (size_t i = 0; i * layout.channels < values.size(); ++i)
     painter.paint(&values[i * layout.channels], &pixels.rgb[i * 3]);
   return display.width > 0 && pixels.width > display.width ? shrunk(pixels, display.width) : pixels;

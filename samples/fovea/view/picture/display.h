@@ -21,6 +21,7 @@ struct Display {
   float scale = 1, low = 0, high = 1;
   Channel channel = Channel::Color;
   Curve curve = Curve::Automatic;
+  bool fit = false;  // data and false colours: low and high are the least and largest value of the picture
   bool falseColor = false;  // dark to light with changing hue
   bool marks = true;        // NaN magenta, +infinity cyan, -infinity orange
   uint32_t width = 0;       // makes pictures smaller that are wider than this; 0 for none
