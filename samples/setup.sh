@@ -15,10 +15,13 @@ packages=(
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   # models, images, rays, mesh simplification, subdivision surfaces
   libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev libosd-dev
+  # `fovea view`: web server, JPEG
+  libcivetweb-dev libturbojpeg0-dev
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
   clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema python3-matplotlib
+  chromium chromium-driver python3-selenium
 )
 
 fail() {

@@ -134,33 +134,50 @@ std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size) {
   return views;
 }
 
+Moment momentAt(const Scene& scene, uint64_t index, double framesPerSecond) {
+  Moment m;
+  m.index = index;
+  m.time = double(index) / framesPerSecond;
+  m.before = index > 0 ? double(index - 1) / framesPerSecond : m.time;
+  m.camera = cameraAt(scene, m.time);
+  m.previousCamera = cameraAt(scene, m.before);
+  m.gazes = gazesAt(scene, m.time);
+  m.saccade = saccadeAt(scene, index, framesPerSecond);
+  m.cameraCut = index == 0;
+  return m;
+}
+
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,
                 double framesPerSecond) {
+  return makeFrame(scene, geometry, size, momentAt(scene, index, framesPerSecond), seed);
+}
+
+Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, const Moment& moment,
+                uint32_t seed) {
   Frame f;
-  f.index = index;
-  f.time = double(index) / framesPerSecond;
+  f.index = moment.index;
+  f.time = moment.time;
   f.seed = seed;
   f.exposure = scene.exposure;
-  f.cameraCut = index == 0;
-  f.saccade = saccadeAt(scene, index, framesPerSecond);
+  f.cameraCut = moment.cameraCut;
+  f.saccade = moment.saccade;
   f.lights = lightsAt(scene, f.time);
   f.scene = &scene;
   f.geometry = &geometry;
-  const double before = index > 0 ? double(index - 1) / framesPerSecond : f.time;
-  const Camera camera = cameraAt(scene, f.time), previousCamera = cameraAt(scene, before);
-  const auto gazes = gazesAt(scene, f.time);
+  const Camera &camera = moment.camera, &previousCamera = moment.previousCamera;
+  const auto& gazes = moment.gazes;
   const float sides[] = {0, -1, 1};
   for (size_t i = 0; i < kViews; ++i) {
     std::optional<Frustum> frustum;
     if (scene.lens && sides[i] != 0) frustum = frustumOf(*scene.lens, sides[i] < 0);
     View view = makeView(eyeOf(camera, sides[i], scene.ipd), size, geometry, gazes[i], frustum);
     view.name = kViewNames[i];
-    if (index > 0)
+    if (!moment.cameraCut)
       view.previousWorldToClip =
           makeView(eyeOf(previousCamera, sides[i], scene.ipd), size, geometry, gazes[i], frustum).worldToClip;
     f.views.push_back(std::move(view));
   }
-  ObjectPoses poses = objectsAt(scene, geometry, f.time, before);
+  ObjectPoses poses = objectsAt(scene, geometry, f.time, moment.before);
   f.objects = std::move(poses.objects);
   f.joints = std::move(poses.joints), f.previousJoints = std::move(poses.previousJoints);
   f.weights = std::move(poses.weights), f.previousWeights = std::move(poses.previousWeights);

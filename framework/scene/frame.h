@@ -4,6 +4,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
+#include <iterator>
+
 #include "fovea/scene.h"
 
 namespace fovea::scene {
@@ -38,6 +41,21 @@ std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
 // Frames until Frame::saccade is 0 again.
 inline constexpr uint32_t kSaccadeFrames = 8;
 
+// When a frame is, and what it looks through and at. Frames of a sequence follow from the scene; who moves through a
+// scene by hand changes what is in here.
+struct Moment {
+  uint64_t index = 0;           // Frame::index
+  double time = 0, before = 0;  // of this frame and of the last one, in seconds
+  Camera camera, previousCamera;
+  std::array<glm::vec2, std::size(kViewNames)> gazes{};  // of each view
+  float saccade = 0;                                     // Frame::saccade
+  bool cameraCut = false;
+};
+// Frame `index` of a sequence at `framesPerSecond`.
+Moment momentAt(const Scene& scene, uint64_t index, double framesPerSecond);
+
+Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, const Moment& moment,
+                uint32_t seed);
 // Camera, eyes, gaze, lights and objects at frame `index` of a sequence at `framesPerSecond`; the paper's rate is 42
 // Hz. The geometry is not changed: moveObjects() brings it to the frame.
 Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, uint64_t index, uint32_t seed,

@@ -70,28 +70,37 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
                 fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size.x,
                             size.y, limit),
                 "render a smaller picture");
-  auto bound = std::make_shared<const graph::BoundGraph>(
-      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages));
+  graph::BoundGraph made =
+      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages);
+  for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
+  auto bound = std::make_shared<const graph::BoundGraph>(std::move(made));
   if (options_.readback) readback_ = options_.readback(*bound);
   plan_ =
       std::make_shared<const graph::Plan>(graph::compile(bound, graph::deviceCompileOptions(device_, bound)));
   graph::warnAboutPlan(*plan_, messages);
 }
 
-void GraphRun::prepare() {
+void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
-  gpuScene_ = std::make_unique<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
+  if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
+  gpuScene_ =
+      before ? before->gpuScene_ : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
   executorOptions.hostProgress = options_.hostProgress;
+  executorOptions.keepContents = keepContents;
   executor_ = std::make_unique<graph::Executor>(device_, plan_, graph::Registry::global(), *gpuScene_,
-                                                executorOptions);
+                                                executorOptions, before ? before->executor_.get() : nullptr);
 }
 
 scene::Frame GraphRun::frame(uint64_t index) const {
-  scene::Frame f =
-      scene::makeFrame(scene_, geometry_, options_.size, index, options_.seed, options_.frameRate);
+  return frame(scene::momentAt(scene_, index, options_.frameRate));
+}
+
+scene::Frame GraphRun::frame(const scene::Moment& moment) const {
+  const uint64_t index = moment.index;
+  scene::Frame f = scene::makeFrame(scene_, geometry_, options_.size, moment, options_.seed);
   f.gpu = gpuScene_.get();
   for (size_t i = 0; i < graph().passes.size(); ++i) {
     const graph::BoundPass& pass = graph().passes[i];
@@ -106,9 +115,9 @@ scene::Frame GraphRun::frame(uint64_t index) const {
   return f;
 }
 
-void GraphRun::submit(const scene::Frame& frame, bool readOutputs) {
+void GraphRun::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
   if (executor_->readsGeometry()) scene::moveObjects(frame, geometry_);
-  executor_->submit(frame, readOutputs);
+  executor_->submit(frame, readOutputs, observe);
 }
 
 }  // namespace fovea::session

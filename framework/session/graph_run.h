@@ -46,13 +46,17 @@ class GraphRun {
     // Whether the caller fills the inputs that the graph itself has, with Executor::setInput. If not, a graph that has
     // any is refused.
     bool givesInputs = false;
+    // Whether what passes make can be read back in the middle of a frame (graph::Executor::observe).
+    bool observable = false;
   };
   // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.
   GraphRun(gpu::Device& device, const graph::Description& description, const scene::Scene& scene,
            scene::Geometry& geometry, Options options, Diagnostics& messages);
-  // Allocates memory, uploads the scene and compiles shaders. Throws as graph::Executor does.
-  void prepare();
+  // Allocates memory, uploads the scene and compiles shaders. Throws as graph::Executor does. A run of the same scene
+  // on the same device that this one replaces hands over the scene on the device, pipelines, and what passes keep
+  // (graph::Executor), the latter if `keepContents`; it is of no use afterwards, unless this throws.
+  void prepare(GraphRun* before = nullptr, bool keepContents = true);
 
   const std::shared_ptr<const graph::Plan>& plan() const { return plan_; }
   const graph::BoundGraph& graph() const { return *plan_->graph; }
@@ -60,8 +64,9 @@ class GraphRun {
   // Frame `index` of the scene. A view is jittered (scene::jitterAt) if a pass that runs looks through it and has a
   // parameter `jitter`, the number of places that take turns; otherwise every view looks through the pixels' centres.
   scene::Frame frame(uint64_t index) const;
+  scene::Frame frame(const scene::Moment& moment) const;
   // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.
-  void submit(const scene::Frame& frame, bool readOutputs);
+  void submit(const scene::Frame& frame, bool readOutputs, bool observe = false);
   graph::Executor& executor() { return *executor_; }
   uint32_t inFlight() const { return inFlight_; }
 
@@ -73,7 +78,7 @@ class GraphRun {
   std::shared_ptr<const graph::Plan> plan_;
   std::vector<std::string> readback_;
   uint32_t inFlight_ = 2;
-  std::unique_ptr<scene::GpuScene> gpuScene_;
+  std::shared_ptr<scene::GpuScene> gpuScene_;
   std::unique_ptr<graph::Executor> executor_;
 };
 

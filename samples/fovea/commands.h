@@ -20,6 +20,7 @@ void addScene(CLI::App& program, Action& action);
 void addCompare(CLI::App& program, Action& action);
 void addBench(CLI::App& program, Action& action);
 void addCompareSequence(CLI::App& program, Action& action);
+void addView(CLI::App& program, Action& action);
 void addSceneExport(CLI::App& sceneCommand, Action& action);
 
 }  // namespace fovea::cli

@@ -63,6 +63,7 @@ ExitCode parseAndRun(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   Action action;
   addRender(program, action);
+  addView(program, action);
   addCheck(program, action);
   addPasses(program, action);
   addSchema(program, action);

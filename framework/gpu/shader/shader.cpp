@@ -334,6 +334,11 @@ std::shared_ptr<const CompiledShader> ShaderCompiler::compileSource(const std::s
   return impl_->make(name, ShaderSource::fromText(name, source, impl_->searchPaths), defines);
 }
 
+void ShaderCompiler::forget() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->kept.clear();
+}
+
 ShaderCompiler::Statistics ShaderCompiler::statistics() const {
   const std::lock_guard lock(impl_->mutex);
   return impl_->statistics;

@@ -75,6 +75,8 @@ class ShaderCompiler {
   // `name` is relative to a search path ("blur/blur.comp"). Results are kept, so that a second call is a look-up.
   // Throws Error(BadInput) with file and line of every compiler message, also inside included files.
   std::shared_ptr<const CompiledShader> compile(const std::string& name, const Defines& defines = {});
+  // Forgets the results, so that files are looked at again. What was handed out stays valid.
+  void forget();
   // Compiles source text instead of a file (tests).
   std::shared_ptr<const CompiledShader> compileSource(const std::string& name, const std::string& source,
                                                       const Defines& defines = {});

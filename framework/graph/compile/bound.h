@@ -21,12 +21,13 @@ struct BoundResource {
   std::string name;  // "surface.surface.position": pass, port and member of its first version
   ResourceDesc desc;
   Lifetime lifetime = Lifetime::Transient;
-  bool external = false;   // an input of the whole graph, in the caller's memory
-  bool history = false;    // a pass reads last frame's value; two copies swap every frame
-  bool output = false;     // an output of the graph, readable by transfer at the end of the frame
-  uint32_t usage = 0;      // union of the Usage bits of all passes
-  uint32_t versions = 0;   // number of versions that its writers make
-  uint32_t firstSlot = 0;  // Access::slot of version 0
+  bool external = false;    // an input of the whole graph, in the caller's memory
+  bool history = false;     // a pass reads last frame's value; two copies swap every frame
+  bool output = false;      // an output of the graph, readable by transfer at the end of the frame
+  bool observable = false;  // readable by transfer after any pass (Executor::observe)
+  uint32_t usage = 0;       // union of the Usage bits of all passes
+  uint32_t versions = 0;    // number of versions that its writers make
+  uint32_t firstSlot = 0;   // Access::slot of version 0
 };
 
 // One access of a pass to a resource.

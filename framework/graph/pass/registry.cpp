@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include "fovea/error.h"
+#include "framework/base/hash.h"
 #include "framework/base/paths.h"
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/pass_file.h"
@@ -24,6 +27,15 @@ namespace {
 std::vector<Diagnostic>& failedRegistrations() {
   static std::vector<Diagnostic> failures;
   return failures;
+}
+
+// 0 if it cannot be read.
+uint64_t hashOfFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  Hasher hash;
+  hash.add(text);
+  return stream ? hash.value() : 0;
 }
 
 // For passes that their steps describe in full.
@@ -52,8 +64,8 @@ void Registry::addStock() {
       try {
         PassDeclaration declaration = loadPassFile(file);
         // A graph may lie beside this folder, which is then found a second time.
-        passFiles_.push_back(std::filesystem::canonical(file));
-        if (!find(declaration.type)) add(std::move(declaration), makePlainPass);
+        passFiles_.push_back({std::filesystem::canonical(file), hashOfFile(file), !find(declaration.type)});
+        if (passFiles_.back().declares) add(std::move(declaration), makePlainPass);
       } catch (const Error& error) {
         for (const Diagnostic& d : error.diagnostics()) failedRegistrations().push_back(d);
       }
@@ -231,7 +243,8 @@ void Registry::addFolder(const std::filesystem::path& folder) {
   Diagnostics mistakes;
   for (const std::filesystem::path& file : findPassFiles(folder)) {
     const std::filesystem::path known = std::filesystem::canonical(file);
-    if (std::find(passFiles_.begin(), passFiles_.end(), known) != passFiles_.end()) continue;
+    if (std::any_of(passFiles_.begin(), passFiles_.end(), [&](const PassFile& f) { return f.path == known; }))
+      continue;
     try {
       PassDeclaration declaration = loadPassFile(file);
       if (find(declaration.type))
@@ -239,7 +252,30 @@ void Registry::addFolder(const std::filesystem::path& folder) {
                                           fmt::format("there already is a pass type `{}`", declaration.type),
                                           "give the file another name"}});
       add(std::move(declaration), makePlainPass);
-      passFiles_.push_back(known);
+      passFiles_.push_back({known, hashOfFile(known), true});
+    } catch (const Error& error) {
+      for (const Diagnostic& d : error.diagnostics()) mistakes.add(d);
+    }
+  }
+  mistakes.throwIfErrors();
+}
+
+void Registry::rereadFiles() {
+  Diagnostics mistakes;
+  for (PassFile& file : passFiles_) {
+    std::error_code gone;
+    if (!file.declares || !std::filesystem::exists(file.path, gone)) continue;
+    const uint64_t hash = hashOfFile(file.path);
+    if (hash == file.hash) continue;
+    try {
+      PassDeclaration declaration = loadPassFile(file.path);
+      validateDeclaration(declaration);
+      const auto at = std::find_if(entries_.begin(), entries_.end(),
+                                   [&](const Entry& e) { return e.declaration->type == declaration.type; });
+      if (at == entries_.end()) continue;
+      replaced_.push_back(
+          std::exchange(at->declaration, std::make_unique<PassDeclaration>(std::move(declaration))));
+      file.hash = hash;
     } catch (const Error& error) {
       for (const Diagnostic& d : error.diagnostics()) mistakes.add(d);
     }

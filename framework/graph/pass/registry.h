@@ -35,6 +35,10 @@ class Registry {
   void addFoldersFromEnvironment();
   // Adds the passes of a folder `passes` beside a graph file, if there is one.
   void addFolderBeside(const std::filesystem::path& graph);
+  // Declares the passes of those pass files anew whose text has changed. The declarations that they replace stay valid
+  // for graphs that are bound to them. Throws Error(BadInput) with every mistake; the passes of wrong files stay as they
+  // were.
+  void rereadFiles();
   // The file of the plug-in that registered a type, as it was given to loadPlugin(); empty for other types.
   std::string_view pluginOf(std::string_view type) const;
   const std::vector<std::filesystem::path>& pluginShaderPaths() const { return pluginShaderPaths_; }
@@ -56,7 +60,13 @@ class Registry {
   void add(PassDeclaration declaration, Factory factory, std::string plugin);
   std::vector<Entry> entries_;  // sorted by type
   std::vector<std::filesystem::path> pluginShaderPaths_;
-  std::vector<std::filesystem::path> passFiles_;
+  struct PassFile {
+    std::filesystem::path path;
+    uint64_t hash = 0;      // of its text
+    bool declares = false;  // false where another file of the same name takes precedence
+  };
+  std::vector<PassFile> passFiles_;
+  std::vector<std::unique_ptr<PassDeclaration>> replaced_;
   std::vector<void*> plugins_;  // handles of the system's loader
 };
 

@@ -209,7 +209,7 @@ void Commands::flush(const uint32_t* indirect) {
     writes[i].pBufferInfo = &descriptors[i].buffer;
     writes[i].pTexelBufferView = &descriptors[i].texels;
   }
-  const gpu::Pipeline& p = kernel_.pipeline;
+  const gpu::Pipeline& p = *kernel_.pipeline;
   ExecutorState& state = *context_.pass_.state;
   vkCmdBindPipeline(context_.cmd_, p.bindPoint(), p.handle());
   if (count)
@@ -228,7 +228,7 @@ void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) {
 }
 
 void Commands::dispatchThreads(uint32_t x, uint32_t y, uint32_t z) {
-  const auto& local = kernel_.pipeline.interface().localSize;
+  const auto& local = kernel_.pipeline->interface().localSize;
   dispatch((x + local[0] - 1) / local[0], (y + local[1] - 1) / local[1], (z + local[2] - 1) / local[2]);
 }
 

@@ -70,7 +70,7 @@ RecordContext::RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scen
 
 gpu::Device& RecordContext::device() const { return *pass_.state->device; }
 const scene::View& RecordContext::view() const { return frame_.views[pass_.viewIndex]; }
-bool RecordContext::firstFrame() const { return pass_.state->viewReset; }
+bool RecordContext::firstFrame() const { return pass_.firstFrame(); }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
 // The beginning of an error message; `act` is what the pass does, e.g. "fills `sums`".
@@ -344,7 +344,7 @@ HostContext::HostContext(PassInstance& pass, const scene::Frame& frame, uint64_t
       frameNumber_(frameNumber) {}
 
 const scene::View& HostContext::view() const { return frame_.views[pass_.viewIndex]; }
-bool HostContext::firstFrame() const { return pass_.state->viewReset; }
+bool HostContext::firstFrame() const { return pass_.firstFrame(); }
 
 static std::span<std::byte> stagingOf(PassInstance& pass, std::string_view port) {
   const Access& access = pass.access(port);

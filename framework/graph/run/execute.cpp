@@ -40,9 +40,10 @@ struct Executor::Impl {
       : device(d), plan(std::move(p)), descriptors(s), options(o) {}
   ~Impl();
 
-  void build(const Registry& registry);
+  void build(const Registry& registry, Impl* before);
   void buildPasses(const Registry& registry);
   void buildStaging(PassInstance& pass);
+  void takeOver(Impl& before);
 
   void beginSegment(FrameSlot& slot);
   void submitSegment(FrameSlot& slot, bool last);
@@ -63,17 +64,30 @@ Executor::Impl::~Impl() {
   freeResources(state);
 }
 
-void Executor::Impl::build(const Registry& registry) {
+void Executor::Impl::build(const Registry& registry, Impl* before) {
   residentAtStart = device.allocatedBytes();
   state.device = &device;
   state.plan = plan.get();
   state.hostProgress = options.hostProgress;
   state.sharedLayout = descriptors.setLayout();
   allocateResources(state);
+  if (before && before->state.sharedLayout == state.sharedLayout)
+    state.pipelines = pipelinesOf(before->passes);
   buildPasses(registry);
+  state.pipelines.clear();
   const uint32_t frames = std::max(1u, options.framesInFlight);
   state.timestamps.emplace(device, uint32_t(4 + 2 * passes.size()) + kStepTimestamps, frames);
   for (uint32_t i = 0; i < frames; ++i) slots.emplace_back(state, passes, options.readback);
+  if (before && options.keepContents) takeOver(*before);
+}
+
+// Comes last, when nothing can fail any more: it leaves the other executor without its kept resources.
+void Executor::Impl::takeOver(Impl& before) {
+  vkDeviceWaitIdle(device.handle());
+  if (before.frameCount == 0) return;
+  frameCount = before.frameCount;  // so that the copies of a history keep their turns
+  state.parity = uint32_t(frameCount & 1);
+  adoptResources(state, passes, before.state, before.passes);
 }
 
 void Executor::Impl::buildPasses(const Registry& registry) {
@@ -256,6 +270,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   recorded.hostMs = waited ? recorded.cpuMs : 0;
   recorded.counterValues = pass.counterValues;
   recorded.counterSet = pass.counterSet;
+  if (slot.observe) slot.recordObserved(cmd, pass);
 }
 
 bool Executor::Impl::isFinished(uint32_t slotIndex) const {
@@ -278,9 +293,9 @@ void Executor::Impl::finish(uint32_t slotIndex) {
 }
 
 Executor::Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,
-                   scene::FrameDescriptors& scene, const ExecutorOptions& options)
+                   scene::FrameDescriptors& scene, const ExecutorOptions& options, Executor* before)
     : impl_(std::make_unique<Impl>(device, std::move(plan), scene, options)) {
-  impl_->build(registry);
+  impl_->build(registry, before ? before->impl_.get() : nullptr);
 }
 
 Executor::~Executor() = default;
@@ -305,7 +320,16 @@ void Executor::setInput(const std::string& name, std::span<const std::byte> byte
   throw Error(ExitCode::BadInput, "graph " + graph.name + " has no input `" + name + "`");
 }
 
-void Executor::submit(const scene::Frame& frame, bool readOutputs) {
+void Executor::observe(std::vector<Observation> observations) {
+  Impl& e = *impl_;
+  while (!e.inFlight.empty()) {
+    e.finish(e.inFlight.front());
+    e.inFlight.pop_front();
+  }
+  for (FrameSlot& slot : e.slots) slot.setObserved(observations, e.passes);
+}
+
+void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe) {
   Impl& e = *impl_;
   const uint32_t slotIndex = static_cast<uint32_t>(e.frameCount % e.slots.size());
   FrameSlot& slot = e.slots[slotIndex];
@@ -317,13 +341,14 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   gpu::check(vkResetFences(e.device.handle(), 1, &slot.fence), "resetting a fence");
   gpu::check(vkResetCommandPool(e.device.handle(), slot.pool, 0), "resetting a command pool");
   slot.readOutputs = readOutputs;
+  slot.observe = observe && !slot.observed.empty();
+  slot.observeTimes.clear();
   slot.number = e.frameCount;
   slot.frame = frame.index;
   slot.submitted = start;
   e.state.slot = slotIndex;
   e.state.parity = static_cast<uint32_t>(e.frameCount & 1);
-  e.state.sceneReset = e.frameCount == 0;
-  e.state.viewReset = e.state.sceneReset || frame.cameraCut;
+  e.state.cameraCut = frame.cameraCut;
   e.descriptors.update(frame, slotIndex);
   slot.animateCpuMs = e.descriptors.moves() ? millisecondsSince(start) : 0;
   e.state.sharedSet = e.descriptors.set(slotIndex);
@@ -341,7 +366,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   vkCmdFillBuffer(e.cmd, e.state.counters.handle(), 0, VK_WHOLE_SIZE, 0);
   e.recordMoves(slot);
   gpu::memoryBarrier(e.cmd, kFirst, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAny);
-  if (e.state.viewReset) zeroKeptResources(e.state, e.cmd, e.state.sceneReset);
+  resetKeptResources(e.state, e.cmd);
   uint32_t position = 0;
   for (const Level& level : e.plan->levels) {
     e.emitBarriers(level.before);
@@ -355,6 +380,7 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs) {
   slot.cpuMs = millisecondsSince(start);
   slot.busy = true;
   e.inFlight.push_back(slotIndex);
+  e.state.started = true;
   ++e.frameCount;
 }
 

@@ -37,7 +37,21 @@ struct ExecutorOptions {
   uint32_t framesInFlight = 2;
   std::vector<std::string> readback;  // graph outputs that a frame may ask to have read back
   HostProgress hostProgress;          // called inside submit()
+  // Whether contents are taken over from the executor before, if there is one. If not, only pipelines are, and the next
+  // frame is the first one.
+  bool keepContents = true;
 };
+
+// A resource as one pass leaves it, to be read back right after that pass, before anything overwrites it. Of an image
+// with several mips or layers (or slices of a volume), one is read; of a buffer, at most the first kObservedBytes.
+struct Observation {
+  std::string name;     // of the result among FrameResult::outputs
+  uint32_t pass = 0;    // index into BoundGraph::passes
+  uint32_t access = 0;  // index into BoundPass::accesses
+  uint32_t mip = 0, layer = 0;
+  bool operator==(const Observation&) const = default;
+};
+inline constexpr uint64_t kObservedBytes = uint64_t(4) << 20;
 
 // The device memory that a bound resource needs; input to the aliasing phase.
 MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
@@ -56,17 +70,28 @@ class Executor {
  public:
   // Allocates all memory and prepares all passes, which compiles their shaders. Throws Error(OutOfMemory) naming the
   // resource and its size, and Error(BadInput) for shaders that do not compile or bind.
+  //
+  // It takes over from the executor `before`, if there is one: pipelines that both need, and kept and history resources
+  // with their contents. These must have the same name, size and lifetime in both plans, and the passes that write
+  // them the same name, type and shaders. A host pass of which nothing has changed keeps what it remembers. `before`
+  // must belong to the same device and scene, and its frames must have been returned. It is of no use afterwards,
+  // unless this constructor throws.
   Executor(gpu::Device& device, std::shared_ptr<const Plan> plan, const Registry& registry,
-           scene::FrameDescriptors& scene, const ExecutorOptions& options = {});
+           scene::FrameDescriptors& scene, const ExecutorOptions& options = {}, Executor* before = nullptr);
   ~Executor();
 
   // Sets the contents of an input of the whole graph ("radiance", "surface.position"), which are kept until set
   // again. Waits for the device.
   void setInput(const std::string& name, std::span<const std::byte> bytes);
 
+  // Chooses what frames that are submitted with `observe` read back besides the outputs. Finishes the frames under way
+  // and allocates, so that frames do neither. Throws Error(BadInput) for a pass that does not run and for an image
+  // that was not bound as observable.
+  void observe(std::vector<Observation> observations);
+
   // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that
   // reads what this frame's GPU passes wrote.
-  void submit(const scene::Frame& frame, bool readOutputs = false);
+  void submit(const scene::Frame& frame, bool readOutputs = false, bool observe = false);
 
   // The oldest finished frame that was not returned yet; nullopt if there is none. Never blocks.
   std::optional<FrameResult> poll();

@@ -47,6 +47,10 @@ struct ExecutorState {
   const Plan* plan = nullptr;
   VkDescriptorSetLayout sharedLayout = VK_NULL_HANDLE;
   std::vector<PhysicalResource> resources;
+  // Of the executor that this one takes over from, while this one is made.
+  std::map<std::string, std::shared_ptr<gpu::Pipeline>, std::less<>> pipelines;
+  // By resource: where it was taken over with its contents, the layouts in which its two copies are found.
+  std::vector<std::optional<std::array<VkImageLayout, 2>>> adopted;
   gpu::Buffer counters;     // uint32 counters of all passes, zeroed every frame
   gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
   std::vector<VkDeviceMemory> heaps;
@@ -57,7 +61,8 @@ struct ExecutorState {
   VkDescriptorSet sharedSet = VK_NULL_HANDLE;
   uint32_t slot = 0;
   uint32_t parity = 0;
-  bool viewReset = false, sceneReset = false;
+  bool started = false;         // whether a frame has been submitted
+  bool cameraCut = false;       // in this frame
   uint32_t stepTimestamps = 0;  // left for boundaries between steps
 
   uint32_t copyIndex(const Access& access) const {
@@ -89,8 +94,9 @@ struct KernelState {
   PassInstance* pass = nullptr;
   std::string name;
   Label label = 0;
-  gpu::Pipeline pipeline;
-  std::vector<StepAccess> accesses;  // through its bindings, except those made by hand
+  std::shared_ptr<gpu::Pipeline> pipeline;  // shared with an executor that takes over from this one
+  std::string key;                          // of the pipeline, in ExecutorState::pipelines
+  std::vector<StepAccess> accesses;         // through its bindings, except those made by hand
   std::vector<KernelBinding> bindings;
   std::vector<KernelConstant> constants;
   // Set by Commands::mip and Commands::range for the command under construction.
@@ -144,6 +150,7 @@ struct PassInstance {
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
   std::vector<HostStaging> staging;  // host passes: one per access
+  bool fresh = true;                 // nothing that it keeps was taken over
   uint32_t viewIndex = 0;            // index into Frame::views, this frame
   uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
 
@@ -154,6 +161,8 @@ struct PassInstance {
   // Begins the time of a step, unless it is that of the command before, and waits for what the accesses depend on.
   void beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
                     bool together = false);
+  // Whether kept and history resources that it uses were zeroed in this frame.
+  bool firstFrame() const { return state->cameraCut || (!state->started && fresh); }
   PassOrigin origin() const { return {bound->name, bound->declaration->type, plugin}; }
 };
 
@@ -174,9 +183,9 @@ gpu::ImageDesc imageDesc(const BoundResource& resource);
 void allocateResources(ExecutorState& state);
 void freeResources(ExecutorState& state);
 uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after mip, each with all layers
-// Zeroes kept and history resources, those of the scene's lifetime only if `scene`. Leaves images in the layout that
-// the plan expects at the start of a frame.
-void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene);
+// At the first frame, zeroes kept and history resources except those that were taken over; on a camera cut, all but
+// those of the scene's lifetime. Leaves images in the layout that the plan expects at the start of a frame.
+void resetKeptResources(ExecutorState& state, VkCommandBuffer cmd);
 VkImageSubresourceRange wholeImage(const gpu::Image& image);
 // Regions that copy between an image (all mips and layers) and a tightly packed buffer.
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image);

@@ -100,6 +100,8 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
   result.gpuMs = timestamps.back() * 1e-6;
   result.animateMs = moves ? milliseconds(animateEnd - 1, animateEnd) : 0;
   result.animateCpuMs = animateCpuMs;
+  for (size_t i = 0; i + 1 < observeTimes.size(); i += 2)
+    result.observeMs += milliseconds(observeTimes[i], observeTimes[i + 1]);
   const auto* gpuCounters = static_cast<const std::byte*>(counters.mapped());
   for (size_t i = 0; i < instances.size(); ++i) {
     const PassInstance& pass = *instances[i];
@@ -127,6 +129,14 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
       data.desc = state.plan->graph->resources[output.resource].desc;
       data.bytes.resize(resourceBytes(data.desc));
       std::memcpy(data.bytes.data(), output.buffer.mapped(), data.bytes.size());
+    }
+  }
+  if (observe) {
+    for (const Observed& o : observed) {
+      OutputData& data = result.outputs[o.what.name];
+      data.desc = o.desc;
+      data.bytes.resize(resourceBytes(data.desc));
+      std::memcpy(data.bytes.data(), o.buffer.mapped(), data.bytes.size());
     }
   }
   return result;

@@ -36,14 +36,23 @@ struct FrameSlot {
     gpu::Buffer buffer;  // readback
   };
 
+  struct Observed {
+    Observation what;
+    gpu::Buffer buffer;  // readback
+    ResourceDesc desc;   // of what is read: one mip of one layer, or the beginning of a buffer
+  };
+
   ExecutorState& state;
   VkCommandPool pool = VK_NULL_HANDLE;
   std::vector<VkCommandBuffer> commands;  // one per segment; host passes with GPU inputs split the frame
   VkFence fence = VK_NULL_HANDLE;
   gpu::Buffer counters;  // readback
   std::vector<Output> outputs;
+  std::vector<Observed> observed;
+  std::vector<uint32_t>
+      observeTimes;  // indices of timestamps before and after each copy of an observed resource
   std::vector<RecordedPass> passes;
-  bool busy = false, readOutputs = false, moves = false;
+  bool busy = false, readOutputs = false, observe = false, moves = false;
   uint64_t number = 0;  // number of the frame since the executor was created
   uint64_t frame = 0;   // Frame::index
   double cpuMs = 0, animateCpuMs = 0;
@@ -57,6 +66,10 @@ struct FrameSlot {
   FrameSlot(const FrameSlot&) = delete;
   FrameSlot& operator=(const FrameSlot&) = delete;
 
+  // Replaces what is observed; the slot must not be busy. Throws as Executor::observe does.
+  void setObserved(const std::vector<Observation>& observations, const PassInstances& instances);
+  // Copies what is observed of a pass; to be recorded right after it.
+  void recordObserved(VkCommandBuffer cmd, const PassInstance& pass);
   // Copies the counters and, if requested, the outputs into memory that the host can read.
   void recordReadback(VkCommandBuffer cmd);
   // The result without the wall time; call it after the fence has signalled. `timestamps` are in ns.
@@ -65,6 +78,12 @@ struct FrameSlot {
  private:
   explicit FrameSlot(ExecutorState& executorState) : state(executorState) {}
 };
+
+// adopt.cpp: what an executor takes over from the one before it.
+std::map<std::string, std::shared_ptr<gpu::Pipeline>, std::less<>> pipelinesOf(const PassInstances& passes);
+// Moves kept and history resources of `before` that are the same in both plans, and tells passes of which all are.
+void adoptResources(ExecutorState& state, PassInstances& passes, ExecutorState& before,
+                    const PassInstances& passesBefore);
 
 // Copies between a resource of the plan and a tightly packed buffer.
 void copyToStaging(VkCommandBuffer cmd, const PhysicalResource& r, uint32_t copy, VkImageLayout layout,

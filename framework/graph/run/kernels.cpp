@@ -1,4 +1,6 @@
 // Kernels: pipelines whose bindings are found by name.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -24,8 +26,8 @@ bool isImageBinding(gpu::BindingKind kind) {
 }
 
 PassKind stagesOf(const KernelState& kernel) {
-  return kernel.pipeline.bindPoint() == VK_PIPELINE_BIND_POINT_COMPUTE ? PassKind::Compute
-                                                                       : PassKind::Graphics;
+  return kernel.pipeline->bindPoint() == VK_PIPELINE_BIND_POINT_COMPUTE ? PassKind::Compute
+                                                                        : PassKind::Graphics;
 }
 
 namespace {
@@ -139,18 +141,38 @@ KernelConstant resolveConstant(const PassInstance& pass, const gpu::ReflectedCon
 // "blur/rows.comp" -> "rows"
 std::string stemOf(const std::string& shader) { return std::filesystem::path(shader).stem().string(); }
 
-KernelState& makeKernel(PassInstance& pass, std::string name, const std::string& label,
-                        gpu::Pipeline pipeline) {
+// A pipeline of the executor before this one, or a new one. A key names all that a pipeline is made of.
+template <class Desc>
+void choosePipeline(const ExecutorState& state, KernelState& kernel, std::string key, const Desc& desc) {
+  const auto known = state.pipelines.find(key);
+  kernel.pipeline =
+      known != state.pipelines.end() ? known->second : std::make_shared<gpu::Pipeline>(*state.device, desc);
+  kernel.key = std::move(key);
+}
+
+std::string keyOf(const gpu::ComputePipelineDesc& desc) { return fmt::format("{:016x}", desc.shader->hash); }
+
+std::string keyOf(const gpu::GraphicsPipelineDesc& d) {
+  std::string key = fmt::format("{:016x} {:016x} {} {} {} {} {} {} {} {} {} {}", d.vertex->hash,
+                                d.fragment ? d.fragment->hash : 0, int(d.depthFormat), int(d.topology),
+                                uint32_t(d.cull), d.depthTest, d.depthWrite, int(d.depthCompare),
+                                d.additiveBlend, d.depthBiasConstant, d.depthBiasSlope, d.clipDistances);
+  for (const VkFormat format : d.colorFormats) key += fmt::format(" {}", int(format));
+  return key;
+}
+
+template <class Desc>
+KernelState& makeKernel(PassInstance& pass, std::string name, const std::string& label, const Desc& desc) {
   KernelState& kernel = pass.kernels.emplace_back();
   kernel.pass = &pass;
   kernel.name = std::move(name);
   kernel.label = pass.label(label);
-  kernel.pipeline = std::move(pipeline);
-  for (const gpu::ReflectedBinding& b : kernel.pipeline.interface().bindings)
+  choosePipeline(*pass.state, kernel, keyOf(desc), desc);
+  for (const gpu::ReflectedBinding& b : kernel.pipeline->interface().bindings)
     kernel.bindings.push_back(resolveBinding(pass, kernel.name, b));
-  for (const gpu::ReflectedConstant& c : kernel.pipeline.interface().constants)
+  for (const gpu::ReflectedConstant& c : kernel.pipeline->interface().constants)
     kernel.constants.push_back(resolveConstant(pass, c));
-  kernel.accesses = shaderAccesses(*pass.bound, kernel.pipeline.interface().bindings, stagesOf(kernel));
+  kernel.accesses = shaderAccesses(*pass.bound, kernel.pipeline->interface().bindings, stagesOf(kernel));
   return kernel;
 }
 
@@ -171,7 +193,7 @@ Kernel PrepareContext::compute(const std::string& shader, gpu::Defines defines) 
   desc.shader = device().shaders().compile(shader, defines);
   desc.sharedSet = pass_.state->sharedLayout;
   Kernel kernel;
-  kernel.state_ = &makeKernel(pass_, shader, stemOf(shader), gpu::Pipeline(device(), desc));
+  kernel.state_ = &makeKernel(pass_, shader, stemOf(shader), desc);
   return kernel;
 }
 
@@ -193,8 +215,7 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   desc.depthBiasSlope = d.depthBiasSlope;
   Kernel kernel;
   const std::string name = d.fragment.empty() ? d.vertex : d.vertex + " + " + d.fragment;
-  kernel.state_ = &makeKernel(pass_, name, stemOf(d.fragment.empty() ? d.vertex : d.fragment),
-                              gpu::Pipeline(device(), desc));
+  kernel.state_ = &makeKernel(pass_, name, stemOf(d.fragment.empty() ? d.vertex : d.fragment), desc);
   return kernel;
 }
 

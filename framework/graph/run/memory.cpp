@@ -73,6 +73,19 @@ void clearImage(VkCommandBuffer cmd, const gpu::Image& image) {
   }
 }
 
+// Brings what was taken over into the layouts in which this plan expects it.
+void keepContents(const ExecutorState& state, uint32_t resource,
+                  std::vector<VkImageMemoryBarrier2>& barriers) {
+  const BoundResource& bound = state.plan->graph->resources[resource];
+  if (bound.desc.kind != ResourceKind::Image) return;
+  for (uint32_t copy = 0; copy < (bound.history ? 2u : 1u); ++copy) {
+    const uint32_t role = bound.history && copy != state.parity ? 1 : 0;
+    const VkImageLayout from = (*state.adopted[resource])[role], to = state.plan->startLayout[resource][role];
+    if (from != to && to != VK_IMAGE_LAYOUT_UNDEFINED)
+      barriers.push_back(layoutChange(state.resources[resource].images[copy], from, to));
+  }
+}
+
 bool zeroedAtReset(const BoundResource& resource, bool scene) {
   if (resource.external) return false;
   if (resource.history) return scene || resource.lifetime != Lifetime::Scene;
@@ -128,7 +141,7 @@ gpu::ImageDesc imageDesc(const BoundResource& resource) {
   if (has(u, Usage::StorageRead) || has(u, Usage::StorageWrite)) desc.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   if (has(u, Usage::ColorAttachment)) desc.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if (has(u, Usage::DepthAttachment)) desc.usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if (has(u, Usage::TransferRead) || has(u, Usage::HostRead) || resource.output)
+  if (has(u, Usage::TransferRead) || has(u, Usage::HostRead) || resource.output || resource.observable)
     desc.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   const bool zeroed = resource.history || resource.lifetime != Lifetime::Transient;
   if (has(u, Usage::TransferWrite) || has(u, Usage::HostWrite) || zeroed || resource.external)
@@ -177,6 +190,7 @@ Environment deviceEnvironment(const gpu::Device* device) {
 void allocateResources(ExecutorState& state) {
   const Plan& plan = *state.plan;
   state.resources.resize(plan.graph->resources.size());
+  state.adopted.assign(plan.graph->resources.size(), std::nullopt);
   for (size_t i = 0; i < plan.heaps.size(); ++i) {
     state.heaps.push_back(state.device->allocate(plan.heaps[i].bytes, plan.heaps[i].memoryTypeBits,
                                                  VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
@@ -198,14 +212,22 @@ void freeResources(ExecutorState& state) {
   state.heaps.clear();
 }
 
-void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene) {
+void resetKeptResources(ExecutorState& state, VkCommandBuffer cmd) {
+  if (state.started && !state.cameraCut) return;
   const Plan& plan = *state.plan;
   std::vector<VkImageMemoryBarrier2> before, after;
   std::vector<const gpu::Image*> images;
   std::vector<const gpu::Buffer*> buffers;
   for (uint32_t i = 0; i < state.resources.size(); ++i) {
     const BoundResource& resource = plan.graph->resources[i];
-    if (!plan.resourceLive[i] || !zeroedAtReset(resource, scene)) continue;
+    if (!plan.resourceLive[i]) continue;
+    const bool fresh = !state.started && !state.adopted[i];
+    const bool zeroed =
+        fresh ? zeroedAtReset(resource, true) : state.cameraCut && zeroedAtReset(resource, false);
+    if (!zeroed) {
+      if (!state.started && state.adopted[i]) keepContents(state, i, after);
+      continue;
+    }
     for (uint32_t copy = 0; copy < (resource.history ? 2u : 1u); ++copy) {
       if (resource.desc.kind == ResourceKind::Buffer) {
         buffers.push_back(&state.resources[i].buffers[copy]);
@@ -221,7 +243,7 @@ void zeroKeptResources(ExecutorState& state, VkCommandBuffer cmd, bool scene) {
         after.push_back(layoutChange(image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, start));
     }
   }
-  if (images.empty() && buffers.empty()) return;
+  if (images.empty() && buffers.empty() && after.empty()) return;
   pipelineBarrier(cmd, before);
   for (const gpu::Image* image : images) clearImage(cmd, *image);
   for (const gpu::Buffer* buffer : buffers) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);

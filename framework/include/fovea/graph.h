@@ -64,6 +64,7 @@ struct FrameResult {
   double animateMs = 0;     // the part of gpuMs that moves vertices before the first pass
   double animateCpuMs = 0;  // the part of cpuMs that prepares these vertices
   double cpuMs = 0;         // recording, and executing host passes
+  double observeMs = 0;     // the part of gpuMs that copies observed resources (Executor::observe)
   double wallMs = 0;        // since the previous frame finished or, for the first one, since submission
   std::vector<PassTiming> passes;                        // in order of execution
   std::vector<std::pair<std::string, double>> counters;  // "blur.shaded_pixels"

@@ -1,0 +1,175 @@
+#include "samples/fovea/view/graph/changes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/graph/pass/registry.h"
+
+namespace fovea::view {
+namespace {
+
+using graph::ParameterSpec;
+using json::Value;
+
+// The parameter to which a value such as "$radius" refers.
+std::string_view referred(const Value& value) {
+  return value.isString() && value.string.starts_with("$") ? std::string_view(value.string).substr(1)
+                                                           : std::string_view();
+}
+
+const graph::BoundPass* findPass(const graph::BoundGraph& bound, std::string_view name) {
+  for (const graph::BoundPass& pass : bound.passes)
+    if (pass.name == name) return &pass;
+  return nullptr;
+}
+
+const ParameterSpec* findSpec(const graph::BoundPass& pass, std::string_view name) {
+  for (const ParameterSpec& spec : pass.declaration->parameters)
+    if (spec.name == name) return &spec;
+  return nullptr;
+}
+
+// Inside an instance of a sub-graph, the parameter that the instance is given as `inner`.
+const ParameterSpec* specInside(const std::string& instance, std::string_view inner,
+                                const graph::Description& description, const graph::BoundGraph& bound) {
+  for (const graph::PassDescription& pass : description.passes) {
+    if (!pass.name.starts_with(instance + "/")) continue;
+    for (uint32_t i = 0; i < pass.parameterCount; ++i) {
+      const graph::ParameterDescription& p = description.parameters[pass.firstParameter + i];
+      if (!p.given || referred(p.given->value) != inner) continue;
+      if (const graph::BoundPass* found = findPass(bound, pass.name)) return findSpec(*found, p.given->key);
+    }
+  }
+  return nullptr;
+}
+
+const ParameterSpec* specOf(const std::string& name, const Value& passes,
+                            const graph::Description& description, const graph::BoundGraph& bound) {
+  for (const json::Member& pass : passes.members) {
+    const Value* params = pass.value.find("params");
+    for (const json::Member& given : params ? params->members : std::vector<json::Member>()) {
+      if (referred(given.value) != name) continue;
+      const graph::BoundPass* found = findPass(bound, pass.key);
+      const ParameterSpec* spec =
+          found ? findSpec(*found, given.key) : specInside(pass.key, given.key, description, bound);
+      if (spec) return spec;
+    }
+  }
+  return nullptr;
+}
+
+// "vpl-intensity-$intensity" lists what may stand for $intensity.
+std::vector<std::string> typeChoices(const std::string& name, const Value& passes) {
+  std::vector<std::string> choices;
+  for (const json::Member& pass : passes.members) {
+    const Value* type = pass.value.find("type");
+    if (!type || !type->string.ends_with("$" + name)) continue;
+    const std::string start = type->string.substr(0, type->string.size() - name.size() - 1);
+    for (const std::string& known : graph::Registry::global().types())
+      if (known.starts_with(start)) choices.push_back(known.substr(start.size()));
+  }
+  return choices;
+}
+
+Value textValue(std::string text) {
+  Value value;
+  value.type = Value::Type::String;
+  value.string = std::move(text);
+  return value;
+}
+
+Value objectValue() {
+  Value value;
+  value.type = Value::Type::Object;
+  return value;
+}
+
+Value& childOf(Value& object, const std::string& key) {
+  for (json::Member& member : object.members)
+    if (member.key == key) return member.value;
+  return object.members.emplace_back(json::Member{key, objectValue(), {}}).value;
+}
+
+// The value that a text means for a parameter of this type.
+Value typed(const std::string& name, const std::string& text, Value::Type type) {
+  if (type == Value::Type::String) return textValue(text);
+  Value value;
+  if (graph::readTyped(text, type, value)) return value;
+  throw Error(ExitCode::BadInput, fmt::format("`{}` cannot be `{}`", name, text));
+}
+
+Value::Type typeOf(const ParameterSpec& spec) {
+  switch (spec.type) {
+    case ParameterSpec::Type::Bool:
+      return Value::Type::Bool;
+    case ParameterSpec::Type::Int:
+      return Value::Type::Int;
+    case ParameterSpec::Type::Real:
+      return Value::Type::Real;
+    default:
+      return Value::Type::String;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> overridesOf(const Changes& changes) {
+  std::vector<std::string> list;
+  for (const auto& [name, value] : changes) list.push_back(fmt::format("{}={}", name, value));
+  return list;
+}
+
+Changes changesOf(const std::vector<std::string>& overrides) {
+  Changes changes;
+  for (const std::string& text : overrides) {
+    graph::Override parsed = graph::parseOverride(text);
+    changes[std::move(parsed.name)] = std::move(parsed.value);
+  }
+  return changes;
+}
+
+std::vector<GraphParameter> graphParameters(const Value& merged, const graph::Description& description,
+                                            const graph::BoundGraph& bound) {
+  std::vector<GraphParameter> list;
+  const Value* parameters = merged.find("parameters");
+  const Value* passes = merged.find("passes");
+  if (!parameters || !passes) return list;
+  for (const json::Member& member : parameters->members)
+    list.push_back({member.key, &member.value, specOf(member.key, *passes, description, bound),
+                    typeChoices(member.key, *passes)});
+  return list;
+}
+
+std::string extendingGraph(const std::string& base, const Changes& changes, const Value& merged,
+                           const graph::BoundGraph& bound) {
+  Value graph = objectValue();
+  childOf(graph, "$schema") = textValue("fovea-graph.schema.json");
+  childOf(graph, "extends") = textValue(base);
+  const Value* parameters = merged.find("parameters");
+  for (const auto& [name, text] : changes) {
+    const size_t dot = name.rfind('.');
+    if (dot == std::string::npos) {
+      const Value* written = parameters ? parameters->find(name) : nullptr;
+      const Value::Type type = written ? written->type : Value::Type::String;
+      const Value value = typed(name, text, type == Value::Type::Int ? Value::Type::Real : type);
+      childOf(childOf(graph, "parameters"), name) = value;
+      continue;
+    }
+    const std::string pass = name.substr(0, dot), key = name.substr(dot + 1);
+    if (pass.find('/') != std::string::npos)
+      throw Error(
+          ExitCode::BadInput,
+          fmt::format("`{}` lies inside of a sub-graph, which a graph that extends this one cannot reach",
+                      name),
+          "take it back, or make it a parameter of the sub-graph");
+    const graph::BoundPass* found = findPass(bound, pass);
+    const ParameterSpec* spec = found ? findSpec(*found, key) : nullptr;
+    if (!spec) throw Error(ExitCode::BadInput, fmt::format("the graph has no parameter `{}`", name));
+    childOf(childOf(childOf(childOf(graph, "passes"), pass), "params"), key) =
+        typed(name, text, typeOf(*spec));
+  }
+  return json::print(graph);
+}
+
+}  // namespace fovea::view

@@ -1,0 +1,124 @@
+#include "samples/fovea/view/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/scene/motion/motion.h"
+
+namespace fovea::view {
+
+Pose poseOf(const scene::Camera& camera) {
+  const glm::vec3 forward = glm::normalize(camera.orientation) * glm::vec3(0, 0, -1);
+  return {camera.position, std::atan2(-forward.x, -forward.z), std::asin(std::clamp(forward.y, -1.0f, 1.0f))};
+}
+
+void Motion::apply(const Command& command) {
+  if (command.sceneCamera) pose_.reset();
+  if (command.pose) pose_ = command.pose;
+  if (command.sceneGaze) gaze_.reset();
+  if (command.gaze) gaze_ = command.gaze;
+  moved_ |= command.sceneCamera || command.pose || command.sceneGaze || command.gaze;
+  if (command.speed && *command.speed != speed_) {
+    anchor_ = time();
+    ticks_ = 0;
+    speed_ = *command.speed;
+  }
+  if (command.playing) playing_ = *command.playing;
+  if (command.frozen) frozen_ = *command.frozen;
+  if (command.step > 0) {
+    frozen_ = true;
+    steps_ += command.step;
+  }
+  if (command.restart) restart();
+  if (!command.recording) return;
+  recording_ = *command.recording;
+  if (!recording_) return;
+  // From the start, so that a replay meets the same frames.
+  restart();
+  track_.clear();
+  cameraTrack_.clear();
+  speed_ = 1;
+  playing_ = true;
+  frozen_ = false;
+}
+
+void Motion::restart() {
+  index_ = ticks_ = 0;
+  anchor_ = 0;
+  sinceJump_ = scene::kSaccadeFrames;
+  moved_ = true;
+}
+
+scene::Camera Motion::cameraNow(const scene::Scene& scene, double time) const {
+  scene::Camera camera = scene::cameraAt(scene, time);
+  if (!pose_) return camera;
+  camera.position = pose_->position;
+  camera.orientation =
+      glm::angleAxis(pose_->yaw, glm::vec3(0, 1, 0)) * glm::angleAxis(pose_->pitch, glm::vec3(1, 0, 0));
+  return camera;
+}
+
+scene::Moment Motion::next(const scene::Scene& scene) {
+  const bool first = index_ == 0;
+  if (!first && (frozen_ ? steps_ > 0 : playing_)) ++ticks_;
+  if (steps_ > 0) --steps_;
+  moved_ = false;
+  scene::Moment m;
+  m.index = index_;
+  m.time = std::max(0.0, time());
+  m.before = first ? m.time : shown_.time;
+  m.camera = cameraNow(scene, m.time);
+  m.previousCamera = first ? m.camera : shown_.camera;
+  m.cameraCut = first;
+  const scene::GazeSample own = scene::gazeAt(scene.gaze, m.time, scene.gazeGap);
+  m.gazes = {own.position, own.left.value_or(own.position), own.right.value_or(own.position)};
+  if (gaze_) m.gazes.fill(*gaze_);
+  // As scene::momentAt() has it, from the frames as they were shown.
+  bool jumped = false;
+  for (size_t i = 0; i < m.gazes.size() && !first; ++i)
+    jumped |= glm::distance(m.gazes[i], shown_.gazes[i]) > scene::kGazeJump;
+  sinceJump_ = jumped ? 0 : std::min(sinceJump_ + 1, scene::kSaccadeFrames);
+  m.saccade = 1 - float(sinceJump_) / float(scene::kSaccadeFrames);
+  if (recording_) record(m);
+  ++index_;
+  shown_ = m;
+  return m;
+}
+
+// A sample must not come after its frame, and the nearest float may.
+void Motion::record(const scene::Moment& moment) {
+  float at = float(moment.time);
+  if (double(at) > moment.time) at = std::nextafter(at, -std::numeric_limits<float>::infinity());
+  if (!track_.empty() && at <= track_.back().time) return;  // time stands still
+  track_.push_back({at, moment.gazes[0], true, moment.gazes[1], moment.gazes[2]});
+  cameraTrack_.push_back({at, moment.camera});
+}
+
+std::string Motion::cameraKeys() const {
+  std::string text = "{\n  \"camera\": {\n";
+  if (!cameraTrack_.empty())
+    text += fmt::format("    \"fov_deg\": {:.6g},\n", glm::degrees(cameraTrack_[0].camera.verticalFov));
+  text += "    \"path\": [";
+  const char* separator = "\n";
+  for (const scene::CameraKey& key : cameraTrack_) {
+    const glm::vec3 eye = key.camera.position, target = eye + key.camera.orientation * glm::vec3(0, 0, -1);
+    text += fmt::format(
+        "{}      {{ \"t\": {:.9g}, \"eye\": [{:.9g}, {:.9g}, {:.9g}], \"target\": [{:.9g}, {:.9g}, {:.9g}] "
+        "}}",
+        separator, key.time, eye.x, eye.y, eye.z, target.x, target.y, target.z);
+    separator = ",\n";
+  }
+  return text + "\n    ]\n  }\n}\n";
+}
+
+std::string Motion::gazeTable() const {
+  std::string text = "# fovea render GRAPH --scene SCENE --gaze-trace THIS --gaze-gap 0\nt,x,y,valid\n";
+  for (const scene::GazeSample& s : track_)
+    text += fmt::format("{:.9g},{:.9g},{:.9g},1\n", s.time, s.position.x, s.position.y);
+  return text;
+}
+
+}  // namespace fovea::view

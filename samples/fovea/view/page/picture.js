@@ -1,0 +1,214 @@
+// The picture: fetches the newest one, draws it, zooms and pans, and tells the pixel under the cursor.
+import { element, floatText, getPicture, getPixels } from "./api.js";
+import { on, portOf, store, tell } from "./store.js";
+
+const stage = document.getElementById("stage");
+const canvas = document.getElementById("canvas");
+const overlay = document.getElementById("overlay");
+const table = document.getElementById("table");
+const pixel = document.getElementById("pixel");
+const waiting = document.getElementById("waiting");
+const context = canvas.getContext("2d", { alpha: false });
+
+// Where the picture is on the stage, in CSS pixels.
+export const place = { scale: 1, x: 0, y: 0, fitted: true };
+
+let abort = null; // of the request under way
+let fresh = true; // draw at once, whatever the number of the picture
+
+function fit() {
+  if (!store.picture) return;
+  const box = stage.getBoundingClientRect();
+  const margin = 16;
+  const scale = Math.min((box.width - margin) / canvas.width, (box.height - margin) / canvas.height);
+  place.scale = scale >= 1 ? Math.max(1, Math.floor(scale * 4) / 4) : scale;
+  place.x = (box.width - canvas.width * place.scale) / 2;
+  place.y = (box.height - canvas.height * place.scale) / 2;
+  place.fitted = true;
+  arrange();
+}
+
+function arrange() {
+  canvas.style.transform = `translate(${place.x}px, ${place.y}px) scale(${place.scale})`;
+  canvas.style.imageRendering = place.scale >= 2 ? "pixelated" : "auto";
+  document.getElementById("zoom").textContent = `${Math.round(place.scale * 100)}%`;
+  tell("place", place);
+}
+
+export function zoom(factor, x, y) {
+  const box = stage.getBoundingClientRect();
+  const px = x ?? box.width / 2;
+  const py = y ?? box.height / 2;
+  const scale = Math.min(64, Math.max(0.05, place.scale * factor));
+  place.x = px - ((px - place.x) * scale) / place.scale;
+  place.y = py - ((py - place.y) * scale) / place.scale;
+  place.scale = scale;
+  place.fitted = false;
+  arrange();
+}
+
+export function pan(dx, dy) {
+  place.x += dx;
+  place.y += dy;
+  place.fitted = false;
+  arrange();
+}
+
+export const fitPicture = fit;
+
+// A point of the stage in pixels of the picture.
+export function pictureAt(clientX, clientY) {
+  const box = stage.getBoundingClientRect();
+  return {
+    x: (clientX - box.left - place.x) / place.scale,
+    y: (clientY - box.top - place.y) / place.scale,
+  };
+}
+
+let cursor = null;
+let reading = false;
+let readAgain = false;
+
+async function readPixel() {
+  if (!cursor || !store.picture) return;
+  if (reading) {
+    readAgain = true;
+    return;
+  }
+  const { x, y } = cursor;
+  const source = store.source;
+  if (x < 0 || y < 0 || x >= canvas.width || y >= canvas.height) {
+    pixel.value = "";
+    return;
+  }
+  reading = true;
+  try {
+    const read = await getPixels(source, x, y);
+    if (read && read.values.length > 0) {
+      const texts = [...read.values].map((v) => (read.type === "float32" ? floatText(v) : String(v)));
+      pixel.value = `${x}, ${y}   ${texts.join("   ")}`;
+      pixel.dataset.frame = read.frame;
+    }
+  } finally {
+    reading = false;
+    if (readAgain) {
+      readAgain = false;
+      readPixel();
+    }
+  }
+}
+
+// Buffers are shown as a table of their first elements, each word as a float and as a whole number.
+async function drawTable(info) {
+  const rows = Math.min(info.width, 256);
+  const read = await getPixels(store.source, 0, 0, rows, 1);
+  if (!read) return;
+  const whole = new Uint32Array(read.bytes);
+  const head = element("tr", {}, element("th", {}, "element"));
+  for (let c = 0; c < read.channels; ++c) head.append(element("th", { class: "number" }, `word ${c}`));
+  const body = [];
+  for (let r = 0; r < rows; ++r) {
+    const row = element("tr", {}, element("td", {}, String(r)));
+    for (let c = 0; c < read.channels; ++c) {
+      const i = r * read.channels + c;
+      const v = read.values[i];
+      const plausible = v === 0 ? whole[i] === 0 : Math.abs(v) > 1e-12 && Math.abs(v) < 1e12;
+      row.append(element("td", { class: "number", title: `${whole[i]} or ${floatText(v)}` },
+        plausible ? floatText(v) : String(whole[i])));
+    }
+    body.push(row);
+  }
+  const port = portOf(store.source);
+  table.replaceChildren(
+    element("p", { class: "note" },
+        `${port?.is ?? store.source}: the first ${rows} of ${info.width} elements of frame ` +
+      `${info.frame}. A word is shown as a float where that is plausible, otherwise as a whole number.`),
+    element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+}
+
+async function draw(picture) {
+  const buffer = picture.blob.size === 0;
+  table.hidden = !buffer;
+  canvas.hidden = overlay.hidden = buffer;
+  waiting.hidden = true;
+  const resized = !store.picture || store.picture.width !== picture.width || store.picture.height !== picture.height;
+  const other = !store.picture || store.picture.source !== store.source;
+  store.picture = { ...picture, blob: null, source: store.source };
+  if (buffer) {
+    await drawTable(picture);
+  } else {
+    const bitmap = await createImageBitmap(picture.blob);
+    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
+    }
+    context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+    if (resized && place.fitted) fit();
+  }
+  canvas.dataset.frame = picture.frame;
+  canvas.dataset.source = store.source;
+  if (other) tell("range", picture);
+  tell("picture", store.picture);
+  readPixel();
+}
+
+// One request at a time: the next one is sent when the last picture has been drawn.
+export async function runPictures() {
+  for (;;) {
+    const source = store.source;
+    const wanted = fresh ? 0 : store.picture?.number ?? 0;
+    fresh = false;
+    abort = new AbortController();
+    try {
+      const picture = await getPicture({ source, after: wanted, ...store.display }, abort.signal);
+      if (picture && source === store.source) await draw(picture);
+      else if (!picture) await new Promise((resume) => setTimeout(resume, 100));
+    } catch (error) {
+      if (error.name === "AbortError") continue;
+      // The program has gone, or the source is not made by this graph.
+      waiting.hidden = false;
+      waiting.textContent = error instanceof TypeError ? "The program does not answer." : error.message;
+      await new Promise((resume) => setTimeout(resume, 700));
+    }
+  }
+}
+
+function again() {
+  fresh = true;
+  abort?.abort();
+}
+
+export function start() {
+  on("source", () => {
+    document.getElementById("source-name").textContent = nameOf(store.source);
+    again();
+  });
+  on("display", again);
+  on("state", () => {
+    document.getElementById("source-name").textContent = nameOf(store.source);
+  });
+  new ResizeObserver(() => place.fitted && fit()).observe(stage);
+  stage.addEventListener("wheel", (event) => {
+    if (event.target.closest("#table, #messages")) return;
+    event.preventDefault();
+    const box = stage.getBoundingClientRect();
+    zoom(Math.exp(-event.deltaY * 0.0015), event.clientX - box.left, event.clientY - box.top);
+  }, { passive: false });
+  stage.addEventListener("pointermove", (event) => {
+    const at = pictureAt(event.clientX, event.clientY);
+    cursor = { x: Math.floor(at.x), y: Math.floor(at.y) };
+    readPixel();
+  });
+  stage.addEventListener("pointerleave", () => {
+    cursor = null;
+    pixel.value = "";
+  });
+  runPictures();
+}
+
+export function nameOf(source) {
+  const port = portOf(source);
+  return port ? `${source.replace(":", " · ")} — ${port.is}` : source;
+}
+

@@ -1,0 +1,220 @@
+// Times of the passes as a table with their history, counters, and the plan as a grid.
+import { bytesText, element, svg } from "./api.js";
+import { mainPort, on, portOf, show, store, tell } from "./store.js";
+
+const kHistory = 90;
+const root = document.getElementById("timings");
+const countersRoot = document.getElementById("counters");
+const planRoot = document.getElementById("plan");
+
+let rows = new Map(); // pass index -> cells
+let histories = new Map();
+let open = new Set(); // passes whose steps are shown
+let pinned = null; // pass index -> ms
+let total = null;
+
+function timeOf(pass, timing) {
+  return store.state.graph.passes[pass].host ? timing.cpu : timing.gpu;
+}
+
+function median(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted.length ? sorted[sorted.length >> 1] : 0;
+}
+
+export const medianTime = (pass) => median(histories.get(pass) ?? []);
+
+function sparkline(values, most) {
+  const step = 100 / (kHistory - 1);
+  const first = kHistory - values.length;
+  let d = `M${(first * step).toFixed(1)} 20`;
+  values.forEach((v, i) => {
+    d += `L${((first + i) * step).toFixed(1)} ${(20 - 19 * Math.min(1, v / most)).toFixed(1)}`;
+  });
+  return `${d}L100 20Z`;
+}
+
+// The height of a row of the history: what nearly all values stay below, so that the first frame does not flatten it.
+function usual(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return Math.max(1e-4, 1.35 * sorted[Math.floor(0.9 * (sorted.length - 1))]);
+}
+
+function passRow(index) {
+  const pass = store.state.graph.passes[index];
+  const port = mainPort(pass);
+  const path = svg("path");
+  const time = element("td", { class: "number" });
+  const delta = element("td", { class: "number delta" });
+  const name = element("td", { title: `${pass.type}: ${pass.doc}` }, pass.name);
+  const bar = element("td", { class: "bar" });
+  bar.append(svg("svg", { viewBox: "0 0 100 20", preserveAspectRatio: "none", "aria-hidden": "true" }, path));
+  const row = element("tr", { "data-pass": pass.name, tabindex: 0, "aria-label": `${pass.name}: show its picture` },
+      name, bar, time, delta);
+  const preview = () => port && tell("preview", { source: port.source, title: `${pass.name} · ${port.name}` });
+  const lock = () => port && show(port.source);
+  row.addEventListener("pointerenter", preview);
+  row.addEventListener("focus", preview);
+  row.addEventListener("pointerleave", () => tell("preview", null));
+  row.addEventListener("blur", () => tell("preview", null));
+  row.addEventListener("click", () => {
+    lock();
+    toggleSteps(index);
+  });
+  row.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter") return;
+    lock();
+    toggleSteps(index);
+  });
+  return { row, path, time, delta, steps: new Map() };
+}
+
+function toggleSteps(index) {
+  if (open.has(index)) open.delete(index);
+  else open = new Set([index]);
+}
+
+function showSteps(cells, index, timing) {
+  const wanted = open.has(index) && timing.steps.length > 1;
+  if (!wanted) {
+    for (const step of cells.steps.values()) step.row.remove();
+    cells.steps.clear();
+    return;
+  }
+  let after = cells.row;
+  for (const [name, ms] of timing.steps) {
+    if (!cells.steps.has(name)) {
+      const time = element("td", { class: "number" });
+      const row = element("tr", { class: "step" }, element("td", { title: name }, name), element("td"), time,
+          element("td"));
+      cells.steps.set(name, { row, time });
+      after.after(row);
+    }
+    const step = cells.steps.get(name);
+    step.time.textContent = ms.toFixed(3);
+    after = step.row;
+  }
+}
+
+function build(times) {
+  rows = new Map();
+  const body = element("tbody");
+  for (const timing of times.passes) {
+    const cells = passRow(timing.pass);
+    rows.set(timing.pass, cells);
+    body.append(cells.row);
+  }
+  total = { gpu: element("td", { class: "number", id: "total" }), delta: element("td", { class: "number delta" }),
+      note: element("p", { class: "note" }) };
+  body.append(element("tr", { class: "total" }, element("td", {}, "frame"), element("td"), total.gpu, total.delta));
+  const pin = element("button", { type: "button", id: "pin", title: "Compare all times with what they are now" },
+      "Pin as baseline");
+  pin.addEventListener("click", () => {
+    pinned = pinned ? null : new Map([...histories].map(([key, values]) => [key, median(values)]));
+    pin.textContent = pinned ? "Drop baseline" : "Pin as baseline";
+    pin.setAttribute("aria-pressed", String(Boolean(pinned)));
+    if (!pinned) for (const cells of [...rows.values(), total]) cells.delta.textContent = "";
+  });
+  root.replaceChildren(
+    element("table", {}, element("thead", {}, element("tr", {}, element("th", {}, "pass"), element("th", {}, "history"),
+      element("th", { class: "number" }, "ms"), element("th", { class: "number" }, ""))), body),
+    element("div", { class: "actions" }, pin), total.note);
+  showSource();
+}
+
+function remember(key, value) {
+  if (!histories.has(key)) histories.set(key, []);
+  const values = histories.get(key);
+  values.push(value);
+  if (values.length > kHistory) values.shift();
+  return values;
+}
+
+function showDelta(cell, key, now) {
+  const before = pinned?.get(key);
+  if (!before) return;
+  const change = (100 * (now - before)) / before;
+  cell.textContent = Math.abs(change) < 2 ? "≈" : `${change > 0 ? "+" : "−"}${Math.abs(change).toFixed(0)}%`;
+  cell.classList.toggle("slower", change > 5);
+}
+
+function update(tick) {
+  const { times } = tick;
+  if (!times || tick.build !== store.state?.build) return;
+  const same = rows.size === times.passes.length && times.passes.every((t) => rows.has(t.pass));
+  if (!same) build(times);
+  for (const timing of times.passes) {
+    const cells = rows.get(timing.pass);
+    const values = remember(timing.pass, timeOf(timing.pass, timing));
+    const now = median(values.slice(-9));
+    cells.path.setAttribute("d", sparkline(values, usual(values)));
+    cells.time.textContent = now.toFixed(now < 10 ? 2 : 1);
+    cells.time.title = store.state.graph.passes[timing.pass].host ? "on the CPU" : "";
+    showDelta(cells.delta, timing.pass, median(values));
+    showSteps(cells, timing.pass, timing);
+  }
+  const frame = remember("frame", times.gpu - times.observe);
+  total.gpu.textContent = median(frame.slice(-9)).toFixed(2);
+  showDelta(total.delta, "frame", median(frame));
+  const wall = median(remember("wall", times.wall).slice(-9));
+  total.note.textContent = `${wall.toFixed(1)} ms a frame on the clock, of which ${times.observe.toFixed(2)} ms copy ` +
+    `what this page shows (not counted above). ${bytesText(tick.bytes)} of device memory.`;
+  countersRoot.replaceChildren(element("table", {}, ...times.counters.map(([name, value]) =>
+    element("tr", {}, element("td", {}, name), element("td", { class: "number" }, value.toLocaleString("en"))))));
+}
+
+function showSource() {
+  const pass = portOf(store.source)?.pass;
+  for (const [index, cells] of rows)
+    cells.row.classList.toggle("shown", store.state.graph.passes[index].name === pass);
+}
+
+// Passes by resources: each resource is a bar from its first to its last level; kept ones never end.
+function drawPlan() {
+  const { plan } = store.state.graph;
+  const levels = plan.levels.length;
+  const names = 130;
+  const cell = Math.max(12, Math.min(28, 380 / levels));
+  const line = 15;
+  const resources = plan.resources;
+  const drawing = svg("svg", { width: names + levels * cell + 70, height: (resources.length + 1) * line + 6,
+    role: "img", "aria-label": "Lifetimes of resources by level" });
+  plan.levels.forEach((level, i) => {
+    const x = names + i * cell;
+    const barriers = level.barriers.images?.length ?? 0;
+    const tick = svg("text", { x: x + 2, y: 11, class: "soft" }, String(i));
+    tick.append(svg("title", {}, `level ${i}: ${level.passes.map((p) => p.name).join(", ")}; ` +
+      `${level.barriers.memory ? `waits for ${level.barriers.memory.from}` : "no memory barrier"}, ` +
+      `${barriers} image layout changes`));
+    drawing.append(tick, svg("line", { x1: x, y1: line, x2: x, y2: (resources.length + 1) * line }));
+  });
+  resources.forEach((r, i) => {
+    const y = (i + 1) * line;
+    const [first, last] = r.levels ?? [0, levels];
+    const kept = r.heap === undefined;
+    const from = names + (kept ? 0 : first) * cell;
+    const to = names + (kept ? levels : Math.min(levels, last + 1)) * cell;
+    const text = r.name.length > 22 ? `${r.name.slice(0, 21)}…` : r.name;
+    const bar = svg("rect", { x: from + 1, y: y + 3, width: Math.max(4, to - from - 2), height: line - 5, rx: 2,
+      class: kept ? "kept" : "" });
+    bar.append(svg("title", {}, `${r.name}: ${r.is}, ${bytesText(r.bytes)}, ${r.lifetime}` +
+      (kept ? ", memory of its own" : `, heap ${r.heap} at ${bytesText(r.offset)}`)));
+    drawing.append(svg("text", { x: 0, y: y + 11 }, text), bar,
+      svg("text", { x: names + levels * cell + 6, y: y + 11, class: "soft" }, bytesText(r.bytes)));
+  });
+  planRoot.replaceChildren(drawing, element("p", { class: "note" },
+    `${bytesText(plan.memory.transient)} for one frame, ` +
+    `${bytesText(plan.memory.transient_without_aliasing)} if nothing shared memory; ` +
+    `${bytesText(plan.memory.kept)} kept. Darker bars are kept from frame to frame.`));
+}
+
+export function start() {
+  on("state", () => {
+    rows = new Map();
+    histories = new Map();
+    root.replaceChildren();
+    drawPlan();
+  });
+  on("tick", update);
+  on("source", showSource);
+}

@@ -1,0 +1,39 @@
+// The numbers in a resource that was read back, and what can be said about them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fovea/graph.h"
+
+namespace fovea::view {
+
+// Where and how the components of a picture lie in memory. A buffer is a picture that is one element high as well: its
+// words are the channels, its elements the columns.
+struct Layout {
+  enum class Type : uint8_t { Float, Unsigned, Signed };
+  Type type = Type::Float;  // after conversion to 32 bits
+  uint32_t width = 0, height = 0, channels = 0;
+  bool encoded = false;  // values are meant for a display as they are (8-bit images)
+};
+Layout layoutOf(const graph::ResourceDesc& desc);
+
+// Pixel after pixel, a 32-bit word per channel: floats bit for bit, wider than 32 bits cut off. Half floats and
+// normalised integers become floats, whole numbers stay whole. x, y, width, height must lie inside.
+std::vector<uint32_t> words(const graph::OutputData& data, uint32_t x, uint32_t y, uint32_t width,
+                            uint32_t height);
+// The same of the whole picture as numbers to draw: whole numbers are converted.
+std::vector<float> numbers(const graph::OutputData& data);
+
+// Of one channel. The histogram covers [min, max] in equal parts and counts finite values.
+struct ChannelStatistics {
+  float min = 0, max = 0;
+  double mean = 0;
+  uint64_t finite = 0, nan = 0, infinite = 0;
+  std::array<uint64_t, 64> histogram{};
+};
+std::vector<ChannelStatistics> statistics(const graph::OutputData& data);
+
+}  // namespace fovea::view

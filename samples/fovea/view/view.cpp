@@ -1,0 +1,71 @@
+// The command `fovea view`: shows a running graph in a browser.
+#include <memory>
+
+#include "benchmarks/runner/interrupt.h"
+#include "samples/fovea/arguments.h"
+#include "samples/fovea/commands.h"
+#include "samples/fovea/view/exchange.h"
+#include "samples/fovea/view/http/server.h"
+#include "samples/fovea/view/viewer.h"
+
+namespace fovea::cli {
+namespace {
+
+struct ViewOptions {
+  view::Viewer::Options viewer;
+  std::string size = "512x512", host = "127.0.0.1";
+  uint16_t port = 0;
+};
+
+ExitCode runView(ViewOptions options) {
+  options.viewer.settings.size = parseSize(options.size);
+  catchInterrupts();
+  view::Exchange exchange;
+  const view::Server server(exchange, options.host, options.port);
+  const struct Stop {
+    view::Exchange& exchange;
+    ~Stop() { exchange.stop(); }
+  } stop{exchange};
+  view::Viewer viewer(exchange, options.viewer);
+  std::printf("open %s\n", server.address().c_str());  // when there is something to see
+  std::fflush(stdout);
+  viewer.run();
+  return ExitCode::Ok;
+}
+
+}  // namespace
+
+void addView(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("view", "Show a running graph in a browser, and change it");
+  auto options = std::make_shared<ViewOptions>();
+  view::Settings& settings = options->viewer.settings;
+  addGraphOptions(*command, settings.graph);
+  command
+      ->add_option("--scene", settings.scene,
+                   "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
+      ->required()
+      ->type_name("SCENE");
+  command->add_option("--size", options->size, "Picture size; default 512x512")->type_name("WxH");
+  command->add_option("--seed", settings.seed, "Seed of all random numbers; default 1")->type_name("S");
+  command
+      ->add_option("--frames", options->viewer.frames,
+                   "Render so many frames, whether somebody looks or not, and freeze")
+      ->type_name("N")
+      ->check(CLI::Range(1u, 10'000'000u).description(""));
+  command
+      ->add_option(
+          "--host", options->host,
+          "Name or address of this machine to listen on; default 127.0.0.1, which\nonly this machine "
+          "reaches (elsewhere use `ssh -L PORT:127.0.0.1:PORT`)")
+      ->type_name("HOST");
+  command->add_option("--port", options->port, "Port to listen on; default 0, any free one")->type_name("P");
+  command
+      ->add_option("--device", options->viewer.device,
+                   "Vulkan device by number or part of its name; see `fovea devices`")
+      ->type_name("D");
+  command->add_flag("--validation", options->viewer.validation,
+                    "Run under the Vulkan validation layers (slow)");
+  command->callback([options, &action] { action = [options] { return runView(*options); }; });
+}
+
+}  // namespace fovea::cli

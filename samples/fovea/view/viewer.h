@@ -1,0 +1,115 @@
+// The run behind `fovea view`: renders a graph over a scene for as long as somebody looks, follows what pages ask for,
+// and keeps the last good graph running when something is wrong.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "benchmarks/runner/inputs.h"
+#include "framework/session/graph_run.h"
+#include "samples/fovea/view/exchange.h"
+#include "samples/fovea/view/graph/changes.h"
+#include "samples/fovea/view/motion.h"
+#include "samples/fovea/view/picture/compare.h"
+#include "samples/fovea/view/watcher.h"
+
+namespace fovea::view {
+
+// What runs. It changes when a page chooses something else.
+struct Settings {
+  bench::GraphOptions graph;
+  std::string scene;
+  glm::uvec2 size{512, 512};
+  uint32_t seed = 1;
+};
+
+class Viewer {
+ public:
+  struct Options {
+    Settings settings;
+    std::string device;
+    bool validation = false;
+    // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
+    uint64_t frames = 0;
+  };
+  // Loads and builds everything. Throws as `fovea render` does for what it is given.
+  Viewer(Exchange& exchange, const Options& options);
+  ~Viewer();
+  // Until the program is interrupted.
+  void run();
+
+ private:
+  // A scene with its triangles.
+  struct LoadedScene {
+    scene::Scene scene;
+    scene::Geometry geometry;
+  };
+  // A graph that is ready to run, with the documents that it came from.
+  struct Build {
+    std::filesystem::path file;
+    std::shared_ptr<LoadedScene> scene;
+    graph::Description description;
+    json::Value merged;
+    Changes changes;
+    std::unique_ptr<session::GraphRun> run;
+    Diagnostics messages;
+  };
+
+  // What of `before` can be taken over goes on in the build, with its contents if `keepContents`.
+  std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene, Build* before,
+                               bool keepContents);
+  void rebuildSecond(bool keepContents);
+  void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents = true);
+  void reloadChanged();
+  void watchFiles();
+  void follow(std::vector<Command> commands);
+  std::optional<Settings> changed(Settings settings, const Command& command) const;
+  void save(const std::string& name);
+  bool frameIsDue();
+  void render();
+  void chooseObservations();
+  void takeFinished();
+  void drain();
+  void take(graph::FrameResult result);
+  void takeSecond(graph::FrameResult result);
+  image::Metadata metadata(const Build& build, const Shot& shot) const;
+  void publish(const Build& build, const std::string& source, const graph::FrameResult& result,
+               graph::OutputData data, uint32_t frames);
+  void report(std::vector<Diagnostic> messages);
+  void sendState();
+  void sendTick();
+  void pace();
+  void throwIfObjected() const;
+
+  Exchange& exchange_;
+  Options options_;
+  Settings settings_;
+  std::unique_ptr<gpu::Device> device_;
+  std::unique_ptr<Build> build_;
+  std::string secondName_;  // of a graph; "" for none
+  std::unique_ptr<Build>
+      second_;  // runs after the first in every frame, with a scene of its own on the device
+  bool accumulate_ = true, broken_ = false;
+  std::map<std::string, FrameMean> means_;  // of sources of the second graph
+  std::optional<scene::Moment> meanOf_;     // the view that the means show
+  Motion motion_;
+  std::vector<std::string> wanted_, observed_;  // sources; those of them that there are
+  std::vector<scene::Moment> shown_;            // moments of the frames under way, oldest first
+  uint64_t builds_ = 0, submitted_ = 0, messageNumber_ = 0;
+  std::vector<Diagnostic> messages_;
+  Exchange::Clock::time_point lastTick_, nextFrame_;
+  double framesPerSecond_ = 0;
+  scene::Moment seen_;    // of the newest finished frame
+  nlohmann::json times_;  // of the same
+  std::set<std::filesystem::path> changedFiles_;
+  Exchange::Clock::time_point changedAt_;
+  Watcher watcher_;
+};
+
+}  // namespace fovea::view
