@@ -102,9 +102,9 @@ class Tracer {
     }
   }
 
-  // With binomial weights.
+  // Wider or flatter weights would make what has just come into view flicker more, as its brightest sample is dropped.
   glm::vec3 meanAround(int column, int row) const {
-    static constexpr float kWeights[] = {1, 2, 1};
+    static constexpr float kWeights[] = {1, 3, 1};
     const TracedSurface& at = tiles_[size_t(row) * tileColumns() + size_t(column)].at;
     glm::vec4 sum(0);
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
