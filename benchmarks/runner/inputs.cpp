@@ -36,7 +36,7 @@ glm::uvec2 parseSize(std::string_view text) {
     throw Error(
         ExitCode::Usage,
         fmt::format("--size {} is out of range: width and height go from 1 to {} pixels", text, kMaxSize),
-        "the default is 1024x1024");
+        "e.g. --size 1024x768");
   return {uint32_t(*width), uint32_t(*height)};
 }
 
