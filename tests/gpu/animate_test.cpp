@@ -13,15 +13,15 @@
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
 #include "framework/session/test_device.h"
+#include "framework/shader_twins/octahedral.h"
 #include "tests/gpu/command_helpers.h"
-#include "tests/support/octahedral.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
 namespace {
 
+using fovea::scene::octDecode;
 using fovea::test::as;
-using fovea::test::octDecode;
 using fovea::test::testDevice;
 using Path = AnimationChannel::Path;
 using Interpolation = AnimationChannel::Interpolation;

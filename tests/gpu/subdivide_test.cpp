@@ -8,14 +8,14 @@
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/subdivider.h"
 #include "framework/session/test_device.h"
+#include "framework/shader_twins/octahedral.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/cages.h"
-#include "tests/support/octahedral.h"
 
 namespace fovea::scene {
 namespace {
 
-using fovea::test::octDecode;
+using fovea::scene::octDecode;
 using namespace test;  // NOLINT: cages
 using fovea::test::as;
 using fovea::test::testDevice;

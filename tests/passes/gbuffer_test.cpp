@@ -9,8 +9,8 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
+#include "framework/shader_twins/octahedral.h"
 #include "tests/passes/ray_reference.h"
-#include "tests/support/octahedral.h"
 
 namespace fovea::test {
 namespace {
@@ -38,8 +38,12 @@ class Output {
     auto vec = [i](const std::vector<float>& v) {
       return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
     };
-    return {vec(position_),          glm::vec3(vec(normal_)),   octDecode({face_[2 * i], face_[2 * i + 1]}),
-            glm::vec3(vec(albedo_)), glm::vec3(vec(emission_)), id_[i]};
+    return {vec(position_),
+            glm::vec3(vec(normal_)),
+            scene::octDecode({face_[2 * i], face_[2 * i + 1]}),
+            glm::vec3(vec(albedo_)),
+            glm::vec3(vec(emission_)),
+            id_[i]};
   }
 
  private:

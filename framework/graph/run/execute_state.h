@@ -187,6 +187,8 @@ uint64_t resourceBytes(const ResourceDesc& desc);  // tightly packed: mip after 
 // those of the scene's lifetime. Leaves images in the layout that the plan expects at the start of a frame.
 void resetKeptResources(ExecutorState& state, VkCommandBuffer cmd);
 VkImageSubresourceRange wholeImage(const gpu::Image& image);
+// Between any commands, for all of an image.
+VkImageMemoryBarrier2 layoutChange(const gpu::Image& image, VkImageLayout from, VkImageLayout to);
 // Regions that copy between an image (all mips and layers) and a tightly packed buffer.
 std::vector<VkBufferImageCopy> packedCopy(const gpu::Image& image);
 

@@ -38,18 +38,6 @@ void makeOwned(ExecutorState& state, uint32_t index) {
   }
 }
 
-VkImageMemoryBarrier2 layoutChange(const gpu::Image& image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  b.srcAccessMask = b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  b.oldLayout = from;
-  b.newLayout = to;
-  b.image = image.handle();
-  b.subresourceRange = wholeImage(image);
-  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  return b;
-}
-
 void pipelineBarrier(VkCommandBuffer cmd, const std::vector<VkImageMemoryBarrier2>& images) {
   VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -110,6 +98,18 @@ uint64_t resourceBytes(const ResourceDesc& d) {
     texels +=
         uint64_t(std::max(1u, d.width >> mip)) * std::max(1u, d.height >> mip) * std::max(1u, d.depth >> mip);
   return texels * d.layers * gpu::formatInfo(d.format).bytesPerTexel;
+}
+
+VkImageMemoryBarrier2 layoutChange(const gpu::Image& image, VkImageLayout from, VkImageLayout to) {
+  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  b.srcAccessMask = b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  b.oldLayout = from;
+  b.newLayout = to;
+  b.image = image.handle();
+  b.subresourceRange = wholeImage(image);
+  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  return b;
 }
 
 gpu::BufferDesc bufferDesc(const BoundResource& resource) {

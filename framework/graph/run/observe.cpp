@@ -24,18 +24,6 @@ ResourceDesc observedPart(const ResourceDesc& all, const Observation& what) {
   return desc;
 }
 
-VkImageMemoryBarrier2 layoutChange(const gpu::Image& image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  b.srcAccessMask = b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  b.oldLayout = from;
-  b.newLayout = to;
-  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  b.image = image.handle();
-  b.subresourceRange = wholeImage(image);
-  return b;
-}
-
 void barrier(VkCommandBuffer cmd, const VkImageMemoryBarrier2& image) {
   VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   info.imageMemoryBarrierCount = 1;
