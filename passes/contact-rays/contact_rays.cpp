@@ -146,10 +146,13 @@ class ContactRays : public Pass {
     d.input("history", buffer("VplTally", sizeof(Tally)), Usage::HostRead, "`tallies` of the previous frame");
     d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")),
              Usage::HostWrite,
-             "rgb: irradiance / pi from VPLs, W/(sr m^2); a: 1 where surfaces meet, else all 0");
+             "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
     d.parameter("rays", integer(2, 1, 1024), "rays per pixel");
+    d.parameter("longer", real(4, 1, 1000),
+                "length of a running mean of `light`, in lengths of that elsewhere, for pass "
+                "temporal-accumulation");
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
     return d;
@@ -175,6 +178,7 @@ class ContactRays : public Pass {
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
     const Subsets subsets(vpls, history);
     const uint32_t count = uint32_t(ctx.parameters().integer("rays"));
+    const float longer = float(ctx.parameters().real("longer"));
     std::atomic<uint32_t> next = 0;
     std::mutex adding;
     uint64_t pixels = 0;
@@ -188,7 +192,7 @@ class ContactRays : public Pass {
           if (contacts[i].x == 0) continue;
           ++found;
           const glm::vec3 value = sampler.lightAt({x, y}, contacts[i]);
-          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), 1));
+          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), longer));
         }
       const std::lock_guard lock(adding);
       pixels += found;
