@@ -13,6 +13,7 @@ namespace fovea {
 
 class Hasher {
  public:
+  Hasher() = default;
   // Multiply, fold and rotate, as in wyhash: every input bit reaches every output bit within two rounds. Adding two
   // numbers at a time costs no more than adding one.
   template <std::integral T>
@@ -32,10 +33,17 @@ class Hasher {
     static_assert(std::is_trivially_copyable_v<T>);
     add(count);
     const auto* bytes = reinterpret_cast<const char*>(values);
-    for (size_t i = 0, size = count * sizeof(T); i < size; i += 8) {
-      uint64_t word = 0;
-      std::memcpy(&word, bytes + i, size - i < 8 ? size - i : 8);
-      add(word);
+    size_t i = 0, size = count * sizeof(T);
+    if (size >= kLarge) {  // four sums at a time, as a step of one waits for the step before
+      Hasher sums[4] = {Hasher(1), Hasher(2), Hasher(3), Hasher(4)};
+      for (; i + 64 <= size; i += 64)
+        for (size_t k = 0; k < 4; ++k) sums[k].add(word(bytes + i + 16 * k), word(bytes + i + 16 * k + 8));
+      for (const Hasher& sum : sums) add(sum.state_);
+    }
+    for (; i < size; i += 8) {
+      uint64_t rest = 0;
+      std::memcpy(&rest, bytes + i, size - i < 8 ? size - i : 8);
+      add(rest);
     }
   }
   template <class List>
@@ -59,6 +67,14 @@ class Hasher {
   uint64_t value() const { return state_; }
 
  private:
+  static constexpr size_t kLarge = 4096;  // bytes
+  explicit Hasher(uint64_t stream) { add(stream); }
+  static uint64_t word(const char* bytes) {
+    uint64_t value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+  }
+
   uint64_t state_ = 0x2545F4914F6CDD1Dull;
 };
 

@@ -1,10 +1,12 @@
 // Light of VPLs by rays where surfaces meet, in grooves and at the feet of things.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/packing.hpp>
 #include <mutex>
+#include <numeric>
 #include <vector>
 
 #include "fovea/error.h"
@@ -24,6 +26,7 @@ using namespace graph;
 
 constexpr uint32_t kContactStream = 0x636f6e74u;
 constexpr size_t kSubsets = 4;        // a pixel looks at one of so many subsets of the VPLs in a frame
+constexpr size_t kBlock = 16;         // VPLs whose light is summed before one of them is chosen
 constexpr float kLeastChance = 0.1f;  // of a VPL that no ray has reached, relative to one that all reach
 constexpr float kKept = 0.75f;        // share of the tallies that is kept from frame to frame
 constexpr float kRayEnd = 0.999f;     // rays end just before the VPL's surface
@@ -33,55 +36,76 @@ struct Tally {
   float rays = 0, reached = 0;
 };
 
-// What the choice of a VPL and its light need.
-struct PointLight {
-  glm::vec3 position;
-  float area;  // of its disc, divided by pi, m^2
-  glm::vec3 normal;
-  float power;  // sum over the channels of its intensity
-  glm::vec3 intensity;
-  float chance;  // that a ray reaches it, by those of the frames before
-  uint32_t slot;
-};
+// VPLs that shine, each value in a list of its own, so that a compiler can process several at a time. Their number is a
+// multiple of kBlock; those added for that have a weight of 0.
+struct Lights {
+  void add(const scene::Vpl& vpl, uint32_t slot, float chance) {
+    const float power = vpl.intensity.x + vpl.intensity.y + vpl.intensity.z;
+    if (!(power > 0)) return;
+    x.push_back(vpl.position.x), y.push_back(vpl.position.y), z.push_back(vpl.position.z);
+    normalX.push_back(vpl.normal.x), normalY.push_back(vpl.normal.y), normalZ.push_back(vpl.normal.z);
+    area.push_back(vpl.area * glm::one_over_pi<float>());
+    weight.push_back(chance * power);
+    slots.push_back(slot);
+    colors.push_back(vpl.intensity / (power * chance));
+  }
+  void clear() {
+    for (std::vector<float>* list : lists()) list->clear();
+    slots.clear();
+    colors.clear();
+  }
+  void fillBlock() {
+    const size_t count = (size() + kBlock - 1) / kBlock * kBlock;
+    for (std::vector<float>* list : lists()) list->resize(count);
+    slots.resize(count);
+    colors.resize(count);
+  }
+  size_t size() const { return weight.size(); }
+  glm::vec3 position(size_t i) const { return {x[i], y[i], z[i]}; }
 
-// The VPLs that shine, those of a subset side by side.
-class Subsets {
- public:
-  Subsets(std::span<const scene::Vpl> vpls, std::span<const Tally> tallies) {
-    for (size_t subset = 0; subset < kSubsets; ++subset) {
-      starts_[subset] = lights_.size();
-      for (size_t i = subset; i < vpls.size(); i += kSubsets) {
-        const scene::Vpl& v = vpls[i];
-        const float power = v.intensity.x + v.intensity.y + v.intensity.z;
-        const float chance = std::max((tallies[i].reached + 1) / (tallies[i].rays + 1), kLeastChance);
-        if (power > 0)
-          lights_.push_back({v.position, v.area * glm::one_over_pi<float>(), v.normal, power, v.intensity,
-                             chance, uint32_t(i)});
-      }
-    }
-    starts_[kSubsets] = lights_.size();
-  }
-  std::span<const PointLight> operator[](size_t subset) const {
-    return std::span(lights_).subspan(starts_[subset], starts_[subset + 1] - starts_[subset]);
-  }
+  std::vector<float> x, y, z, normalX, normalY, normalZ;
+  std::vector<float> area;        // of the disc, divided by pi, m^2
+  std::vector<float> weight;      // sum over the channels of the intensity, times the chance that a ray reaches it
+  std::vector<uint32_t> slots;
+  std::vector<glm::vec3> colors;  // intensity divided by the weight
 
  private:
-  std::vector<PointLight> lights_;
-  size_t starts_[kSubsets + 1] = {};
+  std::array<std::vector<float>*, 8> lists() {
+    return {&x, &y, &z, &normalX, &normalY, &normalZ, &area, &weight};
+  }
 };
 
+// Light that each of them would send if nothing hid it, by weight:
 // cos_s cos_l / (d^2 + A / pi) / d^2, in the form in which pass deferred has it.
-float transfer(const PointLight& light, glm::vec3 position, glm::vec3 normal) {
-  const glm::vec3 to = position - light.position;
-  const float d2 = std::max(glm::dot(to, to), 1e-12f);
-  const float cosines = std::max(-glm::dot(normal, to), 0.0f) * std::max(glm::dot(light.normal, to), 0.0f);
-  return cosines / (d2 * (d2 + light.area));
+void lightOfEach(const Lights& lights, glm::vec3 position, glm::vec3 normal, std::vector<float>& result) {
+  result.resize(lights.size());
+  for (size_t i = 0; i < lights.size(); ++i) {
+    const float x = position.x - lights.x[i], y = position.y - lights.y[i], z = position.z - lights.z[i];
+    const float d2 = std::max(x * x + y * y + z * z, 1e-12f);
+    const float facing = std::max(-(normal.x * x + normal.y * y + normal.z * z), 0.0f);
+    const float along =
+        std::max(lights.normalX[i] * x + lights.normalY[i] * y + lights.normalZ[i] * z, 0.0f);
+    result[i] = lights.weight[i] * facing * along / (d2 * (d2 + lights.area[i]));
+  }
+}
+
+// The entry in whose share of the sum `place` lies, from which those before it are taken. Never one of 0, if there is
+// another.
+size_t pick(std::span<const float> values, float& place) {
+  size_t last = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0)) continue;
+    last = i;
+    if (place < values[i]) break;
+    place -= values[i];
+  }
+  return last;
 }
 
 // Light of VPLs at single pixels, for one thread.
 class Sampler {
  public:
-  Sampler(const scene::RayScene& rays, const scene::View& view, const Subsets& subsets, uint32_t count,
+  Sampler(const scene::RayScene& rays, const scene::View& view, std::span<const Lights> subsets, uint32_t count,
           uint32_t seed, uint32_t turn, size_t slots)
       : tallies(slots),
         rays_(rays),
@@ -102,22 +126,23 @@ class Sampler {
     const glm::vec3 normal = scene::octDecode(glm::unpackSnorm2x16(contact.y));
     const glm::vec3 origin = position + (normal - away) * rays_.epsilon();
     const glm::vec2 u = scene::streamSequence(randomStream(seed_, pixel.x, kContactStream, pixel.y), turn_);
-    const auto lights = subsets_[std::min(size_t(u.y * float(kSubsets)), kSubsets - 1)];
-    sums_.resize(lights.size());
-    float sum = 0;
-    for (size_t i = 0; i < lights.size(); ++i)
-      sums_[i] = sum += lights[i].chance * lights[i].power * transfer(lights[i], position, normal);
+    const Lights& lights = subsets_[std::min(size_t(u.y * float(kSubsets)), kSubsets - 1)];
+    lightOfEach(lights, position, normal, unhidden_);
+    blocks_.clear();
+    for (auto block = unhidden_.begin(); block != unhidden_.end(); block += kBlock)
+      blocks_.push_back(std::reduce(block, block + kBlock));
+    const float sum = std::reduce(blocks_.begin(), blocks_.end());
     if (!(sum > 0)) return glm::vec3(0);
     glm::vec3 light(0);
     for (uint32_t k = 0; k < count_; ++k) {
-      const float place = (float(k) + u.x) / float(count_) * sum;
-      const size_t i =
-          std::min(size_t(std::ranges::upper_bound(sums_, place) - sums_.begin()), lights.size() - 1);
-      const PointLight& l = lights[i];
-      ++tallies[l.slot].rays;
-      if (rays_.occluded({origin, l.position - origin, 0, kRayEnd})) continue;
-      ++tallies[l.slot].reached;
-      light += l.intensity / (l.power * l.chance);
+      float place = (float(k) + u.x) / float(count_) * sum;
+      const size_t block = kBlock * pick(blocks_, place);
+      const size_t i = block + pick(std::span(unhidden_).subspan(block, kBlock), place);
+      Tally& tally = tallies[lights.slots[i]];
+      ++tally.rays;
+      if (rays_.occluded({origin, lights.position(i) - origin, 0, kRayEnd})) continue;
+      ++tally.reached;
+      light += lights.colors[i];
     }
     return light * (sum * float(kSubsets) / float(count_) * glm::one_over_pi<float>());
   }
@@ -125,9 +150,9 @@ class Sampler {
  private:
   const scene::RayScene& rays_;
   const scene::View& view_;
-  const Subsets& subsets_;
+  std::span<const Lights> subsets_;
   uint32_t count_, seed_, turn_;
-  std::vector<float> sums_;
+  std::vector<float> unhidden_, blocks_;  // light of each VPL if nothing hides it, and sums of kBlock of them
 };
 
 class ContactRays : public Pass {
@@ -146,10 +171,13 @@ class ContactRays : public Pass {
     d.input("history", buffer("VplTally", sizeof(Tally)), Usage::HostRead, "`tallies` of the previous frame");
     d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")),
              Usage::HostWrite,
-             "rgb: irradiance / pi from VPLs, W/(sr m^2); a: 1 where surfaces meet, else all 0");
+             "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
     d.parameter("rays", integer(2, 1, 1024), "rays per pixel");
+    d.parameter("longer", real(4, 1, 1000),
+                "length of a running mean of `light`, in lengths of that elsewhere, for pass "
+                "temporal-accumulation");
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
     return d;
@@ -173,13 +201,20 @@ class ContactRays : public Pass {
                       std::to_string(size.y),
                   "wire contacts of the view that the pass looks through");
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
-    const Subsets subsets(vpls, history);
+    for (size_t s = 0; s < kSubsets; ++s) {
+      subsets_[s].clear();
+      for (size_t i = s; i < vpls.size(); i += kSubsets)
+        subsets_[s].add(vpls[i], uint32_t(i),
+                        std::max((history[i].reached + 1) / (history[i].rays + 1), kLeastChance));
+      subsets_[s].fillBlock();
+    }
     const uint32_t count = uint32_t(ctx.parameters().integer("rays"));
+    const float longer = float(ctx.parameters().real("longer"));
     std::atomic<uint32_t> next = 0;
     std::mutex adding;
     uint64_t pixels = 0;
     onThreads(std::min(threadCount(0), height), [&] {
-      Sampler sampler(*rays, ctx.view(), subsets, count, frame.seed, uint32_t(ctx.frameNumber()),
+      Sampler sampler(*rays, ctx.view(), subsets_, count, frame.seed, uint32_t(ctx.frameNumber()),
                       vpls.size());
       uint64_t found = 0;
       for (uint32_t y = next++; y < height; y = next++)
@@ -188,7 +223,7 @@ class ContactRays : public Pass {
           if (contacts[i].x == 0) continue;
           ++found;
           const glm::vec3 value = sampler.lightAt({x, y}, contacts[i]);
-          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), 1));
+          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), longer));
         }
       const std::lock_guard lock(adding);
       pixels += found;
@@ -204,6 +239,9 @@ class ContactRays : public Pass {
     ctx.counter("pixels", double(pixels));
     ctx.counter("rays", double(pixels * count));
   }
+
+ private:
+  Lights subsets_[kSubsets];
 };
 
 FOVEA_PASS(ContactRays);

@@ -59,11 +59,16 @@ class Deferred : public Pass {
             "rgb: irradiance / pi of each pixel from nearby surfaces (pass near-field), filtered together "
             "with that of the VPLs")
         .makeOptional();
+    d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: irradiance / pi from VPLs where rays have found it (pass contact-rays), to which "
+            "`near_field` is added as it is; a: above 0 there, and written to `irradiance`; not used where "
+            "`periphery` 2 spares pixels")
+        .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "rgb: filtered indirect irradiance / pi, W/(sr m^2); multiplied by the reflectance rho it gives "
-             "`indirect`; background 0");
+             "`indirect`; background 0; a: 1, or that of `traced`");
     d.output("indirect", color, Usage::ColorAttachment,
              "rgb: indirect radiance rho E / pi towards the eye; background 0");
     d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
@@ -189,6 +194,8 @@ class Deferred : public Pass {
           .define("BLOCK", parameter("interleave"))
           .define("EDGES", edges)
           .define("SCALE", scale)
+          .define("TRACED", scale == 1 ? wired("traced") : SizeExpr(0))
+          .define("NEAR_FIELD", wired("near_field"))
           .constant("filterCos", [](const RecordContext& ctx) {
             return std::cos(glm::radians(float(ctx.parameters().real("filter_angle"))));
           });

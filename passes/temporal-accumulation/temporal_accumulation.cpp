@@ -34,9 +34,8 @@ class TemporalAccumulation : public Pass {
             "motion-vectors)");
     d.input("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, smaller than "
-            "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as "
-            "long the "
-            "mean is there, if above 1 (pass contact-blend)");
+            "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as long "
+            "the mean is there, if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,

@@ -27,9 +27,12 @@ class WeightMap : public Pass {
                 "whole image");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
                 "radius r_f of the fovea: the weight is 1 inside and r_f / r at distance r from the gaze");
+    d.parameter("spacing", integer(1, 1, 16),
+                "one pixel in each square of this width is looked at; above 1, sides that are smaller on the "
+                "screen may be missed");
     d.counter("visible", "sides with a weight above 0");
-    d.counter("unassigned", "pixels that show a surface for which the grid has no side facing the eye");
-    const SizeExpr tile = kBlock * kGroup;
+    d.counter("unassigned", "pixels looked at that show a surface for which the grid has no side facing the eye");
+    const SizeExpr tile = SizeExpr(kBlock * kGroup) * parameter("spacing");
     d.fill("weights", 0);
     d.step("weight-map/scatter.comp")
         .define("WHOLE_IMAGE", is("region", "image"))

@@ -2,7 +2,8 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
-// irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl).
+// irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl); TRACED 0/1, 1 if rays have found the
+// light of some pixels, of which none lies in the periphery; NEAR_FIELD 0/1, 1 if that of pass near-field is to be added to it.
 //
 // Pixels whose window does not hold all subsets are listed and processed by the EDGES variant, which packs these few
 // pixels into its work groups. With MASKED most windows extend beyond the blocks, so EDGES processes all pixels of
@@ -69,6 +70,13 @@ layout(rgba16f) uniform readonly image2D base;
 layout(r8) uniform readonly image2D shadeMask;
 #endif
 
+#if TRACED
+layout(rgba16f) uniform readonly image2D traced;
+#endif
+#if TRACED && NEAR_FIELD
+layout(rgba16f) uniform readonly image2D nearField;
+#endif
+
 layout(push_constant) uniform Constants {
 #if !MASKED && !EDGES
   ivec4 fine;           // corners of the part of the picture that is shaded at all pixels
@@ -98,6 +106,18 @@ bool isShaded(ivec2 p) { return true; }
 
 bool sameSurface(Centre c, vec4 position, vec3 normal, float plane, float least) {
   return sameSurface(c.position, c.normal, c.normal, position, normal, plane, least);
+}
+
+// What rays have found at a pixel, as it is written; a: 0 if nothing.
+vec4 tracedAt(ivec2 p) {
+  vec4 found = vec4(0.0);
+#if TRACED
+  found = imageLoad(traced, p);
+#endif
+#if TRACED && NEAR_FIELD
+  found.rgb = min(found.rgb + imageLoad(nearField, p).rgb, 65504.0);
+#endif
+  return found;
 }
 
 // Bit of a subset in `missing`, numbered from the pixel.
@@ -362,7 +382,9 @@ void main() {
       ivec2 p = first + ivec2(0, i);
       bool surface = centres[i].plane >= 0.0, incomplete;
       vec3 mean = meanOfSubsets(centres[i], min(p, size - 1) / SCALE, imageSize(partial), surface, incomplete);
-      if (all(lessThan(p, size))) imageStore(irradiance, p, vec4(surface ? mean : vec3(0.0), 1.0));
+      vec4 known = tracedAt(min(p, size - 1));
+      if (all(lessThan(p, size)))
+        imageStore(irradiance, p, known.a > 0.0 ? known : vec4(surface ? mean : vec3(0.0), 1.0));
       surfaces += subgroupBallotBitCount(subgroupBallot(surface));
       found += subgroupBallotBitCount(subgroupBallot(incomplete));
     }
@@ -380,11 +402,13 @@ uint resolve(ivec2 first, ivec2 size) {
   for (int k = 0; k < kPixels; ++k) centres[k] = centreAt(first + ivec2(0, k), size);
   filterWindows(centres, first);
   for (int k = 0; k < kPixels; ++k) addOthers(centres[k]);
+  vec4 known[kPixels];
+  for (int k = 0; k < kPixels; ++k) known[k] = tracedAt(min(first + ivec2(0, k), size - 1));
   uint surfaces = 0u, total = 0u, before[kPixels];
   for (int k = 0; k < kPixels; ++k) {
     bool surface = centres[k].plane >= 0.0;
     surfaces += subgroupBallotBitCount(subgroupBallot(surface));
-    uvec4 edge = subgroupBallot(surface && centres[k].found < kEnough);
+    uvec4 edge = subgroupBallot(surface && centres[k].found < kEnough && known[k].a == 0.0);
     before[k] = total + subgroupBallotExclusiveBitCount(edge);
     total += subgroupBallotBitCount(edge);
   }
@@ -395,10 +419,12 @@ uint resolve(ivec2 first, ivec2 size) {
   for (int k = 0; k < kPixels; ++k) {
     ivec2 p = first + ivec2(0, k);
     bool surface = centres[k].plane >= 0.0;
-    if (surface && centres[k].found < kEnough)
+    if (surface && centres[k].found < kEnough && known[k].a == 0.0)
       edgePixels.list[end - 1u + before[k]] = uint(p.x) | uint(p.y) << 16u;
-    else if (all(lessThan(p, size)))
-      imageStore(irradiance, p, vec4(surface ? centres[k].sum / float(centres[k].found) : vec3(0.0), 1.0));
+    else if (all(lessThan(p, size))) {
+      vec3 mean = surface ? centres[k].sum / float(centres[k].found) : vec3(0.0);
+      imageStore(irradiance, p, known[k].a > 0.0 ? known[k] : vec4(mean, 1.0));
+    }
   }
   return surfaces;
 }

@@ -18,11 +18,12 @@ layout(rg16_snorm) uniform readonly image2D gbufferFace;
 layout(std430) buffer Weights { uint weights[]; };    // bits of non-negative floats, which are ordered as the floats
 layout(std430) buffer Counters { uint counters[]; };  // visible, unassigned
 
-#if !WHOLE_IMAGE
 layout(push_constant) uniform Constants {
+  int spacing;        // one pixel in each square of this width is looked at
+#if !WHOLE_IMAGE
   float foveaRadius;  // image widths
-};
 #endif
+};
 
 // The side in which a surface point lies; if that is empty (rounding decides on the border of a cell), the voxel's
 // other side, provided that it faces the eye.
@@ -52,7 +53,7 @@ struct Seen {
 Seen seenAt(VoxelGrid grid, ivec2 first, int i, ivec2 size) {
   Seen seen;
   int row = i / kBlock, column = i % kBlock;
-  seen.pixel = first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row);
+  seen.pixel = spacing * (first + ivec2((row & 1) == 0 ? column : kBlock - 1 - column, row));
   vec4 position = imageLoad(gbufferPosition, min(seen.pixel, size - 1));
   seen.surface = i < kBlock * kBlock && all(lessThan(seen.pixel, size)) && position.w > 0.0;
   seen.cell = ivec3(floor(worldToVoxel(grid, position.xyz)));

@@ -76,13 +76,13 @@ struct Expected {
 
 // The definition of the weights (passes/README.md, weight-map), one pixel after the other.
 Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze,
-                   float radius) {
+                   float radius, int spacing = 1) {
   Expected e;
   e.weights.resize(voxels.surface.size());
   const scene::Fovea fovea = scene::makeFovea(gaze, {picture.width, picture.height}, radius);
   const int r = voxels.resolution;
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
+  for (int y = 0; y < picture.height; y += spacing)
+    for (int x = 0; x < picture.width; x += spacing) {
       const Pixel& p = picture.at(x, y);
       if (p.distance <= 0) continue;
       const glm::ivec3 cell(glm::floor(voxels.grid.worldToVoxel(p.position)));
@@ -153,15 +153,21 @@ Picture randomPicture(int width, int height, const VoxelArrays& voxels) {
 TEST(WeightMap, EqualsTheReference) {
   const scene::Scene s = room();
   const VoxelArrays voxels = voxelizeReference(s, scene::flatten(s), kResolution);
-  for (const glm::ivec2 size : {glm::ivec2(101, 77), glm::ivec2(64, 64), glm::ivec2(3, 2)}) {
+  struct Case {
+    glm::ivec2 size;
+    int spacing;
+  };
+  for (const auto [size, spacing] :
+       {Case{{101, 77}, 1}, Case{{64, 64}, 1}, Case{{3, 2}, 1}, Case{{203, 154}, 2}, Case{{3, 2}, 16}}) {
     PassTest test("weight-map");
-    test.scene(s).param("fovea_radius", 0.2);
+    test.scene(s).param("fovea_radius", 0.2).param("spacing", spacing);
     setVoxels(test, voxels);
     const Picture picture = randomPicture(size.x, size.y, voxels);
     picture.wire(test);
     test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.views[0].gaze = {0.3f, 0.6f}; });
     test.run();
-    const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f);
+    const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f,
+                                        spacing);
     expectEqual(test, expected);
     if (size.x < 50) continue;
     EXPECT_GT(expected.visible, 200);  // the test is not vacuous
