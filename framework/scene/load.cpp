@@ -8,6 +8,7 @@
 
 #include "framework/base/paths.h"
 #include "framework/scene/file/scene_file.h"
+#include "framework/scene/first_view/first_view.h"
 
 namespace fovea::scene {
 namespace fs = std::filesystem;
@@ -26,23 +27,16 @@ uint32_t shifted(uint32_t index, size_t by) { return index == kNoIndex ? kNoInde
 
 bool isModelFile(const fs::path& file) { return file.extension() == ".gltf" || file.extension() == ".glb"; }
 
-// Loads a model on its own, with a default camera and light if it has none.
+// Loads a model on its own, with all that a picture of it needs.
 Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
   Scene scene = loadGltf(file, warnings);
-  const Geometry geometry = flatten(scene);
-  const SourceLocation where{file.string(), 0, 0};
-  if (scene.cameras.empty()) {
-    addDefaultCamera(scene, geometry);
-    warnings.warning(where, "", "the model has no camera: the whole of it is shown from its front",
-                     "write a scene file that names the model and a camera");
-  }
-  bool emits = false;
-  for (const Material& m : scene.materials) emits = emits || m.emission != glm::vec3(0);
-  if (scene.lights.empty() && !emits) {
-    addDefaultLight(scene);
-    warnings.warning(where, "", "the model has no light: a sun is added",
-                     "write a scene file that names the model and its lights");
-  }
+  const FirstView added = addFirstView(scene, flatten(scene));
+  std::string list;
+  for (const std::string& what : {added.camera, added.light, added.exposure})
+    if (!what.empty()) list += (list.empty() ? "" : ", ") + what;
+  if (!list.empty())
+    warnings.warning({file.string(), 0, 0}, "", "what the model does not say is assumed: " + list,
+                     "`fovea scene info` prints it for a scene file, in which it can be changed");
   scene.hash = contentHash(scene);
   return scene;
 }
@@ -181,30 +175,6 @@ void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
     c.orientation = placement.rotation * c.orientation;
     scene.cameras.push_back(std::move(c));
   }
-}
-
-void addDefaultCamera(Scene& scene, const Geometry& geometry) {
-  Camera c;
-  c.name = "default";
-  if (!geometry.empty()) {
-    const glm::vec3 centre = 0.5f * (geometry.boundsMin + geometry.boundsMax);
-    const float radius = std::max(0.5f * glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
-    // Slightly from above and from the side, so that flat models are visible too.
-    const glm::vec3 from = glm::normalize(glm::vec3(0.35f, 0.30f, 1.0f));
-    const float distance = radius / std::sin(0.5f * c.verticalFov);
-    c.position = centre + distance * from;
-    c.orientation = lookAlong(-from, {0, 1, 0});
-    c.zNear = 0.01f * distance;
-  }
-  scene.cameras.push_back(c);
-}
-
-void addDefaultLight(Scene& scene) {
-  Light sun;
-  sun.name = "default sun";
-  sun.intensity = 3.0f;  // lux: a white surface facing it has radiance 0.95, just below display white
-  sun.direction = glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f));
-  scene.lights.push_back(sun);
 }
 
 }  // namespace fovea::scene

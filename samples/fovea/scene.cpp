@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "fovea/scene.h"
 #include "framework/graph/report/report.h"
@@ -67,6 +69,46 @@ void printContents(const Scene& s, const scene::Geometry& geometry) {
        fmt::format("{} to {} m", formatVector(geometry.boundsMin), formatVector(geometry.boundsMax)));
 }
 
+using Json = nlohmann::ordered_json;
+
+// Five digits, which is more than an eye can tell apart.
+double rounded(float value) { return std::stod(fmt::format("{:.5g}", value)); }
+Json toJson(glm::vec3 v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
+
+// A scene file that shows the same as a model on its own (samples/scenes/README.md).
+Json sceneFileOf(const Scene& s) {
+  const scene::Camera& c = s.cameras.at(0);
+  Json file = Json::object();
+  file["models"] = {{{"file", s.source}}};
+  file["camera"] = {{"eye", toJson(c.position)},
+                    {"target", toJson(c.position + c.orientation * glm::vec3(0, 0, -1))},
+                    {"fov_deg", rounded(glm::degrees(c.verticalFov))},
+                    {"near", rounded(c.zNear)}};
+  for (size_t i = s.lights.size() - s.assumedLights; i < s.lights.size(); ++i) {
+    const scene::Light& light = s.lights[i];
+    const bool sun = light.type == scene::LightType::Directional;
+    file["lights"].push_back({{"type", sun ? "directional" : "point"},
+                              {"name", light.name},
+                              {"intensity", rounded(light.intensity)},
+                              {"color", toJson(light.color)},
+                              {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
+  }
+  file["exposure"] = rounded(s.exposure);
+  file["environment"] = toJson(s.environment);
+  return file;
+}
+
+void printSceneFile(const Scene& s) {
+  fmt::print("\nas a scene file, to be changed:\n{{");
+  const char* before = "\n";
+  const Json file = sceneFileOf(s);
+  for (const auto& [key, value] : file.items()) {
+    fmt::print("{}  \"{}\": {}", before, key, value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    before = ",\n";
+  }
+  fmt::print("\n}}\n");
+}
+
 ExitCode info(const std::string& name) {
   Diagnostics messages;
   const Scene s = scene::load(name, messages);
@@ -95,6 +137,7 @@ ExitCode info(const std::string& name) {
   line("exposure", fmt::format("{:.4g}", s.exposure));
   line("sky", formatVector(s.environment) + " W/(sr m^2)");
   line("hash", formatHash(s.hash));
+  if (s.assumed) printSceneFile(s);
   return ExitCode::Ok;
 }
 

@@ -145,6 +145,20 @@ class Inputs(CliTest):
         self.assertGreaterEqual(len(lines), 1, run.stderr)
         self.assertEqual(len(lines), len(set(lines)), run.stderr)
 
+    def test_what_a_model_does_not_say_is_printed_as_a_scene_file(self):
+        self.model([0, 0, 0, 1, 0, 0, 0, 1, 0])
+        run = self.succeeds("scene", "info", "model.gltf")
+        self.assertIn("is assumed: a camera that shows the whole of it, a sun and a sky", run.stderr)
+        values, scene_file = run.stdout.split("as a scene file, to be changed:\n")
+        self.write("own.json", scene_file)
+        again = self.succeeds("scene", "info", "own.json")
+        self.assertEqual(again.stderr, "")
+        self.assertNotIn("scene file", again.stdout)
+        for kind in ("camera", "light", "exposure", "sky"):
+            wanted = [line for line in values.splitlines() if line.startswith(kind)]
+            self.assertTrue(wanted, values)
+            self.assertEqual([line for line in again.stdout.splitlines() if line.startswith(kind)], wanted)
+
     def test_graph_without_what_a_file_shows(self):
         self.graph(outputs={"image": None})
         self.fails(BAD_INPUT, "render", "graph.json", "--scene", "cornellbox", *SMALL, "-o", "a.png", says=["`image`"])

@@ -326,15 +326,17 @@ TEST(Load, BareModelsGetAViewAndASun) {
   Diagnostics warnings;
   const Scene s = load(file.string(), warnings);
   ASSERT_EQ(s.cameras.size(), 1u);
-  ASSERT_EQ(s.lights.size(), 1u);
+  ASSERT_EQ(s.lights.size(), 2u);
+  EXPECT_EQ(s.assumedLights, 2u);
   EXPECT_EQ(s.lights[0].type, LightType::Directional);
-  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("no light")));
+  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("is assumed: a camera"), HasSubstr("a sun and a sky"),
+                                       HasSubstr("the exposure"), HasSubstr("scene info")));
   // The view contains the whole model, and the sun shines on what it sees.
   const glm::vec3 forward = s.cameras[0].orientation * glm::vec3(0, 0, -1);
   for (const glm::vec3 p : {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)})
     EXPECT_GT(glm::dot(glm::normalize(p - s.cameras[0].position), forward),
-              std::cos(0.5f * s.cameras[0].verticalFov));
-  EXPECT_LT(glm::dot(s.lights[0].direction, glm::vec3(0, 0, 1)), -0.2f);
+              std::cos(0.75f * s.cameras[0].verticalFov));
+  EXPECT_LT(s.lights[0].direction.y, 0);
 }
 
 TEST(Load, NamesAndFiles) {

@@ -229,6 +229,9 @@ struct Scene {
   float exposure = 1;        // display = sRGB(exposure * radiance)
   glm::vec3 environment{0};  // radiance where a ray hits nothing
   uint64_t hash = 0;         // hash of all content, for caches and reports
+  // What a model does not say and load() has assumed: camera, exposure and environment, and the last of the lights.
+  bool assumed = false;
+  uint32_t assumedLights = 0;
 };
 
 // A range of the triangles in Geometry. Object 0 holds all static geometry. An object that is invisible at the time
@@ -352,8 +355,8 @@ struct Frame {
 
 // ---- Loading ---------------------------------------------------------------------------------------------------
 
-// `nameOrFile` is the bare name of a built-in scene or scene file, or a .json, .gltf or .glb file. A model without
-// lights or cameras gets a default view and a sun, with a warning. Throws Error(BadInput) with file, place and
+// `nameOrFile` is the bare name of a built-in scene or scene file, or a .json, .gltf or .glb file. A model on its own
+// gets what a picture of it needs and it does not say, a camera, light and an exposure, with a warning. Throws Error(BadInput) with file, place and
 // remedy; for a missing model the message also says where to get it.
 Scene load(const std::string& nameOrFile, Diagnostics& warnings);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/scene/file/reader.h"
+#include "framework/scene/first_view/first_view.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/motion.h"
 
@@ -249,9 +250,9 @@ Scene parseSceneFile(const Value& root, const fs::path& file, Diagnostics& warni
   Scene scene = parser.assemble(file.parent_path(), warnings);
   if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
   if (scene.cameras.empty()) {
-    addDefaultCamera(scene, flatten(scene));
-    warnings.warning({file.string(), 0, 0}, "camera",
-                     "the scene has no camera: the whole of it is shown from its front");
+    const std::string added = addFirstCamera(scene, flatten(scene));
+    warnings.warning({file.string(), 0, 0}, "camera", "the scene has no camera: " + added + " is assumed",
+                     "`fovea scene info` prints it to be copied");
   }
   warnOfDarkness(scene, warnings);
   scene.hash = contentHash(scene);

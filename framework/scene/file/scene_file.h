@@ -23,10 +23,6 @@ struct Placement {
 };
 void appendModel(Scene& scene, Scene&& model, const Placement& placement);
 
-// Defaults for models without a camera or a light: a view of the whole model from its front, and a sun.
-void addDefaultCamera(Scene& scene, const Geometry& geometry);
-void addDefaultLight(Scene& scene);
-
 // An orientation that looks along `direction`.
 glm::quat lookAlong(glm::vec3 direction, glm::vec3 up);
 

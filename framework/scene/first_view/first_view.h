@@ -1,0 +1,31 @@
+// What a picture needs and the file of a model does not say: a camera, enough light, and an exposure.
+#pragma once
+
+#include <string>
+
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+
+// What has been added to a scene, in words; empty where nothing was.
+struct FirstView {
+  std::string camera, light, exposure;
+};
+
+// Adds a camera if the scene has none, light if most of what the camera shows would be dark, and the exposure with
+// which that is neither dark nor burnt out. `geometry` must be what flatten() made of the scene.
+FirstView addFirstView(Scene& scene, const Geometry& geometry);
+
+// The parts of it. Each returns what it has added.
+
+// A camera at the height of an eye where walls stand all around, if they show more of the scene than a look at it from
+// outside; else one in front of the scene and above it, which shows the whole of it.
+std::string addFirstCamera(Scene& scene, const Geometry& geometry);
+// A sun and a sky; or, if none of them could reach what the first camera sees, a lamp above it. Nothing if at least half
+// of what it sees is lit.
+std::string addFirstLight(Scene& scene, const Geometry& geometry);
+// The exposure with which the first camera's picture has a mean display value of about 0.45 and hardly any pixel is
+// clipped, rounded to two digits. 1 if nothing is lit.
+float firstExposure(const Scene& scene, const Geometry& geometry);
+
+}  // namespace fovea::scene

@@ -1,0 +1,180 @@
+// Judges the light in the first camera's picture by a few rays, adds some where it is dark, and sets the exposure.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fovea/image.h"
+#include "framework/base/random.h"
+#include "framework/scene/first_view/first_view.h"
+#include "framework/scene/rays/surface_tracer.h"
+
+namespace fovea::scene {
+namespace {
+
+constexpr uint32_t kWidth = 48;           // of the picture, pixels
+constexpr uint32_t kGathered = 4;         // rays for further bounces at each of them
+constexpr float kDark = 0.02f;            // of the light of what is brightest: less is not seen beside it
+constexpr float kDisplay = 0.45f;         // mean display value
+constexpr float kClipped = 0.015f;        // most of the surfaces' pixels that may be clipped
+constexpr float kSunlight = 3.0f;         // lux, on a surface that faces it
+constexpr float kSkylight = 0.35f;        // of the sunlight
+const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything, as displayed before sRGB
+
+struct Picture {
+  std::vector<glm::vec3> pixels;        // radiance, W/(sr m^2)
+  std::vector<TracedSurface> surfaces;  // what they show; there: false in the background
+};
+
+// The first camera's picture as a path tracer with few samples sees it.
+Picture trace(const Scene& scene, const Geometry& geometry) {
+  const Frame frame = makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
+  const View& view = frame.views.front();
+  const auto rays = RayScene::cached(scene, geometry);
+  const SurfaceTracer tracer(frame, view, *rays);
+  Picture picture;
+  uint64_t count = 0;
+  for (uint32_t y = 0; y < kWidth; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x) {
+      const TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
+      picture.surfaces.push_back(seen);
+      if (!seen.there) {
+        picture.pixels.push_back(scene.environment);
+        continue;
+      }
+      const glm::vec3 rho = tracer.reflectance(seen);
+      picture.pixels.push_back(tracer.emitted(seen) + tracer.direct(seen, rho, count) +
+                               rho * tracer.gather(seen, 2, kGathered, randomStream(1, x, 0, y), count));
+    }
+  return picture;
+}
+
+float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b}); }
+
+// Whether at least half of the surfaces are lit enough to be seen beside the brightest.
+bool isLit(const Picture& picture) {
+  std::vector<float> light;
+  for (size_t i = 0; i < picture.pixels.size(); ++i)
+    if (picture.surfaces[i].there) light.push_back(brightest(picture.pixels[i]));
+  if (light.empty()) return true;
+  std::ranges::sort(light);
+  const float bright = light[size_t(float(light.size()) * (1 - kClipped))];
+  return bright > 0 && light[light.size() / 2] > kDark * bright;
+}
+
+// Share of the surfaces in the picture that a sun in this direction lights.
+float sunlit(const Picture& picture, const RayScene& rays, glm::vec3 towardsSun) {
+  uint32_t surfaces = 0, lit = 0;
+  for (const TracedSurface& s : picture.surfaces) {
+    if (!s.there) continue;
+    ++surfaces;
+    lit += glm::dot(s.normal, towardsSun) > 0.1f && !rays.occluded({s.origin, towardsSun});
+  }
+  return surfaces > 0 ? float(lit) / float(surfaces) : 0;
+}
+
+void addDirectional(Scene& scene, const char* name, glm::vec3 from, float lux, glm::vec3 color) {
+  Light light;
+  light.name = name;
+  light.color = color;
+  light.intensity = lux;
+  light.direction = -glm::normalize(from);
+  scene.lights.push_back(light);
+}
+
+// The sun that leaves about half of the picture in shadow, of those that stand high enough and not behind the scene.
+// Returns false if none reaches anything.
+bool addSun(Scene& scene, const Picture& picture, const RayScene& rays) {
+  const glm::vec3 right = scene.cameras[0].orientation * glm::vec3(1, 0, 0);
+  const float facing = std::atan2(-right.z, right.x);
+  glm::vec3 best(0);
+  float most = 0.02f;
+  for (const float height : {0.7f, 1.0f, 1.3f})
+    for (int i = -4; i <= 4; ++i) {
+      const float yaw = facing + 0.35f * float(i);  // 0: behind the camera
+      const glm::vec3 from(std::sin(yaw) * std::cos(height), std::sin(height), std::cos(yaw) * std::cos(height));
+      const float lit = sunlit(picture, rays, from), balance = lit * (1.2f - lit);
+      if (balance > most) most = balance, best = from;
+    }
+  if (best == glm::vec3(0)) return false;
+  addDirectional(scene, "default sun", best, kSunlight, {1, 0.96f, 0.88f});
+  addDirectional(scene, "default sky", {-0.5f * best.x, 1, -0.5f * best.z}, kSkylight * kSunlight, {0.8f, 0.9f, 1});
+  return true;
+}
+
+// A lamp below the ceiling, a little ahead of the camera.
+void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
+  const Camera& camera = scene.cameras[0];
+  std::vector<float> distances;
+  for (const TracedSurface& s : picture.surfaces)
+    if (s.there) distances.push_back(glm::distance(s.position, camera.position));
+  std::ranges::nth_element(distances, distances.begin() + ptrdiff_t(distances.size() / 2));
+  const float far = distances[distances.size() / 2];
+  const glm::vec3 ahead = camera.orientation * glm::vec3(0, 0, -1);
+  const RayHit wall = rays.intersect({camera.position, ahead});
+  const glm::vec3 below = camera.position + ahead * std::min(0.4f * far, wall ? 0.4f * wall.distance : far);
+  const RayHit ceiling = rays.intersect({below, {0, 1, 0}});
+  Light lamp;
+  lamp.name = "default lamp";
+  lamp.type = LightType::Point;
+  lamp.color = {1, 0.93f, 0.82f};
+  lamp.position = below + glm::vec3(0, 0.6f * std::min(ceiling ? ceiling.distance : far, far), 0);
+  lamp.intensity = kSunlight * far * far;
+  scene.lights.push_back(lamp);
+}
+
+}  // namespace
+
+std::string addFirstLight(Scene& scene, const Geometry& geometry) {
+  if (geometry.empty()) return {};
+  const Picture picture = trace(scene, geometry);
+  if (isLit(picture)) return {};
+  const auto rays = RayScene::cached(scene, geometry);
+  if (addSun(scene, picture, *rays)) return "a sun and a sky";
+  addLamp(scene, picture, *rays);
+  return "a lamp";
+}
+
+float firstExposure(const Scene& scene, const Geometry& geometry) {
+  if (geometry.empty()) return 1;
+  const Picture picture = trace(scene, geometry);
+  std::vector<glm::vec3> pixels;
+  for (size_t i = 0; i < picture.pixels.size(); ++i)
+    if (picture.surfaces[i].there) pixels.push_back(picture.pixels[i]);
+  if (pixels.empty()) return 1;
+  const auto darker = [](glm::vec3 a, glm::vec3 b) { return brightest(a) < brightest(b); };
+  const size_t rank = size_t(float(pixels.size()) * (1 - kClipped));
+  std::ranges::nth_element(pixels, pixels.begin() + ptrdiff_t(rank), darker);
+  const float bright = brightest(pixels[rank]);
+  if (!(bright > 0)) return 1;
+  const auto display = [&](float exposure) {
+    float sum = 0;
+    for (const glm::vec3 p : pixels)
+      for (int c = 0; c < 3; ++c) sum += image::srgbEncode(std::min(exposure * p[c], 1.0f));
+    return sum / float(3 * pixels.size());
+  };
+  float low = 1e-6f, high = 1 / bright;
+  if (display(high) > kDisplay)
+    for (int i = 0; i < 30; ++i) {
+      const float middle = std::sqrt(low * high);
+      (display(middle) < kDisplay ? low : high) = middle;
+    }
+  const float unit = std::pow(10.0f, std::floor(std::log10(high)) - 1);
+  return std::round(high / unit) * unit;
+}
+
+FirstView addFirstView(Scene& scene, const Geometry& geometry) {
+  const size_t lights = scene.lights.size();
+  FirstView added;
+  added.camera = addFirstCamera(scene, geometry);
+  added.light = addFirstLight(scene, geometry);
+  scene.assumed = true;
+  scene.assumedLights = uint32_t(scene.lights.size() - lights);
+  scene.exposure = firstExposure(scene, geometry);
+  if (scene.exposure != 1) added.exposure = fmt::format("the exposure {:.2g}", scene.exposure);
+  if (scene.environment == glm::vec3(0)) scene.environment = kSky / scene.exposure;
+  return added;
+}
+
+}  // namespace fovea::scene

@@ -1,0 +1,163 @@
+// What is assumed of models that say nothing about camera, light and exposure.
+#include "framework/scene/first_view/first_view.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/image.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/rays/surface_tracer.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Rooms around the origin, 4 m wide and high unless scaled, with furniture of another material on the floor.
+scene::Scene room(float scale = 1) {
+  scene::Scene s;
+  const uint32_t wall = addMaterial(s, glm::vec3(0.6f)), wood = addMaterial(s, {0.5f, 0.3f, 0.2f});
+  const uint32_t walls[6] = {wall, wall, wall, wall, wall, wall};
+  addRoom(s, walls, 2 * scale);
+  addQuad(s, wood, glm::vec3(-1.5f, -1.2f, -1.5f) * scale, glm::vec3(0, 0, 1) * scale, glm::vec3(1, 0, 0) * scale);
+  return s;
+}
+
+// A box that faces outwards, on the origin.
+scene::Scene box(glm::vec3 half) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f));
+  const glm::vec3 x(2 * half.x, 0, 0), y(0, 2 * half.y, 0), z(0, 0, 2 * half.z), low = -half, high = half;
+  for (const auto& [corner, u, v] :
+       {std::tuple(low, z, y), {high, -y, -z}, {low, x, z}, {high, -z, -x}, {low, y, x}, {high, -x, -y}})
+    addQuad(s, grey, corner, u, v);
+  return s;
+}
+
+// The first camera's picture by the tracer of single rays, as displayed: 32 x 32 pixels.
+struct Displayed {
+  double mean = 0, clipped = 0, surfaces = 0;
+};
+
+Displayed display(const scene::Scene& s) {
+  constexpr uint32_t kSize = 32;
+  const scene::Geometry g = scene::flatten(s);
+  const scene::Frame frame = scene::makeFrame(s, g, {kSize, kSize}, 0, 7);
+  const auto rays = scene::RayScene::cached(s, g);
+  const scene::SurfaceTracer tracer(frame, frame.views[0], *rays);
+  Displayed d;
+  uint64_t count = 0;
+  for (uint32_t y = 0; y < kSize; ++y)
+    for (uint32_t x = 0; x < kSize; ++x) {
+      const scene::TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
+      glm::vec3 light = s.environment;
+      if (seen.there) {
+        const glm::vec3 rho = tracer.reflectance(seen);
+        light = tracer.emitted(seen) + tracer.direct(seen, rho, count) +
+                rho * tracer.gather(seen, 2, 64, 1 + x + kSize * y, count);
+      }
+      d.surfaces += seen.there / double(kSize * kSize);
+      d.clipped += std::max({light.r, light.g, light.b}) * s.exposure > 1 ? 1 / double(kSize * kSize) : 0;
+      for (int c = 0; c < 3; ++c)
+        d.mean += image::srgbEncode(std::min(light[c] * s.exposure, 1.0f)) / double(3 * kSize * kSize);
+    }
+  return d;
+}
+
+void expectGoodPicture(const scene::Scene& s) {
+  const Displayed d = display(s);
+  EXPECT_GT(d.surfaces, 0.25);
+  EXPECT_GT(d.mean, 0.2);
+  EXPECT_LT(d.mean, 0.7);
+  EXPECT_LT(d.clipped, 0.05);
+}
+
+TEST(FirstView, RoomsAreSeenFromInside) {
+  for (const float scale : {0.02f, 1.0f, 50.0f}) {
+    scene::Scene s = room(scale);
+    const scene::FirstView added = scene::addFirstView(s, scene::flatten(s));
+    EXPECT_THAT(added.camera, HasSubstr("inside")) << scale;
+    const glm::vec3 eye = s.cameras.at(0).position;
+    EXPECT_LT(std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}), 2 * scale);
+    EXPECT_GT(eye.y, -1.9f * scale);
+    EXPECT_LT(s.cameras[0].zNear, 0.1f * scale);
+    EXPECT_EQ(added.light, "a lamp");  // no sun shines into it
+    expectGoodPicture(s);
+  }
+}
+
+TEST(FirstView, RoomsOfMetresAreSeenFromTheHeightOfAnEye) {
+  scene::Scene s = room();
+  scene::addFirstCamera(s, scene::flatten(s));
+  EXPECT_NEAR(s.cameras.at(0).position.y, -2 + 1.6f, 0.85f);  // on the floor, or on the table
+}
+
+TEST(FirstView, ThingsAreSeenAsAWhole) {
+  for (const glm::vec3 half : {glm::vec3(1), glm::vec3(0.01f), glm::vec3(300, 100, 200), glm::vec3(0.2f, 1, 0.2f),
+                               glm::vec3(1, 0.02f, 1)}) {
+    scene::Scene s = box(half);
+    const scene::Geometry g = scene::flatten(s);
+    const scene::FirstView added = scene::addFirstView(s, g);
+    EXPECT_THAT(added.camera, HasSubstr("whole"));
+    EXPECT_EQ(added.light, "a sun and a sky");
+    const scene::View view = scene::makeView(s.cameras.at(0), {64, 64}, g);
+    float widest = 0;
+    for (const glm::vec3& p : g.positions) {
+      const glm::vec4 clip = view.worldToClip * glm::vec4(p, 1);
+      ASSERT_GT(clip.w, s.cameras[0].zNear);
+      widest = std::max({widest, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
+    }
+    EXPECT_GT(widest, 0.85f);
+    EXPECT_LE(widest, 1.0f);
+    EXPECT_GT(display(s).mean, 0.2);
+    EXPECT_LT(display(s).clipped, 0.05);
+  }
+}
+
+TEST(FirstView, ACameraOfTheModelStays) {
+  scene::Scene s = box(glm::vec3(1));
+  scene::Camera camera;
+  camera.position = {0, 0, 9};
+  s.cameras.push_back(camera);
+  EXPECT_EQ(scene::addFirstView(s, scene::flatten(s)).camera, "");
+  EXPECT_EQ(s.cameras.size(), 1u);
+  EXPECT_EQ(s.cameras[0].position, camera.position);
+}
+
+TEST(FirstView, LightOfTheModelStaysAloneIfItIsEnough) {
+  for (const float lux : {1e-3f, 1.0f, 2049.0f, 1e5f}) {
+    scene::Scene s = box(glm::vec3(1));
+    scene::Light sun;
+    sun.intensity = lux;
+    sun.direction = glm::normalize(glm::vec3(-0.3f, -1, -0.8f));
+    s.lights.push_back(sun);
+    EXPECT_EQ(scene::addFirstView(s, scene::flatten(s)).light, "") << lux;
+    EXPECT_EQ(s.lights.size(), 1u);
+    expectGoodPicture(s);
+  }
+}
+
+// A garden at night, with a lantern that lights next to nothing of it.
+TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
+  scene::Scene s = box({10, 0.5f, 10});
+  const uint32_t shining = addMaterial(s, glm::vec3(0));
+  s.materials[shining].emission = glm::vec3(20);
+  addQuad(s, shining, {3, 1, 0}, {0.1f, 0, 0}, {0, 0.1f, 0});
+  EXPECT_EQ(scene::addFirstView(s, scene::flatten(s)).light, "a sun and a sky");
+  expectGoodPicture(s);
+}
+
+TEST(FirstView, NothingToLookAt) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  scene::addFirstView(s, scene::flatten(s));
+  EXPECT_EQ(s.cameras.size(), 1u);
+  EXPECT_EQ(s.exposure, 1);
+}
+
+}  // namespace
+}  // namespace fovea::test
