@@ -64,8 +64,9 @@ struct Lights {
   glm::vec3 position(size_t i) const { return {x[i], y[i], z[i]}; }
 
   std::vector<float> x, y, z, normalX, normalY, normalZ;
-  std::vector<float> area;        // of the disc, divided by pi, m^2
-  std::vector<float> weight;      // sum over the channels of the intensity, times the chance that a ray reaches it
+  std::vector<float> area;  // of the disc, divided by pi, m^2
+  std::vector<float>
+      weight;  // sum over the channels of the intensity, times the chance that a ray reaches it
   std::vector<uint32_t> slots;
   std::vector<glm::vec3> colors;  // intensity divided by the weight
 
@@ -83,8 +84,7 @@ void lightOfEach(const Lights& lights, glm::vec3 position, glm::vec3 normal, std
     const float x = position.x - lights.x[i], y = position.y - lights.y[i], z = position.z - lights.z[i];
     const float d2 = std::max(x * x + y * y + z * z, 1e-12f);
     const float facing = std::max(-(normal.x * x + normal.y * y + normal.z * z), 0.0f);
-    const float along =
-        std::max(lights.normalX[i] * x + lights.normalY[i] * y + lights.normalZ[i] * z, 0.0f);
+    const float along = std::max(lights.normalX[i] * x + lights.normalY[i] * y + lights.normalZ[i] * z, 0.0f);
     result[i] = lights.weight[i] * facing * along / (d2 * (d2 + lights.area[i]));
   }
 }
@@ -105,8 +105,8 @@ size_t pick(std::span<const float> values, float& place) {
 // Light of VPLs at single pixels, for one thread.
 class Sampler {
  public:
-  Sampler(const scene::RayScene& rays, const scene::View& view, std::span<const Lights> subsets, uint32_t count,
-          uint32_t seed, uint32_t turn, size_t slots)
+  Sampler(const scene::RayScene& rays, const scene::View& view, std::span<const Lights> subsets,
+          uint32_t count, uint32_t seed, uint32_t turn, size_t slots)
       : tallies(slots),
         rays_(rays),
         view_(view),

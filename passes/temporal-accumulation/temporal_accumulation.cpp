@@ -32,10 +32,11 @@ class TemporalAccumulation : public Pass {
     d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
             "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff if there is none (pass "
             "motion-vectors)");
-    d.input("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, smaller than "
-            "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as long "
-            "the mean is there, if above 1 (`longer` of pass contact-rays)");
+    d.input(
+        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+        "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, smaller than "
+        "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as long "
+        "the mean is there, if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,

@@ -31,7 +31,8 @@ class WeightMap : public Pass {
                 "one pixel in each square of this width is looked at; above 1, sides that are smaller on the "
                 "screen may be missed");
     d.counter("visible", "sides with a weight above 0");
-    d.counter("unassigned", "pixels looked at that show a surface for which the grid has no side facing the eye");
+    d.counter("unassigned",
+              "pixels looked at that show a surface for which the grid has no side facing the eye");
     const SizeExpr tile = SizeExpr(kBlock * kGroup) * parameter("spacing");
     d.fill("weights", 0);
     d.step("weight-map/scatter.comp")

@@ -87,11 +87,12 @@ Json sceneFileOf(const Scene& s) {
   for (size_t i = s.lights.size() - s.assumedLights; i < s.lights.size(); ++i) {
     const scene::Light& light = s.lights[i];
     const bool sun = light.type == scene::LightType::Directional;
-    file["lights"].push_back({{"type", sun ? "directional" : "point"},
-                              {"name", light.name},
-                              {"intensity", rounded(light.intensity)},
-                              {"color", toJson(light.color)},
-                              {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
+    file["lights"].push_back(
+        {{"type", sun ? "directional" : "point"},
+         {"name", light.name},
+         {"intensity", rounded(light.intensity)},
+         {"color", toJson(light.color)},
+         {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
   }
   file["exposure"] = rounded(s.exposure);
   file["environment"] = toJson(s.environment);

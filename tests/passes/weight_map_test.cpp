@@ -166,8 +166,8 @@ TEST(WeightMap, EqualsTheReference) {
     picture.wire(test);
     test.beforeFrame([](PassTest&, scene::Frame& frame) { frame.views[0].gaze = {0.3f, 0.6f}; });
     test.run();
-    const Expected expected = reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f,
-                                        spacing);
+    const Expected expected =
+        reference(picture, voxels, test.lastFrame().views[0].eye, {0.3f, 0.6f}, 0.2f, spacing);
     expectEqual(test, expected);
     if (size.x < 50) continue;
     EXPECT_GT(expected.visible, 200);  // the test is not vacuous

@@ -23,7 +23,8 @@ scene::Scene room(float scale = 1) {
   const uint32_t wall = addMaterial(s, glm::vec3(0.6f)), wood = addMaterial(s, {0.5f, 0.3f, 0.2f});
   const uint32_t walls[6] = {wall, wall, wall, wall, wall, wall};
   addRoom(s, walls, 2 * scale);
-  addQuad(s, wood, glm::vec3(-1.5f, -1.2f, -1.5f) * scale, glm::vec3(0, 0, 1) * scale, glm::vec3(1, 0, 0) * scale);
+  addQuad(s, wood, glm::vec3(-1.5f, -1.2f, -1.5f) * scale, glm::vec3(0, 0, 1) * scale,
+          glm::vec3(1, 0, 0) * scale);
   return s;
 }
 
@@ -97,8 +98,8 @@ TEST(FirstView, RoomsOfMetresAreSeenFromTheHeightOfAnEye) {
 }
 
 TEST(FirstView, ThingsAreSeenAsAWhole) {
-  for (const glm::vec3 half : {glm::vec3(1), glm::vec3(0.01f), glm::vec3(300, 100, 200), glm::vec3(0.2f, 1, 0.2f),
-                               glm::vec3(1, 0.02f, 1)}) {
+  for (const glm::vec3 half : {glm::vec3(1), glm::vec3(0.01f), glm::vec3(300, 100, 200),
+                               glm::vec3(0.2f, 1, 0.2f), glm::vec3(1, 0.02f, 1)}) {
     scene::Scene s = box(half);
     const scene::Geometry g = scene::flatten(s);
     const scene::FirstView added = scene::addFirstView(s, g);

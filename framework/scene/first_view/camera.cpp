@@ -18,12 +18,12 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kSeed = 0x66697273u;
-constexpr int kRays = 24;               // of a view, along each axis
-constexpr uint32_t kSpots = 256;        // where an eye might stand
-constexpr uint32_t kDirections = 16;    // around such a spot
-constexpr uint32_t kBestSpots = 12;     // of which views are compared
-constexpr float kEyeHeight = 1.6f;      // m
-constexpr float kEnclosed = 0.75f;      // share of the rays around a spot that meet walls
+constexpr int kRays = 24;                                // of a view, along each axis
+constexpr uint32_t kSpots = 256;                         // where an eye might stand
+constexpr uint32_t kDirections = 16;                     // around such a spot
+constexpr uint32_t kBestSpots = 12;                      // of which views are compared
+constexpr float kEyeHeight = 1.6f;                       // m
+constexpr float kEnclosed = 0.75f;                       // share of the rays around a spot that meet walls
 constexpr float kInsideFov = 1.05f, kOutsideFov = 0.7f;  // radians, vertical
 
 struct Looker {
@@ -45,14 +45,19 @@ struct Looker {
     if (!hit) return {};
     const SurfaceHit surface = surfaceAt(geometry, hit);
     const bool front = glm::dot(surface.geometricNormal, direction) < 0;
-    return {true, front || scene.materials[surface.material].doubleSided, hit.distance,
-            front ? surface.geometricNormal : -surface.geometricNormal, surface.material, hit.triangle};
+    return {true,
+            front || scene.materials[surface.material].doubleSided,
+            hit.distance,
+            front ? surface.geometricNormal : -surface.geometricNormal,
+            surface.material,
+            hit.triangle};
   }
 };
 
 // What a view shows.
 struct Shown {
-  float surfaces = 0, backs = 0;  // shares of its rays that meet something, and that meet the back of something
+  float surfaces = 0,
+        backs = 0;  // shares of its rays that meet something, and that meet the back of something
   float median = 0, nearest = 0;  // m; distances to what is met
   float close = 0;                // share of what is met that is far nearer than the median
   float planes = 0;               // evenness of the directions that surfaces face, from 0 to 1
@@ -137,7 +142,8 @@ struct Candidate {
 Candidate fromOutside(const Looker& in) {
   Candidate best;
   for (const float pitch : {0.3f, 0.6f})
-    for (const float degrees : {30.0f, -30.0f, 60.0f, -60.0f, 0.0f, 150.0f, -150.0f, 120.0f, -120.0f, 180.0f}) {
+    for (const float degrees :
+         {30.0f, -30.0f, 60.0f, -60.0f, 0.0f, 150.0f, -150.0f, 120.0f, -120.0f, 180.0f}) {
       const float yaw = glm::radians(degrees);
       const glm::vec3 from(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
       Candidate c;
@@ -176,8 +182,8 @@ std::optional<Spot> spotAt(const Looker& in, uint32_t index) {
   uint32_t walls = 0, close = 0;
   for (uint32_t i = 0; i < kDirections; ++i) {
     const float angle = glm::two_pi<float>() * (float(i) + 0.5f) / float(kDirections);
-    const Looker::Met met =
-        in.meet(spot.eye, glm::normalize(glm::vec3(std::cos(angle), 0.15f * float(int(i % 3) - 1), std::sin(angle))));
+    const Looker::Met met = in.meet(
+        spot.eye, glm::normalize(glm::vec3(std::cos(angle), 0.15f * float(int(i % 3) - 1), std::sin(angle))));
     if (!met.there) continue;
     if (!met.front) return {};
     ++walls;
@@ -226,7 +232,11 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry) {
   }
   const auto rays = RayScene::cached(scene, geometry);
   const glm::vec3 size = geometry.boundsMax - geometry.boundsMin;
-  const Looker in{scene, geometry, *rays, size, 0.5f * (geometry.boundsMin + geometry.boundsMax),
+  const Looker in{scene,
+                  geometry,
+                  *rays,
+                  size,
+                  0.5f * (geometry.boundsMin + geometry.boundsMax),
                   std::max(glm::length(size), 1e-6f)};
   Candidate outside = fromOutside(in);
   std::set<uint32_t> materials, triangles;

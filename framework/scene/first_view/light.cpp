@@ -13,13 +13,13 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kWidth = 48;           // of the picture, pixels
-constexpr uint32_t kGathered = 4;         // rays for further bounces at each of them
-constexpr float kDark = 0.02f;            // of the light of what is brightest: less is not seen beside it
-constexpr float kDisplay = 0.45f;         // mean display value
-constexpr float kClipped = 0.015f;        // most of the surfaces' pixels that may be clipped
-constexpr float kSunlight = 3.0f;         // lux, on a surface that faces it
-constexpr float kSkylight = 0.35f;        // of the sunlight
+constexpr uint32_t kWidth = 48;            // of the picture, pixels
+constexpr uint32_t kGathered = 4;          // rays for further bounces at each of them
+constexpr float kDark = 0.02f;             // of the light of what is brightest: less is not seen beside it
+constexpr float kDisplay = 0.45f;          // mean display value
+constexpr float kClipped = 0.015f;         // most of the surfaces' pixels that may be clipped
+constexpr float kSunlight = 3.0f;          // lux, on a surface that faces it
+constexpr float kSkylight = 0.35f;         // of the sunlight
 const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything, as displayed before sRGB
 
 struct Picture {
@@ -93,13 +93,15 @@ bool addSun(Scene& scene, const Picture& picture, const RayScene& rays) {
   for (const float height : {0.7f, 1.0f, 1.3f})
     for (int i = -4; i <= 4; ++i) {
       const float yaw = facing + 0.35f * float(i);  // 0: behind the camera
-      const glm::vec3 from(std::sin(yaw) * std::cos(height), std::sin(height), std::cos(yaw) * std::cos(height));
+      const glm::vec3 from(std::sin(yaw) * std::cos(height), std::sin(height),
+                           std::cos(yaw) * std::cos(height));
       const float lit = sunlit(picture, rays, from), balance = lit * (1.2f - lit);
       if (balance > most) most = balance, best = from;
     }
   if (best == glm::vec3(0)) return false;
   addDirectional(scene, "default sun", best, kSunlight, {1, 0.96f, 0.88f});
-  addDirectional(scene, "default sky", {-0.5f * best.x, 1, -0.5f * best.z}, kSkylight * kSunlight, {0.8f, 0.9f, 1});
+  addDirectional(scene, "default sky", {-0.5f * best.x, 1, -0.5f * best.z}, kSkylight * kSunlight,
+                 {0.8f, 0.9f, 1});
   return true;
 }
 
