@@ -21,8 +21,8 @@ FirstView addFirstView(Scene& scene, const Geometry& geometry);
 // A camera at the height of an eye where walls stand all around, if more of the scene is seen there than from outside;
 // else one in front of the scene and above it, which shows the whole of it.
 std::string addFirstCamera(Scene& scene, const Geometry& geometry);
-// A sun and a sky; or, if no sun could reach what the first camera sees, a lamp above it. Nothing if at least half of what
-// it sees is lit.
+// A sun and a sky; or, if no sun could reach what the first camera sees, a lamp above it. Nothing if at least half of
+// what it sees is lit.
 std::string addFirstLight(Scene& scene, const Geometry& geometry);
 // The exposure with which the first camera's picture has a mean display value of about 0.45 and hardly any pixel is
 // clipped, rounded to two digits. 1 if nothing is lit.
