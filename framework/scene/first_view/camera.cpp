@@ -92,7 +92,7 @@ Shown look(const Looker& in, const Camera& camera) {
       shown.triangles.insert(met.triangle);
       const glm::vec3 n = glm::abs(met.normal);
       const int axis = n.x > n.y && n.x > n.z ? 0 : n.y > n.z ? 1 : 2;
-      ++facing[size_t(2 * axis + (met.normal[axis] > 0))];
+      ++facing[2 * size_t(axis) + (met.normal[axis] > 0 ? 1 : 0)];
     }
   constexpr float kAll = float(kRays * kRays);
   shown.surfaces = float(distances.size()) / kAll;
