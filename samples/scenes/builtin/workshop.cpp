@@ -1,7 +1,7 @@
 // The yard of a workshop at night and its office behind it, for choosing what treats surfaces that shine. In the yard
 // lamps of very different size shine: bulbs close to a wall and under a shelf, a tube along a wall, a sign, two globes
-// that hang behind bars, and small lights in the ground. The office has one panel in its ceiling, and a lamp that lights
-// a small patch of the ceiling above it.
+// that hang behind bars, and small lights in the ground. The office has one panel in its ceiling, and a lamp that
+// lights a small patch of the ceiling above it.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -198,7 +198,8 @@ void addLamps(MeshBuilder& m, const Palette& p) {
   // A tube along the right wall, a sign above the canopy.
   m.add(p.tube, cylinder(0.013f, 1.2f, 14), at(kX - 0.055f, 2.5f, -2.6f) * turnX(90));
   m.add(p.steel, box({kX - 0.03f, 2.46f, -2.65f}, {kX + 0.01f, 2.54f, -1.35f}));
-  for (const float z : {-2.64f, -1.40f}) m.add(p.steel, box({kX - 0.08f, 2.475f, z}, {kX, 2.525f, z + 0.04f}));
+  for (const float z : {-2.64f, -1.40f})
+    m.add(p.steel, box({kX - 0.08f, 2.475f, z}, {kX, 2.525f, z + 0.04f}));
   m.add(p.sign, box({0, 0, 0}, {1.5f, 0.34f, 0.06f}), at(-1.0f, 3.05f, kBack + 0.35f));
   m.add(p.dark, box({-0.03f, -0.03f, -0.05f}, {1.53f, 0.37f, 0.001f}), at(-1.0f, 3.05f, kBack + 0.35f));
   for (const float x : {-0.7f, 0.2f})
