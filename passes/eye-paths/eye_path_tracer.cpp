@@ -79,7 +79,8 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   from.face = start.face;
   from.origin = start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
   const uint32_t stream = randomStream(0, 0, kPathStream, point);
-  const uint32_t aimed = surfaces_.hasEmitters() ? paths / kAimedShare : 0, others = paths - aimed;
+  const uint32_t aimed = surfaces_.hasEmitters() && settings_.emission ? paths / kAimedShare : 0,
+                 others = paths - aimed;
   const bool isAimed = turn >= others;
   SurfaceTracer::EmitterRay aim;
   if (isAimed) aim = surfaces_.towardsEmitter(from, hashCombine(stream, turn));
@@ -89,13 +90,17 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   if (glm::dot(direction, start.face) <= 0) return end;
   const TracedSurface v = surfaces_.arrive(from.origin, direction, kFarAway, rays);
   if (!v.there || (isAimed && v.triangle != aim.triangle)) return end;
-  const glm::vec3 rho = surfaces_.reflectance(v), emitted = surfaces_.emitted(v);
+  const glm::vec3 rho = surfaces_.reflectance(v),
+                  emitted = settings_.emission ? surfaces_.emitted(v) : glm::vec3(0);
   end.radiance = surfaces_.direct(v, rho, rays);
   end.kind = meanChannel(emitted) > meanChannel(end.radiance) ? 3.0f
              : end.radiance == glm::vec3(0)                   ? 1.0f
                                                               : 2.0f;
-  end.radiance += emitted + rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
-                                                   randomStream(turn, 0, kGatherStream, point), rays);
+  const glm::vec3 gathered = rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
+                                                    randomStream(turn, 0, kGatherStream, point), rays);
+  if (surfaces_.hasEmitters() && end.kind < 3 && meanChannel(gathered) > meanChannel(end.radiance))
+    end.kind = 4;
+  end.radiance += emitted + gathered;
   end.position = v.position;
   end.normal = v.face;
   end.weight = 1;

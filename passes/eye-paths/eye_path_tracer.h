@@ -22,6 +22,7 @@ struct EyePathSettings {
   float foveaRadius = 0.25f;              // image widths
   uint32_t points = 1024;    // number of screen points, the same in every frame: scene::screenPoint()
   uint32_t bounces = 2;      // reflections of light on its way to the visible point
+  bool emission = true;      // whether the ends show the light that surfaces emit themselves
   uint32_t gathered = 2;     // rays that gather the second of these reflections
   uint32_t renewFrames = 1;  // frames in which every start is renewed once, a share of them in each
   float stray = 0;           // image widths; a start that is still seen this close to its place is kept

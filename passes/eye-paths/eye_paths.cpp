@@ -36,6 +36,10 @@ class EyePaths : public Pass {
     d.parameter("bounces", integer(2, 1, 64),
                 "reflections of the light before it reaches the visible surface: 1 is direct light at the "
                 "ends, 2 matches a path tracer of depth 4");
+    d.parameter(
+        "emission", flag(true),
+        "whether the ends show the light that surfaces emit themselves; pass near-field brings it from "
+        "there straight to what is seen");
     d.parameter("gathered", integer(2, 1, 256),
                 "rays from each end that gather the second of these reflections");
     d.parameter("renew_frames", integer(1, 1, 1000),
@@ -66,6 +70,7 @@ class EyePaths : public Pass {
     settings.foveaRadius = float(p.real("fovea_radius"));
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));
+    settings.emission = p.flag("emission");
     settings.gathered = uint32_t(p.integer("gathered"));
     const bool hurries = frame.saccade > 0 && p.integer("saccade_renew_frames") > 0;
     settings.renewFrames = ctx.firstFrame() ? 1

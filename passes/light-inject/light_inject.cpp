@@ -34,10 +34,10 @@ class LightInject : public Pass {
     d.input("maps", "shadow-maps", shadowMapMembers(),
             "shadow maps of the lights; if not wired, nothing casts a shadow")
         .makeOptional();
-    d.output("radiance", voxelRadianceBuffer(countOf("voxels.surface")),
-             Usage::StorageRead | Usage::StorageWrite,
-             "rgb: L = rho E / pi + emission, W/(sr m^2); w: its luminance; 0 for empty sides, undefined "
-             "beyond the last voxel")
+    d.output(
+         "radiance", voxelRadianceBuffer(countOf("voxels.surface")), Usage::StorageRead | Usage::StorageWrite,
+         "rgb: L = rho E / pi, plus the emission unless `emission` is off, W/(sr m^2); w: its luminance; 0 "
+         "for empty sides, undefined beyond the last voxel")
         .keep(Lifetime::Scene);
     d.scratch(
         "covered",
@@ -55,6 +55,7 @@ class LightInject : public Pass {
         "keep", flag(true),
         "whether static sides keep their radiance while no light changes, except where the shadow of a "
         "moving object may have appeared or gone; if false, all sides are lit again in every frame");
+    d.parameter("emission", flag(true), "whether the radiance includes what the surfaces emit themselves");
     ParameterSpec taps = integer(6, 1, 64);
     d.parameter("taps", taps, "number of fixed points on each side at which light and shadow are evaluated");
     d.parameter("offset", real(0.25, 0, 2, "cells"),
@@ -79,6 +80,7 @@ class LightInject : public Pass {
           .called("light, " + kLights[i])
           .define("ONE_LIGHT", lights)
           .define("SHADOW_FILTER", parameter("filter"))
+          .define("EMISSION", parameter("emission"))
           .indirect("work");
     }
     return d;

@@ -26,7 +26,7 @@ class NearFieldPixels : public Pass {
     d.view();
     d.input("shade", "shade-mask", shadeMaskOnHost(), "pixels whose light must be known");
     d.input("spread", spreadBuffer(), Usage::HostRead,
-            "x: least area of a VPL's disc, y: of one on a surface that shines, m^2, from pass near-field");
+            "x: least area of a VPL's disc, m^2, from pass near-field");
     d.inout("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
             "rgb: irradiance / pi, W/(sr m^2); a: 0 where it is not known; becomes 1 where a pixel of "
             "`shade` got "
@@ -54,9 +54,7 @@ class NearFieldPixels : public Pass {
       if (mask[i] != 0 && image[i] >> 48 == 0) pixels_.emplace_back(i % width, i / width);
     light_.resize(pixels_.size());
     NearFieldSettings settings;
-    const glm::vec4 spread = ctx.inputAs<glm::vec4>("spread")[0];
-    settings.area = spread.x;
-    settings.emitterArea = spread.y;
+    settings.area = ctx.inputAs<glm::vec4>("spread")[0].x;
     settings.samples = uint32_t(p.integer("samples"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.seed = frame.seed;  // the turn stays 0: without a mean over frames, new rays would flicker

@@ -21,10 +21,12 @@ constexpr double kCellWidth = 0.1;       // width of the cache's cells, in mean 
 class NearField : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("near-field",
-                      "light from nearby surfaces, in the part that VPLs shaded as discs take from it, found "
-                      "with a few rays per frame through the triangles",
-                      PassKind::Host);
+    PassDeclaration d(
+        "near-field",
+        "light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all "
+        "light that comes straight from surfaces that shine, found with a few rays per frame "
+        "through the triangles",
+        PassKind::Host);
     d.view();
     d.output("samples",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
@@ -32,18 +34,14 @@ class NearField : public Pass {
              "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
              "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
              "surface, for pass temporal-accumulation");
-    d.output(
-        "spread", spreadBuffer(), Usage::HostWrite,
-        "x: least area of a VPL's disc, y: of one on a surface that shines, m^2, for pass vpl-intensity");
+    d.output("spread", spreadBuffer(), Usage::HostWrite,
+             "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
     d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
     d.parameter("share", real(50, 0.01, 1e6),
                 "total area of all discs, in squares of the mean distance between visible surfaces and the "
                 "surfaces seen from them");
-    d.parameter("emitter_share", real(1, 1, 1e6),
-                "area of a disc on a surface that shines, in areas of the others: more of the light of lamps "
-                "is found by rays aimed at them");
     d.parameter(
         "bounces", integer(2, 1, 64),
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
@@ -52,6 +50,8 @@ class NearField : public Pass {
     d.parameter("saccade_samples", integer(1, 1, 16),
                 "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
                 "fovea is that of wide blocks");
+    d.parameter("emitter_points", integer(4, 1, 64),
+                "points on surfaces that shine, of which the ray aimed at them chooses one");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
     d.counter("gathered",
@@ -73,6 +73,7 @@ class NearField : public Pass {
                   "pass `near-field`: spacing " + std::to_string(settings.spacing) + " is not a power of two",
                   "use 2, 4 or 8");
     settings.bounces = uint32_t(p.integer("bounces"));
+    settings.emitterPoints = uint32_t(p.integer("emitter_points"));
     settings.turn = uint32_t(ctx.frameNumber());
     settings.seed = frame.seed;
     NearFieldStatistics statistics;
@@ -83,7 +84,6 @@ class NearField : public Pass {
       const auto trace = [&] {
         area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
         settings.area = float(area);
-        settings.emitterArea = float(p.real("emitter_share") * area);
         cache_.setCellWidth(float(kCellWidth * length_));
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
@@ -106,7 +106,7 @@ class NearField : public Pass {
     std::ranges::transform(image_, samples.begin(), [](glm::vec4 v) {
       return glm::packHalf4x16(glm::vec4(glm::min(glm::vec3(v), 65504.0f), v.a));
     });
-    ctx.outputAs<glm::vec4>("spread")[0] = glm::vec4(area, p.real("emitter_share") * area, 0, 0);
+    ctx.outputAs<glm::vec4>("spread")[0] = glm::vec4(area, 0, 0, 0);
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("shaded", double(statistics.shaded));
     ctx.counter("gathered", double(statistics.gathered));

@@ -19,7 +19,9 @@ using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
                    kAimStream = 0x6e656169u, kCellStream = 0x6e656363u;
-constexpr float kRenewed = 0.25f;                    // probability of gathering anew what the cache knows
+constexpr uint32_t kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
+constexpr float kRenewed = 0.25f;  // probability of gathering anew what the cache knows
+constexpr float kClose = 2;        // an emitter closer than so many widths of a wide block splits it
 constexpr float kSameCos = 0.9f, kSameSlope = 0.1f;  // least and largest of two samples on the same surface
 constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
 
@@ -32,7 +34,7 @@ struct Row : NearFieldStatistics {
 struct Tile {
   glm::vec4 sample{0};
   TracedSurface at;
-  bool inFovea = false;
+  bool narrow = false;  // whether it is divided into blocks of 2 x 2 pixels
 };
 
 class Tracer {
@@ -59,8 +61,9 @@ class Tracer {
       const glm::vec2 nearest =
           glm::clamp(fovea_.centre, glm::vec2(corner), glm::vec2(corner) + float(spacing));
       Tile& tile = tiles_[row * tileColumns() + column];
-      tile.inFovea = glm::distance(nearest, fovea_.centre) <= fovea_.radius;
-      if (!tile.inFovea) {
+      tile.narrow =
+          glm::distance(nearest, fovea_.centre) <= fovea_.radius || isCloseToEmitter(corner, statistics);
+      if (!tile.narrow) {
         tile.sample = sampleOf(corner, spacing, tile.at, statistics);
       } else {
         forTexels({column, row}, [&](glm::uvec2 texel, glm::vec4& value) {
@@ -71,12 +74,12 @@ class Tracer {
     }
   }
 
-  // Gives the tiles of one row outside the fovea the mean of the 3 x 3 tiles around them, as far as they lie on the same
+  // Gives the wide tiles of one row the mean of the 3 x 3 tiles around them, as far as they lie on the same
   // surface. A ray is a poor estimate, and one that hits something bright would be seen as a spot for many frames.
   void spreadTiles(uint32_t row) {
     for (uint32_t column = 0; column < tileColumns(); ++column) {
       const Tile& tile = tiles_[row * tileColumns() + column];
-      if (tile.inFovea) continue;
+      if (tile.narrow) continue;
       const glm::vec4 shared(tile.at.there ? meanAround(int(column), int(row)) : glm::vec3(0), tile.sample.a);
       forTexels({column, row}, [&](glm::uvec2, glm::vec4& value) { value = shared; });
     }
@@ -102,6 +105,20 @@ class Tracer {
     }
   }
 
+  // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
+  bool isCloseToEmitter(glm::uvec2 corner, Row& statistics) const {
+    if (!surfaces_.hasEmitters()) return false;
+    const glm::vec2 middle =
+        glm::min(glm::vec2(corner) + 0.5f * float(settings_.spacing), glm::vec2(view_.size) - 0.5f);
+    const TracedSurface v = surfaces_.look(middle, statistics.rays);
+    if (!v.there || surfaces_.emitted(v) != glm::vec3(0)) return false;
+    const glm::vec3 across = view_.rayDirection(middle + glm::vec2(1, 0)), along = view_.rayDirection(middle);
+    const float width = float(settings_.spacing) *
+                        glm::distance(glm::normalize(across), glm::normalize(along)) *
+                        glm::distance(v.position, view_.eye);
+    return surfaces_.emitters().within(v.position, kClose * width);
+  }
+
   // Wider or flatter weights would make what has just come into view flicker more, as its brightest sample is dropped.
   glm::vec3 meanAround(int column, int row) const {
     static constexpr float kWeights[] = {1, 3, 1};
@@ -110,7 +127,7 @@ class Tracer {
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
       for (int x = std::max(column - 1, 0); x <= std::min(column + 1, int(tileColumns()) - 1); ++x) {
         const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
-        if (other.inFovea || !other.at.there || !onSamePlane(at, other.at)) continue;
+        if (other.narrow || !other.at.there || !onSamePlane(at, other.at)) continue;
         sum += kWeights[x - column + 1] * kWeights[y - row + 1] * glm::vec4(glm::vec3(other.sample), 1);
       }
     return glm::vec3(sum) / sum.w;
@@ -121,24 +138,24 @@ class Tracer {
            std::abs(glm::dot(to, a.normal)) <= kSameSlope * glm::length(to);
   }
 
-  // Returns the mean over the turns whose pixel shows a surface; `at` becomes the last of these surfaces.
+  // Returns the mean over the turns. `at` becomes the surface of the first turn's pixel, from which rays also leave in
+  // those turns whose pixel shows another surface.
   glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, TracedSurface& at, Row& statistics) const {
     const glm::uvec2 block = corner / side;
-    const uint32_t factor = side == 2 ? settings_.foveaFactor : 1;
+    const uint32_t factor = side == 2 ? settings_.foveaFactor : 1, count = factor * settings_.samples;
+    const auto seenIn = [&](uint32_t turn) {
+      const glm::uvec2 pixel = corner + samplePixel(turn, side, block);
+      const bool inside = pixel.x < view_.size.x && pixel.y < view_.size.y;
+      return inside ? surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays) : TracedSurface{};
+    };
+    at = seenIn(settings_.turn);
     glm::vec3 sum(0);
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < factor * settings_.samples; ++i) {
-      const uint32_t turn = factor * settings_.turn + i;
-      const glm::uvec2 pixel = corner + samplePixel(settings_.turn + i / factor, side, block);
-      if (pixel.x >= view_.size.x || pixel.y >= view_.size.y) continue;
-      const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
-      if (!v.there) continue;
-      ++found;
-      at = v;
-      sum += lightAt(v, block, turn, statistics);
+    for (uint32_t i = 0; at.there && i < count; ++i) {
+      const TracedSurface v = i < factor ? at : seenIn(settings_.turn + i / factor);
+      const bool same = v.there && onSamePlane(at, v);
+      sum += lightAt(same ? v : at, block, factor * settings_.turn + i, statistics);
     }
-    return {sum / float(std::max(found, 1u)),
-            float(sampleCode(side, samplePixel(settings_.turn, side, block), found > 0))};
+    return {sum / float(count), float(sampleCode(side, samplePixel(settings_.turn, side, block), at.there))};
   }
 
   // Adjacent blocks, 4 x 4 of them, take turns in one sequence.
@@ -153,7 +170,7 @@ class Tracer {
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
-      light = fromEmitter(v, randomStream(stream, turn, kAimStream, order), statistics);
+      light = fromEmitters(v, hashCombine(stream, kAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
     const TracedSurface hit = surfaces_.arrive(v.origin, direction, reach, statistics.rays);
     if (!hit.there) return light;
@@ -168,8 +185,8 @@ class Tracer {
     radiance += rho * gathered(hit, randomStream(stream, turn, kGatherStream, order), statistics);
     if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
       const float cosine = cosineDensity(v, direction);
-      light += emitted *
-               (emittedPartAt(distance) * cosine / (cosine * probability + surfaces_.emitterDensity(v, hit)));
+      light += emitted * (cosine / (cosine * probability +
+                                    float(settings_.emitterPoints) * surfaces_.emitterDensity(v, hit)));
     }
     return light + radiance * (partAt(distance) / probability);
   }
@@ -190,28 +207,50 @@ class Tracer {
     return known.value_or(light);
   }
 
-  // The part of a ray aimed at an emissive surface, in the balance heuristic beside the cosine-weighted one, which may
-  // go as far and hit it by chance.
-  glm::vec3 fromEmitter(const TracedSurface& v, uint32_t stream, Row& statistics) const {
-    const SurfaceTracer::EmitterRay to = surfaces_.towardsEmitter(v, stream);
-    if (!to.there || !surfaces_.sees(v, to, statistics.rays)) return glm::vec3(0);
-    const float cosine = cosineDensity(v, to.direction);
-    return to.radiance *
-           (emittedPartAt(to.distance) * cosine / (cosine * probabilityAt(to.distance) + to.density));
+  // The part of a ray aimed at emissive surfaces, in the balance heuristic beside the cosine-weighted one, which may
+  // hit them by chance. The ray goes to one of several points, chosen by the light that they send if nothing hides them
+  // (Talbot et al., "Importance Resampling for Global Illumination", EGSR 2005). The points share out the emitters, and
+  // those of consecutive samples follow low-discrepancy sequences.
+  glm::vec3 fromEmitters(const TracedSurface& v, uint32_t stream, uint32_t index, Row& statistics) const {
+    const uint32_t points = settings_.emitterPoints;
+    const float place = uniformFloat(hashCombine(stream, 0) + index * kGoldenRatio);
+    float choice = uniformFloat(hashCombine(stream, 1) + index * kSilverRatio), sum = 0, chosenPart = 0;
+    SurfaceTracer::EmitterRay chosen;
+    glm::vec3 light(0);
+    for (uint32_t i = 0; i < points; ++i) {
+      const glm::vec2 u = streamSequence(hashCombine(stream, i + 2), index);
+      const SurfaceTracer::EmitterRay to =
+          surfaces_.towardsEmitter(v, {(float(i) + place) / float(points), u.x, u.y});
+      if (!to.there) continue;
+      const float cosine = cosineDensity(v, to.direction);
+      const glm::vec3 its =
+          to.radiance * (cosine / (cosine * probabilityAt(to.distance) + float(points) * to.density));
+      const float part = its.r + its.g + its.b;
+      if (!(part > 0)) continue;
+      sum += part;
+      // The random number is rescaled after each decision, so one number is enough.
+      const float chance = part / sum;
+      if (choice < chance) {
+        choice /= chance;
+        chosen = to;
+        light = its;
+        chosenPart = part;
+      } else {
+        choice = (choice - chance) / (1 - chance);
+      }
+    }
+    if (!(sum > 0) || !surfaces_.sees(v, chosen, statistics.rays)) return glm::vec3(0);
+    return light * (sum / chosenPart);
   }
 
-  // The part of the light from this distance that discs leave out, that from surfaces that shine, and the probability
-  // with which a cosine-weighted ray goes so far.
-  float partAt(float distance) const { return leftOut(settings_.area, distance); }
-  float emittedPartAt(float distance) const {
-    return leftOut(std::max(settings_.area, settings_.emitterArea), distance);
+  // The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted
+  // ray goes so far.
+  float partAt(float distance) const {
+    const float radius2 = settings_.area * glm::one_over_pi<float>();
+    return radius2 / (distance * distance + radius2);
   }
   float probabilityAt(float distance) const { return std::min(kSure * partAt(distance), 1.0f); }
 
-  static float leftOut(float area, float distance) {
-    const float radius2 = area * glm::one_over_pi<float>();
-    return radius2 / (distance * distance + radius2);
-  }
   static float cosineDensity(const TracedSurface& v, glm::vec3 direction) {
     return glm::dot(v.normal, direction) * glm::one_over_pi<float>();
   }

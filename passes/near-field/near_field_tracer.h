@@ -1,5 +1,5 @@
-// Light from nearby surfaces, in the part that VPLs shaded as discs take from it, found with rays through the
-// triangles. This is bias compensation (Novak et al., "Screen-space bias compensation for interactive high-quality
+// Light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all light that comes straight from
+// emissive surfaces, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space bias compensation for interactive high-quality
 // global illumination with virtual point lights", I3D 2011).
 #pragma once
 
@@ -14,11 +14,11 @@
 namespace fovea::passes {
 
 struct NearFieldSettings {
-  float foveaRadius = 0.25f;  // image widths
-  uint32_t spacing = 4;       // outside the fovea one pixel of each block of this width has a ray: 2, 4 or 8
-  uint32_t bounces = 2;       // reflections of light on its way to the visible surface
-  float area = 1;             // area of the discs, m^2; if 0, only `length` is found, no light
-  float emitterArea = 0;      // area of those on surfaces that shine, if it is larger, m^2
+  float foveaRadius = 0.25f;   // image widths
+  uint32_t spacing = 4;        // outside the fovea one pixel of each block of this width has a ray: 2, 4 or 8
+  uint32_t bounces = 2;        // reflections of light on its way to the visible surface
+  float area = 1;              // area of the discs, m^2; if 0, only `length` is found, no light
+  uint32_t emitterPoints = 4;  // of which the ray aimed at emissive surfaces chooses one
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
   uint32_t foveaFactor = 1;        // rays per sample in blocks of 2 x 2 pixels; they use up as many turns
   uint32_t seed = 0;
@@ -37,10 +37,11 @@ struct NearFieldStatistics {
 
 // A VPL that is a disc of area A sends to a point at distance d less light than the point light it stands for, by the
 // fraction A / (pi d^2 + A). Cosine-weighted rays bring back that fraction of the light they meet; where the fraction
-// is small, rays are traced only with a small probability.
+// is small, rays are traced only with a small probability. Other rays are aimed at emissive surfaces, whose light is
+// left to them wholly.
 //
 // image: one texel per block of 2 x 2 pixels, in rows of (size.x + 1) / 2. rgb: irradiance / pi at one pixel of the
-// block or, outside the fovea, of the `spacing` x `spacing` pixels that hold it; 0 if there is no sample. a:
+// block or, outside the fovea and not close to an emissive surface, of the `spacing` x `spacing` pixels that hold it; 0 if there is no sample. a:
 // sampleCode().
 NearFieldStatistics traceNearField(const scene::Frame& frame, const scene::View& view,
                                    const scene::RayScene& rays, const NearFieldSettings& settings,

@@ -185,7 +185,7 @@ glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& rando
 // surfaces or are small.
 glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
-  const EmitterPoint p = emitters_.sample(v.origin, choice, u1, u2);
+  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, choice, u1, u2);
   Ray ray;
   ray.origin = v.origin;
   ray.direction = p.position + p.normal * rays_.epsilon() - v.origin;
@@ -225,7 +225,8 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
 bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
   const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
   if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
-  if (const float density = emitters_.density(path.hit.triangle, path.vertex.origin); density > 0) {
+  if (const float density = emitters_.density(path.hit.triangle, {path.vertex.origin, path.vertex.normal});
+      density > 0) {
     const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.direction));
     const float other =
         density * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr

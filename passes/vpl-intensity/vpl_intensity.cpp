@@ -246,8 +246,7 @@ PassDeclaration IntensityImportanceArea::declaration() {
           "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
   d.input("spread", spreadBuffer(), Usage::TexelRead,
-          "x: least area of a disc of `importance-area`, y: of one on a surface that shines, m^2; pass "
-          "near-field supplies the nearby light that "
+          "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
           "discs of this area leave out; needs `traced` and kernel `disc`")
       .makeOptional();
   d.parameter("paths", integer(8192, 64, 65536),

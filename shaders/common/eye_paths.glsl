@@ -4,7 +4,8 @@
 
 #include "common/records/eye_paths.h"
 
-const float kShining = 3.0;  // EyePathEnd::kind of a surface that shines
+// EyePathEnd::kind: without direct light, of a surface that shines, of one lit by such surfaces.
+const float kUnlit = 1.0, kShining = 3.0, kGlowing = 4.0;
 
 EyePathEnd loadEyePathEnd(samplerBuffer list, uint path) {
   int first = 3 * int(path);

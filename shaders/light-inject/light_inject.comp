@@ -58,7 +58,10 @@ vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
 #else
   for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
 #endif
-  vec3 result = side.reflectance * irradiance / kPi + side.emission;
+  vec3 result = side.reflectance * irradiance / kPi;
+#if EMISSION
+  result += side.emission;
+#endif
   return vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
 }
 

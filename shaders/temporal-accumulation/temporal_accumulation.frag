@@ -72,13 +72,14 @@ vec3 robustMean(Around around, float weight) {
   return dropped ? (around.sum.rgb - around.brightest) / (around.sum.a - 1.0) : around.sum.rgb / max(around.sum.a, 1.0);
 }
 
-// Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks.
-// If there are none, samples of other surfaces are used, but with no weight.
+// Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks
+// of the same width; narrower ones lie where light changes quickly. If there are none, samples of other surfaces are
+// used, but with no weight.
 vec4 fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float weight) {
   Around own = Around(vec4(0.0), vec3(0.0)), all = own;
   for (int i = 0; i < 9; ++i) {
     Sample s = sampleAt(p + max(side, 1 << shift) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
-    add(own, s, s.own);
+    add(own, s, s.own && s.side == side);
     add(all, s, s.found);
   }
   return own.sum.a > 0.0 ? vec4(robustMean(own, weight), own.sum.a * weight) : vec4(robustMean(all, weight), 0.0);

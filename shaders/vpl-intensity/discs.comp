@@ -14,8 +14,7 @@ uniform usamplerBuffer seen;
 layout(std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(std430) writeonly buffer GainsBlock { float list[]; } gains;
 #if NEAR
-uniform samplerBuffer spread;  // areas, m^2
-uniform samplerBuffer sites;   // VplSite
+uniform samplerBuffer spread;  // x: area, m^2
 #endif
 
 layout(push_constant) uniform Constants {
@@ -34,7 +33,7 @@ void main() {
   if (before > 0.0 && area > 0.0) {
     Vpl vpl = loadVpl(placed, slot);
 #if NEAR
-    area = max(area, leastDisc(texelFetch(spread, 0), loadSite(sites, slot).light < 0.0));
+    area = max(area, texelFetch(spread, 0).x);
 #endif
     uint word = (slot * 64u + lane) * laneWords(points), bits = 0u, turn = 0u;
     for (uint i = lane; i < points; i += 64u, ++turn) {

@@ -12,8 +12,7 @@ layout(std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(std430) writeonly buffer EmittersBlock { Vpl list[]; } emitters;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 #if NEAR
-uniform samplerBuffer spread;  // areas, m^2
-uniform samplerBuffer sites;   // VplSite
+uniform samplerBuffer spread;  // x: area, m^2
 #endif
 layout(std430) buffer CountersBlock { uint alive; } counters;
 
@@ -74,7 +73,7 @@ void main() {
 #endif
   if (place.area > 0.0 && finite(vec4(intensity, area))) {
 #if NEAR
-    area = max(area, leastDisc(texelFetch(spread, 0), loadSite(sites, slot).light < 0.0));
+    area = max(area, texelFetch(spread, 0).x);
 #endif
     vpl = place;
     vpl.area = area;

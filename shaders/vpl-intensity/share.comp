@@ -38,7 +38,7 @@ layout(std430) readonly buffer KeptBlock { Kept value; } kept;
 
 #if NEAR
 uniform samplerBuffer screen;  // EyePathStart
-uniform samplerBuffer spread;  // areas, m^2
+uniform samplerBuffer spread;  // x: area, m^2
 #endif
 
 layout(push_constant) uniform Constants {
@@ -75,7 +75,7 @@ void give(uint vpl, uint path, float part) {
   // The part of it that pass near-field supplies comes from no VPL.
   vec3 away = end.position - loadStart(screen, path % points).position;
   float d2 = dot(away, away);
-  end.radiance *= kPi * d2 / (kPi * d2 + leastDisc(texelFetch(spread, 0), end.kind == kShining));
+  end.radiance *= kPi * d2 / (kPi * d2 + texelFetch(spread, 0).x);
 #endif
   uvec3 light = uvec3(end.radiance / end.unit * part + 0.5);
   atomicAdd(sums.list[vpl].lightX, light.x);
@@ -103,6 +103,9 @@ Path pathAt(uint path) {
   uint point = path % points, turn = point >> 6u, within = inside ? path : 0u;
   vec3 position = endOf(within).position, normal = endOf(within).normal;
   float kind = endOf(within).kind;
+#if TRACED
+  if (kind == kGlowing) kind = kUnlit;  // surfaces that shine light no voxels
+#endif
   return Path(position, normal, inside && kind > 0.0 ? kind : 0.0, 1u << (turn & 31u),
               int((point & 63u) * laneWords(points) + (turn >> 5u)), 1e38, 1e38, kNoSide, kNoSide, 0u, 0u);
 }

@@ -64,9 +64,6 @@ VplSite loadSite(samplerBuffer list, uint vpl) {
   return VplSite(a.xyz, a.w, b.xyz, b.w);
 }
 
-// Least area of a disc, on a surface that shines or on another one. spread: from pass near-field.
-float leastDisc(vec4 spread, bool shines) { return shines ? max(spread.x, spread.y) : spread.x; }
-
 ivec3 brickGrid(VoxelGrid grid) { return ivec3((grid.resolution + kBrick - 1) / kBrick); }
 
 ivec3 brickOf(VoxelGrid grid, vec3 position) {

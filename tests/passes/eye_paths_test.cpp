@@ -143,6 +143,27 @@ TEST(EyePaths, Furnace) {
   }
 }
 
+// Without the emission of the ends none of them shines and no path is aimed, but what lamps light still counts: it is
+// what passes say of the same room less its own emission.
+TEST(EyePaths, WithoutEmission) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f));
+  s.materials[m].emission = {1, 2, 4};
+  const uint32_t walls[6] = {m, m, m, m, m, m};
+  addRoom(s, walls, 2);
+  const Look look(std::move(s));
+  passes::EyePathSettings settings;
+  settings.emission = false;
+  glm::dvec3 mean(0);
+  const auto ends = look.trace(settings, 8192);
+  for (const EyePathEnd& e : ends) {
+    EXPECT_EQ(e.kind, 4);  // lit by surfaces that shine
+    EXPECT_EQ(e.weight, 1);
+    mean += glm::dvec3(e.radiance) / double(ends.size());
+  }
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / 0.75 / (1 << c), 1, 0.03);
+}
+
 // A lamp so small that one path in some thousands hits it by chance. All starts have a path aimed at it, and together
 // they bring the light that it sends to the starts.
 TEST(EyePaths, AimedAtALamp) {

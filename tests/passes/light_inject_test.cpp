@@ -211,6 +211,7 @@ TEST(LightInject, NothingToLightAndNoLight) {
   const auto got = inject(dark, {.shadows = true});
   for (uint32_t i = 0; i < dark.sides().size(); ++i)
     ASSERT_LT(glm::distance(glm::vec3(got[i]), dark.sides()[i].emission), 1e-6f);
+  for (const glm::vec4& side : inject(dark, {.emission = false})) ASSERT_EQ(side, glm::vec4(0));
 }
 
 }  // namespace

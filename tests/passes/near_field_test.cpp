@@ -62,43 +62,175 @@ struct Look {
   NearFieldStatistics statistics;
 };
 
+// All of what the walls emit, and of what they reflect the part that discs leave out.
 TEST(NearField, ThePartThatDiscsLeaveOut) {
   Look look(shiningRoom(true), glm::ivec2(8));
   NearFieldSettings settings;
   settings.foveaRadius = 2;
-  settings.samples = 32768;  // each pixel of a block gets a quarter of them
+  settings.samples = 16384;  // each pixel of a block gets a quarter of them
   const double series[] = {1.5, 1.75, 1.875};
   const struct {
-    float area, emitterArea;
+    float area;
     uint32_t bounces;
-  } cases[] = {{0.05f, 0, 2}, {0.5f, 0, 1}, {0.5f, 0, 2}, {0.5f, 0, 3}, {5, 0, 2}, {0.2f, 1, 2}};
-  for (const auto& [area, emitterArea, bounces] : cases) {
+  } cases[] = {{0.05f, 2}, {0.5f, 1}, {0.5f, 2}, {0.5f, 3}, {5, 2}};
+  for (const auto& [area, bounces] : cases) {
     settings.area = area;
-    settings.emitterArea = emitterArea;
     settings.bounces = bounces;
     const auto got = look.trace(settings);
     double all = 0, wantAll = 0;
-    const auto bound = [&](double part,
-                           int texels) {  // a ray goes on with a probability of at most four times its part
+    // A ray goes on with a probability of at most four times its part.
+    const auto bound = [&](double part, int texels) {
       return 0.01 + 4.5 / std::sqrt(4 * part * settings.samples * texels);
     };
-    for (int i = 0; i < 16; ++i) {
-      double want = 0;
-      for (int k = 0; k < 4; ++k) {
-        const Seen& seen = look.room.pixels[size_t((i / 4 * 2 + k / 2) * 8 + i % 4 * 2 + k % 2)];
-        const double emitted = look.part(seen, std::max(area, emitterArea), 2000).first,
-                     reflected = look.part(seen, area, 2000).first;
-        want += (emitted + (series[bounces - 1] - 1) * reflected) / series[bounces - 1] / 4;
+    for (uint32_t i = 0; i < 16; ++i) {
+      const glm::uvec2 block(i % 4, i / 4);
+      const auto seenAt = [&](glm::uvec2 p) {
+        return look.room.pixels[(2 * block.y + p.y) * 8 + 2 * block.x + p.x];
+      };
+      const Seen first = seenAt(passes::samplePixel(0, 2, block));
+      double want = 0, least = 1;
+      for (uint32_t k = 0; k < 4; ++k) {
+        Seen seen = seenAt({k % 2, k / 2});
+        const bool same = seen.normal == first.normal &&
+                          std::abs(glm::dot(seen.position - first.position, first.normal)) < 1e-3f;
+        const double reflected = look.part(same ? seen : first, area, 2000).first;
+        want += (1 + (series[bounces - 1] - 1) * reflected) / 4;
+        least = std::min(least, reflected);
       }
       EXPECT_EQ(int(got[i].a) & 15, 2);
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(got[i][c] / (series[bounces - 1] * (1 << c) * want), 1, bound(want, 1))
+        EXPECT_NEAR(got[i][c] / ((1 << c) * want), 1, bound(least, 1))
             << i << ", area " << area << ", bounces " << bounces;
       wantAll += want / 16;
-      all += got[i].r / series[bounces - 1] / 16;
+      all += got[i].r / 16;
     }
-    EXPECT_NEAR(all / wantAll, 1, bound(wantAll, 16)) << "area " << area << ", bounces " << bounces;
+    EXPECT_NEAR(all / wantAll, 1, bound(area / (area + 12), 16))
+        << "area " << area << ", bounces " << bounces;
   }
+}
+
+// Irradiance / pi at a plane, from a parallel rectangle of the given half widths at the distance h that emits L = 1, at
+// (x, y) from its middle: its configuration factor, a sum over its corners.
+double fromRectangle(glm::dvec2 half, double h, double x, double y) {
+  const auto corner = [h](double a, double b) {
+    a /= h, b /= h;
+    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * glm::pi<double>());
+  };
+  return corner(half.x - x, half.y - y) + corner(half.x + x, half.y - y) + corner(half.x - x, half.y + y) +
+         corner(half.x + x, half.y + y);
+}
+
+// Large, small and thin lamps before a wall, close to it and far from it, alone and among others that are hidden in
+// boxes. The wall and the lamps are black, so nothing else adds light, and the eye looks through their backs.
+TEST(NearField, AllLightOfALamp) {
+  const struct {
+    glm::vec2 half;
+    float height;
+  } lamps[] = {{{0.5f, 0.5f}, 0.3f}, {{0.02f, 0.02f}, 0.5f}, {{0.8f, 0.01f}, 0.1f}, {{1, 1}, 1.5f}};
+  for (const auto& [half, height] : lamps)
+    for (const bool others : {false, true}) {
+      scene::Scene s;
+      const uint32_t black = addMaterial(s, glm::vec3(0)), lamp = addMaterial(s, glm::vec3(0));
+      s.materials[lamp].emission = {1, 2, 3};
+      addQuad(s, black, {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
+      addQuad(s, lamp, {-half.x, -half.y, -3 + height}, {0, 2 * half.y, 0}, {2 * half.x, 0, 0});
+      for (int i = 0; others && i < 12; ++i) {
+        const glm::vec3 corner(i < 6 ? -4.5f : 3.5f, -6 + 2 * float(i % 6), -1);
+        addQuad(s, lamp, corner, {0, 1, 0}, {1, 0, 0});
+        addBox(s, black, corner - 0.1f, corner + 1.1f);
+      }
+      Look look(std::move(s), glm::ivec2(16));
+      NearFieldSettings settings;
+      settings.foveaRadius = 2;
+      settings.area = 0.05f;
+      settings.samples = 4096;
+      const auto got = look.trace(settings);
+      double all = 0, wantAll = 0;
+      for (uint32_t i = 0; i < 64; ++i) {
+        double want = 0;
+        for (uint32_t k = 0; k < 4; ++k) {
+          const glm::vec3 d =
+              look.frame.views[0].rayDirection(glm::vec2(i % 8 * 2 + k % 2, i / 8 * 2 + k / 2) + 0.5f);
+          want += 0.25 * fromRectangle(half, height, -3 * d.x / d.z, -3 * d.y / d.z);
+        }
+        EXPECT_NEAR(got[i].r, want, 0.1 * want + 5e-4) << i << ", lamp " << half.x << ", " << others;
+        EXPECT_NEAR(got[i].b, 3 * got[i].r, 1e-3f * got[i].b);
+        all += got[i].r;
+        wantAll += want;
+      }
+      EXPECT_NEAR(all / wantAll, 1, 0.02) << "lamp " << half.x << ", height " << height << ", " << others;
+    }
+}
+
+// Where several samples are taken at once, the ones on other surfaces do not count: a bright table does not light the
+// dark floor beside it.
+TEST(NearField, SamplesDoNotMixSurfaces) {
+  scene::Scene s;
+  const uint32_t black = addMaterial(s, glm::vec3(0)), lamp = addMaterial(s, glm::vec3(0));
+  s.materials[lamp].emission = glm::vec3(1);
+  addQuad(s, black, {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});       // a wall that gets no light
+  addQuad(s, black, {0.07f, -9, -2.5f}, {9, 0, 0}, {0, 18, 0});  // covers its right half, and is lit
+  addQuad(s, lamp, {8.5f, -9, -2.4f}, {0, 0, 3}, {0, 18, 0});    // shines to the left
+  addBox(s, black, {0.05f, -9, -2.999f}, {0.06f, 9, -1.5f});     // hides the lamp from the left half
+  Look look(std::move(s), glm::ivec2(36, 32));
+  NearFieldSettings settings;
+  settings.foveaRadius = 1e-3f;
+  settings.spacing = 8;
+  settings.area = 0.05f;
+  settings.samples = 32;
+  const auto got = look.trace(settings);
+  int dark = 0, mixed = 0;
+  for (uint32_t row = 0; row < 4; ++row)
+    for (uint32_t column = 0; column < 5; ++column) {
+      const glm::uvec2 tile(column, row);
+      const glm::uvec2 own = passes::samplePixel(0, 8, tile) + 8u * tile;
+      if (own.x >= 36) continue;
+      bool other = false;
+      for (uint32_t k = 0; k < 64; ++k) {
+        const glm::uvec2 p = 8u * tile + glm::uvec2(k % 8, k / 8);
+        other = other || (p.x < 36 && look.room.pixels[p.y * 36 + p.x].position.z > -2.9f);
+      }
+      const Seen& seen = look.room.pixels[own.y * 36 + own.x];
+      if (!seen.there || seen.position.z > -2.9f) continue;
+      EXPECT_EQ(glm::vec3(got[4 * row * 18 + 4 * column]), glm::vec3(0)) << column << " " << row;
+      ++dark;
+      mixed += other;
+    }
+  EXPECT_GT(dark, 4);
+  EXPECT_GT(mixed, 0);
+}
+
+// Close to a lamp its light differs within a wide block, so it is divided; what shows the lamp itself is not.
+TEST(NearField, NarrowBlocksCloseToALamp) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0));
+  s.materials[lamp].emission = glm::vec3(1);
+  addQuad(s, grey, {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
+  addQuad(s, lamp, {-0.4f, -0.4f, -2.99f}, {0.8f, 0, 0}, {0, 0.8f, 0});
+  Look look(std::move(s), glm::ivec2(128));
+  NearFieldSettings settings;
+  settings.foveaRadius = 1e-3f;
+  settings.spacing = 8;
+  const auto got = look.trace(settings);
+  int wide = 0, narrow = 0;
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const Seen& seen = look.room.pixels[size_t((8 * y + 4) * 128 + 8 * x + 4)];
+      const float away =
+          std::max(std::abs(seen.position.x), std::abs(seen.position.y));  // from the middle of the lamp
+      const int side = int(got[size_t(4 * y * 64 + 4 * x)].a) & 15;
+      if (glm::distance(glm::vec2(x, y), glm::vec2(7.5f)) < 1) continue;  // the fovea
+      if (away < 0.39f || away > 1.4f) {
+        EXPECT_EQ(side, 8) << x << " " << y;
+        ++wide;
+      } else if (away > 0.41f && away < 0.6f) {
+        EXPECT_EQ(side, 2) << x << " " << y;
+        ++narrow;
+      }
+    }
+  EXPECT_GT(wide, 15);
+  EXPECT_GT(narrow, 8);
 }
 
 // Few rays go far, and yet on average they go as far as if all of them did.

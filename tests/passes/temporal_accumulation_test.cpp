@@ -147,6 +147,25 @@ TEST(TemporalAccumulation, SamplesAroundWhereThereIsNone) {
   }
 }
 
+// Narrow blocks lie where light changes quickly, such as beside a lamp: they tell wide ones nothing.
+TEST(TemporalAccumulation, SamplesAroundOfTheSameWidth) {
+  const Eye eye({0, 0, 0});
+  auto samples = everywhere(kSize / 2, {4, 2, 1, 8});
+  for (int y = 0; y < kSize.y / 2; ++y)
+    for (int x = 0; x < kSize.x / 2; ++x)
+      if (x / 4 == 2) samples[size_t(y * (kSize.x / 2) + x)] = {4000, 2000, 1000, 2};
+  const auto got = accumulate(eye, samples, everywhere(kSize, glm::vec4(0)), 16);
+  int wide = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const glm::ivec2 from = glm::ivec2(x, y) / 8 * 8;
+      if (x / 8 == 2 || !sameSurface(eye.seen.at(x, y), eye.seen.at(from.x, from.y))) continue;
+      EXPECT_EQ(got[4 * size_t(y * kSize.x + x)], 4) << x << " " << y;
+      ++wide;
+    }
+  EXPECT_GT(wide, 800);
+}
+
 // When every pixel has a sample, only its own counts, also where there is no mean yet, however bright it is.
 TEST(TemporalAccumulation, ASampleForEveryPixel) {
   const Eye eye({0, 0, 0});

@@ -48,7 +48,7 @@ std::vector<glm::vec4> radianceOf(const VoxelScene& s, F f) {
 struct Inject {
   int taps = 6;
   double offset = 0.25;
-  bool shadows = false;
+  bool shadows = false, emission = true;
   const char* filter = "bilinear";
   int mapSize = 1024;
 };
@@ -57,6 +57,7 @@ inline std::vector<glm::vec4> inject(const VoxelScene& s, const Inject& options 
   PassTest test("light-inject");
   test.scene(s.scene)
       .param("taps", options.taps)
+      .param("emission", options.emission)
       .param("offset", options.offset)
       .param("filter", options.filter);
   setVoxels(test, s.voxels);

@@ -214,14 +214,14 @@ std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector
 
 std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& points,
                                     const std::vector<passes::EyePathEnd>& ends,
-                                    const WeightSettings& settings, float nearArea, float shiningArea) {
+                                    const WeightSettings& settings, float nearArea) {
   PassTest test("vpl-intensity-importance-area");
   wire(test, in, "importance-area", settings);
   std::vector<passes::EyePathStart> starts;
   for (const Seen& s : points)
     starts.push_back({s.position, s.there ? 1.0f : 0.0f, s.normal, 0, s.normal, 0});
   test.buffer("traced.starts", starts, "ScreenPoint").buffer("traced.ends", ends, "EyePathEnd");
-  if (nearArea > 0) test.buffer("spread", std::vector<glm::vec4>{{nearArea, shiningArea, 0, 0}}, "VplSpread");
+  if (nearArea > 0) test.buffer("spread", std::vector<glm::vec4>{{nearArea, 0, 0, 0}}, "VplSpread");
   test.run();
   return test.values<scene::Vpl>("emitters");
 }
@@ -236,16 +236,16 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   elsewhere.gaze = {0.1f, 0.8f};
   const auto points = screenPoints(room, elsewhere);
   auto ends = colouredEnds(room, points, 4096);
-  for (size_t i = 0; i < ends.size(); i += 5) ends[i].kind = 3;  // shines, although no VPL does
+  for (size_t i = 0; i < ends.size(); i += 5)
+    ends[i].kind = i % 2 == 0 ? 3 : 4;  // shines or glows, although no VPL does
   const double pi = glm::pi<double>();
-  for (const auto& [nearArea, shiningArea] : {std::pair(0.0f, 0.0f), {0.1f, 0.0f}, {0.1f, 0.5f}}) {
+  for (const float nearArea : {0.0f, 0.1f}) {
     glm::dvec3 want(0), got(0);  // without the light of pass near-field
     for (size_t i = 0; i < ends.size(); ++i) {
       const double d = glm::distance(ends[i].position, points[i % points.size()].position);
-      const double area = ends[i].kind == 3 ? std::max(nearArea, shiningArea) : nearArea;
-      want += glm::dvec3(ends[i].radiance) * (pi * d * d / (pi * d * d + area)) / double(ends.size());
+      want += glm::dvec3(ends[i].radiance) * (pi * d * d / (pi * d * d + nearArea)) / double(ends.size());
     }
-    for (const scene::Vpl& v : weighTraced(in, points, ends, settings, nearArea, shiningArea)) {
+    for (const scene::Vpl& v : weighTraced(in, points, ends, settings, nearArea)) {
       EXPECT_GE(v.area, nearArea);
       for (const Seen& s : points) {
         const glm::dvec3 to = glm::dvec3(v.position) - glm::dvec3(s.position);
@@ -305,7 +305,7 @@ TEST(Weights, TracedPathsGoToVplsThatTheirStartsSee) {
   }
   const float unit = passes::sumUnit(ends);
   for (passes::EyePathEnd& e : ends) e.unit = unit;
-  const auto got = weighTraced(in, points, ends, settings, 0, 0);
+  const auto got = weighTraced(in, points, ends, settings, 0);
   const auto want = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings, true).area,
              nearest = sharedAreas(room, in.vpls, in.radiance, points, in.maps, 8192, settings).area;
   double off = 0, other = 0, all = 0;
@@ -325,12 +325,12 @@ TEST(Weights, TracedPathsThatEndNowhere) {
   const Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 60, settings)));
   const auto points = screenPoints(room, settings);
   auto ends = colouredEnds(room, points, 2048);
-  const auto all = weighTraced(in, points, ends, settings, 0, 0);
+  const auto all = weighTraced(in, points, ends, settings, 0);
   ends.resize(4096);  // as many again escape
-  const auto half = weighTraced(in, points, ends, settings, 0, 0);
+  const auto half = weighTraced(in, points, ends, settings, 0);
   for (size_t i = 0; i < all.size(); ++i)
     EXPECT_NEAR(half[i].area, all[i].area / 2, 1e-5f * all[i].area) << i;
-  for (const scene::Vpl& v : weighTraced(in, points, std::vector<passes::EyePathEnd>(64), settings, 1, 1))
+  for (const scene::Vpl& v : weighTraced(in, points, std::vector<passes::EyePathEnd>(64), settings, 1))
     EXPECT_EQ(v.intensity, glm::vec3(0));
 }
 

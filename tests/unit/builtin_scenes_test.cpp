@@ -219,9 +219,11 @@ INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                                          Expected{"room", 476000}, Expected{"yard", 516000}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-const Expected kValidation[] = {{"alley", 82500, true, true, 0},   {"dollhouse", 132300, false, true, 2},
-                                {"gallery", 58000, true, true, 0}, {"greenhouse", 112600, true, true, 1},
-                                {"hangar", 35300, true, true, 1},  {"lounge", 86000, true, true, 4}};
+const Expected kValidation[] = {
+    {"alley", 82500, true, true, 0},   {"dollhouse", 132300, false, true, 2},
+    {"gallery", 58000, true, true, 0}, {"greenhouse", 112600, true, true, 1},
+    {"hangar", 35300, true, true, 1},  {"lounge", 86000, true, true, 4},
+    {"workshop", 35600, true, true, 1}};  // no validation scene, but checked as one
 const auto nameOf = [](const auto& info) { return std::string(info.param.name); };
 INSTANTIATE_TEST_SUITE_P(Validation, BuiltinScenes, testing::ValuesIn(kValidation), nameOf);
 INSTANTIATE_TEST_SUITE_P(Validation, ValidationScenes, testing::ValuesIn(kValidation), nameOf);

@@ -53,7 +53,9 @@ TEST(Emitters, DensityIsThatOfTheSamples) {
   for (const uint32_t count : {1u, 3u, 40u}) {
     const Lit lit(panels(count));
     const Emitters emitters(lit.frame);
-    const glm::vec3 receiver(0.3f, 0.4f, -0.2f);
+    Receiver receiver{{0.3f, 0.4f, -0.2f}, {}};
+    receiver.normal =
+        glm::normalize(lit.geometry.positions[4] - receiver.position);  // towards the first panel
     std::map<uint32_t, double> chosen;
     constexpr int kSamples = 200000;
     for (uint32_t i = 0; i < kSamples; ++i) {
@@ -61,7 +63,7 @@ TEST(Emitters, DensityIsThatOfTheSamples) {
       if (p.triangle == kNoIndex) continue;
       chosen[p.triangle] += 1.0 / kSamples;
       ASSERT_NEAR(p.density, emitters.density(p.triangle, receiver), 1e-4f * p.density);
-      ASSERT_GT(glm::dot(p.normal, receiver - p.position), 0);
+      ASSERT_GT(glm::dot(p.normal, receiver.position - p.position), 0);
       ASSERT_EQ(p.radiance, lit.scene.materials[lit.geometry.triangles[p.triangle].material()].emission);
     }
     double sum = 0;
@@ -91,8 +93,59 @@ TEST(Emitters, ChoosesWhatIsClose) {
   const Emitters emitters(lit.frame);
   int left = 0;
   for (uint32_t i = 0; i < 10000; ++i)
-    left += emitters.sample({0, 0, 1}, number(i, 0), number(i, 1), number(i, 2)).position.x < 0;
-  EXPECT_NEAR(left / 10000.0, 10.0 / 12, 0.02);  // squared distances of 2 and 10
+    left += emitters.sample({{0, 0, 1}, {0, 0, -1}}, number(i, 0), number(i, 1), number(i, 2)).position.x < 0;
+  // Squared distances of 2 and 10, and both cosines are 1 over the distance.
+  EXPECT_NEAR(left / 10000.0, 25.0 / 26, 0.02);
+}
+
+// Of two equal panels in the same direction, the one that turns towards the receiver is chosen more often, and what
+// lies below its horizon is not chosen at all.
+TEST(Emitters, ChoosesByBothCosines) {
+  Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0));
+  s.materials[m].emission = glm::vec3(1);
+  for (int i = 0; i < 8; ++i) {  // enough for a tree
+    const float small = 0.01f, y = float(i) * small;
+    addQuad(s, m, {-1, y, 0}, {small, 0, 0}, {0, small, 0});                   // faces +z
+    addQuad(s, m, {1, y, 0}, {0.6f * small, 0, 0.8f * small}, {0, small, 0});  // turned away from the middle
+    for (const float x : {-0.5f, 0.5f}) addQuad(s, m, {x, y, 3}, {-small, 0, 0}, {0, small, 0});  // behind
+  }
+  const Lit lit(std::move(s));
+  const Emitters emitters(lit.frame);
+  int left = 0, right = 0, behind = 0;
+  for (uint32_t i = 0; i < 10000; ++i) {
+    const EmitterPoint p = emitters.sample({{0, 0, 1}, {0, 0, -1}}, number(i, 0), number(i, 1), number(i, 2));
+    if (p.triangle == kNoIndex) continue;
+    ++(p.position.z > 2 ? behind : p.position.x < 0 ? left : right);
+  }
+  EXPECT_EQ(behind, 0);
+  EXPECT_GT(left, 1000);
+  // The panels on the right have the normal (-0.8, 0, 0.6): their cosine is 1.4 / sqrt(2) in place of 1 / sqrt(2).
+  EXPECT_NEAR(double(right) / left, 1.4, 0.15);
+}
+
+TEST(Emitters, WithinReach) {
+  const Lit lit(panels(40));
+  const Emitters emitters(lit.frame);
+  int reached = 0;
+  for (uint32_t i = 0; i < 300; ++i) {
+    const glm::vec3 p = 9.0f * (glm::vec3(number(i, 0), number(i, 1), number(i, 2)) - 0.5f);
+    const float reach = number(i, 3);
+    bool want = false;
+    for (const Triangle& t : lit.geometry.triangles) {
+      if (lit.scene.materials[t.material()].emission == glm::vec3(0)) continue;
+      glm::vec3 corners[3];
+      for (int k = 0; k < 3; ++k) corners[k] = lit.geometry.positions[t.v[k]];
+      const glm::vec3 centre = (corners[0] + corners[1] + corners[2]) / 3.0f;
+      float radius = 0;
+      for (const glm::vec3& c : corners) radius = std::max(radius, glm::distance(c, centre));
+      want = want || glm::distance(p, centre) <= reach + radius;
+    }
+    EXPECT_EQ(emitters.within(p, reach), want) << i;
+    reached += want;
+  }
+  EXPECT_GT(reached, 30);
+  EXPECT_LT(reached, 270);
 }
 
 TEST(Emitters, NoneWhereNothingShines) {
@@ -101,8 +154,9 @@ TEST(Emitters, NoneWhereNothingShines) {
   const Lit lit(std::move(s));
   const Emitters emitters(lit.frame);
   EXPECT_TRUE(emitters.empty());
-  EXPECT_EQ(emitters.density(0, {0, 0, 1}), 0);
-  EXPECT_EQ(emitters.sample({0, 0, 1}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
+  EXPECT_FALSE(emitters.within({0, 0, 0}, 100));
+  EXPECT_EQ(emitters.density(0, {{0, 0, 1}, {0, 0, -1}}), 0);
+  EXPECT_EQ(emitters.sample({{0, 0, 1}, {0, 0, -1}}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
 }
 
 TEST(Emitters, NeverFromTheBackOfAPanel) {
@@ -112,9 +166,9 @@ TEST(Emitters, NeverFromTheBackOfAPanel) {
   addQuad(s, m, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // shines towards +z
   const Lit lit(std::move(s));
   const Emitters emitters(lit.frame);
-  EXPECT_EQ(emitters.sample({0.5f, 0.5f, -1}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
-  EXPECT_EQ(emitters.density(0, {0.5f, 0.5f, -1}), 0);
-  EXPECT_NE(emitters.sample({0.5f, 0.5f, 1}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
+  EXPECT_EQ(emitters.sample({{0.5f, 0.5f, -1}, {0, 0, 1}}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
+  EXPECT_EQ(emitters.density(0, {{0.5f, 0.5f, -1}, {0, 0, 1}}), 0);
+  EXPECT_NE(emitters.sample({{0.5f, 0.5f, 1}, {0, 0, -1}}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
 }
 
 // A small lamp above a floor: few rays meet it by chance, and yet the mean of a few gathers is its irradiance over pi.

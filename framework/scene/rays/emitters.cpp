@@ -8,7 +8,9 @@ namespace fovea::scene {
 
 namespace {
 
-constexpr uint32_t kInLeaf = 4;  // most emitters in a leaf
+constexpr uint32_t kInLeaf = 4;        // most emitters in a leaf
+constexpr float kRounding = 1e-5f;     // by which cones are wider than the normals in them
+constexpr float kLeastCosine = 1e-3f;  // of a bound, so that rounding leaves nothing out
 
 // Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
 // a point is exact.
@@ -20,6 +22,16 @@ double estimatedRadiance(const Frame& frame, uint32_t triangle, const Material& 
   // This keeps a dark estimate from hiding a bright spot between the points.
   sum = glm::max(sum, 0.05f * material.emission);
   return (double(sum.r) + sum.g + sum.b) / 3.0;
+}
+
+// Cosine of a - b, and its sine, for angles from 0 to pi; 1 and 0 if b is larger.
+struct Angle {
+  float cosine, sine;
+};
+Angle angleOf(float cosine) { return {cosine, std::sqrt(std::max(1 - cosine * cosine, 0.0f))}; }
+Angle operator-(Angle a, Angle b) {
+  if (a.cosine >= b.cosine) return {1, 0};
+  return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
 }
 
 }  // namespace
@@ -39,8 +51,10 @@ Emitters::Emitters(const Frame& frame) : frame_(frame) {
     const float twice = glm::length(normal);
     const double power = estimatedRadiance(frame, t, materials[index]) * 0.5 * double(twice);
     if (!(power > 0) || !std::isfinite(power)) continue;
+    const glm::vec3 centre = (a + b + c) / 3.0f, p = a - centre, q = b - centre, r = c - centre;
+    const float radius2 = std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)});
     emitters_.push_back(
-        {t, materials[index].doubleSided, float(power), 0.5f * twice, (a + b + c) / 3.0f, normal / twice});
+        {t, materials[index].doubleSided, float(power), 0.5f * twice, radius2, centre, normal / twice});
   }
   if (emitters_.empty()) return;
   nodes_.resize(2 * std::bit_ceil(emitters_.size()));
@@ -53,49 +67,94 @@ void Emitters::build(uint32_t node, Range range) {
   glm::vec3 low(INFINITY), high(-INFINITY);
   const auto begin = emitters_.begin() + range.first, end = emitters_.begin() + range.last;
   double power = 0;
+  glm::vec3 axis(0);
+  bool allDirections = false;
   for (auto e = begin; e != end; ++e) {
     for (const uint32_t v : frame_.geometry->triangles[e->triangle].v) {
       low = glm::min(low, frame_.geometry->positions[v]);
       high = glm::max(high, frame_.geometry->positions[v]);
     }
     power += e->power;
+    axis += e->power * e->normal;
+    allDirections = allDirections || e->doubleSided;
+  }
+  float spread = -1;
+  if (const float length = glm::length(axis); length > 0 && !allDirections) {
+    axis /= length;
+    spread = 1;
+    for (auto e = begin; e != end; ++e) spread = std::min(spread, glm::dot(axis, e->normal));
+    spread = std::max(spread - kRounding, -1.0f);
   }
   const glm::vec3 size = high - low;
-  nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), float(power)};
+  nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), axis, spread, float(power)};
   if (range.isLeaf()) return;
-  const int axis = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
-  std::nth_element(begin, emitters_.begin() + range.middle(), end,
-                   [axis](const Emitter& a, const Emitter& b) {
-                     return std::pair(a.centre[axis], a.triangle) < std::pair(b.centre[axis], b.triangle);
-                   });
+  const int longest = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
+  std::nth_element(
+      begin, emitters_.begin() + range.middle(), end, [longest](const Emitter& a, const Emitter& b) {
+        return std::pair(a.centre[longest], a.triangle) < std::pair(b.centre[longest], b.triangle);
+      });
   build(2 * node, {range.first, range.middle()});
   build(2 * node + 1, {range.middle(), range.last});
 }
 
-float Emitters::weight(const Node& node, glm::vec3 receiver) const {
-  const glm::vec3 to = receiver - node.centre;
-  return node.power / std::max(glm::dot(to, to), node.radius2);
+float Emitters::weight(const Node& node, const Receiver& receiver) {
+  const glm::vec3 to = receiver.position - node.centre;
+  const float d2 = glm::dot(to, to);
+  if (d2 <= node.radius2) return node.power / std::max(node.radius2, 1e-20f);
+  const float inverse = 1 / std::sqrt(d2);
+  const float sine = std::sqrt(node.radius2) * inverse;
+  const Angle bounds{std::sqrt(1 - sine * sine), sine};
+  const Angle emitting = angleOf(glm::dot(to, node.axis) * inverse) - angleOf(node.spread) - bounds;
+  const Angle receiving = angleOf(-glm::dot(to, receiver.normal) * inverse) - bounds;
+  if (emitting.cosine < -kRounding || receiving.cosine < -kRounding) return 0;
+  return node.power * std::max(emitting.cosine, kLeastCosine) * std::max(receiving.cosine, kLeastCosine) / d2;
 }
 
-float Emitters::weight(const Emitter& emitter, glm::vec3 receiver) const {
-  const glm::vec3 to = receiver - emitter.centre;
-  if (!emitter.doubleSided && !(glm::dot(to, emitter.normal) > 0)) return 0;
-  return emitter.power / std::max(glm::dot(to, to), emitter.area);
+float Emitters::weight(const Emitter& emitter, const Receiver& receiver) {
+  const glm::vec3 to = receiver.position - emitter.centre;
+  const float above = glm::dot(to, emitter.normal);
+  if (!emitter.doubleSided && !(above > 0)) return 0;
+  const float d2 = std::max({glm::dot(to, to), emitter.radius2, 1e-20f}), d = std::sqrt(d2),
+              radius = std::sqrt(emitter.radius2);
+  const float receiving = radius - glm::dot(to, receiver.normal);
+  if (receiving < -kRounding * d) return 0;
+  const float emitting = std::min(std::abs(above) + 0.1f * radius, d);
+  return emitter.power * std::max(emitting, kLeastCosine * d) *
+         std::max(std::min(receiving, d), kLeastCosine * d) / (d2 * d2);
 }
 
-float Emitters::firstHalf(uint32_t node, glm::vec3 receiver) const {
+float Emitters::firstHalf(uint32_t node, const Receiver& receiver) const {
   const float first = weight(nodes_[2 * node], receiver), second = weight(nodes_[2 * node + 1], receiver);
-  return first / (first + second);
+  return first + second > 0 ? first / (first + second) : -1.0f;
+}
+
+bool Emitters::within(glm::vec3 point, float reach) const {
+  return !empty() && within(point, reach, 1, {0, uint32_t(emitters_.size())});
+}
+
+bool Emitters::within(glm::vec3 point, float reach, uint32_t node, Range range) const {
+  const auto isNear = [&](glm::vec3 centre, float radius2) {
+    const float radius = reach + std::sqrt(radius2);
+    return glm::dot(point - centre, point - centre) <= radius * radius;
+  };
+  // The bounding sphere of a triangle may extend beyond that of its node, but no farther than this.
+  if (!isNear(nodes_[node].centre, 9 * nodes_[node].radius2)) return false;
+  if (range.isLeaf())
+    return std::any_of(emitters_.begin() + range.first, emitters_.begin() + range.last,
+                       [&](const Emitter& e) { return isNear(e.centre, e.radius2); });
+  return within(point, reach, 2 * node, {range.first, range.middle()}) ||
+         within(point, reach, 2 * node + 1, {range.middle(), range.last});
 }
 
 // The random number is rescaled after each decision, so one number is enough.
-EmitterPoint Emitters::sample(glm::vec3 receiver, float choice, float u, float v) const {
+EmitterPoint Emitters::sample(const Receiver& receiver, float choice, float u, float v) const {
   EmitterPoint p;
   if (empty()) return p;
   Range range{0, uint32_t(emitters_.size())};
   float probability = 1;
   for (uint32_t node = 1; !range.isLeaf();) {
     const float first = firstHalf(node, receiver);
+    if (first < 0) return p;
     const bool second = choice >= first;
     choice = second ? (choice - first) / (1 - first) : choice / first;
     probability *= second ? 1 - first : first;
@@ -117,19 +176,21 @@ EmitterPoint Emitters::sample(glm::vec3 receiver, float choice, float u, float v
   const SurfaceHit s = surfaceAt(*frame_.geometry, {chosen->triangle, 0, root * (1.0f - v), root * v});
   p.triangle = chosen->triangle;
   p.position = s.position;
-  p.normal = glm::dot(chosen->normal, receiver - chosen->centre) > 0 ? s.geometricNormal : -s.geometricNormal;
+  p.normal = glm::dot(chosen->normal, receiver.position - chosen->centre) > 0 ? s.geometricNormal
+                                                                              : -s.geometricNormal;
   p.radiance = emission(*frame_.scene, frame_.scene->materials[s.material], s.uv);
   p.density = probability * weight(*chosen, receiver) / (total * chosen->area);
   return p;
 }
 
-float Emitters::density(uint32_t triangle, glm::vec3 receiver) const {
+float Emitters::density(uint32_t triangle, const Receiver& receiver) const {
   if (empty() || place_[triangle] == kNoIndex) return 0;
   const uint32_t place = place_[triangle];
   Range range{0, uint32_t(emitters_.size())};
   float probability = 1;
   for (uint32_t node = 1; !range.isLeaf();) {
     const float first = firstHalf(node, receiver);
+    if (first < 0) return 0;
     const bool second = place >= range.middle();
     probability *= second ? 1 - first : first;
     node = 2 * node + (second ? 1 : 0);

@@ -20,18 +20,26 @@ struct EmitterPoint {
   float density = 0;             // probability density of the choice, per m^2
 };
 
-// Chooses triangles by their power and their distance from the receiver, with a binary tree of bounding boxes, as in
-// Conty Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting" (HPG 2018), but without
-// cones of normals: triangles that face away are left out in the leaves.
+// The surface that is lit.
+struct Receiver {
+  glm::vec3 position{0};  // world space, m
+  glm::vec3 normal{0};    // unit
+};
+
+// Chooses triangles by a bound of the light that they send if nothing hides them: power, both cosines and distance,
+// with a binary tree of bounding spheres and cones of normals, as in Conty Estevez and Kulla, "Importance sampling of
+// many lights with adaptive tree splitting" (HPG 2018).
 class Emitters {
  public:
   explicit Emitters(const Frame& frame);
   bool empty() const { return emitters_.empty(); }
+  // Whether an emitter is within `reach` metres of a point, by the bounding spheres of triangles.
+  bool within(glm::vec3 point, float reach) const;
   // A point that may light `receiver`. choice, u, v: uniform in [0, 1).
-  EmitterPoint sample(glm::vec3 receiver, float choice, float u, float v) const;
+  EmitterPoint sample(const Receiver& receiver, float choice, float u, float v) const;
   // Density with which sample() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does not
   // emit towards it.
-  float density(uint32_t triangle, glm::vec3 receiver) const;
+  float density(uint32_t triangle, const Receiver& receiver) const;
 
  private:
   struct Emitter {
@@ -39,6 +47,7 @@ class Emitters {
     bool doubleSided = false;
     float power = 0;      // mean of the channels, W / pi
     float area = 0;       // m^2
+    float radius2 = 0;    // square of the distance between the centre and the farthest corner, m^2
     glm::vec3 centre{0};  // world space, m
     glm::vec3 normal{0};  // geometric, unit
   };
@@ -46,6 +55,8 @@ class Emitters {
   struct Node {
     glm::vec3 centre{0};
     float radius2 = 0;  // squared half diagonal of its box, m^2
+    glm::vec3 axis{0};  // of the cone of its normals, unit
+    float spread = -1;  // cosine of half its angle, -1 if it holds all directions
     float power = 0;
   };
   struct Range {
@@ -55,10 +66,11 @@ class Emitters {
   };
 
   void build(uint32_t node, Range range);
-  float weight(const Node& node, glm::vec3 receiver) const;
-  float weight(const Emitter& emitter, glm::vec3 receiver) const;
-  // The probability of turning to the first half of a node.
-  float firstHalf(uint32_t node, glm::vec3 receiver) const;
+  static float weight(const Node& node, const Receiver& receiver);
+  static float weight(const Emitter& emitter, const Receiver& receiver);
+  bool within(glm::vec3 point, float reach, uint32_t node, Range range) const;
+  // The probability of turning to the first half of a node, below 0 if neither half sends light.
+  float firstHalf(uint32_t node, const Receiver& receiver) const;
 
   const Frame& frame_;
   std::vector<Emitter> emitters_;  // in the order of the leaves

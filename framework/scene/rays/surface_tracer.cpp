@@ -94,10 +94,14 @@ glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t&
 }
 
 SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, uint32_t stream) const {
-  EmitterRay ray;
   const uint32_t own = hashCombine(stream, kEmitterStream);
   const glm::vec2 u = streamSequence(own, 0);
-  const EmitterPoint p = emitters_.sample(v.origin, uniformFloat(hashCombine(own, 2u)), u.x, u.y);
+  return towardsEmitter(v, {uniformFloat(hashCombine(own, 2u)), u.x, u.y});
+}
+
+SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, glm::vec3 u) const {
+  EmitterRay ray;
+  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, u.x, u.y, u.z);
   const glm::vec3 to = p.position - v.origin;
   const float d2 = glm::dot(to, to);
   if (p.triangle == kNoIndex || !(d2 > 0)) return ray;
@@ -119,7 +123,7 @@ bool SurfaceTracer::sees(const TracedSurface& v, const EmitterRay& to, uint64_t&
 }
 
 float SurfaceTracer::emitterDensity(const TracedSurface& v, const TracedSurface& hit) const {
-  const float density = emitters_.density(hit.triangle, v.origin);
+  const float density = emitters_.density(hit.triangle, {v.origin, v.normal});
   if (!(density > 0)) return 0;
   const glm::vec3 to = hit.position - v.origin;
   const float d2 = glm::dot(to, to);

@@ -57,7 +57,10 @@ class SurfaceTracer {
     glm::vec3 radiance{0};  // W/(sr m^2)
   };
   bool hasEmitters() const { return !emitters_.empty(); }
+  const Emitters& emitters() const { return emitters_; }
   EmitterRay towardsEmitter(const TracedSurface& v, uint32_t stream) const;
+  // u: uniform in [0, 1); x chooses the emitter.
+  EmitterRay towardsEmitter(const TracedSurface& v, glm::vec3 u) const;
   bool sees(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const;
   // Density with which towardsEmitter() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not
   // emit.

@@ -20,7 +20,8 @@ SHARED_OFFSET(EyePathStart, face, 32)
 // All zeros mean that the path hits nothing.
 struct EyePathEnd {
   vec3 position SHARED_ZERO;  // world space, m
-  // 1 without direct light, 2 with direct light, 3 where the surface emits more than it reflects of direct light.
+  // 1 without direct light of lamps, 2 with it, 3 where the surface emits more than it reflects of that, 4 where
+  // emissive surfaces are about and it reflects more of other light than of that.
   float kind SHARED_ZERO;
   vec3 normal SHARED_ZERO;  // unit, on the side from which the path came
   // Number of cosine-weighted paths that this one stands for; 1 unless some paths are aimed at emissive surfaces.
