@@ -82,6 +82,8 @@ class Server(ViewTest):
                                 (2, ["direct"]), (2, ["direct", "--scene", "cornellbox", "--port", "99999"]),
                                 (2, ["direct", "--scene", "cornellbox", "--host", "256.1.1.1"]),
                                 (2, ["direct", "--scene", "cornellbox", "--size", "0x3"]),
+                                (2, ["direct", "--scene", "cornellbox", "--tev", "nowhere"]),
+                                (2, ["direct", "--scene", "cornellbox", "--tev", "127.0.0.1:70000"]),
                                 (3, ["direct", "--scene", "cornellbox", "--set", "nope=1"]),
                                 (4, ["direct", "--scene", "cornellbox", "--device", "nosuch"])):
             run = subprocess.run([PROGRAM, "view", *arguments], capture_output=True, text=True, timeout=PATIENCE)

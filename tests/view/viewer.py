@@ -164,6 +164,11 @@ class ViewTest(unittest.TestCase):
         return self.script("const c = document.getElementById('canvas');"
                            "return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data];")
 
+    def scale(self):
+        """Pixels of the page for one of the picture."""
+        return self.script("const c = document.getElementById('canvas');"
+                           "return c.getBoundingClientRect().width / c.width")
+
     def shown_frame(self):
         return int(self.find("#canvas").get_attribute("data-frame"))
 

@@ -115,6 +115,7 @@ Command parseCommand(std::string_view text) {
   command.graph = textOf(reader, "graph");
   command.scene = textOf(reader, "scene");
   command.second = textOf(reader, "second");
+  command.tev = textOf(reader, "tev");
   command.accumulate = flagOf(reader, "accumulate");
   readSize(reader, command);
   if (reader.has("seed")) command.seed = uint32_t(reader.integer("seed", 1, 0, 0xffffffffll));

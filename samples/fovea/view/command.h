@@ -21,6 +21,7 @@ struct Pose {
 struct Command {
   std::optional<std::string> graph, scene;  // names out of the lists that the page was given
   std::optional<std::string> second;        // a second graph to compare with; "" for none
+  std::optional<std::string> tev;           // the source that tev shows; "" for none
   std::optional<bool> accumulate;           // adds up frames of the second graph while nothing moves
   std::optional<glm::uvec2> size;
   std::optional<uint32_t> seed;

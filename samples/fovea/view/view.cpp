@@ -60,6 +60,10 @@ void addView(CLI::App& program, Action& action) {
       ->type_name("HOST");
   command->add_option("--port", options->port, "Port to listen on; default 0, any free one")->type_name("P");
   command
+      ->add_option("--tev", options->viewer.tev,
+                   "Send a picture of every frame to the image viewer tev, which listens there")
+      ->type_name("HOST:PORT");
+  command
       ->add_option("--device", options->viewer.device,
                    "Vulkan device by number or part of its name; see `fovea devices`")
       ->type_name("D");

@@ -17,6 +17,7 @@
 #include "samples/fovea/view/graph/changes.h"
 #include "samples/fovea/view/motion.h"
 #include "samples/fovea/view/picture/compare.h"
+#include "samples/fovea/view/tev.h"
 #include "samples/fovea/view/watcher.h"
 
 namespace fovea::view {
@@ -34,6 +35,7 @@ class Viewer {
   struct Options {
     Settings settings;
     std::string device;
+    std::string tev;  // HOST:PORT of the tev that shows a picture; "" for none
     bool validation = false;
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;
@@ -55,10 +57,15 @@ class Viewer {
     std::filesystem::path file;
     std::shared_ptr<LoadedScene> scene;
     graph::Description description;
-    json::Value merged;
+    Documents documents;
     Changes changes;
     std::unique_ptr<session::GraphRun> run;
     Diagnostics messages;
+  };
+  // What a frame shows, and from where.
+  struct Shown {
+    scene::Moment moment;
+    std::vector<scene::View> views;
   };
 
   // What of `before` can be taken over goes on in the build, with its contents if `keepContents`.
@@ -100,16 +107,17 @@ class Viewer {
   std::optional<scene::Moment> meanOf_;     // the view that the means show
   Motion motion_;
   std::vector<std::string> wanted_, observed_;  // sources; those of them that there are
-  std::vector<scene::Moment> shown_;            // moments of the frames under way, oldest first
+  std::vector<Shown> shown_;                    // by the frames under way, oldest first
   uint64_t builds_ = 0, submitted_ = 0, messageNumber_ = 0;
   std::vector<Diagnostic> messages_;
   Exchange::Clock::time_point lastTick_, nextFrame_;
   double framesPerSecond_ = 0;
-  scene::Moment seen_;    // of the newest finished frame
+  Shown seen_;            // by the newest finished frame
   nlohmann::json times_;  // of the same
   std::set<std::filesystem::path> changedFiles_;
   Exchange::Clock::time_point changedAt_;
   Watcher watcher_;
+  std::unique_ptr<TevStream> tev_;  // nullptr without Options::tev
 };
 
 }  // namespace fovea::view

@@ -295,28 +295,47 @@ Answer Server::Impl::file(const std::string& name, std::string_view query) {
                       exr ? "exr" : "png")};
 }
 
+namespace {
+
+// The region that a query names; what it leaves out is that of `otherwise`. nullopt if it begins outside.
+std::optional<Region> regionOf(std::string_view query, const Layout& layout, const Region& otherwise) {
+  constexpr double kMost = 1e9;
+  const auto read = [&](const char* name, double low, uint32_t value) {
+    return uint32_t(queryNumber(query, name, low, kMost, value));
+  };
+  Region region{read("x", 0, otherwise.x), read("y", 0, otherwise.y), read("width", 1, otherwise.width),
+                read("height", 1, otherwise.height)};
+  if (region.x >= layout.width || region.y >= layout.height) return std::nullopt;
+  region.width = std::min(region.width, layout.width - region.x);
+  region.height = std::min(region.height, layout.height - region.y);
+  return region;
+}
+
+Answer outside() { return {404, "text/plain", "outside of the picture\n"}; }
+
+}  // namespace
+
 Answer Server::Impl::pixels(std::string_view query) {
   Answer refusal;
   const ShotPointer shot = shotFor(query, refusal);
   if (!shot) return refusal;
-  const Layout layout = layoutOf(shot->data.desc);
-  const auto x = uint32_t(queryNumber(query, "x", 0, 1e9, 0)),
-             y = uint32_t(queryNumber(query, "y", 0, 1e9, 0));
-  if (x >= layout.width || y >= layout.height) return {404, "text/plain", "outside of the picture\n"};
-  const uint32_t width = std::min(uint32_t(queryNumber(query, "width", 1, 1e9, 1)), layout.width - x),
-                 height = std::min(uint32_t(queryNumber(query, "height", 1, 1e9, 1)), layout.height - y);
-  const std::vector<uint32_t> all = words(shot->data, x, y, width, height);
+  const std::optional<Region> region = regionOf(query, layoutOf(shot->data.desc), {0, 0, 1, 1});
+  if (!region) return outside();
+  const std::vector<uint32_t> all = words(shot->data, *region);
   return {200, "application/octet-stream",
           std::string(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(uint32_t)),
-          shotHeaders(*shot) + fmt::format("X-Fovea-Region: {}x{}\r\n", width, height)};
+          shotHeaders(*shot) + fmt::format("X-Fovea-Region: {}x{}\r\n", region->width, region->height)};
 }
 
 Answer Server::Impl::numbersOf(std::string_view query) {
   Answer refusal;
   const ShotPointer shot = shotFor(query, refusal);
   if (!shot) return refusal;
+  const Layout layout = layoutOf(shot->data.desc);
+  const std::optional<Region> region = regionOf(query, layout, wholeOf(layout));
+  if (!region) return outside();
   nlohmann::json channels = nlohmann::json::array();
-  for (const ChannelStatistics& c : statistics(shot->data))
+  for (const ChannelStatistics& c : statistics(shot->data, *region))
     channels.push_back({{"min", c.min},
                         {"max", c.max},
                         {"mean", c.mean},
