@@ -131,6 +131,7 @@ Command parseCommand(std::string_view text) {
   command.frozen = flagOf(reader, "frozen");
   command.recording = flagOf(reader, "recording");
   if (reader.has("speed")) command.speed = reader.number("speed", 1, -kMaxSpeed, kMaxSpeed);
+  if (reader.has("time")) command.time = reader.number("time", 0, 0, kMaxTime);
   command.step = uint32_t(reader.integer("step", 0, 0, kMaxSteps));
   command.restart = reader.boolean("restart", false);
   reader.finish();

@@ -41,7 +41,12 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   bench::printWarnings(build_->messages);
   report(build_->messages.list());
   watchFiles();
-  if (tev_) tev_->show(mainOutput(build_->run->graph()));
+  if (options.resume) {
+    motion_.apply(parseCommand(options.resume->motion));
+    secondName_ = options.resume->second;
+    rebuildSecond(false);
+  }
+  if (tev_) tev_->show(options.resume ? options.resume->tev : mainOutput(build_->run->graph()));
   sendState();
 }
 
@@ -224,6 +229,10 @@ void Viewer::watchFiles() {
   for (const char* kind : {"graphs", "shaders", "passes"})
     for (const std::filesystem::path& folder : dataFolders(kind)) add(folder);
   for (const std::string& folder : settings_.graph.passes) add(folder);
+  for (const std::string& plugin : settings_.graph.plugins) {
+    const std::filesystem::path folder = std::filesystem::path(plugin).parent_path();
+    folders.insert(folder.empty() ? "." : folder);
+  }
   for (const std::filesystem::path& folder : pathsInVariable("FOVEA_PASSES")) add(folder);
   const std::filesystem::path scene = build_->scene->scene.source;
   std::error_code ec;
@@ -243,6 +252,9 @@ void Viewer::reloadChanged() {
   if (changedFiles_.empty() || now - changedAt_ < kRest) return;
   const std::set<std::filesystem::path> files = std::exchange(changedFiles_, {});
   std::error_code ec;
+  for (const std::filesystem::path& file : files)
+    for (const std::string& plugin : settings_.graph.plugins)
+      if (std::filesystem::equivalent(file, plugin, ec)) return restartFor(file);
   const std::filesystem::path source = build_->scene->scene.source;
   const bool scene = std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
     const bool model = file.extension() != ".json";
@@ -259,8 +271,32 @@ void Viewer::reloadChanged() {
   }
 }
 
-void Viewer::run() {
-  while (!bench::interrupted()) {
+// Nothing of a plug-in that cannot be used gets as far as this process.
+void Viewer::restartFor(const std::filesystem::path& plugin) {
+  drain();
+  const std::string reason = whyNotLoadable(settings_.graph);
+  restart_ = reason.empty();
+  if (restart_) return;
+  report({{Severity::Error, {plugin.string(), 0, 0}, {}, reason, "what was loaded before goes on"}});
+  sendState();
+}
+
+Resume Viewer::resume() const {
+  Resume resume;
+  resume.graph = settings_.graph.graph;
+  resume.set = settings_.graph.set;
+  resume.scene = settings_.scene;
+  resume.second = secondName_;
+  resume.tev = tev_ ? tev_->source() : "";
+  resume.width = settings_.size.x;
+  resume.height = settings_.size.y;
+  resume.seed = settings_.seed;
+  resume.motion = motion_.asCommand();
+  return resume;
+}
+
+bool Viewer::run() {
+  while (!bench::interrupted() && !restart_) {
     follow(exchange_.takeCommands());
     reloadChanged();
     if (!frameIsDue()) {
@@ -272,6 +308,7 @@ void Viewer::run() {
     render();
   }
   drain();
+  return restart_ && !bench::interrupted();
 }
 
 }  // namespace fovea::view
