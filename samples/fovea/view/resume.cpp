@@ -70,10 +70,11 @@ std::string whyNotLoadable(const bench::GraphOptions& options) {
 }
 
 void startAnew(const Resume& resume) {
-  const nlohmann::json json{{"token", resume.token}, {"port", resume.port},     {"graph", resume.graph},
-                            {"scene", resume.scene}, {"second", resume.second}, {"tev", resume.tev},
-                            {"set", resume.set},     {"width", resume.width},   {"height", resume.height},
-                            {"seed", resume.seed},   {"motion", resume.motion}};
+  const nlohmann::json json{
+      {"token", resume.token},           {"port", resume.port},     {"graph", resume.graph},
+      {"scene", resume.scene},           {"second", resume.second}, {"tev", resume.tev},
+      {"accumulate", resume.accumulate}, {"set", resume.set},       {"width", resume.width},
+      {"height", resume.height},         {"seed", resume.seed},     {"motion", resume.motion}};
   setenv(kVariable, json.dump().c_str(), 1);
   std::vector<std::string> arguments = ownArguments();
   execv(kProgram, pointersTo(arguments).data());
@@ -87,9 +88,9 @@ std::optional<Resume> takeResume() {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   unsetenv(kVariable);
   try {
-    return Resume{json.at("token"),  json.at("port"), json.at("graph"), json.at("scene"),
-                  json.at("second"), json.at("tev"),  json.at("set"),   json.at("width"),
-                  json.at("height"), json.at("seed"), json.at("motion")};
+    return Resume{json.at("token"),  json.at("port"),   json.at("graph"),      json.at("scene"),
+                  json.at("second"), json.at("tev"),    json.at("accumulate"), json.at("set"),
+                  json.at("width"),  json.at("height"), json.at("seed"),       json.at("motion")};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
   }

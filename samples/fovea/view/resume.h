@@ -16,6 +16,7 @@ struct Resume {
   std::string token;
   uint16_t port = 0;
   std::string graph, scene, second, tev;
+  bool accumulate = true;
   std::vector<std::string> set;
   uint32_t width = 0, height = 0, seed = 1;
   std::string motion;  // as parseCommand() reads it

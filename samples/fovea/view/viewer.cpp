@@ -44,6 +44,7 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   if (options.resume) {
     motion_.apply(parseCommand(options.resume->motion));
     secondName_ = options.resume->second;
+    accumulate_ = options.resume->accumulate;
     rebuildSecond(false);
   }
   if (tev_) tev_->show(options.resume ? options.resume->tev : mainOutput(build_->run->graph()));
@@ -287,6 +288,7 @@ Resume Viewer::resume() const {
   resume.set = settings_.graph.set;
   resume.scene = settings_.scene;
   resume.second = secondName_;
+  resume.accumulate = accumulate_;
   resume.tev = tev_ ? tev_->source() : "";
   resume.width = settings_.size.x;
   resume.height = settings_.size.y;
