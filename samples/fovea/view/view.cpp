@@ -1,4 +1,6 @@
 // The command `fovea view`: shows a running graph in a browser.
+#include <malloc.h>
+
 #include <memory>
 #include <optional>
 
@@ -51,6 +53,8 @@ ExitCode runView(ViewOptions options) {
     settings.size = {resumed->width, resumed->height};
     settings.seed = resumed->seed;
   }
+  // Pictures are large, and many threads make them. Each in an arena of its own would keep the memory of some.
+  mallopt(M_ARENA_MAX, 2);
   catchInterrupts();
   if (const std::optional<view::Resume> next = runOnce(options)) view::startAnew(*next);
   return ExitCode::Ok;
