@@ -23,7 +23,8 @@ class Numbers(ViewTest):
         texts = self.script("const c = document.getElementById('element');"
                             "return c.hidden ? null : [c.dataset.index,"
                             " [...c.querySelectorAll('dt:not(.group)')].map((t) => [t.innerText,"
-                            " t.nextElementSibling.title]), [...c.querySelectorAll('dt.group')].map((t) => t.innerText)]")
+                            " t.nextElementSibling.title]),"
+                            " [...c.querySelectorAll('dt.group')].map((t) => t.innerText)]")
         if not texts:
             return None
         fields = {}
@@ -72,7 +73,8 @@ class Numbers(ViewTest):
         self.assertTrue(alone, vpls)
         index = alone[0]
         offset = [self.scale() * (c - 128) for c in vpls[index]]
-        ActionChains(self.driver).move_to_element_with_offset(self.find("#canvas"), *map(round, offset)).click().perform()
+        click = ActionChains(self.driver).move_to_element_with_offset(self.find("#canvas"), *map(round, offset))
+        click.click().perform()
         number, fields, groups = self.wait(self.card, "the numbers of the VPL")
         self.assertEqual(number, index)
         told = struct.pack("<3f", *map(float, fields["position"].split(", ")))
@@ -114,8 +116,8 @@ class Numbers(ViewTest):
         expected = [min(red), max(red), sum(red) / len(red)]
 
         def told():
-            line = self.find("#numbers").text.split("\n")[0].replace("red ", "").replace(" to", "").replace(", mean", "")
-            return [float(v) for v in line.split()]
+            line = self.find("#numbers").text.split("\n")[0]  # "red 0.1 to 0.5, mean 0.3"
+            return [float(line.replace(",", "").split()[i]) for i in (1, 3, 5)]
 
         self.wait(lambda: all(abs(a - b) < 2e-4 * abs(b) + 1e-9 for a, b in zip(told(), expected)),
                   f"the numbers of the region, {expected}")

@@ -74,7 +74,7 @@ class Soak(PlainGraph, ViewTest):
         failures = []
 
         def page(seed):
-            """Loads the page, listens, looks at sources and measures, and vanishes in the middle of it, again and again."""
+            """Loads the page, listens, looks at sources and measures, and vanishes, again and again."""
             chance = random.Random(seed)
             try:
                 while not frozen.is_set():

@@ -75,8 +75,8 @@ export async function drawTable() {
   const body = Array.from({ length: shown.count }, (_, i) => element("tr", { class: shown.isEmpty(i) ? "empty" : "" },
     element("th", { scope: "row" }, String(i)),
     ...shown.fields.map((f) => element("td", { class: "number" }, shown.text(i, f)))));
-  const about = port.fields ? "" : " No shader declares its type: a word is shown as a float where that is plausible, " +
-    "otherwise as a whole number.";
+  const about = port.fields ? "" : " No shader declares its type: a word is shown as a float where that is " +
+    "plausible, otherwise as a whole number.";
   table.replaceChildren(
     element("p", { class: "note" }, `${port.doc ? `${port.doc}. ` : ""}${port.is}: the first ${shown.count} of ` +
       `${port.count} elements in frame ${shown.frame}.${about}`),

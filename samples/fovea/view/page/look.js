@@ -59,7 +59,6 @@ function showTev() {
 function setFiles() {
   png.href = `picture.png?${queryOf({ source: store.source, ...store.display })}`;
   exr.href = `picture.exr?${queryOf({ source: store.source })}`;
-  png.parentElement.parentElement.hidden = portOf(store.source)?.buffer ?? false;
 }
 
 let statistics = null;
@@ -164,6 +163,7 @@ function showSource() {
     layer.disabled = port.layers < 2;
     mip.disabled = port.mips < 2;
   }
+  root.classList.toggle("buffer", port?.buffer ?? false);
   root.title = port?.doc ?? "";
 }
 

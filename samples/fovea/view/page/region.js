@@ -2,7 +2,7 @@
 import { queryOf } from "./api.js";
 import { element, row, svg } from "./dom.js";
 import { pictureAt, place } from "./picture.js";
-import { on, portOf, setRegion, store } from "./store.js";
+import { on, setRegion, store } from "./store.js";
 
 const stage = document.getElementById("stage");
 const mark = document.getElementById("region-mark");
@@ -80,7 +80,6 @@ export function start() {
   on("picture", () => {
     const { region, picture } = store;
     if (region && (region.x >= picture.width || region.y >= picture.height)) setRegion(null);
-    box.hidden = portOf(store.source)?.buffer ?? false;
     draw();
   });
   showRegion();
