@@ -20,7 +20,7 @@ class Device;
 // explicit numbers must agree.
 struct PipelineInterface {
   std::vector<ReflectedBinding> bindings;  // set 0 only
-  std::vector<ReflectedConstant> constants;
+  std::vector<ReflectedMember> constants;
   uint32_t pushConstantBytes = 0;
   VkShaderStageFlags stages = 0;
   bool usesSharedSet = false;  // a stage has a binding in set 1

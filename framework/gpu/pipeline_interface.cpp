@@ -83,14 +83,14 @@ void checkAliases(const CompiledShader& shader, const PipelineInterface& interfa
 }
 
 void mergeConstants(const CompiledShader& shader, PipelineInterface& interface) {
-  for (const ReflectedConstant& c : shader.reflection.constants) {
+  for (const ReflectedMember& c : shader.reflection.constants) {
     const bool known =
         std::any_of(interface.constants.begin(), interface.constants.end(), [&](const auto& other) {
           return other.name == c.name && other.offset == c.offset && other.bytes == c.bytes &&
                  other.type == c.type;
         });
     if (known) continue;
-    for (const ReflectedConstant& other : interface.constants) {
+    for (const ReflectedMember& other : interface.constants) {
       if (other.name == c.name ||
           (c.offset < other.offset + other.bytes && other.offset < c.offset + c.bytes)) {
         contradiction(shader, "push constant `" + c.name + "` at offset " + std::to_string(c.offset) +

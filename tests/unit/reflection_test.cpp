@@ -107,8 +107,8 @@ TEST(Reflection, ReadOnlyAndWriteOnly) {
 
 TEST(Reflection, PushConstants) {
   const auto shader = compile("all.comp", kEverything);
-  using Type = ReflectedConstant::Type;
-  const std::vector<ReflectedConstant>& list = shader->reflection.constants;
+  using Type = ReflectedMember::Type;
+  const std::vector<ReflectedMember>& list = shader->reflection.constants;
   ASSERT_EQ(list.size(), 6u);
   const auto expect = [&](size_t i, const char* name, uint32_t offset, uint32_t bytes, Type type,
                           uint32_t components) {
@@ -125,6 +125,41 @@ TEST(Reflection, PushConstants) {
   expect(4, "size", 32, 8, Type::Uint, 2);
   expect(5, "matrix", 48, 64, Type::Float, 16);
   EXPECT_EQ(shader->reflection.pushConstantBytes, 112u);
+}
+
+TEST(Reflection, ElementsOfBlocks) {
+  const auto shader = compile("elements.comp", R"(
+layout(local_size_x = 1) in;
+struct Place { vec3 position; float area; };
+struct Light { Place place; ivec2 cell; mat3 frame; };
+layout(std430) buffer Lights { uint count; Light list[]; } lights;
+layout(std430) buffer Colours { vec3 list[]; } colours;
+layout(std430) buffer State { Place first; uint rest; } state;
+layout(std140) uniform Page { Place page[8]; };
+void main() { lights.list[0].place = page[1]; colours.list[0] = state.first.position; }
+)");
+  using Type = ReflectedMember::Type;
+  const auto expect = [&](const char* binding, size_t i, const char* name, uint32_t offset, Type type,
+                          uint32_t components) {
+    SCOPED_TRACE(std::string(binding) + " " + name);
+    const std::vector<ReflectedMember>& list = find(shader->reflection.bindings, binding).element;
+    ASSERT_LT(i, list.size());
+    EXPECT_EQ(list[i].name, name);
+    EXPECT_EQ(list[i].offset, offset);
+    EXPECT_EQ(int(list[i].type), int(type));
+    EXPECT_EQ(list[i].components, components);
+  };
+  expect("lights", 0, "place.position", 0, Type::Float, 3);
+  expect("lights", 1, "place.area", 12, Type::Float, 1);
+  expect("lights", 2, "cell", 16, Type::Int, 2);
+  expect("lights", 3, "frame", 32, Type::Other, 1);  // its columns are padded
+  expect("colours", 0, "", 0, Type::Float, 3);
+  expect("state", 0, "first.position", 0, Type::Float, 3);
+  expect("state", 2, "rest", 16, Type::Uint, 1);
+  expect("Page", 1, "area", 12, Type::Float, 1);
+  EXPECT_EQ(find(shader->reflection.bindings, "lights").elementBytes, 80u);
+  EXPECT_EQ(find(shader->reflection.bindings, "colours").elementBytes, 16u);
+  EXPECT_EQ(find(shader->reflection.bindings, "Page").elementBytes, 16u);
 }
 
 TEST(Reflection, NumbersAreDenseAndWrittenOnesStay) {

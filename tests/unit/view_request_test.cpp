@@ -15,7 +15,7 @@ namespace {
 const Access kAccess{"0123456789abcdef0123456789abcdef", "render.example"};
 
 Request request(const std::string& name = "") {
-  return {"GET", "/" + kAccess.token + "/" + name, "127.0.0.1:8042", {}, {}, 0};
+  return {"GET", "/" + kAccess.token + "/" + name, {}, "127.0.0.1:8042", {}, {}, 0};
 }
 
 int statusOf(const Request& r) { return check(r, kAccess).status; }

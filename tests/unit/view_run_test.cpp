@@ -218,10 +218,10 @@ constexpr const char* kGraph = R"({
 
 // A graph without passes is enough: parameters of the graph are known from the document alone.
 TEST(ViewChanges, BecomeAGraphOfTheDifferences) {
-  const json::Value merged = json::parse(kGraph, "base.json");
+  const Documents documents{json::parse(kGraph, "base.json"), {{"right", json::parse(kGraph, "part.json")}}};
   const graph::BoundGraph bound;
   const std::string text =
-      extendingGraph("base.json", {{"radius", "0.25"}, {"count", "7"}, {"soft", "false"}}, merged, bound);
+      extendingGraph("base.json", {{"radius", "0.25"}, {"count", "7"}, {"soft", "false"}}, documents, bound);
   const json::Value saved = json::parse(text, "saved.json");
   EXPECT_EQ(saved.find("extends")->string, "base.json");
   const json::Value* parameters = saved.find("parameters");
@@ -231,9 +231,14 @@ TEST(ViewChanges, BecomeAGraphOfTheDifferences) {
   EXPECT_TRUE(parameters->find("count")->isInt());
   EXPECT_FALSE(parameters->find("soft")->boolean);
   EXPECT_EQ(saved.find("passes"), nullptr);
-  EXPECT_THROW(extendingGraph("base.json", {{"left/blur.radius", "1"}}, merged, bound), Error);
-  EXPECT_THROW(extendingGraph("base.json", {{"blur.radius", "1"}}, merged, bound), Error);
-  EXPECT_THROW(extendingGraph("base.json", {{"soft", "perhaps"}}, merged, bound), Error);
+  // A parameter of a sub-graph is given by its instance.
+  const json::Value inner =
+      json::parse(extendingGraph("base.json", {{"right.count", "5"}}, documents, bound), "inner.json");
+  EXPECT_EQ(inner.find("passes")->find("right")->find("parameters")->find("count")->integer, 5);
+  EXPECT_THROW(extendingGraph("base.json", {{"right.missing", "1"}}, documents, bound), Error);
+  EXPECT_THROW(extendingGraph("base.json", {{"left/blur.radius", "1"}}, documents, bound), Error);
+  EXPECT_THROW(extendingGraph("base.json", {{"blur.radius", "1"}}, documents, bound), Error);
+  EXPECT_THROW(extendingGraph("base.json", {{"soft", "perhaps"}}, documents, bound), Error);
 }
 
 TEST(ViewChanges, AreTheOptionsOfRender) {

@@ -113,14 +113,6 @@ class Understand(ViewTest):
         self.find("#plan-panel summary").click()
         self.assertEqual(len(self.find_all("#plan rect")), len(viewer.state()["graph"]["plan"]["resources"]))
 
-    def test_buffers_are_tables(self):
-        viewer = self.view("ir_1000", "--set", "vpl_count=20", "--frames", 2, size="64x64")
-        self.open(viewer)
-        source = next(p["source"] for q in viewer.state()["graph"]["passes"] for p in q["ports"]
-                      if q["name"] == "emit" and p["buffer"] and p["made"])
-        self.choose("#source", source)
-        self.wait(lambda: len(self.find_all("#table tbody tr")) >= 20, "the table")
-
 
 class Change(ViewTest):
     def test_a_parameter_changes_the_picture_and_the_saved_graph(self):
@@ -158,6 +150,34 @@ class Change(ViewTest):
         self.wait(lambda: viewer.state()["set"] == ["tonemap.exposure=2"], "the reset of one")
         viewer.control(reset=True)
         self.wait(lambda: viewer.state()["set"] == [], "the reset of all")
+
+    def test_parameters_of_a_sub_graph_change_and_are_saved(self):
+        self.write("part.json", {"parameters": {"curve": "clamp"}, "inputs": {"radiance": {"doc": "what is shown"}},
+                                 "passes": {"tonemap": {"type": "tonemap", "inputs": {"radiance": "inputs.radiance"},
+                                                        "params": {"operator": "$curve"}}},
+                                 "outputs": {"image": "tonemap"}})
+        graph = self.write("mine.json", {"extends": "direct.json", "outputs": {"image": "shown.image"}, "passes": {
+            "tonemap": None, "shown": {"graph": "part.json", "inputs": {"radiance": "direct"}}}})
+        viewer = self.view(graph, size="64x64")
+        self.open(viewer)
+        self.find("#parameters [data-pass='shown'] summary").click()
+        options = [o.text for o in self.find_all("[id='parameter-shown.curve'] option")]
+        self.assertIn("agx", options)  # as the pass declares it that takes the value
+        before = self.canvas()
+        self.choose("[id='parameter-shown.curve']", "agx")
+        self.wait(lambda: viewer.state()["set"] == ["shown.curve=agx"] and self.canvas() != before, "another curve")
+        viewer.control(save="saved")
+        self.wait(lambda: (self.folder / "saved.json").exists(), "the file")
+        saved = json.loads((self.folder / "saved.json").read_text())
+        self.assertEqual(saved["passes"], {"shown": {"parameters": {"curve": "agx"}}})
+        # No graph that extends this one reaches further in, which the page says.
+        self.wait(lambda: "a saved graph cannot hold them" in self.script(
+            "return document.querySelector(\"[data-pass='shown/tonemap'] .note\").textContent"), "the remark")
+        viewer.control(set={"shown/tonemap.exposure": 2})
+        self.wait(lambda: len(viewer.state()["set"]) == 2, "the change")
+        viewer.control(save="second")
+        self.wait(lambda: "inside of a sub-graph" in json.dumps(viewer.state()["messages"]), "the refusal")
+        self.assertFalse((self.folder / "second.json").exists())
 
     def test_a_strategy_is_swapped_by_name(self):
         viewer = self.view("ours", "--set", "vpl_count=32", size="64x64")

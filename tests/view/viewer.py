@@ -7,6 +7,7 @@ import http.client
 import json
 import os
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -33,6 +34,8 @@ if not CHROMIUM or not DRIVER:
     print("skipped: there is no chromium or no chromedriver")
     sys.exit(77)
 
+# Full numbers of reloads, frames and connections, which take minutes each on a machine that does nothing else.
+SOAK = os.environ.get("FOVEA_VIEW_SOAK") == "1"
 PATIENCE = 60  # seconds; the device renders on the CPU and shares it with other tests
 
 
@@ -57,6 +60,11 @@ class Viewer:
     def errors(self):
         self.log.seek(0)
         return self.log.read()
+
+    def resident(self):
+        """Memory of the program in KiB."""
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s*(\d+)", status).group(1))
 
     def close(self):
         if self.process.poll() is None:
@@ -164,6 +172,11 @@ class ViewTest(unittest.TestCase):
         return self.script("const c = document.getElementById('canvas');"
                            "return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data];")
 
+    def scale(self):
+        """Pixels of the page for one of the picture."""
+        return self.script("const c = document.getElementById('canvas');"
+                           "return c.getBoundingClientRect().width / c.width")
+
     def shown_frame(self):
         return int(self.find("#canvas").get_attribute("data-frame"))
 
@@ -179,6 +192,24 @@ class ViewTest(unittest.TestCase):
         path.with_suffix(".part").write_text(text)
         path.with_suffix(".part").rename(path)
         return path
+
+
+class PlainGraph:
+    """A graph of one pass in a file, which shows one colour."""
+
+    PASS = {"doc": "Shows one colour.", "outputs": {"image": {"doc": "the colour", "format": "rgba8"}},
+            "params": {"level": {"doc": "of red", "default": 1.0, "min": 0, "max": 1}},
+            "steps": [{"shader": "plain.frag", "colors": ["image"]}]}
+    SHADER = """layout(push_constant) uniform Constants { float level; };
+layout(location = 0) out vec4 image;
+void main() { image = vec4(level, COLOUR, 1.0); }
+"""
+
+    def plain(self):
+        (self.folder / "passes").mkdir()
+        self.write("passes/plain.pass.json", self.PASS)
+        self.write("passes/plain.frag", self.SHADER.replace("COLOUR", "0.0, 0.0"))
+        return self.write("plain.json", {"passes": {"plain": {"type": "plain"}}, "outputs": {"image": "plain"}})
 
 
 def read_exr(path, layer):
@@ -205,4 +236,4 @@ def read_exr(path, layer):
     return tuple(words)
 
 
-__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "SOURCE", "ViewTest", "Viewer", "read_exr"]
+__all__ = ["By", "Keys", "PATIENCE", "PROGRAM", "PlainGraph", "SOAK", "SOURCE", "ViewTest", "Viewer", "read_exr"]

@@ -173,6 +173,7 @@ class Reflector {
     const spirv_cross::Bitset flags = compiler_.get_buffer_block_flags(r.id);
     b.readOnly = kind == BindingKind::UniformBuffer || flags.get(spv::DecorationNonWritable);
     b.writeOnly = flags.get(spv::DecorationNonReadable);
+    addElement(type, b);
     out_.bindings.push_back(std::move(b));
   }
 
@@ -192,35 +193,72 @@ class Reflector {
     out_.bindings.push_back(std::move(b));
   }
 
+  ReflectedMember member(const spirv_cross::SPIRType& type, uint32_t bytes) const {
+    ReflectedMember m;
+    m.bytes = bytes;
+    m.components = type.vecsize * type.columns * arraySize(type);
+    switch (type.basetype) {
+      case spirv_cross::SPIRType::Int:
+        m.type = ReflectedMember::Type::Int;
+        break;
+      case spirv_cross::SPIRType::UInt:
+        m.type = ReflectedMember::Type::Uint;
+        break;
+      case spirv_cross::SPIRType::Float:
+        m.type = ReflectedMember::Type::Float;
+        break;
+      default:
+        m.type = ReflectedMember::Type::Other;
+    }
+    if (m.components * 4 != m.bytes) {  // padded between columns or elements, or not of 32 bits
+      m.type = ReflectedMember::Type::Other;
+      m.components = 1;
+    }
+    return m;
+  }
+
+  ReflectedMember memberOf(const spirv_cross::SPIRType& block, uint32_t index) const {
+    ReflectedMember m = member(compiler_.get_type(block.member_types[index]),
+                               uint32_t(compiler_.get_declared_struct_member_size(block, index)));
+    m.name = compiler_.get_member_name(block.self, index);
+    m.offset = compiler_.type_struct_member_offset(block, index);
+    return m;
+  }
+
+  void addElement(const spirv_cross::SPIRType& block, ReflectedBinding& b) const {
+    const auto last = uint32_t(block.member_types.size()) - 1;
+    const spirv_cross::SPIRType& array = compiler_.get_type(block.member_types[last]);
+    if (array.array.empty()) {
+      b.elementBytes = uint32_t(b.blockBytes);
+      addMembers(block, "", 0, b.element);
+      return;
+    }
+    b.elementBytes = compiler_.type_struct_member_array_stride(block, last);
+    const spirv_cross::SPIRType& element = compiler_.get_type(array.parent_type);
+    if (element.basetype == spirv_cross::SPIRType::Struct && element.array.empty())
+      addMembers(element, "", 0, b.element);
+    else
+      b.element.push_back(member(element, element.vecsize * element.columns * arraySize(element) * 4));
+  }
+
+  void addMembers(const spirv_cross::SPIRType& type, const std::string& prefix, uint32_t offset,
+                  std::vector<ReflectedMember>& list) const {
+    for (uint32_t i = 0; i < type.member_types.size(); ++i) {
+      ReflectedMember m = memberOf(type, i);
+      m.name = prefix + m.name;
+      m.offset += offset;
+      const spirv_cross::SPIRType& inner = compiler_.get_type(type.member_types[i]);
+      if (inner.basetype == spirv_cross::SPIRType::Struct && inner.array.empty())
+        addMembers(inner, m.name + ".", m.offset, list);
+      else
+        list.push_back(std::move(m));
+    }
+  }
+
   void addConstants(const spirv_cross::Resource& r) {
     const spirv_cross::SPIRType& block = compiler_.get_type(r.base_type_id);
     out_.pushConstantBytes = uint32_t(compiler_.get_declared_struct_size(block));
-    for (uint32_t i = 0; i < block.member_types.size(); ++i) {
-      const spirv_cross::SPIRType& type = compiler_.get_type(block.member_types[i]);
-      ReflectedConstant c;
-      c.name = compiler_.get_member_name(r.base_type_id, i);
-      c.offset = compiler_.type_struct_member_offset(block, i);
-      c.bytes = uint32_t(compiler_.get_declared_struct_member_size(block, i));
-      c.components = type.vecsize * type.columns * arraySize(type);
-      switch (type.basetype) {
-        case spirv_cross::SPIRType::Int:
-          c.type = ReflectedConstant::Type::Int;
-          break;
-        case spirv_cross::SPIRType::UInt:
-          c.type = ReflectedConstant::Type::Uint;
-          break;
-        case spirv_cross::SPIRType::Float:
-          c.type = ReflectedConstant::Type::Float;
-          break;
-        default:
-          c.type = ReflectedConstant::Type::Other;
-      }
-      if (c.components * 4 != c.bytes) {  // padded between columns or elements
-        c.type = ReflectedConstant::Type::Other;
-        c.components = 1;
-      }
-      out_.constants.push_back(std::move(c));
-    }
+    for (uint32_t i = 0; i < block.member_types.size(); ++i) out_.constants.push_back(memberOf(block, i));
   }
 
   spirv_cross::Compiler compiler_;

@@ -26,6 +26,13 @@ enum class BindingKind {
   Sampler
 };
 
+struct ReflectedMember {  // of a block or of a struct in one
+  std::string name;
+  uint32_t offset = 0, bytes = 0;
+  enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
+  uint32_t components = 1;  // all elements of a matrix or a tightly packed array
+};
+
 struct ReflectedBinding {
   std::string name;  // instance name, or block name if the block has no instance name
   uint32_t set = 0, binding = 0, count = 1;
@@ -35,19 +42,16 @@ struct ReflectedBinding {
   std::optional<VkFormat> imageFormat;       // storage images
   bool integerTexels = false;                // images and texel buffers: isampler2D, usamplerBuffer
   bool automatic = false;                    // no layout(binding): the compiler chose the number
-};
-
-struct ReflectedConstant {  // a member of the push constant block
-  std::string name;
-  uint32_t offset = 0, bytes = 0;
-  enum class Type { Int, Uint, Float, Other } type = Type::Other;  // scalar or vector element type
-  uint32_t components = 1;  // all elements of a matrix or a tightly packed array
+  // Blocks: what an element of the array at the end consists of, or the block itself if it does not end in one. Structs
+  // inside of it are taken apart ("start.position"); numbers and vectors have no name.
+  std::vector<ReflectedMember> element;
+  uint32_t elementBytes = 0;  // from one element to the next
 };
 
 struct Reflection {
   VkShaderStageFlagBits stage{};
   std::vector<ReflectedBinding> bindings;  // what the entry point uses; sorted by set, then binding
-  std::vector<ReflectedConstant> constants;
+  std::vector<ReflectedMember> constants;  // members of the push constant block
   uint32_t pushConstantBytes = 0;
   uint32_t localSize[3] = {1, 1, 1};
 };

@@ -15,7 +15,7 @@ namespace {
 uint32_t parameterWord(const PassInstance& pass, const KernelConstant& constant) {
   const ParameterSpec& spec = pass.bound->declaration->parameters[constant.parameter];
   const Parameters& p = pass.bound->parameters;
-  if (constant.reflected.type == gpu::ReflectedConstant::Type::Float) {
+  if (constant.reflected.type == gpu::ReflectedMember::Type::Float) {
     const float value = static_cast<float>(p.real(spec.name));
     uint32_t word;
     std::memcpy(&word, &value, sizeof(word));
@@ -65,7 +65,7 @@ Commands::Commands(RecordContext& context, KernelState& kernel) : context_(conte
 
 Commands& Commands::constantBytes(std::string_view name, const void* data, size_t bytes) {
   for (size_t i = 0; i < kernel_.constants.size(); ++i) {
-    const gpu::ReflectedConstant& c = kernel_.constants[i].reflected;
+    const gpu::ReflectedMember& c = kernel_.constants[i].reflected;
     if (c.name != name) continue;
     if (bytes != c.bytes)
       throw Error(ExitCode::Internal, "shader " + kernel_.name + ": push constant `" + c.name + "` has " +

@@ -12,6 +12,7 @@
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/frame_slot.h"
+#include "framework/graph/steps/steps.h"
 #include "framework/scene/frame.h"
 
 namespace fovea::graph {
@@ -403,6 +404,23 @@ std::optional<FrameResult> Executor::next() {
     e.inFlight.pop_front();
   }
   return poll();
+}
+
+ElementTypes Executor::elementTypes() const {
+  ElementTypes types;
+  for (const auto& pass : impl_->passes) {
+    for (const KernelState& kernel : pass->kernels) {
+      for (const gpu::ReflectedBinding& binding : kernel.pipeline->interface().bindings) {
+        const uint32_t access = accessOfBinding(*pass->bound, binding.name);
+        if (access == kNone || binding.element.empty()) continue;
+        const ResourceDesc& desc = pass->desc(pass->bound->accesses[access]);
+        // A shader may see the memory as something else, such as four numbers at a time.
+        if (desc.kind == ResourceKind::Buffer && desc.stride == binding.elementBytes)
+          types.emplace(desc.element, binding.element);
+      }
+    }
+  }
+  return types;
 }
 
 bool Executor::readsGeometry() const {

@@ -19,6 +19,7 @@
 namespace fovea::gpu {
 class Device;
 class ShaderCompiler;
+struct ReflectedMember;
 }  // namespace fovea::gpu
 namespace fovea::scene {
 struct Frame;
@@ -52,6 +53,9 @@ struct Observation {
   bool operator==(const Observation&) const = default;
 };
 inline constexpr uint64_t kObservedBytes = uint64_t(4) << 20;
+
+// What an element of a buffer consists of, by the name of its type (ResourceSpec::element).
+using ElementTypes = std::map<std::string, std::vector<gpu::ReflectedMember>>;
 
 // The device memory that a bound resource needs; input to the aliasing phase.
 MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource);
@@ -88,6 +92,10 @@ class Executor {
   // and allocates, so that frames do neither. Throws Error(BadInput) for a pass that does not run and for an image
   // that was not bound as observable.
   void observe(std::vector<Observation> observations);
+
+  // As the shaders of this plan declare them: a buffer in a shader is bound to the port of the same name, and its array
+  // says what an element of the port consists of. Types that shaders know only as texels are not among them.
+  ElementTypes elementTypes() const;
 
   // Records and submits one frame. Blocks only while framesInFlight frames are unfinished, or for a host pass that
   // reads what this frame's GPU passes wrote.

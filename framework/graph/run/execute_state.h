@@ -85,7 +85,7 @@ struct KernelBinding {
 using Label = uint32_t;  // PassInstance::labels
 
 struct KernelConstant {
-  gpu::ReflectedConstant reflected;
+  gpu::ReflectedMember reflected;
   enum class Source { Manual, Parameter, FrameIndex, Seed } source = Source::Manual;
   uint32_t parameter = kNone;
 };

@@ -124,7 +124,7 @@ KernelBinding resolveBinding(PassInstance& pass, const std::string& shader, gpu:
   return binding;
 }
 
-KernelConstant resolveConstant(const PassInstance& pass, const gpu::ReflectedConstant& c) {
+KernelConstant resolveConstant(const PassInstance& pass, const gpu::ReflectedMember& c) {
   KernelConstant constant;
   constant.reflected = c;
   if (c.name == "frameIndex") constant.source = KernelConstant::Source::FrameIndex;
@@ -170,7 +170,7 @@ KernelState& makeKernel(PassInstance& pass, std::string name, const std::string&
   choosePipeline(*pass.state, kernel, keyOf(desc), desc);
   for (const gpu::ReflectedBinding& b : kernel.pipeline->interface().bindings)
     kernel.bindings.push_back(resolveBinding(pass, kernel.name, b));
-  for (const gpu::ReflectedConstant& c : kernel.pipeline->interface().constants)
+  for (const gpu::ReflectedMember& c : kernel.pipeline->interface().constants)
     kernel.constants.push_back(resolveConstant(pass, c));
   kernel.accesses = shaderAccesses(*pass.bound, kernel.pipeline->interface().bindings, stagesOf(kernel));
   return kernel;

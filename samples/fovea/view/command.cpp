@@ -115,6 +115,7 @@ Command parseCommand(std::string_view text) {
   command.graph = textOf(reader, "graph");
   command.scene = textOf(reader, "scene");
   command.second = textOf(reader, "second");
+  command.tev = textOf(reader, "tev");
   command.accumulate = flagOf(reader, "accumulate");
   readSize(reader, command);
   if (reader.has("seed")) command.seed = uint32_t(reader.integer("seed", 1, 0, 0xffffffffll));
@@ -130,6 +131,7 @@ Command parseCommand(std::string_view text) {
   command.frozen = flagOf(reader, "frozen");
   command.recording = flagOf(reader, "recording");
   if (reader.has("speed")) command.speed = reader.number("speed", 1, -kMaxSpeed, kMaxSpeed);
+  if (reader.has("time")) command.time = reader.number("time", 0, 0, kMaxTime);
   command.step = uint32_t(reader.integer("step", 0, 0, kMaxSteps));
   command.restart = reader.boolean("restart", false);
   reader.finish();

@@ -21,6 +21,7 @@ struct Pose {
 struct Command {
   std::optional<std::string> graph, scene;  // names out of the lists that the page was given
   std::optional<std::string> second;        // a second graph to compare with; "" for none
+  std::optional<std::string> tev;           // the source that tev shows; "" for none
   std::optional<bool> accumulate;           // adds up frames of the second graph while nothing moves
   std::optional<glm::uvec2> size;
   std::optional<uint32_t> seed;
@@ -34,11 +35,13 @@ struct Command {
   bool sceneGaze = false;  // {"gaze": null}
   std::optional<bool> playing, frozen, recording;
   std::optional<double> speed;
+  std::optional<double> time;  // seconds, at which the next frame is
   uint32_t step = 0;
   bool restart = false;
 };
 
 inline constexpr double kMaxSpeed = 16;
+inline constexpr double kMaxTime = 1e6;         // seconds
 inline constexpr uint32_t kMaxViewSize = 4096;  // pixels a side
 
 // Throws Error(BadInput) with every mistake; whatever a page or somebody else sends is refused whole if any part of it

@@ -9,6 +9,11 @@ constexpr auto kForgetAfter = std::chrono::seconds(3);
 
 }  // namespace
 
+uint64_t risingNumber() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return uint64_t(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
 bool Exchange::isWanted(const Source& source) const {
   return source.waiting > 0 || Clock::now() - source.asked < kForgetAfter;
 }

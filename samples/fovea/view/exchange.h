@@ -18,6 +18,10 @@
 
 namespace fovea::view {
 
+// Where a count begins that has to go on rising when the program starts itself anew, since pages outlive that:
+// microseconds since 1970.
+uint64_t risingNumber();
+
 // What a source showed in one frame.
 struct Shot {
   uint64_t number = 0;  // counts all that were published
@@ -96,7 +100,7 @@ class Exchange {
   std::map<std::string, Source> sources_;
   std::string state_, gazeTable_, cameraKeys_;
   Tick tick_;
-  uint64_t shots_ = 0;
+  uint64_t shots_ = risingNumber();
   int watchers_ = 0;
   bool stopped_ = false, workCame_ = false;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "framework/scene/motion/motion.h"
 
@@ -25,6 +26,11 @@ void Motion::apply(const Command& command) {
     anchor_ = time();
     ticks_ = 0;
     speed_ = *command.speed;
+  }
+  if (command.time) {
+    anchor_ = *command.time;
+    ticks_ = 0;
+    moved_ = true;
   }
   if (command.playing) playing_ = *command.playing;
   if (command.frozen) frozen_ = *command.frozen;
@@ -86,6 +92,17 @@ scene::Moment Motion::next(const scene::Scene& scene) {
   ++index_;
   shown_ = m;
   return m;
+}
+
+std::string Motion::asCommand() const {
+  nlohmann::json command{
+      {"time", shown_.time}, {"playing", playing_}, {"frozen", frozen_}, {"speed", speed_}};
+  if (pose_)
+    command["camera"] = {{"position", {pose_->position.x, pose_->position.y, pose_->position.z}},
+                         {"yaw", pose_->yaw},
+                         {"pitch", pose_->pitch}};
+  if (gaze_) command["gaze"] = {gaze_->x, gaze_->y};
+  return command.dump();
 }
 
 // A sample must not come after its frame, and the nearest float may.

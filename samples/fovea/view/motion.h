@@ -31,6 +31,8 @@ class Motion {
   bool recording() const { return recording_; }
   bool ownCamera() const { return pose_.has_value(); }
   bool ownGaze() const { return gaze_.has_value(); }
+  // The command that brings another run, which begins at frame 0, to where this one is.
+  std::string asCommand() const;
   // Whether a frame is due although the run is frozen: a step, or something to see that has moved.
   bool due() const { return steps_ > 0 || moved_; }
   uint64_t nextIndex() const { return index_; }

@@ -1,11 +1,16 @@
 // The command `fovea view`: shows a running graph in a browser.
+#include <malloc.h>
+
 #include <memory>
+#include <optional>
 
 #include "benchmarks/runner/interrupt.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 #include "samples/fovea/view/exchange.h"
+#include "samples/fovea/view/http/request.h"
 #include "samples/fovea/view/http/server.h"
+#include "samples/fovea/view/resume.h"
 #include "samples/fovea/view/viewer.h"
 
 namespace fovea::cli {
@@ -17,11 +22,12 @@ struct ViewOptions {
   uint16_t port = 0;
 };
 
-ExitCode runView(ViewOptions options) {
-  options.viewer.settings.size = parseSize(options.size);
-  catchInterrupts();
+// Runs until the end, or returns where a new process goes on.
+std::optional<view::Resume> runOnce(const ViewOptions& options) {
+  const std::optional<view::Resume>& resumed = options.viewer.resume;
   view::Exchange exchange;
-  const view::Server server(exchange, options.host, options.port);
+  const view::Server server(exchange, options.host, resumed ? resumed->port : options.port,
+                            resumed ? resumed->token : view::makeToken());
   const struct Stop {
     view::Exchange& exchange;
     ~Stop() { exchange.stop(); }
@@ -29,7 +35,28 @@ ExitCode runView(ViewOptions options) {
   view::Viewer viewer(exchange, options.viewer);
   std::printf("open %s\n", server.address().c_str());  // when there is something to see
   std::fflush(stdout);
-  viewer.run();
+  if (!viewer.run()) return std::nullopt;
+  view::Resume next = viewer.resume();
+  next.port = server.port();
+  next.token = server.token();
+  return next;
+}
+
+ExitCode runView(ViewOptions options) {
+  view::Settings& settings = options.viewer.settings;
+  settings.size = parseSize(options.size);
+  options.viewer.resume = view::takeResume();
+  if (const auto& resumed = options.viewer.resume) {
+    settings.graph.graph = resumed->graph;
+    settings.graph.set = resumed->set;
+    settings.scene = resumed->scene;
+    settings.size = {resumed->width, resumed->height};
+    settings.seed = resumed->seed;
+  }
+  // Pictures are large, and many threads make them. Each in an arena of its own would keep the memory of some.
+  mallopt(M_ARENA_MAX, 2);
+  catchInterrupts();
+  if (const std::optional<view::Resume> next = runOnce(options)) view::startAnew(*next);
   return ExitCode::Ok;
 }
 
@@ -59,6 +86,10 @@ void addView(CLI::App& program, Action& action) {
           "reaches (elsewhere use `ssh -L PORT:127.0.0.1:PORT`)")
       ->type_name("HOST");
   command->add_option("--port", options->port, "Port to listen on; default 0, any free one")->type_name("P");
+  command
+      ->add_option("--tev", options->viewer.tev,
+                   "Send a picture of every frame to the image viewer tev, which listens there")
+      ->type_name("HOST:PORT");
   command
       ->add_option("--device", options->viewer.device,
                    "Vulkan device by number or part of its name; see `fovea devices`")

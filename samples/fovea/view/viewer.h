@@ -17,6 +17,8 @@
 #include "samples/fovea/view/graph/changes.h"
 #include "samples/fovea/view/motion.h"
 #include "samples/fovea/view/picture/compare.h"
+#include "samples/fovea/view/resume.h"
+#include "samples/fovea/view/tev.h"
 #include "samples/fovea/view/watcher.h"
 
 namespace fovea::view {
@@ -34,15 +36,20 @@ class Viewer {
   struct Options {
     Settings settings;
     std::string device;
+    std::string tev;  // HOST:PORT of the tev that shows a picture; "" for none
     bool validation = false;
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;
+    // Of a run that goes on here; what it changed of the settings is in the settings.
+    std::optional<Resume> resume;
   };
   // Loads and builds everything. Throws as `fovea render` does for what it is given.
   Viewer(Exchange& exchange, const Options& options);
   ~Viewer();
-  // Until the program is interrupted.
-  void run();
+  // Until the program is interrupted, or a plug-in has changed. Returns whether to go on in a new process.
+  bool run();
+  // Where that is to go on, but for the address of the page.
+  Resume resume() const;
 
  private:
   // A scene with its triangles.
@@ -55,10 +62,15 @@ class Viewer {
     std::filesystem::path file;
     std::shared_ptr<LoadedScene> scene;
     graph::Description description;
-    json::Value merged;
+    Documents documents;
     Changes changes;
     std::unique_ptr<session::GraphRun> run;
     Diagnostics messages;
+  };
+  // What a frame shows, and from where.
+  struct Shown {
+    scene::Moment moment;
+    std::vector<scene::View> views;
   };
 
   // What of `before` can be taken over goes on in the build, with its contents if `keepContents`.
@@ -67,6 +79,7 @@ class Viewer {
   void rebuildSecond(bool keepContents);
   void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents = true);
   void reloadChanged();
+  void restartFor(const std::filesystem::path& plugin);
   void watchFiles();
   void follow(std::vector<Command> commands);
   std::optional<Settings> changed(Settings settings, const Command& command) const;
@@ -95,21 +108,22 @@ class Viewer {
   std::string secondName_;  // of a graph; "" for none
   std::unique_ptr<Build>
       second_;  // runs after the first in every frame, with a scene of its own on the device
-  bool accumulate_ = true, broken_ = false;
+  bool accumulate_ = true, broken_ = false, restart_ = false;
   std::map<std::string, FrameMean> means_;  // of sources of the second graph
   std::optional<scene::Moment> meanOf_;     // the view that the means show
   Motion motion_;
   std::vector<std::string> wanted_, observed_;  // sources; those of them that there are
-  std::vector<scene::Moment> shown_;            // moments of the frames under way, oldest first
-  uint64_t builds_ = 0, submitted_ = 0, messageNumber_ = 0;
+  std::vector<Shown> shown_;                    // by the frames under way, oldest first
+  uint64_t builds_ = risingNumber(), submitted_ = 0, messageNumber_ = 0;
   std::vector<Diagnostic> messages_;
   Exchange::Clock::time_point lastTick_, nextFrame_;
   double framesPerSecond_ = 0;
-  scene::Moment seen_;    // of the newest finished frame
+  Shown seen_;            // by the newest finished frame
   nlohmann::json times_;  // of the same
   std::set<std::filesystem::path> changedFiles_;
   Exchange::Clock::time_point changedAt_;
   Watcher watcher_;
+  std::unique_ptr<TevStream> tev_;  // nullptr without Options::tev
 };
 
 }  // namespace fovea::view

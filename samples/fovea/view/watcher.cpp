@@ -14,8 +14,8 @@ constexpr size_t kMostFolders = 500;
 
 // What graphs, passes and scenes are made of.
 bool matters(const std::filesystem::path& file) {
-  constexpr std::array<std::string_view, 10> kEndings = {".json", ".comp", ".frag", ".vert", ".glsl",
-                                                         ".h",    ".csv",  ".gltf", ".glb",  ".bin"};
+  constexpr std::array<std::string_view, 11> kEndings = {".json", ".comp", ".frag", ".vert", ".glsl", ".h",
+                                                         ".csv",  ".gltf", ".glb",  ".bin",  ".so"};
   const std::string name = file.filename().string();
   return !name.starts_with(".") &&
          std::find(kEndings.begin(), kEndings.end(), file.extension().string()) != kEndings.end();

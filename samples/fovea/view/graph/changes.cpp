@@ -44,15 +44,16 @@ const ParameterSpec* specInside(const std::string& instance, std::string_view in
   return nullptr;
 }
 
-const ParameterSpec* specOf(const std::string& name, const Value& passes,
+// `prefix` is that of the passes of a sub-graph, "left/".
+const ParameterSpec* specOf(const std::string& name, const Value& passes, const std::string& prefix,
                             const graph::Description& description, const graph::BoundGraph& bound) {
   for (const json::Member& pass : passes.members) {
     const Value* params = pass.value.find("params");
     for (const json::Member& given : params ? params->members : std::vector<json::Member>()) {
       if (referred(given.value) != name) continue;
-      const graph::BoundPass* found = findPass(bound, pass.key);
+      const graph::BoundPass* found = findPass(bound, prefix + pass.key);
       const ParameterSpec* spec =
-          found ? findSpec(*found, given.key) : specInside(pass.key, given.key, description, bound);
+          found ? findSpec(*found, given.key) : specInside(prefix + pass.key, given.key, description, bound);
       if (spec) return spec;
     }
   }
@@ -129,45 +130,98 @@ Changes changesOf(const std::vector<std::string>& overrides) {
   return changes;
 }
 
-std::vector<GraphParameter> graphParameters(const Value& merged, const graph::Description& description,
-                                            const graph::BoundGraph& bound) {
+Documents loadDocuments(const std::filesystem::path& graph, const graph::LoadOptions& options) {
+  Documents documents{graph::loadMerged(graph, options), {}};
+  const Value* passes = documents.graph.find("passes");
+  for (const json::Member& pass : passes ? passes->members : std::vector<json::Member>()) {
+    const Value* file = pass.value.find("graph");
+    if (!file || !file->isString()) continue;
+    const std::filesystem::path from = file->where.file ? *file->where.file : graph.string();
+    const std::filesystem::path found = graph::findGraphFile(file->string, from, options.searchPaths);
+    documents.subGraphs.emplace(pass.key, graph::loadMerged(found, options));
+  }
+  return documents;
+}
+
+namespace {
+
+std::vector<GraphParameter> parametersOf(const Value& document, const std::string& prefix,
+                                         const graph::Description& description,
+                                         const graph::BoundGraph& bound) {
   std::vector<GraphParameter> list;
-  const Value* parameters = merged.find("parameters");
-  const Value* passes = merged.find("passes");
+  const Value* parameters = document.find("parameters");
+  const Value* passes = document.find("passes");
   if (!parameters || !passes) return list;
   for (const json::Member& member : parameters->members)
-    list.push_back({member.key, &member.value, specOf(member.key, *passes, description, bound),
+    list.push_back({member.key, &member.value, specOf(member.key, *passes, prefix, description, bound),
                     typeChoices(member.key, *passes)});
   return list;
 }
 
-std::string extendingGraph(const std::string& base, const Changes& changes, const Value& merged,
+}  // namespace
+
+std::vector<GraphParameter> graphParameters(const Documents& documents, const graph::Description& description,
+                                            const graph::BoundGraph& bound) {
+  return parametersOf(documents.graph, "", description, bound);
+}
+
+std::vector<GraphParameter> subGraphParameters(const std::string& instance, const Documents& documents,
+                                               const graph::Description& description,
+                                               const graph::BoundGraph& bound) {
+  std::vector<GraphParameter> list =
+      parametersOf(documents.subGraphs.at(instance), instance + "/", description, bound);
+  const Value* given = documents.graph.find("passes")->find(instance)->find("parameters");
+  for (GraphParameter& parameter : list)
+    if (const Value* own = given ? given->find(parameter.name) : nullptr) parameter.written = own;
+  return list;
+}
+
+namespace {
+
+// The value of a parameter of a graph with these parameters.
+Value valueFor(const std::string& name, const std::string& text, const Value* declared) {
+  const Value::Type type = declared ? declared->type : Value::Type::String;
+  return typed(name, text, type == Value::Type::Int ? Value::Type::Real : type);
+}
+
+// A parameter of a pass or of a sub-graph, "deferred.kernel", in the graph that is to be written.
+void addInner(Value& graph, const std::string& name, const std::string& text, const Documents& documents,
+              const graph::BoundGraph& bound) {
+  const size_t dot = name.rfind('.');
+  const std::string pass = name.substr(0, dot), key = name.substr(dot + 1);
+  if (pass.find('/') != std::string::npos)
+    throw Error(
+        ExitCode::BadInput,
+        fmt::format("`{}` lies inside of a sub-graph, which a graph that extends this one cannot reach",
+                    name),
+        "take it back, or make it a parameter of the sub-graph");
+  const auto subGraph = documents.subGraphs.find(pass);
+  const Value* parameters =
+      subGraph != documents.subGraphs.end() ? subGraph->second.find("parameters") : nullptr;
+  const Value* declared = parameters ? parameters->find(key) : nullptr;
+  const graph::BoundPass* found = findPass(bound, pass);
+  const ParameterSpec* spec = found ? findSpec(*found, key) : nullptr;
+  if (!spec && !declared)
+    throw Error(ExitCode::BadInput, fmt::format("the graph has no parameter `{}`", name));
+  Value& changed = childOf(childOf(graph, "passes"), pass);
+  childOf(childOf(changed, declared ? "parameters" : "params"), key) =
+      declared ? valueFor(name, text, declared) : typed(name, text, typeOf(*spec));
+}
+
+}  // namespace
+
+std::string extendingGraph(const std::string& base, const Changes& changes, const Documents& documents,
                            const graph::BoundGraph& bound) {
   Value graph = objectValue();
   childOf(graph, "$schema") = textValue("fovea-graph.schema.json");
   childOf(graph, "extends") = textValue(base);
-  const Value* parameters = merged.find("parameters");
+  const Value* parameters = documents.graph.find("parameters");
   for (const auto& [name, text] : changes) {
-    const size_t dot = name.rfind('.');
-    if (dot == std::string::npos) {
-      const Value* written = parameters ? parameters->find(name) : nullptr;
-      const Value::Type type = written ? written->type : Value::Type::String;
-      const Value value = typed(name, text, type == Value::Type::Int ? Value::Type::Real : type);
-      childOf(childOf(graph, "parameters"), name) = value;
-      continue;
-    }
-    const std::string pass = name.substr(0, dot), key = name.substr(dot + 1);
-    if (pass.find('/') != std::string::npos)
-      throw Error(
-          ExitCode::BadInput,
-          fmt::format("`{}` lies inside of a sub-graph, which a graph that extends this one cannot reach",
-                      name),
-          "take it back, or make it a parameter of the sub-graph");
-    const graph::BoundPass* found = findPass(bound, pass);
-    const ParameterSpec* spec = found ? findSpec(*found, key) : nullptr;
-    if (!spec) throw Error(ExitCode::BadInput, fmt::format("the graph has no parameter `{}`", name));
-    childOf(childOf(childOf(childOf(graph, "passes"), pass), "params"), key) =
-        typed(name, text, typeOf(*spec));
+    if (name.find('.') == std::string::npos)
+      childOf(childOf(graph, "parameters"), name) =
+          valueFor(name, text, parameters ? parameters->find(name) : nullptr);
+    else
+      addInner(graph, name, text, documents, bound);
   }
   return json::print(graph);
 }

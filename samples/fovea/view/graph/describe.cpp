@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "framework/base/paths.h"
+#include "framework/gpu/shader/shader.h"
 #include "framework/graph/report/report.h"
 #include "samples/fovea/view/graph/sources.h"
 
@@ -104,7 +105,23 @@ const char* directionName(graph::Direction direction) {
   return "in";
 }
 
-Json portsJson(const graph::Plan& plan, const BoundPass& pass) {
+const char* typeName(gpu::ReflectedMember::Type type) {
+  using Type = gpu::ReflectedMember::Type;
+  return type == Type::Int ? "int" : type == Type::Uint ? "uint" : type == Type::Float ? "float" : "word";
+}
+
+// Offsets are in words of 32 bits. What shaders know and pages do not, such as an array of structs, is so many words.
+Json fieldsJson(const std::vector<gpu::ReflectedMember>& members) {
+  Json list = Json::array();
+  for (const gpu::ReflectedMember& m : members)
+    list.push_back({{"name", m.name},
+                    {"offset", m.offset / 4},
+                    {"components", m.bytes / 4},
+                    {"type", typeName(m.type)}});
+  return list;
+}
+
+Json portsJson(const graph::Plan& plan, const BoundPass& pass, const graph::ElementTypes& types) {
   Json list = Json::array();
   for (const graph::Access& access : pass.accesses) {
     const graph::BoundResource& resource = plan.graph->resources[access.resource];
@@ -120,6 +137,10 @@ Json portsJson(const graph::Plan& plan, const BoundPass& pass) {
     if (resource.desc.kind == graph::ResourceKind::Image) {
       json["mips"] = resource.desc.mips;
       json["layers"] = std::max(resource.desc.depth, resource.desc.layers);
+    } else {
+      json["count"] = resource.desc.count;
+      const auto known = types.find(resource.desc.element);
+      if (known != types.end()) json["fields"] = fieldsJson(known->second);
     }
     list.push_back(std::move(json));
   }
@@ -133,7 +154,8 @@ std::vector<uint32_t> levelsOf(const graph::Plan& plan) {
   return levels;
 }
 
-Json passesJson(const graph::Plan& plan, const graph::Description& description, const Changes& changes) {
+Json passesJson(const graph::Plan& plan, const graph::Description& description, const Changes& changes,
+                const graph::ElementTypes& types) {
   Json list = Json::array();
   const std::vector<uint32_t> levels = levelsOf(plan);
   for (size_t p = 0; p < plan.graph->passes.size(); ++p) {
@@ -145,7 +167,7 @@ Json passesJson(const graph::Plan& plan, const graph::Description& description, 
               {"view", plan.graph->views[pass.view]},
               {"level", levels[p] == graph::kNone ? Json(nullptr) : Json(levels[p])},
               {"parameters", parametersJson(pass, description, changes)},
-              {"ports", portsJson(plan, pass)}};
+              {"ports", portsJson(plan, pass, types)}};
     list.push_back(std::move(json));
   }
   return list;
@@ -184,10 +206,11 @@ Json edgesJson(const graph::Plan& plan) {
   return list;
 }
 
-Json graphParametersJson(const graph::Plan& plan, const graph::Description& description,
-                         const json::Value& merged, const Changes& changes) {
+// `prefix` is that of the names in `changes`: "right." for those of a sub-graph.
+Json graphParametersJson(const std::vector<GraphParameter>& parameters, const std::string& prefix,
+                         const Changes& changes) {
   Json list = Json::array();
-  for (const GraphParameter& p : graphParameters(merged, description, *plan.graph)) {
+  for (const GraphParameter& p : parameters) {
     Json json = p.spec ? specJson(*p.spec) : Json{{"doc", ""}, {"type", "text"}};
     json["name"] = p.name;
     json["default"] = valueJson(*p.written);
@@ -197,11 +220,24 @@ Json graphParametersJson(const graph::Plan& plan, const graph::Description& desc
       json["type"] = "choice";
       json["choices"] = p.choices;
     }
-    const auto changed = changes.find(p.name);
+    if (p.written->isString() && p.written->string.starts_with("$"))
+      json["given_by"] = p.written->string.substr(1);
+    const auto changed = changes.find(prefix + p.name);
     json["changed"] = changed != changes.end();
     json["value"] = changed != changes.end() ? Json(changed->second) : json["default"];
     list.push_back(std::move(json));
   }
+  return list;
+}
+
+Json subGraphsJson(const graph::Plan& plan, const graph::Description& description, const Documents& documents,
+                   const Changes& changes) {
+  Json list = Json::array();
+  for (const auto& [name, document] : documents.subGraphs)
+    list.push_back(
+        {{"name", name},
+         {"parameters", graphParametersJson(subGraphParameters(name, documents, description, *plan.graph),
+                                            name + ".", changes)}});
   return list;
 }
 
@@ -230,15 +266,18 @@ std::string lineOf(const SourceLocation& where) {
 }  // namespace
 
 nlohmann::json describeGraph(const graph::Plan& plan, const graph::Description& description,
-                             const json::Value& merged, const Changes& changes) {
-  return {{"name", plan.graph->name},
-          {"description", plan.graph->description},
-          {"passes", passesJson(plan, description, changes)},
-          {"edges", edgesJson(plan)},
-          {"outputs", describeOutputs(*plan.graph)},
-          {"parameters", graphParametersJson(plan, description, merged, changes)},
-          {"levels", plan.levels.size()},
-          {"plan", Json::parse(graph::planJson(plan))}};
+                             const Documents& documents, const Changes& changes,
+                             const graph::ElementTypes& types) {
+  return {
+      {"name", plan.graph->name},
+      {"description", plan.graph->description},
+      {"passes", passesJson(plan, description, changes, types)},
+      {"edges", edgesJson(plan)},
+      {"outputs", describeOutputs(*plan.graph)},
+      {"parameters", graphParametersJson(graphParameters(documents, description, *plan.graph), "", changes)},
+      {"sub_graphs", subGraphsJson(plan, description, documents, changes)},
+      {"levels", plan.levels.size()},
+      {"plan", Json::parse(graph::planJson(plan))}};
 }
 
 nlohmann::json describeOutputs(const graph::BoundGraph& graph) {

@@ -109,6 +109,11 @@ Verdict check(const Request& request, const Access& access) {
   return {200, std::string(name), {}};
 }
 
+bool asksForEvents(const Request& request, const Access& access) {
+  const Verdict verdict = check(request, access);
+  return verdict.status == 200 && verdict.name == "events" && request.method == "GET";
+}
+
 std::string makeToken() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != ssize_t(bytes.size()))

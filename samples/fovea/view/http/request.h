@@ -13,7 +13,8 @@ inline constexpr size_t kMaxBody = size_t(64) << 10;  // bytes of a request's bo
 
 // The parts of a request that decide about it. Headers that were not sent are empty.
 struct Request {
-  std::string method, target;  // target: "/TOKEN/picture", without the query
+  std::string method, target,
+      query;  // "/TOKEN/picture", and "source=image" of what follows the question mark
   std::string host, origin, fetchSite;
   int64_t bodyBytes = 0;  // -1 if the request does not say
 };
@@ -35,6 +36,9 @@ struct Verdict {
 // than the server's own (403), other methods than GET and POST (405), a POST without a length (411), a body that is too
 // long (413), and a target with anything but plain names (404).
 Verdict check(const Request& request, const Access& access);
+
+// Whether a request that may be answered wants the stream of events.
+bool asksForEvents(const Request& request, const Access& access);
 
 // 32 hexadecimal digits from the random numbers of the system.
 std::string makeToken();

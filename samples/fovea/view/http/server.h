@@ -12,11 +12,13 @@ class Exchange;
 
 class Server {
  public:
-  // `host` is a name or address of this machine, port 0 any free port. Throws Error(Usage) if it cannot listen there.
-  // The exchange must outlive the server.
-  Server(Exchange& exchange, const std::string& host, uint16_t port);
+  // `host` is a name or address of this machine, port 0 any free port, token what makeToken() gives. Throws
+  // Error(Usage) if it cannot listen there. The exchange must outlive the server.
+  Server(Exchange& exchange, const std::string& host, uint16_t port, const std::string& token);
   ~Server();                           // Exchange::stop() must have been called, so that nobody waits
   const std::string& address() const;  // "http://127.0.0.1:8042/TOKEN/"
+  uint16_t port() const;
+  const std::string& token() const;
 
  private:
   struct Impl;

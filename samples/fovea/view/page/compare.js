@@ -1,5 +1,6 @@
 // A second graph beside the first: split, flip, difference, and how far the two are apart.
-import { control, element, getPicture, queryOf } from "./api.js";
+import { control, getPicture, queryOf } from "./api.js";
+import { element, row } from "./dom.js";
 import { place } from "./picture.js";
 import { on, store } from "./store.js";
 
@@ -31,10 +32,6 @@ function sourceOfSecond() {
   const { graph: first, second_graph: second } = store.state;
   const output = first.outputs.find((o) => o.name === store.source || o.source === store.source);
   return output && second.some((o) => o.name === output.name) ? `second!${output.name}` : null;
-}
-
-function row(label, id, ...controls) {
-  return element("div", { class: "row" }, element("label", { for: id }, label), ...controls);
 }
 
 // ---- The picture ----

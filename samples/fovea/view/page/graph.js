@@ -1,5 +1,5 @@
 // The graph as a drawing: passes from left to right by level, edges between their ports.
-import { svg } from "./api.js";
+import { svg } from "./dom.js";
 import { mainPort, on, portOf, show, store, tell } from "./store.js";
 import { medianTime } from "./timings.js";
 

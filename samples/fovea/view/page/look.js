@@ -1,5 +1,6 @@
 // Controls for how a source is shown, and its histogram.
-import { element, floatText, getStatistics, queryOf, svg } from "./api.js";
+import { getStatistics, newest, queryOf } from "./api.js";
+import { element, floatText, row, svg } from "./dom.js";
 import { on, portOf, setDisplay, show, store } from "./store.js";
 
 const root = document.getElementById("look");
@@ -43,10 +44,21 @@ const png = element("a", { id: "png", class: "button", download: "", title: "The
 const exr = element("a", { id: "exr", class: "button", download: "",
     title: "Its floats, as fovea render writes them" }, "EXR");
 
+const tev = element("button", { type: "button", id: "tev", hidden: true, onclick: () =>
+  newest.send({ tev: store.tick.tev.source === store.source ? "" : store.source }) }, "tev");
+
+function showTev() {
+  const state = store.tick?.tev;
+  tev.hidden = !state;
+  if (!state) return;
+  tev.setAttribute("aria-pressed", String(state.source === store.source));
+  const where = state.connected ? "tev shows" : "tev, which does not answer yet, is to show";
+  tev.title = state.source ? `${where} ${state.source}; click to change that` : "Send this source to tev";
+}
+
 function setFiles() {
   png.href = `picture.png?${queryOf({ source: store.source, ...store.display })}`;
   exr.href = `picture.exr?${queryOf({ source: store.source })}`;
-  png.parentElement.parentElement.hidden = portOf(store.source)?.buffer ?? false;
 }
 
 let statistics = null;
@@ -108,11 +120,11 @@ function update() {
 
 async function ask() {
   last = performance.now();
-  const source = store.source;
+  const { source, region } = store;
   try {
     if (!portOf(source)?.buffer && root.closest("details").open) {
-      const answer = await getStatistics(source);
-      if (source === store.source && answer) {
+      const answer = await getStatistics(source, region);
+      if (source === store.source && region === store.region && answer) {
         statistics = answer;
         drawHistogram();
       }
@@ -151,12 +163,8 @@ function showSource() {
     layer.disabled = port.layers < 2;
     mip.disabled = port.mips < 2;
   }
+  root.classList.toggle("buffer", port?.buffer ?? false);
   root.title = port?.doc ?? "";
-}
-
-function row(label, id, ...controls) {
-  return element("div", { class: "row" }, element("label", id ? { for: id } : {}, label),
-    controls.length === 1 ? controls[0] : element("div", { class: "pair" }, ...controls));
 }
 
 export function start() {
@@ -176,8 +184,8 @@ export function start() {
         onclick: resetRange }, "Reset")),
     row("Curve", "curve", curve),
     row("False colour", "false-color", falseColor),
-    row("Keep", null, png, exr),
-    histogram, numbers);
+    row("Keep", null, png, exr, tev),
+    histogram, numbers, element("div", { id: "region" }));
   exposure.addEventListener("input", sendExposure);
   for (const input of [low, high]) input.addEventListener("change", sendRange);
   for (const input of [layer, mip]) input.addEventListener("change", sendPart);
@@ -191,7 +199,12 @@ export function start() {
     update();
   });
   on("display", setFiles);
+  on("region", () => {
+    last = -kEvery;
+    update();
+  });
   on("picture", update);
+  on("tick", showTev);
 }
 
 export function falseColorOn(value) {

@@ -1,11 +1,14 @@
 // Starts the page: brings the parts together and follows the run.
-import { control, element, getPicture, getState, listen } from "./api.js";
+import { control, getPicture, getState, listen } from "./api.js";
 import * as compare from "./compare.js";
+import { element } from "./dom.js";
 import * as graph from "./graph.js";
 import * as look from "./look.js";
 import * as move from "./move.js";
 import * as parameters from "./parameters.js";
 import * as picture from "./picture.js";
+import * as points from "./points.js";
+import * as region from "./region.js";
 import { on, show, store, tell } from "./store.js";
 import * as timings from "./timings.js";
 
@@ -170,7 +173,7 @@ function showKeys() {
 }
 
 function start() {
-  for (const part of [picture, look, compare, move, timings, graph, parameters]) part.start();
+  for (const part of [picture, look, region, points, compare, move, timings, graph, parameters]) part.start();
   on("state", drawChoices);
   on("toggle-false-color", look.toggleFalseColor);
   on("flip", compare.flip);
@@ -185,7 +188,7 @@ function start() {
     if (label) byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
   for (const [label, what] of [...move.held, ["[ ]", "hide and show the panels"], ["X", "more room for the graph"],
       ["wheel, Shift-drag", "zoom and pan"],
-    ["drag", "turn the camera"]])
+    ["drag", "turn the camera"], ["Ctrl-drag", "numbers of a region"], ["click", "numbers of the nearest point"]])
     byId("key-list").append(element("dt", {}, label), element("dd", {}, what));
   addEventListener("keydown", (event) => {
     if (event.target.closest("input, select, dialog") || event.ctrlKey || event.metaKey) return;

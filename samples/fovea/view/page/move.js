@@ -1,10 +1,12 @@
 // Camera, time and gaze: with the mouse on the picture, and with keys alone.
-import { control, newest, svg } from "./api.js";
+import { control, newest } from "./api.js";
+import { svg } from "./dom.js";
 import { fitPicture, pan, pictureAt, place, zoom } from "./picture.js";
 import { on, show, store, tell } from "./store.js";
 
 const stage = document.getElementById("stage");
-const overlay = document.getElementById("overlay");
+const marks = document.getElementById("gaze-marks");
+const kPanels = "#messages, #table, #element"; // on the stage, where the mouse is not for the picture
 const button = (id) => document.getElementById(id);
 
 let orbiting = false;
@@ -97,14 +99,14 @@ function drawGaze() {
   const gaze = store.tick?.gaze;
   const picture = store.picture;
   if (!gaze || !picture || !radius || picture.width !== store.state.size[0]) {
-    overlay.replaceChildren();
+    marks.replaceChildren();
     return;
   }
   const x = place.x + gaze[0] * picture.width * place.scale;
   const y = place.y + gaze[1] * picture.height * place.scale;
   const r = radius * picture.width * place.scale;
   const cross = `M${x - 6} ${y}H${x + 6}M${x} ${y - 6}V${y + 6}`;
-  overlay.replaceChildren(
+  marks.replaceChildren(
     svg("circle", { class: "shade", cx: x, cy: y, r }), svg("circle", { id: "fovea", cx: x, cy: y, r }),
     svg("path", { class: "shade", d: cross }), svg("path", { d: cross }));
 }
@@ -244,13 +246,13 @@ export function start() {
   addEventListener("blur", () => pressed.clear());
 
   stage.addEventListener("pointerdown", (event) => {
-    if (event.target.closest("#messages, #table")) return;
+    if (event.ctrlKey || event.target.closest(kPanels)) return;
     stage.focus({ preventScroll: true });
     drag = { x: event.clientX, y: event.clientY, flat: event.button !== 0 || event.shiftKey };
     stage.setPointerCapture(event.pointerId);
     stage.classList.add("turning");
   });
-  stage.addEventListener("contextmenu", (event) => !event.target.closest("#messages, #table")
+  stage.addEventListener("contextmenu", (event) => !event.target.closest(kPanels)
       && event.preventDefault());
   stage.addEventListener("pointermove", (event) => {
     if (drag) {
@@ -272,7 +274,7 @@ export function start() {
       drag = null;
       stage.classList.remove("turning");
     });
-  stage.addEventListener("dblclick", (event) => !event.target.closest("#messages, #table") && fitPicture());
+  stage.addEventListener("dblclick", (event) => !event.target.closest(kPanels) && fitPicture());
 
   on("tick", () => {
     showTime();

@@ -1,5 +1,6 @@
 // Controls for the parameters of the graph and of its passes, made of their declarations.
-import { control, element, newest } from "./api.js";
+import { control, newest } from "./api.js";
+import { element } from "./dom.js";
 import { on, store } from "./store.js";
 
 const root = document.getElementById("parameters");
@@ -90,6 +91,7 @@ function matches(text) {
   return !filter || text.toLowerCase().includes(filter);
 }
 
+// Of a pass or of an instance of a sub-graph.
 function passGroup(pass) {
   const own = pass.parameters.filter((p) => !p.given_by && matches(`${pass.name}.${p.name} ${p.doc}`));
   if (!own.length) return null;
@@ -97,6 +99,8 @@ function passGroup(pass) {
   const group = element("details", { class: "group", open: open.has(pass.name) || Boolean(filter) || changed,
       "data-pass": pass.name },
     element("summary", {}, `${pass.name} (${own.length})`),
+    pass.name.includes("/") ? element("p", { class: "note" }, "Inside of a sub-graph: changes show and can be copied " +
+      "as --set, but a saved graph cannot hold them.") : null,
     ...own.map((p) => parameterRow(p, `${pass.name}.${p.name}`)));
   group.addEventListener("toggle", () => (group.open ? open.add(pass.name) : open.delete(pass.name)));
   return group;
@@ -155,7 +159,10 @@ function draw() {
     saveForm(), find,
     ...(shown.length ? [element("fieldset", {}, element("legend", {}, "of the graph"),
         ...shown.map((p) => parameterRow(p, p.name)))] : []),
-    element("fieldset", {}, element("legend", {}, "of its passes"), ...graph.passes.map(passGroup).filter(Boolean)));
+    ...[["of its sub-graphs", graph.sub_graphs], ["of its passes", graph.passes]].flatMap(([legend, list]) => {
+      const groups = list.map(passGroup).filter(Boolean);
+      return groups.length ? [element("fieldset", {}, element("legend", {}, legend), ...groups)] : [];
+    }));
   if (focused) {
     const again = document.getElementById(focused);
     again?.focus();

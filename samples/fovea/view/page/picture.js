@@ -1,5 +1,7 @@
 // The picture: fetches the newest one, draws it, zooms and pans, and tells the pixel under the cursor.
-import { element, floatText, getPicture, getPixels } from "./api.js";
+import { getPicture, getPixels } from "./api.js";
+import { drawTable } from "./buffers.js";
+import { floatText } from "./dom.js";
 import { on, portOf, store, tell } from "./store.js";
 
 const stage = document.getElementById("stage");
@@ -16,7 +18,7 @@ export const place = { scale: 1, x: 0, y: 0, fitted: true };
 let abort = null; // of the request under way
 let fresh = true; // draw at once, whatever the number of the picture
 
-function fit() {
+export function fitPicture() {
   if (!store.picture) return;
   const box = stage.getBoundingClientRect();
   const margin = 16;
@@ -53,8 +55,6 @@ export function pan(dx, dy) {
   place.fitted = false;
   arrange();
 }
-
-export const fitPicture = fit;
 
 // A point of the stage in pixels of the picture.
 export function pictureAt(clientX, clientY) {
@@ -98,44 +98,15 @@ async function readPixel() {
   }
 }
 
-// Buffers are shown as a table of their first elements, each word as a float and as a whole number.
-async function drawTable(info) {
-  const rows = Math.min(info.width, 256);
-  const read = await getPixels(store.source, 0, 0, rows, 1);
-  if (!read) return;
-  const whole = new Uint32Array(read.bytes);
-  const head = element("tr", {}, element("th", {}, "element"));
-  for (let c = 0; c < read.channels; ++c) head.append(element("th", { class: "number" }, `word ${c}`));
-  const body = [];
-  for (let r = 0; r < rows; ++r) {
-    const row = element("tr", {}, element("td", {}, String(r)));
-    for (let c = 0; c < read.channels; ++c) {
-      const i = r * read.channels + c;
-      const v = read.values[i];
-      const plausible = v === 0 ? whole[i] === 0 : Math.abs(v) > 1e-12 && Math.abs(v) < 1e12;
-      row.append(element("td", { class: "number", title: `${whole[i]} or ${floatText(v)}` },
-        plausible ? floatText(v) : String(whole[i])));
-    }
-    body.push(row);
-  }
-  const port = portOf(store.source);
-  table.replaceChildren(
-    element("p", { class: "note" },
-        `${port?.is ?? store.source}: the first ${rows} of ${info.width} elements of frame ` +
-      `${info.frame}. A word is shown as a float where that is plausible, otherwise as a whole number.`),
-    element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
-}
-
 async function draw(picture) {
   const buffer = picture.blob.size === 0;
   table.hidden = !buffer;
   canvas.hidden = overlay.hidden = buffer;
   waiting.hidden = true;
   const resized = !store.picture || store.picture.width !== picture.width || store.picture.height !== picture.height;
-  const other = !store.picture || store.picture.source !== store.source;
-  store.picture = { ...picture, blob: null, source: store.source };
+  store.picture = { ...picture, blob: null, buffer };
   if (buffer) {
-    await drawTable(picture);
+    await drawTable();
   } else {
     const bitmap = await createImageBitmap(picture.blob);
     if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
@@ -144,11 +115,10 @@ async function draw(picture) {
     }
     context.drawImage(bitmap, 0, 0);
     bitmap.close();
-    if (resized && place.fitted) fit();
+    if (resized && place.fitted) fitPicture();
   }
   canvas.dataset.frame = picture.frame;
   canvas.dataset.source = store.source;
-  if (other) tell("range", picture);
   tell("picture", store.picture);
   readPixel();
 }
@@ -188,9 +158,9 @@ export function start() {
   on("state", () => {
     document.getElementById("source-name").textContent = nameOf(store.source);
   });
-  new ResizeObserver(() => place.fitted && fit()).observe(stage);
+  new ResizeObserver(() => place.fitted && fitPicture()).observe(stage);
   stage.addEventListener("wheel", (event) => {
-    if (event.target.closest("#table, #messages")) return;
+    if (event.target.closest("#table, #messages, #element")) return;
     event.preventDefault();
     const box = stage.getBoundingClientRect();
     zoom(Math.exp(-event.deltaY * 0.0015), event.clientX - box.left, event.clientY - box.top);

@@ -5,7 +5,8 @@ export const store = {
   tick: null, // of the newest frame
   source: "image", // that is locked in the picture
   display: { exposure: 0, channel: "color", curve: "", false_color: "", low: 0, high: 1, fit: 1 },
-  picture: null, // facts about the picture that is drawn: number, frame, width, height, channels
+  region: null, // of the picture, of which numbers are told: x, y, width, height in pixels
+  picture: null, // facts about the picture that is drawn: number, frame, width, height, channels, buffer
 };
 
 const listeners = new Map();
@@ -28,6 +29,11 @@ export function show(source) {
 export function setDisplay(changes) {
   Object.assign(store.display, changes);
   tell("display", store.display);
+}
+
+export function setRegion(region) {
+  store.region = region;
+  tell("region", region);
 }
 
 // The port that a source names; undefined if there is none.

@@ -1,5 +1,5 @@
 // Times of the passes as a table with their history, counters, and the plan as a grid.
-import { bytesText, element, svg } from "./api.js";
+import { bytesText, element, svg } from "./dom.js";
 import { mainPort, on, portOf, show, store, tell } from "./store.js";
 
 const kHistory = 90;

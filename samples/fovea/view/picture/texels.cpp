@@ -103,15 +103,16 @@ Layout layoutOf(const graph::ResourceDesc& desc) {
   return {type, desc.width, desc.height, format.channels, encoded};
 }
 
-std::vector<uint32_t> words(const graph::OutputData& data, uint32_t x, uint32_t y, uint32_t width,
-                            uint32_t height) {
+Region wholeOf(const Layout& layout) { return {0, 0, layout.width, layout.height}; }
+
+std::vector<uint32_t> words(const graph::OutputData& data, const Region& region) {
   const Layout layout = layoutOf(data.desc);
-  std::vector<uint32_t> out(size_t(width) * height * layout.channels);
+  std::vector<uint32_t> out(size_t(region.width) * region.height * layout.channels);
   const bool buffer = data.desc.kind == graph::ResourceKind::Buffer;
   const size_t stride = buffer ? data.desc.stride : gpu::formatInfo(data.desc.format).bytesPerTexel;
   uint32_t* at = out.data();
-  for (uint32_t row = y; row < y + height; ++row) {
-    for (uint32_t column = x; column < x + width; ++column, at += layout.channels) {
+  for (uint32_t row = region.y; row < region.y + region.height; ++row) {
+    for (uint32_t column = region.x; column < region.x + region.width; ++column, at += layout.channels) {
       const std::byte* texel = data.bytes.data() + (size_t(row) * layout.width + column) * stride;
       if (buffer)
         std::memcpy(at, texel, std::min<size_t>(stride, size_t(layout.channels) * 4));
@@ -122,9 +123,9 @@ std::vector<uint32_t> words(const graph::OutputData& data, uint32_t x, uint32_t 
   return out;
 }
 
-std::vector<float> numbers(const graph::OutputData& data) {
+std::vector<float> numbers(const graph::OutputData& data, const Region& region) {
   const Layout layout = layoutOf(data.desc);
-  const std::vector<uint32_t> all = words(data, 0, 0, layout.width, layout.height);
+  const std::vector<uint32_t> all = words(data, region);
   std::vector<float> out(all.size());
   for (size_t i = 0; i < all.size(); ++i)
     out[i] = layout.type == Layout::Type::Float      ? floatOf(all[i])
@@ -133,8 +134,12 @@ std::vector<float> numbers(const graph::OutputData& data) {
   return out;
 }
 
-std::vector<ChannelStatistics> statistics(const graph::OutputData& data) {
-  const std::vector<float> values = numbers(data);
+std::vector<float> numbers(const graph::OutputData& data) {
+  return numbers(data, wholeOf(layoutOf(data.desc)));
+}
+
+std::vector<ChannelStatistics> statistics(const graph::OutputData& data, const Region& region) {
+  const std::vector<float> values = numbers(data, region);
   const uint32_t channels = std::max(1u, layoutOf(data.desc).channels);
   std::vector<ChannelStatistics> all(channels);
   for (size_t i = 0; i < values.size(); ++i) {

@@ -20,11 +20,17 @@ struct Layout {
 };
 Layout layoutOf(const graph::ResourceDesc& desc);
 
+// Part of a picture, in pixels from its upper left corner.
+struct Region {
+  uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+Region wholeOf(const Layout& layout);
+
 // Pixel after pixel, a 32-bit word per channel: floats bit for bit, wider than 32 bits cut off. Half floats and
-// normalised integers become floats, whole numbers stay whole. x, y, width, height must lie inside.
-std::vector<uint32_t> words(const graph::OutputData& data, uint32_t x, uint32_t y, uint32_t width,
-                            uint32_t height);
-// The same of the whole picture as numbers to draw: whole numbers are converted.
+// normalised integers become floats, whole numbers stay whole. The region must lie inside of the picture.
+std::vector<uint32_t> words(const graph::OutputData& data, const Region& region);
+// The same as numbers to draw: whole numbers are converted.
+std::vector<float> numbers(const graph::OutputData& data, const Region& region);
 std::vector<float> numbers(const graph::OutputData& data);
 
 // Of one channel. The histogram covers [min, max] in equal parts and counts finite values.
@@ -34,6 +40,6 @@ struct ChannelStatistics {
   uint64_t finite = 0, nan = 0, infinite = 0;
   std::array<uint64_t, 64> histogram{};
 };
-std::vector<ChannelStatistics> statistics(const graph::OutputData& data);
+std::vector<ChannelStatistics> statistics(const graph::OutputData& data, const Region& region);
 
 }  // namespace fovea::view
