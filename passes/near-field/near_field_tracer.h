@@ -1,6 +1,6 @@
-// Light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all light that comes straight from
-// emissive surfaces, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space bias compensation for interactive high-quality
-// global illumination with virtual point lights", I3D 2011).
+// Light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all light that comes straight
+// from emissive surfaces, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space
+// bias compensation for interactive high-quality global illumination with virtual point lights", I3D 2011).
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ struct NearFieldStatistics {
 // left to them wholly.
 //
 // image: one texel per block of 2 x 2 pixels, in rows of (size.x + 1) / 2. rgb: irradiance / pi at one pixel of the
-// block or, outside the fovea and not close to an emissive surface, of the `spacing` x `spacing` pixels that hold it; 0 if there is no sample. a:
-// sampleCode().
+// block or, outside the fovea and not close to an emissive surface, of the `spacing` x `spacing` pixels that hold it;
+// 0 if there is no sample. a: sampleCode().
 NearFieldStatistics traceNearField(const scene::Frame& frame, const scene::View& view,
                                    const scene::RayScene& rays, const NearFieldSettings& settings,
                                    std::span<glm::vec4> image);

@@ -3,7 +3,8 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 // Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
 // irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl); TRACED 0/1, 1 if rays have found the
-// light of some pixels, of which none lies in the periphery; NEAR_FIELD 0/1, 1 if that of pass near-field is to be added to it.
+// light of some pixels, of which none lies in the periphery; NEAR_FIELD 0/1, 1 if that of pass near-field is to be
+// added to it.
 //
 // Pixels whose window does not hold all subsets are listed and processed by the EDGES variant, which packs these few
 // pixels into its work groups. With MASKED most windows extend beyond the blocks, so EDGES processes all pixels of

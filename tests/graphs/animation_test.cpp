@@ -32,7 +32,7 @@ struct Case {
 };
 const Case kCases[] = {
     {"cornellbox_moving", "ours", 0.13, 2.7, 6}, {"cornellbox_moving", "foveal", 0.02, 0.13, 0.075},
-    {"atrium", "foveal", 0.07, 0.63, 0.15},      {"balcony", "foveal", 0.055, 0.2, 0.08},
+    {"atrium", "foveal", 0.07, 0.55, 0.15},      {"balcony", "foveal", 0.055, 0.2, 0.08},
     {"room", "foveal", 0.28, 1.2, 0.55},         {"yard", "foveal", 0.072, 0.24, 0.08}};
 
 scene::Frame frameOf(const scene::Scene& s, const scene::Geometry& geometry, uint64_t index) {
