@@ -178,6 +178,11 @@ class Change(ViewTest):
         viewer.control(save="second")
         self.wait(lambda: "inside of a sub-graph" in json.dumps(viewer.state()["messages"]), "the refusal")
         self.assertFalse((self.folder / "second.json").exists())
+        # A file that changes meanwhile does not take the refusal away.
+        build = viewer.state()["build"]
+        self.write("another.json", {"extends": "direct.json"})
+        self.wait(lambda: viewer.state()["build"] > build, "the files to be read again")
+        self.assertIn("inside of a sub-graph", json.dumps(viewer.state()["messages"]))
 
     def test_a_strategy_is_swapped_by_name(self):
         viewer = self.view("ours", "--set", "vpl_count=32", size="64x64")

@@ -79,28 +79,22 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   return made;
 }
 
-// Keeps the graph that runs if another one cannot be built.
 void Viewer::rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents) {
   drain();
-  try {
-    std::unique_ptr<Build> next = build(settings, std::move(scene), build_.get(), keepContents && !broken_);
-    const bool otherScene = next->scene != build_->scene;
-    build_ = std::move(next);
-    settings_ = settings;
-    if (otherScene) motion_.restart();
-    watchFiles();
-    wanted_.clear();
-    observed_.clear();
-    exchange_.clearShots();
-    shown_.clear();
-    times_ = nullptr;
-    broken_ = false;
-    report(build_->messages.list());
-    rebuildSecond(keepContents);
-  } catch (const Error& error) {
-    report(error.diagnostics());
-  }
-  sendState();
+  std::unique_ptr<Build> next = build(settings, std::move(scene), build_.get(), keepContents && !broken_);
+  const bool otherScene = next->scene != build_->scene;
+  build_ = std::move(next);
+  settings_ = settings;
+  if (otherScene) motion_.restart();
+  watchFiles();
+  wanted_.clear();
+  observed_.clear();
+  exchange_.clearShots();
+  shown_.clear();
+  times_ = nullptr;
+  broken_ = false;
+  report(build_->messages.list());
+  rebuildSecond(keepContents);
 }
 
 // Everything but the graph is that of the first.
@@ -134,6 +128,12 @@ void Viewer::rebuildSecond(bool keepContents) {
 
 void Viewer::report(std::vector<Diagnostic> messages) {
   messages_ = std::move(messages);
+  ++messageNumber_;
+}
+
+// Stays when a file changes, unlike what is said about the graph.
+void Viewer::answer(std::vector<Diagnostic> messages) {
+  answer_ = std::move(messages);
   ++messageNumber_;
 }
 
@@ -171,9 +171,10 @@ std::optional<Settings> Viewer::changed(Settings settings, const Command& comman
   return any ? std::optional(std::move(settings)) : std::nullopt;
 }
 
-void Viewer::follow(std::vector<Command> commands) {
+void Viewer::follow(const std::vector<Command>& commands) {
   Settings settings = settings_;
   bool changes = false, otherScene = false, restarts = false, otherSecond = false;
+  std::vector<Diagnostic> answers;
   for (const Command& command : commands) {
     try {
       if (std::optional<Settings> next = changed(settings, command)) {
@@ -186,38 +187,37 @@ void Viewer::follow(std::vector<Command> commands) {
       if (command.tev && tev_) tev_->show(*command.tev);
       if (command.accumulate) accumulate_ = *command.accumulate;
     } catch (const Error& error) {
-      report(error.diagnostics());
-      sendState();
+      answers = error.diagnostics();
     }
     motion_.apply(command);
     restarts |= command.restart || command.recording.value_or(false);
     if (command.recording) exchange_.setRecording(motion_.gazeTable(), motion_.cameraKeys());
   }
-  if (changes || restarts) {
-    rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
-  } else if (otherSecond) {
-    rebuildSecond(true);
+  try {
+    if (changes || restarts)
+      rebuild(settings, otherScene ? nullptr : build_->scene, !restarts);
+    else if (otherSecond)
+      rebuildSecond(true);
+    for (const Command& command : commands)
+      if (command.save) answers = {save(*command.save)};
+  } catch (const Error& error) {
+    answers = error.diagnostics();
+  }
+  const bool saves = std::any_of(commands.begin(), commands.end(), [](const Command& c) { return c.save; });
+  if (changes || restarts || otherSecond || saves || !answers.empty()) {
+    answer(std::move(answers));
     sendState();
   }
-  for (const Command& command : commands)
-    if (command.save) save(*command.save);
   if (!commands.empty()) sendTick();
 }
 
-// Beside the graph, and never over another file.
-void Viewer::save(const std::string& name) {
-  try {
-    const std::filesystem::path file = build_->file.parent_path() / (name + ".json");
-    if (std::filesystem::exists(file))
-      throw Error(ExitCode::CannotWrite, fmt::format("{} exists already", file.string()),
-                  "take another name");
-    writeText(file, extendingGraph(build_->file.filename().string(), build_->changes, build_->documents,
-                                   build_->run->graph()));
-    report({{Severity::Note, {file.string(), 0, 0}, {}, fmt::format("wrote {}", file.string()), {}}});
-  } catch (const Error& error) {
-    report(error.diagnostics());
-  }
-  sendState();
+Diagnostic Viewer::save(const std::string& name) const {
+  const std::filesystem::path file = build_->file.parent_path() / (name + ".json");
+  if (std::filesystem::exists(file))
+    throw Error(ExitCode::CannotWrite, fmt::format("{} exists already", file.string()), "take another name");
+  writeText(file, extendingGraph(build_->file.filename().string(), build_->changes, build_->documents,
+                                 build_->run->graph()));
+  return {Severity::Note, {file.string(), 0, 0}, {}, fmt::format("wrote {}", file.string()), {}};
 }
 
 // Everything from which the run was made.
@@ -268,8 +268,8 @@ void Viewer::reloadChanged() {
     rebuild(settings_, scene ? nullptr : build_->scene);
   } catch (const Error& error) {
     report(error.diagnostics());
-    sendState();
   }
+  sendState();
 }
 
 // Nothing of a plug-in that cannot be used gets as far as this process.

@@ -77,13 +77,15 @@ class Viewer {
   std::unique_ptr<Build> build(const Settings& settings, std::shared_ptr<LoadedScene> scene, Build* before,
                                bool keepContents);
   void rebuildSecond(bool keepContents);
+  // Throws Error, and keeps the graph that runs, if another one cannot be built.
   void rebuild(const Settings& settings, std::shared_ptr<LoadedScene> scene, bool keepContents = true);
   void reloadChanged();
   void restartFor(const std::filesystem::path& plugin);
   void watchFiles();
-  void follow(std::vector<Command> commands);
+  void follow(const std::vector<Command>& commands);
   std::optional<Settings> changed(Settings settings, const Command& command) const;
-  void save(const std::string& name);
+  // Writes beside the graph, never over another file, and returns what is to be said. Throws Error(CannotWrite, BadInput).
+  Diagnostic save(const std::string& name) const;
   bool frameIsDue();
   void render();
   void chooseObservations();
@@ -95,6 +97,7 @@ class Viewer {
   void publish(const Build& build, const std::string& source, const graph::FrameResult& result,
                graph::OutputData data, uint32_t frames);
   void report(std::vector<Diagnostic> messages);
+  void answer(std::vector<Diagnostic> messages);
   void sendState();
   void sendTick();
   void pace();
@@ -115,7 +118,8 @@ class Viewer {
   std::vector<std::string> wanted_, observed_;  // sources; those of them that there are
   std::vector<Shown> shown_;                    // by the frames under way, oldest first
   uint64_t builds_ = risingNumber(), submitted_ = 0, messageNumber_ = 0;
-  std::vector<Diagnostic> messages_;
+  std::vector<Diagnostic> messages_;  // about the graph and its files
+  std::vector<Diagnostic> answer_;    // to the last command that changed or saved the graph
   Exchange::Clock::time_point lastTick_, nextFrame_;
   double framesPerSecond_ = 0;
   Shown seen_;            // by the newest finished frame

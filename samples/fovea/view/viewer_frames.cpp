@@ -225,6 +225,8 @@ void Viewer::sendTick() {
 void Viewer::sendState() {
   ++builds_;
   const scene::Geometry& geometry = build_->scene->geometry;
+  std::vector<Diagnostic> messages = answer_;
+  messages.insert(messages.end(), messages_.begin(), messages_.end());
   Json state{{"build", builds_},
              {"device", device_->name()},
              {"version", FOVEA_VERSION},
@@ -243,7 +245,7 @@ void Viewer::sendState() {
              {"set", overridesOf(build_->changes)},
              {"fovea_radius", session::parameterOr(build_->run->graph(), "fovea_radius", 0)},
              {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
-             {"messages", describeMessages(messages_)}};
+             {"messages", describeMessages(messages)}};
   exchange_.setState(textOf(state));
   exchange_.setTick(textOf({{"build", builds_}}));
 }
