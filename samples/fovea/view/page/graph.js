@@ -111,7 +111,7 @@ function showSource() {
 export function start() {
   on("state", draw);
   on("source", showSource);
-  on("tick", () => {
+  on("numbers", () => {
     for (const { time, index, pass } of nodes) {
       const ms = medianTime(index);
       time.textContent = pass.level === null

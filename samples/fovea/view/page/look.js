@@ -109,7 +109,7 @@ function drawHistogram() {
   histogram.replaceChildren(...paths);
 }
 
-const kEvery = 500; // milliseconds between two questions for numbers
+const kEvery = 1000; // milliseconds between two questions for numbers
 let timer = null;
 let last = -kEvery;
 

@@ -83,6 +83,7 @@ async function loadState() {
   loading = true;
   try {
     store.state = await getState();
+    lastNumbers = -kReadable;
     localProblem = null;
     const known = store.state.graph.outputs.map((o) => o.name);
     const plain = store.source.split("@")[0];
@@ -102,7 +103,33 @@ async function onTick(tick) {
   if (!store.state || tick.build !== store.state.build) await loadState();
   if (tick.frame === undefined) return;
   store.tick = tick;
-  tell("tick", tick);
+  tell("times", tick);
+  soon ??= setTimeout(tellTick, kPatience);
+}
+
+// What a frame changes is drawn together with its picture, so that the page is laid out once a frame; the program runs
+// on the same machine. Without a picture it is drawn after a moment. Numbers change only so often that one can read
+// them.
+const kPatience = 150; // milliseconds
+const kReadable = 1000; // milliseconds
+let soon = null;
+let later = null;
+let lastNumbers = -kReadable;
+
+function tellTick() {
+  clearTimeout(soon);
+  soon = null;
+  if (!store.tick || store.tick.build !== store.state.build) return;
+  tell("tick", store.tick);
+  clearTimeout(later);
+  const wait = lastNumbers + kReadable - performance.now();
+  if (wait <= 0) tellNumbers();
+  else later = setTimeout(tellNumbers, wait + kPatience); // in case that no other frame comes
+}
+
+function tellNumbers() {
+  lastNumbers = performance.now();
+  tell("numbers", store.tick);
 }
 
 function onLost() {
@@ -175,6 +202,7 @@ function showKeys() {
 function start() {
   for (const part of [picture, look, region, points, compare, move, timings, graph, parameters]) part.start();
   on("state", drawChoices);
+  on("picture", tellTick);
   on("toggle-false-color", look.toggleFalseColor);
   on("flip", compare.flip);
   choose("graph", (name) => ({ graph: name }));

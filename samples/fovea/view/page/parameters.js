@@ -3,7 +3,7 @@ import { control, newest } from "./api.js";
 import { element } from "./dom.js";
 import { on, store } from "./store.js";
 
-const root = document.getElementById("parameters");
+const list = element("div");
 let open = new Set();
 let filter = "";
 
@@ -106,8 +106,8 @@ function passGroup(pass) {
   return group;
 }
 
+// Stays while the controls below it are made anew, so that a name is not lost half-written nor a click half-done.
 function saveForm() {
-  const { set } = store.state;
   const name = element("input", { type: "text", id: "save-name", placeholder: "name",
       "aria-label": "Name of the new graph",
     pattern: "[A-Za-z0-9_\\-]+", size: 12 });
@@ -124,6 +124,7 @@ function saveForm() {
   });
   const copy = element("button", { type: "button", id: "copy" }, "Copy as --set");
   copy.addEventListener("click", async () => {
+    const { set } = store.state;
     const text = set.map((s) => `--set ${/^[\w.=\-/]+$/.test(s) ? s : `'${s}'`}`).join(" ");
     copy.dataset.text = text;
     try {
@@ -135,43 +136,45 @@ function saveForm() {
   });
   const reset = element("button", { type: "button", id: "reset-all", onclick: () => control({ reset: true }) },
       "Reset all");
-  for (const b of [save, copy, reset]) b.disabled = set.length === 0;
+  on("state", ({ set }) => {
+    for (const b of [save, copy, reset]) b.disabled = set.length === 0;
+    say("");
+  });
   return element("div", { class: "actions" }, name, save, copy, reset, note);
 }
 
-// Rebuilds the controls, but not under the hand that moves one.
-function draw() {
-  const { graph } = store.state;
-  const focused = document.activeElement?.closest?.("#parameters") ? document.activeElement.id : null;
-  const dragging = root.querySelector("input[type=range]:active");
-  if (dragging) {
-    later = true;
-    return;
-  }
-  const shown = graph.parameters.filter((p) => matches(`${p.name} ${p.doc}`));
-  const find = element("input", { type: "text", id: "find-parameter", placeholder: "find a parameter", value: filter,
+function findField() {
+  const find = element("input", { type: "text", id: "find-parameter", placeholder: "find a parameter",
     "aria-label": "Find a parameter" });
   find.addEventListener("input", () => {
     filter = find.value.trim().toLowerCase();
     draw();
   });
-  root.replaceChildren(
-    saveForm(), find,
+  return find;
+}
+
+// Makes the controls anew, but not under the hand that moves one.
+function draw() {
+  const { graph } = store.state;
+  const focused = list.contains(document.activeElement) ? document.activeElement.id : null;
+  if (list.querySelector("input[type=range]:active")) {
+    later = true;
+    return;
+  }
+  const shown = graph.parameters.filter((p) => matches(`${p.name} ${p.doc}`));
+  list.replaceChildren(
     ...(shown.length ? [element("fieldset", {}, element("legend", {}, "of the graph"),
         ...shown.map((p) => parameterRow(p, p.name)))] : []),
-    ...[["of its sub-graphs", graph.sub_graphs], ["of its passes", graph.passes]].flatMap(([legend, list]) => {
-      const groups = list.map(passGroup).filter(Boolean);
+    ...[["of its sub-graphs", graph.sub_graphs], ["of its passes", graph.passes]].flatMap(([legend, passes]) => {
+      const groups = passes.map(passGroup).filter(Boolean);
       return groups.length ? [element("fieldset", {}, element("legend", {}, legend), ...groups)] : [];
     }));
-  if (focused) {
-    const again = document.getElementById(focused);
-    again?.focus();
-    if (again === find) find.setSelectionRange(filter.length, filter.length);
-  }
+  if (focused) document.getElementById(focused)?.focus();
 }
 let later = false;
 
 export function start() {
+  document.getElementById("parameters").append(saveForm(), findField(), list);
   on("state", draw);
   addEventListener("pointerup", () => {
     if (!later) return;

@@ -28,6 +28,13 @@ const number = element("input", { type: "number", id: "point-number", min: 0, st
 const note = element("p", { class: "note", role: "status" });
 const root = document.getElementById("points-panel");
 
+// The button to close stays while the numbers change, so that no click on it is lost.
+const cardTitle = element("strong");
+const cardPlace = element("span");
+const cardNumbers = element("dl");
+card.append(element("div", { class: "head" }, cardTitle, cardPlace,
+  element("button", { type: "button", class: "link", onclick: () => pick(null) }, "close")), cardNumbers);
+
 function vectorField(port, name) {
   return port?.fields?.find((f) => f.name === name && f.type === "float" && f.components === 3);
 }
@@ -121,9 +128,9 @@ async function drawElement() {
     element("dt", { class: "group", title: p.doc }, `${p.pass} · ${p.name}`), element("dd", {}),
     ...read[i].fields.flatMap((f) => [element("dt", {}, f.name),
       element("dd", { title: read[i].text(0, f) }, read[i].text(0, f, kDigits))])] : []);
-  const close = element("button", { type: "button", class: "link", onclick: () => pick(null) }, "close");
-  card.replaceChildren(element("div", { class: "head" }, element("strong", {}, `Element ${index}`),
-    element("span", {}, placeText()), close), element("dl", {}, ...groups));
+  cardTitle.textContent = `Element ${index}`;
+  cardPlace.textContent = placeText();
+  cardNumbers.replaceChildren(...groups);
   card.dataset.index = index;
   card.hidden = false;
 }

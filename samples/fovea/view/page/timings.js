@@ -127,7 +127,6 @@ function remember(key, value) {
   const values = histories.get(key);
   values.push(value);
   if (values.length > kHistory) values.shift();
-  return values;
 }
 
 function showDelta(cell, key, now) {
@@ -138,6 +137,14 @@ function showDelta(cell, key, now) {
   cell.classList.toggle("slower", change > 5);
 }
 
+// The times of every frame are kept, though they are drawn less often.
+function keep({ times, build }) {
+  if (!times || build !== store.state?.build) return;
+  for (const timing of times.passes) remember(timing.pass, timeOf(timing.pass, timing));
+  remember("frame", times.gpu - times.observe);
+  remember("wall", times.wall);
+}
+
 function update(tick) {
   const { times } = tick;
   if (!times || tick.build !== store.state?.build) return;
@@ -145,7 +152,7 @@ function update(tick) {
   if (!same) build(times);
   for (const timing of times.passes) {
     const cells = rows.get(timing.pass);
-    const values = remember(timing.pass, timeOf(timing.pass, timing));
+    const values = histories.get(timing.pass) ?? [];
     const now = median(values.slice(-9));
     cells.path.setAttribute("d", sparkline(values, usual(values)));
     cells.time.textContent = now.toFixed(now < 10 ? 2 : 1);
@@ -153,10 +160,10 @@ function update(tick) {
     showDelta(cells.delta, timing.pass, median(values));
     showSteps(cells, timing.pass, timing);
   }
-  const frame = remember("frame", times.gpu - times.observe);
+  const frame = histories.get("frame") ?? [];
   total.gpu.textContent = median(frame.slice(-9)).toFixed(2);
   showDelta(total.delta, "frame", median(frame));
-  const wall = median(remember("wall", times.wall).slice(-9));
+  const wall = median((histories.get("wall") ?? []).slice(-9));
   total.note.textContent = `${wall.toFixed(1)} ms a frame on the clock, of which ${times.observe.toFixed(2)} ms copy ` +
     `what this page shows (not counted above). ${bytesText(tick.bytes)} of device memory.`;
   countersRoot.replaceChildren(element("table", {}, ...times.counters.map(([name, value]) =>
@@ -215,6 +222,7 @@ export function start() {
     root.replaceChildren();
     drawPlan();
   });
-  on("tick", update);
+  on("times", keep);
+  on("numbers", update);
   on("source", showSource);
 }
