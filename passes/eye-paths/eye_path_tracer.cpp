@@ -26,7 +26,7 @@ float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 
 class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const EyePathSettings& settings)
-      : view_(view), rays_(rays), settings_(settings), surfaces_(frame, view, rays) {}
+      : view_(view), rays_(rays), settings_(settings), seed_(frame.seed), surfaces_(frame, view, rays) {}
 
   EyePathStart look(glm::vec2 pixel, uint64_t& rays) const {
     const TracedSurface v = surfaces_.look(pixel, rays);
@@ -42,6 +42,7 @@ class Tracer {
   const View& view_;
   const RayScene& rays_;
   const EyePathSettings& settings_;
+  uint32_t seed_;
   SurfaceTracer surfaces_;
 };
 
@@ -78,7 +79,7 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   from.normal = start.normal;
   from.face = start.face;
   from.origin = start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
-  const uint32_t stream = randomStream(0, 0, kPathStream, point);
+  const uint32_t stream = randomStream(seed_, 0, kPathStream, point);
   const uint32_t aimed = surfaces_.hasEmitters() && settings_.emission ? paths / kAimedShare : 0,
                  others = paths - aimed;
   const bool isAimed = turn >= others;
@@ -97,7 +98,7 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
              : end.radiance == glm::vec3(0)                   ? 1.0f
                                                               : 2.0f;
   const glm::vec3 gathered = rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
-                                                    randomStream(turn, 0, kGatherStream, point), rays);
+                                                    randomStream(seed_, turn, kGatherStream, point), rays);
   if (surfaces_.hasEmitters() && end.kind < 3 && meanChannel(gathered) > meanChannel(end.radiance))
     end.kind = 4;
   end.radiance += emitted + gathered;

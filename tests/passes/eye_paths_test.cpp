@@ -1,6 +1,7 @@
 // Compares eye paths through triangles, where they end and what they find there, with plain rays and closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "framework/scene/frame.h"
@@ -118,28 +119,37 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
 }
 
 // In a closed room whose walls all shine, each bounce adds one more term of the series; the paths that are aimed at
-// the walls and those that hit them by chance together count as often as there are paths.
+// the walls and those that hit them by chance together count as often as there are paths. The median of several seeds
+// is taken, since the last bounce rests on one point of a wall, which beside an edge of the room may lie very close.
 TEST(EyePaths, Furnace) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
   s.materials[m].emission = {1, 2, 4};
   const uint32_t walls[6] = {m, m, m, m, m, m};
   addRoom(s, walls, 2);
-  const Look look(std::move(s));
+  Look look(std::move(s));
   const double series[] = {1.5, 1.75, 1.875};
+  constexpr uint32_t kSeeds = 9;
   for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
     passes::EyePathSettings settings;
     settings.bounces = bounces;
-    glm::dvec3 mean(0);
-    double weights = 0;
-    const auto ends = look.trace(settings, 8192);
-    for (const EyePathEnd& e : ends) {
-      EXPECT_EQ(e.kind, e.weight > 0 ? 3 : 0);
-      weights += double(e.weight) / double(ends.size());
-      mean += double(e.weight) * glm::dvec3(e.radiance) / double(ends.size());
+    std::vector<double> means[3];
+    for (look.frame.seed = 1; look.frame.seed <= kSeeds; ++look.frame.seed) {
+      glm::dvec3 mean(0);
+      double weights = 0;
+      const auto ends = look.trace(settings, 8192);
+      for (const EyePathEnd& e : ends) {
+        EXPECT_EQ(e.kind, e.weight > 0 ? 3 : 0);
+        weights += double(e.weight) / double(ends.size());
+        mean += double(e.weight) * glm::dvec3(e.radiance) / double(ends.size());
+      }
+      EXPECT_NEAR(weights, 1, 0.02);
+      for (int c = 0; c < 3; ++c) means[c].push_back(mean[c] / series[bounces - 1] / (1 << c));
     }
-    EXPECT_NEAR(weights, 1, 0.02);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / series[bounces - 1] / (1 << c), 1, 0.03) << bounces;
+    for (std::vector<double>& of : means) {
+      std::nth_element(of.begin(), of.begin() + kSeeds / 2, of.end());
+      EXPECT_NEAR(of[kSeeds / 2], 1, 0.02) << bounces;
+    }
   }
 }
 
@@ -214,6 +224,16 @@ TEST(EyePaths, TheSameWhateverTheThreads) {
 }
 
 // The unit of the sums is chosen so that the sum of all the light fits in 31 bits.
+TEST(EyePaths, AnotherSeedDrawsOtherPaths) {
+  Look look(litRoom(true));
+  const auto first = look.trace({});
+  look.frame.seed = 2;
+  const auto second = look.trace({});
+  int others = 0;
+  for (size_t i = 0; i < first.size(); ++i) others += first[i].position != second[i].position;
+  EXPECT_GT(others, int(first.size()) * 9 / 10);
+}
+
 TEST(EyePaths, SumsFitIntoTheirUnit) {
   const Look look(litRoom(false));
   const auto ends = look.trace({}, 4096);
