@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fovea/error.h"
+#include "framework/scene/materials/tangents.h"
 #include "framework/scene/motion/deform.h"
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/scene.h"
@@ -41,7 +42,12 @@ class Flattener {
   Geometry run() {
     checkLimits();
     for (const Mesh& mesh : scene_.meshes)
-      for (const Primitive& p : mesh.primitives) coarse_ = coarse_ || !p.lightIndices.empty();
+      for (const Primitive& p : mesh.primitives) {
+        coarse_ = coarse_ || !p.lightIndices.empty();
+        secondUvs_ = secondUvs_ || !p.secondUvs.empty();
+        colors_ = colors_ || !p.colors.empty();
+        tangents_ = tangents_ || hasNormalMap(p);
+      }
     const std::vector<bool> dynamic = dynamicNodes(scene_, poses_);
     const std::vector<glm::mat4> world = worldTransforms(scene_);
     begin("static", kNoIndex, false);
@@ -187,7 +193,22 @@ class Flattener {
       out_.boundsMin = glm::min(out_.boundsMin, out_.positions[i]);
       out_.boundsMax = glm::max(out_.boundsMax, out_.positions[i]);
     }
-    for (const Primitive& p : mesh.primitives) out_.uvs.insert(out_.uvs.end(), p.uvs.begin(), p.uvs.end());
+    for (const Primitive& p : mesh.primitives) {
+      out_.uvs.insert(out_.uvs.end(), p.uvs.begin(), p.uvs.end());
+      const size_t end = out_.uvs.size();
+      if (secondUvs_) {
+        out_.secondUvs.insert(out_.secondUvs.end(), p.secondUvs.begin(), p.secondUvs.end());
+        out_.secondUvs.resize(end, glm::vec2(0));
+      }
+      if (colors_) {
+        out_.colors.insert(out_.colors.end(), p.colors.begin(), p.colors.end());
+        out_.colors.resize(end, glm::vec4(1));
+      }
+    }
+  }
+
+  bool hasNormalMap(const Primitive& p) const {
+    return p.material < scene_.materials.size() && scene_.materials[p.material].normalTexture;
   }
 
   // Sets the box of the object, in its space or in the world (see Object), and adds all places that it reaches
@@ -229,15 +250,26 @@ class Flattener {
     };
     add(p.indices, out_.triangles);
     if (coarse_) add(p.lightIndices.empty() ? p.indices : p.lightIndices, out_.lightTriangles);
+    if (tangents_) appendTangents(p, flip);
+  }
+
+  void appendTangents(const Primitive& p, bool flip) {
+    std::vector<TriangleTangents> list;
+    if (hasNormalMap(p)) list = triangleTangents(p, scene_.materials[p.material].normalTexture.set);
+    list.resize(p.indices.size() / 3);
+    if (flip)
+      for (TriangleTangents& t : list) t = turned(t);
+    out_.tangents.insert(out_.tangents.end(), list.begin(), list.end());
   }
 
   const Scene& scene_;
   NodePoses poses_;
   Geometry out_;
   Object object_;
-  bool coarse_ = false;                        // whether something is coarser for voxels and VPL maps
-  uint32_t jointCount_ = 0, weightCount_ = 0;  // totals of the objects so far
-  std::map<uint32_t, uint32_t> firstJoint_;    // of skins
+  bool coarse_ = false;  // whether something is coarser for voxels and VPL maps
+  bool secondUvs_ = false, colors_ = false, tangents_ = false;    // whether any primitive has them
+  uint32_t jointCount_ = 0, weightCount_ = 0;                     // totals of the objects so far
+  std::map<uint32_t, uint32_t> firstJoint_;                       // of skins
   std::map<uint32_t, std::shared_ptr<const Stencils>> stencils_;  // of meshes with a cage that deforms
 };
 

@@ -148,8 +148,7 @@ void appendModel(Scene& scene, Scene&& model, const Placement& placement) {
   }
   for (Texture& t : model.textures) scene.textures.push_back(std::move(t));
   for (Material& m : model.materials) {
-    m.baseColorTexture.texture = shifted(m.baseColorTexture.texture, textures);
-    m.emissionTexture.texture = shifted(m.emissionTexture.texture, textures);
+    for (const auto use : kMaterialTextures) (m.*use).texture = shifted((m.*use).texture, textures);
     scene.materials.push_back(std::move(m));
   }
   for (Mesh& mesh : model.meshes) {

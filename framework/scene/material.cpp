@@ -38,7 +38,7 @@ glm::vec4 sampleTexture(const Scene& scene, const TextureUse& use, glm::vec2 uv)
 
 glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv) {
   const glm::vec4 color = material.baseColor * sampleTexture(scene, material.baseColorTexture, uv);
-  return {glm::vec3(color) * (1.0f - material.metallic), color.a};
+  return {glm::vec3(color) * (1.0f - material.meanMetallic()), color.a};
 }
 
 glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv) {

@@ -15,16 +15,18 @@ void hash(Hasher& h, const TextureUse& use) {
   h.add(uint32_t(use.wrapU));
   h.add(uint32_t(use.wrapV));
   h.add(&use.transform[0][0], 6);
+  if (use.set != 0) h.add(use.set);
 }
 
 void hash(Hasher& h, const Material& m) {
   h.add(&m.baseColor[0], 4);
-  hash(h, m.baseColorTexture);
-  h.add(m.metallic);
   h.add(&m.emission[0], 3);
-  hash(h, m.emissionTexture);
-  h.add(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1);
-  h.add(m.alphaCutoff);
+  h.add(&m.specularColor[0], 3);
+  for (const auto use : kMaterialTextures) hash(h, m.*use);
+  h.add(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1 | uint32_t(m.unlit) << 2);
+  const float scalars[] = {m.metallic, m.metallicMean, m.alphaCutoff,  m.roughness, m.normalScale,
+                           m.ior,      m.specular,     m.transmission, m.clearcoat, m.clearcoatRoughness};
+  h.add(scalars, std::size(scalars));
 }
 
 void hash(Hasher& h, const Node& n) {
@@ -59,6 +61,9 @@ void hashPath(Hasher& h, uint32_t what, const Motion& m) {
 }
 
 void hash(Hasher& h, const Primitive& p) {
+  if (!p.secondUvs.empty()) h.add(p.secondUvs);
+  if (!p.colors.empty()) h.add(p.colors);
+  if (!p.tangents.empty()) h.add(p.tangents);
   if (!p.lightIndices.empty()) h.add(p.lightIndices);
   if (p.targets.empty() && p.joints.empty()) return;
   for (const MorphTarget& t : p.targets) {

@@ -38,23 +38,21 @@ glm::vec3 cosineDirection(glm::vec3 normal, float u, float v) {
 }
 
 glm::vec3 reflectanceOf(const Material& material, glm::vec4 texture) {
-  return glm::vec3(material.baseColor) * glm::vec3(texture) * (1.0f - material.metallic);
+  return glm::vec3(material.baseColor) * glm::vec3(texture) * (1.0f - material.meanMetallic());
 }
 
-// Restricts a ray to the part between clip-space depth 0 (near plane) and w (far plane); distances are in
-// lengths of its direction.
-Ray clipped(const View& view, glm::vec3 direction) {
+}  // namespace
+
+Ray eyeRay(const View& view, glm::vec2 pixel) {
   Ray ray;
   ray.origin = view.eye;
-  ray.direction = direction;
+  ray.direction = view.rayDirection(pixel);
   const glm::vec4 a = view.worldToClip * glm::vec4(view.eye, 1),
-                  b = view.worldToClip * glm::vec4(direction, 0);
+                  b = view.worldToClip * glm::vec4(ray.direction, 0);
   if (b.z != 0) ray.near = std::max(0.0f, -a.z / b.z);
   if (const float far = (a.w - a.z) / (b.z - b.w); far > ray.near) ray.far = far;
   return ray;
 }
-
-}  // namespace
 
 float PathSampler::number(uint32_t k) const {
   return independent ? uniformFloat(hashCombine(stream, k)) : sobol(index, k, stream);
@@ -112,7 +110,7 @@ PathVertex PathIntegrator::vertexAt(const SurfaceHit& s, glm::vec3 direction) co
 
 EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
   EyePoint point;
-  Ray ray = clipped(view_, view_.rayDirection(pixel));
+  Ray ray = eyeRay(view_, pixel);
   while (const RayHit hit = intersect(ray, rays)) {
     const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
     const Material& material = frame_.scene->materials[s.material];

@@ -24,6 +24,10 @@ struct PathSampler {
   std::array<float, 2> pair(uint32_t k) const;  // numbers k and k + 1; k must be a multiple of 4
 };
 
+// The ray through `pixel` (pixels, centres at +0.5), from clip-space depth 0 (near plane) to w (far plane); distances
+// are in lengths of its direction.
+scene::Ray eyeRay(const scene::View& view, glm::vec2 pixel);
+
 // A surface as the path that reached it sees it.
 struct PathVertex {
   glm::vec3 position{0};         // world space, m
@@ -46,6 +50,7 @@ struct EyePoint {
 // pass direct.
 class PathIntegrator {
  public:
+  using EyePoint = passes::EyePoint;
   PathIntegrator(const scene::Frame& frame, const scene::View& view, const scene::RayScene& rays,
                  uint32_t depth);
 

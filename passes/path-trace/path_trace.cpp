@@ -12,10 +12,9 @@ using namespace graph;
 class PathTrace : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d(
-        "path-trace",
-        "path tracer: light along all diffuse paths of at most `depth` edges, unbiased (ground truth)",
-        PassKind::Host);
+    PassDeclaration d("path-trace",
+                      "path tracer: light along all paths of at most `depth` edges, unbiased (ground truth)",
+                      PassKind::Host);
     d.view();
     const ResourceSpec color = image2D(VK_FORMAT_R32G32B32A32_SFLOAT);
     d.output("radiance", color, Usage::HostWrite, "rgb: `direct` plus `indirect`, W/(sr m^2)");
@@ -32,6 +31,10 @@ class PathTrace : public Pass {
         "depth", integer(4, 1, 64),
         "edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce");
     d.parameter("spp", integer(2000, 2, 1 << 24), "samples per pixel");
+    d.parameter(
+        "materials", choice("diffuse", {"diffuse", "full"}),
+        "`diffuse`: every surface is Lambertian with reflectance base colour times (1 - metallic); `full`: "
+        "everything that glTF says of it");
     d.parameter("sampling", choice("low-discrepancy", {"low-discrepancy", "independent"}),
                 "random numbers: `low-discrepancy` uses Owen-scrambled Sobol' points, for images; "
                 "`independent` is for statistics");
@@ -58,6 +61,7 @@ class PathTrace : public Pass {
     settings.threads = uint32_t(p.integer("threads"));
     settings.independent = p.text("sampling") == "independent";
     settings.box = p.text("filter") == "box";
+    settings.full = p.text("materials") == "full";
     settings.seed = hashCombine(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u);
     settings.progress = [&](double share) { return ctx.progress(share); };
     const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),

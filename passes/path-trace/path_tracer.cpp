@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
+#include "passes/path-trace/full_integrator.h"
 #include "passes/path-trace/path_integrator.h"
 
 namespace fovea::passes {
@@ -30,6 +31,8 @@ struct Film {
   std::vector<uint32_t> rowSamples;  // samples so far of each pixel of the row
 };
 
+// Integrator: PathIntegrator or FullIntegrator.
+template <class Integrator>
 class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const PathTraceSettings& settings);
@@ -51,7 +54,7 @@ class Tracer {
 
   const View& view_;
   const PathTraceSettings& settings_;
-  PathIntegrator integrator_;
+  Integrator integrator_;
   uint32_t samples_, slotCount_, threads_;
   Film film_;
   std::atomic<uint32_t> nextRow_ = 0;
@@ -61,7 +64,9 @@ class Tracer {
   std::chrono::steady_clock::time_point lastReport_ = std::chrono::steady_clock::now();
 };
 
-Tracer::Tracer(const Frame& frame, const View& view, const RayScene& rays, const PathTraceSettings& settings)
+template <class Integrator>
+Tracer<Integrator>::Tracer(const Frame& frame, const View& view, const RayScene& rays,
+                           const PathTraceSettings& settings)
     : view_(view),
       settings_(settings),
       integrator_(frame, view, rays, settings.depth),
@@ -76,7 +81,8 @@ Tracer::Tracer(const Frame& frame, const View& view, const RayScene& rays, const
   film_.rowSamples.resize(view.size.y);
 }
 
-PathTraceStatistics Tracer::run() {
+template <class Integrator>
+PathTraceStatistics Tracer<Integrator>::run() {
   uint32_t end = 2;
   while (!stop_) {
     round(end);
@@ -91,7 +97,8 @@ PathTraceStatistics Tracer::run() {
 }
 
 // Brings every pixel to `end` samples.
-void Tracer::round(uint32_t end) {
+template <class Integrator>
+void Tracer<Integrator>::round(uint32_t end) {
   nextRow_ = 0;
   std::vector<std::jthread> helpers;
   for (uint32_t i = 1; i < std::min(threads_, view_.size.y); ++i)
@@ -99,7 +106,8 @@ void Tracer::round(uint32_t end) {
   work(true, end);
 }
 
-void Tracer::work(bool reports, uint32_t end) {
+template <class Integrator>
+void Tracer<Integrator>::work(bool reports, uint32_t end) {
   for (uint32_t y = nextRow_++; y < view_.size.y; y = nextRow_++) {
     if (mayStop_ && stop_) return;
     traceRow(y, end);
@@ -107,7 +115,8 @@ void Tracer::work(bool reports, uint32_t end) {
   }
 }
 
-void Tracer::report() {
+template <class Integrator>
+void Tracer<Integrator>::report() {
   const auto now = std::chrono::steady_clock::now();
   if (!settings_.progress || stop_ || now - lastReport_ < kReportEvery) return;
   lastReport_ = now;
@@ -115,7 +124,8 @@ void Tracer::report() {
   if (!settings_.progress(double(paths_) / total)) stop_ = true;
 }
 
-void Tracer::traceRow(uint32_t y, uint32_t end) {
+template <class Integrator>
+void Tracer<Integrator>::traceRow(uint32_t y, uint32_t end) {
   const uint32_t begin = film_.rowSamples[y];
   uint64_t rays = 0;
   for (uint32_t x = 0; x < view_.size.x; ++x) tracePixel(x, y, begin, end, rays);
@@ -124,11 +134,12 @@ void Tracer::traceRow(uint32_t y, uint32_t end) {
   rays_ += rays;
 }
 
-void Tracer::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, uint64_t& rays) {
+template <class Integrator>
+void Tracer<Integrator>::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, uint64_t& rays) {
   const size_t pixel = size_t(y) * view_.size.x + x;
   const uint32_t stream = hashCombine(hashCombine(settings_.seed, kPathTraceStream), uint32_t(pixel));
   const glm::vec2 corner(x, y);
-  EyePoint eye;
+  typename Integrator::EyePoint eye;
   if (!settings_.box) eye = integrator_.look(corner + 0.5f, rays);
   const uint32_t atOnce =
       settings_.box ? 1 : uint32_t(PathIntegrator::kMaxPaths);  // paths per visible point at a time
@@ -152,7 +163,8 @@ void Tracer::tracePixel(uint32_t x, uint32_t y, uint32_t begin, uint32_t end, ui
   }
 }
 
-void Tracer::addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 indirect) {
+template <class Integrator>
+void Tracer<Integrator>::addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 indirect) {
   const glm::vec3 varying = settings_.box ? direct + indirect : indirect;
   film_.direct[pixel] += glm::dvec3(direct);
   film_.indirect[pixel] += glm::dvec3(indirect);
@@ -161,7 +173,8 @@ void Tracer::addSample(size_t pixel, uint32_t s, glm::vec3 direct, glm::vec3 ind
 }
 
 // Variance of the mean over all samples.
-glm::dvec3 Tracer::variance(size_t pixel, uint32_t samples) const {
+template <class Integrator>
+glm::dvec3 Tracer<Integrator>::variance(size_t pixel, uint32_t samples) const {
   const glm::vec3* slots = &film_.slots[pixel * slotCount_];
   glm::dvec3 mean(0);
   for (uint32_t i = 0; i < slotCount_; ++i) mean += glm::dvec3(slots[i]) / double(samples);
@@ -181,7 +194,8 @@ glm::dvec3 Tracer::variance(size_t pixel, uint32_t samples) const {
   return sum / double(used - 1);
 }
 
-glm::dvec3 Tracer::halfMean(size_t pixel, uint32_t samples, uint32_t half) const {
+template <class Integrator>
+glm::dvec3 Tracer<Integrator>::halfMean(size_t pixel, uint32_t samples, uint32_t half) const {
   const glm::vec3* slots = &film_.slots[pixel * slotCount_];
   glm::dvec3 sum(0);
   uint32_t count = 0;
@@ -193,7 +207,8 @@ glm::dvec3 Tracer::halfMean(size_t pixel, uint32_t samples, uint32_t half) const
   return fixed + sum / double(count);
 }
 
-void Tracer::write(const PathTraceImages& images) const {
+template <class Integrator>
+void Tracer<Integrator>::write(const PathTraceImages& images) const {
   const auto put = [](std::span<glm::vec4> image, size_t pixel, glm::dvec3 value) {
     if (!image.empty()) image[pixel] = glm::vec4(glm::vec3(value), 1);
   };
@@ -214,10 +229,13 @@ void Tracer::write(const PathTraceImages& images) const {
 
 PathTraceStatistics tracePaths(const Frame& frame, const View& view, const RayScene& rays,
                                const PathTraceSettings& settings, const PathTraceImages& images) {
-  Tracer tracer(frame, view, rays, settings);
-  const PathTraceStatistics statistics = tracer.run();
-  tracer.write(images);
-  return statistics;
+  const auto run = [&](auto&& tracer) {
+    const PathTraceStatistics statistics = tracer.run();
+    tracer.write(images);
+    return statistics;
+  };
+  if (settings.full) return run(Tracer<FullIntegrator>(frame, view, rays, settings));
+  return run(Tracer<PathIntegrator>(frame, view, rays, settings));
 }
 
 }  // namespace fovea::passes

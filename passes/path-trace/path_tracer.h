@@ -1,4 +1,4 @@
-// An unbiased diffuse path tracer over the pixels of a view, on all cores.
+// An unbiased path tracer over the pixels of a view, on all cores.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ struct PathTraceSettings {
   uint32_t threads = 0;      // 0 uses one per core
   bool independent = false;  // independent random numbers; if false, Owen-scrambled Sobol' points
   bool box = false;          // rays through the whole pixel; if false, through its centre
+  bool full = false;         // full materials (framework/scene/materials/bsdf.h); if false, diffuse ones
   // Called from time to time on the calling thread, with the share of the work that is done. Returning false stops
   // the run soon, with fewer samples.
   std::function<bool(double)> progress;

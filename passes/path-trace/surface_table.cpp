@@ -31,7 +31,7 @@ void SurfaceTable::copyTexels(const scene::Scene& scene) {
   size_t size = 0;
   for (const scene::Material& m : scene.materials) {
     Look& look = looks_.emplace_back();
-    look.factor = glm::vec3(m.baseColor) * (1.0f - m.metallic);
+    look.factor = glm::vec3(m.baseColor) * (1.0f - m.meanMetallic());
     look.doubleSided = m.doubleSided;
     look.use = m.baseColorTexture;
     if (look.use.texture >= blocks.size()) continue;

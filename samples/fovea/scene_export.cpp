@@ -14,7 +14,7 @@ namespace fovea::cli {
 namespace {
 
 struct ExportOptions {
-  std::string scene, folder, format = "gltf", size = "512x512";
+  std::string scene, folder, format = "gltf", size = "512x512", materials = "diffuse";
   double time = 0;
   uint32_t frame = 0, samples = 64, depth = 4;
 };
@@ -24,6 +24,7 @@ ExitCode exportScene(const ExportOptions& o) {
   mitsuba.size = parseSize(o.size);
   mitsuba.samples = o.samples;
   mitsuba.depth = o.depth;
+  mitsuba.full = o.materials == "full";
   mitsuba.time = o.frame > 0 ? o.frame / 42.0 : o.time;  // `render` shows frame N at that time
   Diagnostics messages;
   const scene::Scene s = scene::load(o.scene, messages);
@@ -64,6 +65,9 @@ void addSceneExport(CLI::App& sceneCommand, Action& action) {
   command->add_option("--depth", o->depth, "mitsuba: longest path; 1 emission, 2 direct light; default 4")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
+  command->add_option("--materials", o->materials, "mitsuba: diffuse (default) or full")
+      ->check(CLI::IsMember({"diffuse", "full"}))
+      ->type_name("KIND");
   command->callback([o, &action] { action = [o] { return exportScene(*o); }; });
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fovea/image.h"
@@ -34,6 +35,7 @@ void expectSameTexture(const Scene& a, const TextureUse& ua, const Scene& b, con
   EXPECT_EQ(ta.height, tb.height);
   EXPECT_TRUE(ta.rgba == tb.rgba) << ta.name;
   EXPECT_EQ(ta.srgb, tb.srgb);
+  EXPECT_EQ(ua.set, ub.set);
   EXPECT_EQ(ua.wrapU, ub.wrapU);
   EXPECT_EQ(ua.wrapV, ub.wrapV);
   for (int i = 0; i < 3; ++i) EXPECT_LT(glm::length(ua.transform[i] - ub.transform[i]), 1e-5f);
@@ -53,8 +55,26 @@ void expectSameMaterials(const Scene& a, const Scene& b) {
       EXPECT_FLOAT_EQ(x.alphaCutoff, y.alphaCutoff);
     }
     EXPECT_EQ(x.doubleSided, y.doubleSided);
-    expectSameTexture(a, x.baseColorTexture, b, y.baseColorTexture);
+    EXPECT_FLOAT_EQ(x.meanMetallic(), y.meanMetallic());
+    const auto scalars = [](const Material& m) {
+      return std::array<float, 8>{m.roughness,          m.normalScale,  m.ior,
+                                  m.specular,           m.transmission, m.clearcoat,
+                                  m.clearcoatRoughness, float(m.unlit)};
+    };
+    EXPECT_EQ(scalars(x), scalars(y));
+    EXPECT_EQ(x.specularColor, y.specularColor);
+    for (const auto use : kMaterialTextures)
+      if (use != &Material::emissionTexture) expectSameTexture(a, x.*use, b, y.*use);
     if (x.emission != glm::vec3(0)) expectSameTexture(a, x.emissionTexture, b, y.emissionTexture);
+  }
+}
+
+void expectSameTangents(const Geometry& a, const Geometry& b) {
+  ASSERT_EQ(a.tangents.size(), b.tangents.size());
+  for (size_t i = 0; i < a.tangents.size(); ++i) {
+    EXPECT_EQ(a.tangents[i].bitangentSign, b.tangents[i].bitangentSign);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LT(distance(a.tangents[i].corners[k], b.tangents[i].corners[k]), 1e-5f);
   }
 }
 
@@ -113,6 +133,8 @@ void expectSameScene(const Scene& a, const Scene& b, float normalError) {
     EXPECT_LE(position, 1e-5f * scale) << "frame " << index;
     EXPECT_LE(normal, normalError) << "frame " << index;
     EXPECT_LE(uv, 1e-5f) << "frame " << index;
+    EXPECT_EQ(ga.secondUvs, gb.secondUvs);
+    expectSameTangents(ga, gb);
     expectSameLights(fa.lights, fb.lights);
     expectSameView(fa.views[0], fb.views[0]);
     expectSameView(fa.views[1], fb.views[1]);
@@ -149,7 +171,8 @@ Primitive quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t material) {
 Scene everything() {
   Scene s;
   s.name = "a bit/of everything";
-  s.textures = {texture(8, 4), texture(5, 3)};
+  s.textures = {texture(8, 4), texture(5, 3), texture(4, 6)};
+  s.textures[2].srgb = false;
   s.materials.resize(3);
   s.materials[0].name = "tiles";
   s.materials[0].baseColor = {0.5f, 0.25f, 0.75f, 1};
@@ -160,12 +183,33 @@ Scene everything() {
   s.materials[1].baseColorTexture = {1};
   s.materials[1].masked = s.materials[1].doubleSided = true;
   s.materials[1].alphaCutoff = 0.37f;
+  Material& leaf = s.materials[1];
+  leaf.metallic = 0.5f;
+  leaf.roughness = 0.4f;
+  leaf.metallicRoughnessTexture = leaf.clearcoatTexture = leaf.clearcoatRoughnessTexture = {2};
+  leaf.metallicRoughnessTexture.set = 1;
+  leaf.normalTexture = {2, Wrap::Clamp};
+  leaf.normalScale = 0.25f;
+  leaf.ior = 1.33f;
+  leaf.specular = 0.5f;
+  leaf.specularColor = {0.5f, 2, 0.25f};
+  leaf.specularTexture = leaf.transmissionTexture = {2};
+  leaf.specularColorTexture = {0};
+  leaf.transmission = 0.75f;
+  leaf.clearcoat = 0.6f;
+  leaf.clearcoatRoughness = 0.3f;
+  s.materials[2].unlit = true;
   s.materials[2].name = "lamp";
   s.materials[2].emission = {12.5f, 3, 0.7f};
   s.materials[2].emissionTexture = {0};
   s.meshes = {
       {"room", {quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 0), quad({-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)}},
       {"lamp", {quad({-1, 2, -1}, {0, 0, 1}, {1, 0, 0}, 2)}}};
+  uint32_t blue = 0;  // the loader takes the mean of metal from the texture
+  for (size_t i = 2; i < s.textures[2].rgba.size(); i += 4) blue += s.textures[2].rgba[i];
+  leaf.metallicMean = float(blue / (255.0 * double(s.textures[2].rgba.size() / 4)));
+  s.meshes[0].primitives[1].secondUvs = {{0, 0.5f}, {1, 0.5f}, {1, 0.25f}, {0, 0.25f}};
+  s.meshes[0].primitives[1].tangents.assign(4, {0.6f, 0.8f, 0, -1});
   s.nodes.resize(4);
   s.nodes[0].name = s.nodes[1].name = s.nodes[3].name = "twice";
   s.nodes[0].mesh = 0;
@@ -311,6 +355,21 @@ TEST(ExportMitsuba, SaysWhatTheSceneSays) {
   EXPECT_THAT(xml, HasSubstr(R"(emitter type="area")"));
   EXPECT_THAT(warnings.format(), HasSubstr("range"));
   EXPECT_THAT(warnings.format(), HasSubstr("environment"));
+}
+
+TEST(ExportMitsuba, FullMaterialsAndWhatTheyLack) {
+  const TemporaryFolder folder;
+  Diagnostics warnings;
+  MitsubaOptions options;
+  options.full = true;
+  const std::string xml = content(exportMitsuba(everything(), folder.path(), options, warnings));
+  EXPECT_THAT(xml, HasSubstr(R"(bsdf type="normalmap")"));
+  EXPECT_THAT(xml, HasSubstr(R"(bsdf type="principled")"));
+  EXPECT_THAT(xml, HasSubstr(R"(bsdf type="roughplastic")"));
+  EXPECT_THAT(xml, HasSubstr(R"(<float name="int_ior" value="1.33"/>)"));
+  EXPECT_THAT(warnings.format(),
+              HasSubstr("`leaf` is written without transmission, clearcoat, specular, the second texture"));
+  EXPECT_THAT(warnings.format(), HasSubstr("`lamp` is written without unlit"));
 }
 
 // The image that a spot light projects holds the falloff; looked up bilinearly, it gives the falloff of the light.

@@ -41,11 +41,18 @@ void checkGeometry(const Scene& scene, const Geometry& g) {
   }
   for (const glm::vec3& n : g.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f);
   for (const Material& m : scene.materials)
-    for (const TextureUse& use : {m.baseColorTexture, m.emissionTexture}) {
-      if (use) {
-        ASSERT_LT(use.texture, scene.textures.size());
+    for (const auto use : kMaterialTextures) {
+      if (m.*use) {
+        ASSERT_LT((m.*use).texture, scene.textures.size());
+        ASSERT_LT((m.*use).set, 2u);
       }
     }
+  for (const TriangleTangents& t : g.tangents)
+    for (const glm::vec3& c : t.corners) ASSERT_TRUE(std::isfinite(c.x + c.y + c.z));
+  for (const auto& list : {g.tangents.size() == g.triangles.size() || g.tangents.empty(),
+                           g.colors.size() == g.positions.size() || g.colors.empty(),
+                           g.secondUvs.size() == g.positions.size() || g.secondUvs.empty()})
+    ASSERT_TRUE(list);
 }
 
 class GltfValid : public testing::TestWithParam<std::string> {};
@@ -222,8 +229,8 @@ TEST_P(SharedModel, Loads) {
 
 INSTANTIATE_TEST_SUITE_P(All, SharedModel,
                          testing::Values(Model{"sponza/Sponza.gltf", 262266, 25, 24},
-                                         Model{"flight_helmet/FlightHelmet.gltf", 94722, 6, 5},
-                                         Model{"pigman/pigman.glb", 35706, 2, 1},
+                                         Model{"flight_helmet/FlightHelmet.gltf", 94722, 6, 15},
+                                         Model{"pigman/pigman.glb", 35706, 2, 2},
                                          Model{"neko_diorama/neko_diorama.gltf", 7364, 4, 3},
                                          Model{"cornell_box/scene.gltf", 32, 8, 0}),
                          [](const auto& info) {

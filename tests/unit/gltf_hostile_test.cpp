@@ -208,7 +208,36 @@ TEST(GltfHostile, MissingTextureOnlyMattersWhereItIsUsed) {
   EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("gone.png"), HasSubstr("missing")));
   d.extra =
       R"(,"images":[{"uri":"gone.png"}],"textures":[{"source":0}],"materials":[{"normalTexture":{"index":0}}])";
-  EXPECT_EQ(errorOfText(d.json()), "");
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  EXPECT_FALSE(loadText(folder, d.json(), warnings).materials[0].normalTexture);
+  EXPECT_THAT(warnings.format(),
+              AllOf(HasSubstr("normalTexture"), HasSubstr("gone.png"), HasSubstr("missing")));
+}
+
+TEST(GltfHostile, MaterialsThatCannotBe) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"("pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":9}})",
+       "metallicRoughnessTexture.index"},
+      {R"("normalTexture":{"index":0})", "normalTexture.index"},
+      {R"("normalTexture":{"index":0,"texCoord":-1})", "normalTexture"},
+      {R"("extensions":{"KHR_materials_ior":{"ior":0.5}})", "KHR_materials_ior.ior"},
+      {R"("extensions":{"KHR_materials_ior":{"ior":"glass"}})", "KHR_materials_ior"},
+      {R"("extensions":{"KHR_materials_ior":{"ior":1e39}})", "not a finite number"},
+      {R"("extensions":{"KHR_materials_specular":{"specularColorFactor":[1,1]}})", "specularColorFactor"},
+      {R"("extensions":{"KHR_materials_specular":{"specularColorFactor":[1,1,1e39]}})",
+       "not a finite number"},
+      {R"("extensions":{"KHR_materials_specular":{"specularTexture":{"index":3}}})", "specularTexture.index"},
+      {R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":[]}})", "clearcoatFactor"},
+      {R"("extensions":{"KHR_materials_clearcoat":[]})", "KHR_materials_clearcoat"},
+      {R"("extensions":{"KHR_materials_transmission":{"transmissionTexture":0}})", "transmissionTexture"},
+      {R"("extensions":{"KHR_materials_transmission":{"transmissionFactor":NaN}})", "model.gltf:1:"}};
+  for (const auto& [material, message] : wrong) {
+    TriangleDocument d;
+    d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+    d.extra = std::string(R"(,"materials":[{)") + material + "}]";
+    EXPECT_THAT(errorOfText(d.json()), AllOf(HasSubstr("model.gltf"), HasSubstr(message))) << material;
+  }
 }
 
 TEST(GltfHostile, ExtensionsAndVersions) {

@@ -34,21 +34,52 @@ struct TextureUse {
   uint32_t texture = kNoIndex;
   Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
   glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  // columns: u axis, v axis, offset
+  uint32_t set = 0;                         // of texture coordinates: 0 for Primitive::uvs, 1 for secondUvs
   explicit operator bool() const { return texture != kNoIndex; }
 };
 
-// A diffuse material with reflectance rho = baseColor * (1 - metallic).
+// A surface as glTF 2.0 describes it. Factors are multiplied by their textures, of which the channels are named here;
+// textures of other things than colours are linear (Texture::srgb is false).
+//
+// A diffuse material knows only some of this: it is Lambertian with reflectance rho = baseColor * (1 - meanMetallic()).
 struct Material {
   std::string name;
   glm::vec4 baseColor{1};
-  TextureUse baseColorTexture;
-  float metallic = 0;
+  TextureUse baseColorTexture;  // rgba
+  float metallic = 0;           // 0: dielectric, 1: metal
+  // The mean of the metallic texture, through which a diffuse material sees it; 0 if the model says nothing of metal.
+  float metallicMean = 1;
   glm::vec3 emission{0};  // radiance, W/(sr m^2): factor times KHR_materials_emissive_strength
   TextureUse emissionTexture;
   bool masked = false;  // alphaMode MASK; BLEND is treated as MASK with cutoff 0.5
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
+
+  float roughness = 1;                  // perceptual: the square root of GGX's alpha
+  TextureUse metallicRoughnessTexture;  // g: roughness, b: metallic
+  TextureUse normalTexture;         // rgb: 2 c - 1 is a normal in the frame of tangent, bitangent and normal
+  float normalScale = 1;            // factor on the first two components of that normal
+  float ior = 1.5f;                 // index of refraction, at least 1; 0 stands for infinity
+  float specular = 1;               // factor on the reflection of dielectrics
+  TextureUse specularTexture;       // a
+  glm::vec3 specularColor{1};       // factor on the reflection of dielectrics at normal incidence
+  TextureUse specularColorTexture;  // rgb
+  float transmission = 0;           // share of the light below the surface that goes on, tinted by baseColor
+  TextureUse transmissionTexture;   // r
+  float clearcoat = 0;              // share of the surface under a coat with index of refraction 1.5
+  TextureUse clearcoatTexture;      // r
+  float clearcoatRoughness = 0;
+  TextureUse clearcoatRoughnessTexture;  // g
+  bool unlit = false;                    // shows its base colour; light neither reaches nor leaves it
+
+  float meanMetallic() const { return metallic * metallicMean; }
 };
+
+// All textures of a material.
+inline constexpr TextureUse Material::*kMaterialTextures[] = {
+    &Material::baseColorTexture,    &Material::emissionTexture,  &Material::metallicRoughnessTexture,
+    &Material::normalTexture,       &Material::specularTexture,  &Material::specularColorTexture,
+    &Material::transmissionTexture, &Material::clearcoatTexture, &Material::clearcoatRoughnessTexture};
 
 // A shape towards which a mesh can be blended: one displacement per vertex, in the space of the mesh.
 struct MorphTarget {
@@ -69,6 +100,12 @@ struct Primitive {
   std::vector<MorphTarget> targets{};  // the same number in every primitive of a mesh
   std::vector<glm::u16vec4> joints{};  // four per vertex, indices into Skin::joints; empty if not skinned
   std::vector<glm::vec4> weights{};    // weights of the four joints, with sum 1; as many as `joints`
+  // What only few models have; each of these lists is empty or has one entry per vertex.
+  std::vector<glm::vec2> secondUvs{};  // of textures with set 1
+  std::vector<glm::vec4> colors{};     // linear, factors on the base colour
+  // xyz: unit, the direction of u in the surface; w: 1 or -1, and the bitangent is w * cross(normal, tangent). If empty
+  // and the material has a normal map, they follow from the texture coordinates.
+  std::vector<glm::vec4> tangents{};
 };
 
 struct SubdivisionCage;  // framework/scene/subdivision/subdivision.h
@@ -258,10 +295,22 @@ struct Triangle {
   uint32_t object() const { return materialAndObject >> 16; }
 };
 
+// The tangents of a triangle in terms of itself, so that they follow it however it moves: tangent k is
+// corners[k].x * (p1 - p0) + corners[k].y * (p2 - p0) + corners[k].z * n, not normalised, where n is the normal on the
+// side seen counter-clockwise, with the length sqrt(|(p1 - p0) x (p2 - p0)|). All zeros if there are none.
+struct TriangleTangents {
+  glm::vec3 corners[3]{};
+  float bitangentSign = 0;  // bitangent = bitangentSign * cross(normal, tangent)
+};
+
 // The world-space triangles of a whole scene at one time, the static ones first.
 struct Geometry {
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec2> uvs;
+  // Empty if no primitive has any; else one per vertex, zeros and ones where a primitive has none.
+  std::vector<glm::vec2> secondUvs;
+  std::vector<glm::vec4> colors;
+  std::vector<TriangleTangents> tangents;  // parallel to `triangles`; empty if no material has a normal map
   std::vector<Triangle> triangles;
   std::vector<Object> objects;
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move

@@ -215,7 +215,7 @@ TextureRecord GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse&
 
 MaterialRecord GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
   MaterialRecord record;
-  record.baseColor = glm::vec3(m.baseColor) * (1.0f - m.metallic);
+  record.baseColor = glm::vec3(m.baseColor) * (1.0f - m.meanMetallic());
   record.alpha = m.baseColor.a;
   record.emission = m.emission;
   record.alphaCutoff = m.masked ? m.alphaCutoff : 0.0f;

@@ -106,8 +106,9 @@ class GltfWriter {
 
   // ---- Materials ----
 
-  size_t image(uint32_t texture) {
-    const auto known = imageOf_.find(texture);
+  // color: whether glTF reads the image as sRGB-encoded colours; data is linear there.
+  size_t image(uint32_t texture, bool color) {
+    const auto known = imageOf_.find({texture, color});
     if (known != imageOf_.end()) return known->second;
     const Texture& t = scene_.textures[texture];
     makeFolder(folder_ / "textures");
@@ -115,14 +116,16 @@ class GltfWriter {
     const std::string uri =
         "textures/" + imageNames_.add(safeFileName(stem.empty() ? "texture" : stem)) + ".png";
     image::Image pixels = texelImage(t, 4);
-    if (!t.srgb) {
-      warn("textures", "texture `" + t.name + "` is linear: encoded as sRGB, its darks get coarser");
+    if (color != t.srgb) {
+      if (color)
+        warn("textures", "texture `" + t.name + "` is linear: encoded as sRGB, its darks get coarser");
       for (size_t i = 0; i < pixels.data.size(); ++i)
-        if (i % 4 != 3) pixels.data[i] = image::srgbEncode(pixels.data[i]);
+        if (i % 4 != 3)
+          pixels.data[i] = color ? image::srgbEncode(pixels.data[i]) : image::srgbDecode(pixels.data[i]);
     }
     image::write(folder_ / uri, {{"", std::move(pixels)}});
     root_["images"].push_back({{"uri", uri}});
-    return imageOf_[texture] = root_["images"].size() - 1;
+    return imageOf_[{texture, color}] = root_["images"].size() - 1;
   }
 
   size_t sampler(Wrap u, Wrap v) {
@@ -141,10 +144,11 @@ class GltfWriter {
   }
 
   // KHR_texture_transform, the inverse of what the loader builds: columns (c sx, -s sx), (s sy, c sy), offset.
-  Json textureUse(const TextureUse& use, const std::string& material) {
-    const size_t source = image(use.texture);
+  Json textureUse(const TextureUse& use, const std::string& material, bool color) {
+    const size_t source = image(use.texture, color);
     Json out = {
         {"index", indexOf("textures", {{"source", source}, {"sampler", sampler(use.wrapU, use.wrapV)}})}};
+    if (use.set != 0) out["texCoord"] = use.set;
     const glm::mat3x2& m = use.transform;
     if (m == glm::mat3x2{1, 0, 0, 1, 0, 0}) return out;
     const float angle = std::atan2(-m[0].y, m[0].x), c = std::cos(angle), s = std::sin(angle);
@@ -162,24 +166,20 @@ class GltfWriter {
 
   void materials() {
     for (const Material& m : scene_.materials) {
-      Json pbr = {{"baseColorFactor", numbers(m.baseColor, 4)},
-                  {"metallicFactor", shortest(m.metallic)},
-                  {"roughnessFactor", 1}};
-      const auto usable = [&](const TextureUse& use) { return use && use.texture < scene_.textures.size(); };
-      if (usable(m.baseColorTexture)) pbr["baseColorTexture"] = textureUse(m.baseColorTexture, m.name);
-      Json out = {{"name", m.name}, {"pbrMetallicRoughness", pbr}};
+      Json out = {{"name", m.name}, {"pbrMetallicRoughness", metallicRoughness(m)}};
+      put(out, "normalTexture", m.normalTexture, m, false);
+      if (out.contains("normalTexture") && m.normalScale != 1)
+        out["normalTexture"]["scale"] = shortest(m.normalScale);
       if (m.emission != glm::vec3(0)) {
         // Factors are at most 1; the strength carries the rest.
         const double strength =
             std::max({1.0, double(m.emission.x), double(m.emission.y), double(m.emission.z)});
         out["emissiveFactor"] =
             Json{m.emission.x / strength, m.emission.y / strength, m.emission.z / strength};
-        if (usable(m.emissionTexture)) out["emissiveTexture"] = textureUse(m.emissionTexture, m.name);
-        if (strength > 1) {
-          out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
-          extensions_.insert("KHR_materials_emissive_strength");
-        }
+        put(out, "emissiveTexture", m.emissionTexture, m, true);
+        if (strength > 1) extension(out, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
       }
+      extensions(m, out);
       if (m.masked) {
         out["alphaMode"] = "MASK";
         out["alphaCutoff"] = shortest(m.alphaCutoff);
@@ -189,12 +189,63 @@ class GltfWriter {
     }
   }
 
+  // Adds a texture if the material has it.
+  void put(Json& to, const char* key, const TextureUse& use, const Material& m, bool color) {
+    if (use && use.texture < scene_.textures.size()) to[key] = textureUse(use, m.name, color);
+  }
+
+  void extension(Json& material, const char* name, Json members) {
+    material["extensions"][name] = std::move(members);
+    extensions_.insert(name);
+  }
+
+  Json metallicRoughness(const Material& m) {
+    Json pbr = {{"baseColorFactor", numbers(m.baseColor, 4)}};
+    const bool textured =
+        m.metallicRoughnessTexture && m.metallicRoughnessTexture.texture < scene_.textures.size();
+    // The loader takes a material that says nothing of metal for a metal only where materials are full.
+    if (textured || m.metallic != 1 || m.metallicMean != 0)
+      pbr["metallicFactor"] = shortest(textured ? m.metallic : m.meanMetallic());
+    pbr["roughnessFactor"] = shortest(m.roughness);
+    put(pbr, "baseColorTexture", m.baseColorTexture, m, true);
+    put(pbr, "metallicRoughnessTexture", m.metallicRoughnessTexture, m, false);
+    return pbr;
+  }
+
+  void extensions(const Material& m, Json& out) {
+    if (m.ior != 1.5f) extension(out, "KHR_materials_ior", {{"ior", shortest(m.ior)}});
+    if (m.specular != 1 || m.specularColor != glm::vec3(1) || m.specularTexture || m.specularColorTexture) {
+      Json e = {{"specularFactor", shortest(m.specular)},
+                {"specularColorFactor", numbers(m.specularColor, 3)}};
+      put(e, "specularTexture", m.specularTexture, m, false);
+      put(e, "specularColorTexture", m.specularColorTexture, m, true);
+      extension(out, "KHR_materials_specular", e);
+    }
+    if (m.transmission > 0) {
+      Json e = {{"transmissionFactor", shortest(m.transmission)}};
+      put(e, "transmissionTexture", m.transmissionTexture, m, false);
+      extension(out, "KHR_materials_transmission", e);
+    }
+    if (m.clearcoat > 0) {
+      Json e = {{"clearcoatFactor", shortest(m.clearcoat)},
+                {"clearcoatRoughnessFactor", shortest(m.clearcoatRoughness)}};
+      put(e, "clearcoatTexture", m.clearcoatTexture, m, false);
+      put(e, "clearcoatRoughnessTexture", m.clearcoatRoughnessTexture, m, false);
+      extension(out, "KHR_materials_clearcoat", e);
+    }
+    if (m.unlit) extension(out, "KHR_materials_unlit", Json::object());
+  }
+
   // ---- Meshes ----
 
   Json primitive(const Primitive& p, const std::vector<MorphTarget>& targets) {
     Json attributes = {{"POSITION", positions(p.positions)},
                        {"NORMAL", accessor(p.normals, {"VEC3", kFloat, 3, kVertexData})},
                        {"TEXCOORD_0", accessor(p.uvs, {"VEC2", kFloat, 2, kVertexData})}};
+    if (!p.secondUvs.empty())
+      attributes["TEXCOORD_1"] = accessor(p.secondUvs, {"VEC2", kFloat, 2, kVertexData});
+    if (!p.colors.empty()) attributes["COLOR_0"] = accessor(p.colors, {"VEC4", kFloat, 4, kVertexData});
+    if (!p.tangents.empty()) attributes["TANGENT"] = accessor(p.tangents, {"VEC4", kFloat, 4, kVertexData});
     if (!p.joints.empty()) {
       attributes["JOINTS_0"] = accessor(p.joints, {"VEC4", kUnsignedShort, 4, kVertexData});
       attributes["WEIGHTS_0"] = accessor(p.weights, {"VEC4", kFloat, 4, kVertexData});
@@ -387,7 +438,7 @@ class GltfWriter {
   Diagnostics& warnings_;
   Json root_, roots_ = Json::array();
   std::string bin_;
-  std::map<uint32_t, size_t> imageOf_;  // by texture
+  std::map<std::pair<uint32_t, bool>, size_t> imageOf_;  // by texture and whether it holds colours
   std::vector<uint32_t> meshOf_;
   std::set<std::string> extensions_;
   UniqueNames names_, lightUnique_, animationUnique_, imageNames_{"_"};

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "framework/scene/export/files.h"
+#include "framework/scene/export/mitsuba_materials.h"
 #include "framework/scene/file/scene_file.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/motion/motion.h"
@@ -16,12 +17,6 @@
 namespace fovea::scene {
 namespace fs = std::filesystem;
 namespace {
-
-std::string triple(const glm::vec3& v) { return fmt::format("{}, {}, {}", v.x, v.y, v.z); }
-
-std::string rgb(const char* name, const glm::vec3& v) {
-  return fmt::format("<rgb name=\"{}\" value=\"{}\"/>", name, triple(v));
-}
 
 // Mitsuba's cameras and spot lights look along +Z with +X to their left.
 std::string toWorld(const glm::vec3& position, const glm::quat& orientation) {
@@ -95,40 +90,16 @@ class PlyMesh {
   uint32_t vertexCount_ = 0, faceCount_ = 0;
 };
 
-// A texture converted to what Mitsuba can show: there, one wrap mode (repeat or clamp) holds for both axes.
-struct Unfolded {
-  Texture texture;
-  const char* wrap = "repeat";
-  glm::vec2 scale{1};  // of the coordinates
-  bool exact = true;
-};
-
-Unfolded unfold(const Texture& t, Wrap u, Wrap v) {
-  if (u == v)
-    return {t, u == Wrap::Repeat ? "repeat" : u == Wrap::Clamp ? "clamp" : "mirror", glm::vec2(1), true};
-  Unfolded out{t, "repeat", glm::vec2(1), u != Wrap::Clamp && v != Wrap::Clamp};
-  Texture& to = out.texture;
-  to.width = t.width * (u == Wrap::Mirror ? 2 : 1);
-  to.height = t.height * (v == Wrap::Mirror ? 2 : 1);
-  to.rgba.resize(size_t(to.width) * to.height * 4);
-  for (uint32_t y = 0; y < to.height; ++y)
-    for (uint32_t x = 0; x < to.width; ++x) {
-      const uint32_t sx = x < t.width ? x : 2 * t.width - 1 - x, sy = y < t.height ? y : 2 * t.height - 1 - y;
-      std::memcpy(&to.rgba[(size_t(y) * to.width + x) * 4], &t.rgba[(size_t(sy) * t.width + sx) * 4], 4);
-    }
-  out.scale = glm::vec2(float(t.width) / float(to.width), float(t.height) / float(to.height));
-  return out;
-}
-
-constexpr uint32_t kMaskTexels = 4;   // texels of the mask image per side of a texel, at least
-constexpr uint32_t kMaskSide = 1024;  // pixels; small textures get more texels, up to this side
-constexpr uint32_t kMaxMaskSide = 8192;
 constexpr uint32_t kMinFalloff = 256, kMaxFalloff = 4096;  // pixels per side of a spot light's image
 
 class MitsubaWriter {
  public:
   MitsubaWriter(const Scene& scene, fs::path folder, const MitsubaOptions& options, Diagnostics& warnings)
-      : scene_(scene), folder_(std::move(folder)), options_(options), warnings_(warnings) {}
+      : scene_(scene),
+        folder_(std::move(folder)),
+        options_(options),
+        warnings_(warnings),
+        materials_(scene, folder_, options.full, names_, warnings) {}
 
   fs::path run() {
     const std::string name = safeFileName(scene_.name);
@@ -144,7 +115,10 @@ class MitsubaWriter {
       warn("environment",
            "the environment is only seen, it lights nothing: add it where the picture's alpha is 0");
     }
-    for (uint32_t i = 0; i < scene_.materials.size(); ++i) material(i);
+    for (uint32_t i = 0; i < scene_.materials.size(); ++i) {
+      line("<!-- " + escaped(scene_.materials[i].name) + " -->");
+      line(materials_.bsdf(i));
+    }
     shapes();
     xml_ += "</scene>\n";
     const fs::path file = folder_ / (name + ".xml");
@@ -265,100 +239,6 @@ class MitsubaWriter {
     line("</emitter>");
   }
 
-  // ---- Materials ----
-
-  bool textured(const TextureUse& use) const { return use && use.texture < scene_.textures.size(); }
-
-  static std::string toUv(const TextureUse& use, const glm::vec2& scale) {
-    const glm::mat3x2& m = use.transform;
-    if (m == glm::mat3x2{1, 0, 0, 1, 0, 0} && scale == glm::vec2(1)) return {};
-    // A 4x4 matrix, of which Mitsuba uses the first two rows and columns, with the translation in the last column.
-    return fmt::format(
-        "<transform name=\"to_uv\"><matrix value=\"{} {} 0 {}  {} {} 0 {}  0 0 1 0  0 0 0 1\"/></transform>",
-        scale.x * m[0].x, scale.x * m[1].x, scale.x * m[2].x, scale.y * m[0].y, scale.y * m[1].y,
-        scale.y * m[2].y);
-  }
-
-  std::string bitmap(const char* name, const std::string& file, bool raw, const char* filter,
-                     const char* wrap, const std::string& transform) const {
-    return fmt::format(
-        "<texture type=\"bitmap\" name=\"{}\"><string name=\"filename\" value=\"{}\"/>"
-        "<boolean name=\"raw\" value=\"{}\"/><string name=\"filter_type\" value=\"{}\"/>"
-        "<string name=\"wrap_mode\" value=\"{}\"/>{}</texture>",
-        name, file, raw, filter, wrap, transform);
-  }
-
-  std::string textureFile(const TextureUse& use, const std::string& suffix) {
-    const std::string stem = fs::path(scene_.textures[use.texture].name).stem().string();
-    return "textures/" + names_.add(safeFileName(stem.empty() ? "texture" : stem)) + suffix;
-  }
-
-  // A colour times a texture. On its own, an sRGB texture remains an 8-bit image, which Mitsuba decodes before it
-  // filters; with a factor or linear texels it becomes an image of linear floats.
-  std::string colour(const char* name, const TextureUse& use, const glm::vec3& factor) {
-    if (!textured(use)) return rgb(name, factor);
-    const Texture& source = scene_.textures[use.texture];
-    const bool plain = factor == glm::vec3(1) && source.srgb;
-    const Unfolded from = unfold(source, use.wrapU, use.wrapV);
-    if (!from.exact)
-      warn("materials", "texture `" + source.name + "` repeats in Mitsuba where it should end");
-    // The same image with another transform needs no second file.
-    const std::string key = fmt::format("{} {} {} {} {}", use.texture, int(use.wrapU), int(use.wrapV), plain,
-                                        plain ? "" : triple(factor));
-    std::string& file = files_[key];
-    if (file.empty()) {
-      file = textureFile(use, plain ? ".png" : ".exr");
-      image::Image pixels = texelImage(from.texture, 3);
-      if (!plain)
-        for (size_t i = 0; i < pixels.data.size(); ++i)
-          pixels.data[i] =
-              factor[int(i % 3)] * (source.srgb ? image::srgbDecode(pixels.data[i]) : pixels.data[i]);
-      image::write(folder_ / file, {{"", std::move(pixels)}});
-    }
-    return bitmap(name, file, !plain, "bilinear", from.wrap, toUv(use, from.scale));
-  }
-
-  // Whether bilinear alpha reaches the cutoff, at the middles of at least kMaskTexels^2 parts of each texel.
-  std::string opacity(const Material& m) {
-    const TextureUse& use = m.baseColorTexture;
-    if (!textured(use))
-      return fmt::format("<float name=\"opacity\" value=\"{}\"/>", m.baseColor.a >= m.alphaCutoff ? 1 : 0);
-    const Texture& t = scene_.textures[use.texture];
-    uint32_t parts = std::max(kMaskTexels, kMaskSide / std::max(t.width, t.height));
-    while (parts > 1 && std::max(t.width, t.height) * parts > kMaxMaskSide) parts /= 2;
-    // At its own place in the texture, so that the mask lies in one period and wraps as the texture does.
-    const Unfolded from = unfold(t, use.wrapU, use.wrapV);
-    const glm::uvec2 size = glm::uvec2(from.texture.width, from.texture.height) * parts;
-    image::Image mask{size.x, size.y, 1, std::vector<float>(size_t(size.x) * size.y)};
-    for (uint32_t y = 0; y < size.y; ++y)
-      for (uint32_t x = 0; x < size.x; ++x) {
-        const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / glm::vec2(size) / from.scale;
-        mask.at(x, y, 0) = reflectance(scene_, m, straightUv(uv, use)).a >= m.alphaCutoff ? 1.0f : 0.0f;
-      }
-    const std::string file = textureFile(use, "_mask.png");
-    image::write(folder_ / file, {{"", std::move(mask)}});
-    return bitmap("opacity", file, true, "nearest", from.wrap, toUv(use, from.scale));
-  }
-
-  // The coordinates that the transform of `use` maps to `uv`.
-  static glm::vec2 straightUv(const glm::vec2& uv, const TextureUse& use) {
-    const glm::mat2 axes(use.transform[0], use.transform[1]);
-    return glm::inverse(axes) * (uv - use.transform[2]);
-  }
-
-  void material(uint32_t index) {
-    const Material& m = scene_.materials[index];
-    line("<!-- " + escaped(m.name) + " -->");
-    std::string bsdf =
-        "<bsdf type=\"diffuse\">" +
-        colour("reflectance", m.baseColorTexture, glm::vec3(m.baseColor) * (1.0f - m.metallic)) + "</bsdf>";
-    if (m.doubleSided) bsdf = "<bsdf type=\"twosided\">" + bsdf + "</bsdf>";
-    if (m.masked) bsdf = "<bsdf type=\"mask\">" + opacity(m) + bsdf + "</bsdf>";
-    // The outermost one carries the name.
-    bsdf.insert(bsdf.find('>'), fmt::format(" id=\"m{}\"", index));
-    line(bsdf);
-  }
-
   // ---- Shapes ----
 
   void shapes() {
@@ -370,8 +250,8 @@ class MitsubaWriter {
       const Material& m = scene_.materials[group.second];
       std::string emitter;
       if (m.emission != glm::vec3(0))
-        emitter =
-            "<emitter type=\"area\">" + colour("radiance", m.emissionTexture, m.emission) + "</emitter>";
+        emitter = "<emitter type=\"area\">" + materials_.colour("radiance", m.emissionTexture, m.emission) +
+                  "</emitter>";
       const bool twice = !emitter.empty() && m.doubleSided;  // Mitsuba's surfaces emit from their front only
       const float shift = twice ? 0.5e-5f * diagonal : 0.0f;
       for (int side = 0; side < (twice ? 2 : 1); ++side) {
@@ -399,8 +279,8 @@ class MitsubaWriter {
   Diagnostics& warnings_;
   Geometry geometry_;
   std::string xml_;
-  std::map<std::string, std::string> files_;  // files of textures, by their content
   UniqueNames names_{"_"};
+  MitsubaMaterials materials_;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ struct MitsubaOptions {
   glm::uvec2 size{512, 512};
   uint32_t samples = 64;
   uint32_t depth = 4;  // as Mitsuba counts: 1 is emission alone, 2 adds direct light
+  bool full = false;   // full materials; if false, diffuse ones
 };
 
 // Writes NAME.xml, meshes/*.ply and textures/* into `folder`, which is created if it is missing, and returns the path
@@ -31,6 +32,10 @@ struct MitsubaOptions {
 //   backs           The backs of single-sided surfaces are black in Mitsuba; here the eye looks through them.
 //   environment     Only the eye sees it here, so it is left out; the alpha channel of the picture shows where it is.
 //   range           Mitsuba does not limit the range of lights.
+//   full materials  Metals become `principled`, dielectrics the sum of a `plastic` and a `roughplastic`. Both lack the
+//                   light that is scattered more than once among microfacets (2% of a metal of roughness 0.35) and
+//                   separate masking from shadowing, and the diffuse layer sees a smooth surface: alike to 1% up to a
+//                   roughness of about 0.2. A warning names what is left out.
 // Throws Error(CannotWrite).
 std::filesystem::path exportMitsuba(const Scene& scene, const std::filesystem::path& folder,
                                     const MitsubaOptions& options, Diagnostics& warnings);

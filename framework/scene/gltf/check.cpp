@@ -8,8 +8,10 @@ namespace fovea::scene::gltf {
 namespace {
 
 const std::vector<std::string>& supportedExtensions() {
-  static const std::vector<std::string> list = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                "KHR_mesh_quantization", "KHR_texture_transform"};
+  static const std::vector<std::string> list = {
+      "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+      "KHR_materials_ior",   "KHR_materials_specular",  "KHR_materials_transmission",
+      "KHR_materials_unlit", "KHR_mesh_quantization",   "KHR_texture_transform"};
   return list;
 }
 
@@ -86,7 +88,8 @@ class VersionChecker : DocumentReader {
     if (!fine) return false;
     std::vector<std::string> ignored;
     for (const Value* v : stringsOf("extensionsUsed"))
-      if (!supported(v->string)) ignored.push_back(v->string);
+      if (!supported(v->string) && !v->string.starts_with("KHR_materials_"))  // buildMaterials() names those
+        ignored.push_back(v->string);
     if (!ignored.empty())
       warnings.warning({source_.name, 0, 0}, "extensionsUsed",
                        "ignored: " + join(ignored) + "; the model's fall-back is shown instead");

@@ -4,6 +4,25 @@
 namespace fovea::scene::gltf {
 namespace {
 
+// The members of the extensions of materials that are read.
+struct MaterialExtension {
+  const char* name;
+  std::vector<const char*> numbers, colors, textures;
+};
+const MaterialExtension kMaterialExtensions[] = {
+    {"KHR_materials_emissive_strength", {"emissiveStrength"}, {}, {}},
+    {"KHR_materials_ior", {"ior"}, {}, {}},
+    {"KHR_materials_specular",
+     {"specularFactor"},
+     {"specularColorFactor"},
+     {"specularTexture", "specularColorTexture"}},
+    {"KHR_materials_transmission", {"transmissionFactor"}, {}, {"transmissionTexture"}},
+    {"KHR_materials_clearcoat",
+     {"clearcoatFactor", "clearcoatRoughnessFactor"},
+     {},
+     {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"}},
+    {"KHR_materials_unlit", {}, {}, {}}};
+
 class ContentChecker : DocumentReader {
  public:
   using DocumentReader::DocumentReader;
@@ -36,6 +55,17 @@ class ContentChecker : DocumentReader {
     x.integer("texCoord", 0, 0, 255);
   }
 
+  void checkExtension(const Value& e, const std::string& path, const MaterialExtension& known) {
+    const std::string place = path + ".extensions." + known.name;
+    ObjectReader r(e, place, errors_);
+    for (const char* key : known.numbers) r.number(key, 1, 0);
+    for (const char* key : known.colors) numbersIfPresent(e, place, key, 3);
+    for (const char* key : known.textures) checkTextureInfo(e, place, key);
+    if (const Value* ior = e.find("ior"); ior && ior->isNumber() && ior->real != 0 && ior->real < 1)
+      error(*ior, place + ".ior",
+            "an index of refraction is at least 1, or 0 for infinity; this is " + ior->describe());
+  }
+
   void checkMaterial(const Value& v, const std::string& path) {
     nameOfObject(v, path);
     ObjectReader r(v, path, errors_);
@@ -45,9 +75,8 @@ class ContentChecker : DocumentReader {
     r.boolean("doubleSided", false);
     for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
       checkTextureInfo(v, path, key);
-    if (const Value* e = extension(v, path, "KHR_materials_emissive_strength"))
-      ObjectReader(*e, path + ".extensions.KHR_materials_emissive_strength", errors_)
-          .number("emissiveStrength", 1, 0);
+    for (const MaterialExtension& known : kMaterialExtensions)
+      if (const Value* e = extension(v, path, known.name)) checkExtension(*e, path, known);
     if (const Value* pbr = r.object("pbrMetallicRoughness")) {
       const std::string place = path + ".pbrMetallicRoughness";
       ObjectReader p(*pbr, place, errors_);

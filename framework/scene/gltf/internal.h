@@ -12,6 +12,7 @@
 // and properties of a wrong type, and never checks accessor bounds, node cycles or extensionsRequired.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -82,8 +83,8 @@ struct Context {
   const tinygltf::Model& model;
   Scene& scene;
   Diagnostics& warnings;
-  // For each glTF material, the TEXCOORD set that its textures read.
-  std::vector<int> texCoordOfMaterial{};
+  // For each glTF material, the TEXCOORD sets that its textures read as Primitive::uvs and secondUvs; -1 for none.
+  std::vector<std::array<int, 2>> texCoordsOfMaterial{};
   uint32_t defaultMaterial = kNoIndex;  // made on demand for primitives without one
   std::vector<uint32_t> sceneNode{};    // node in the scene for each glTF node; kNoIndex if it is not shown
   uint64_t vertices = 0;

@@ -1,9 +1,10 @@
-// Builds materials and textures. Decodes only the images that a diffuse surface needs: base
-// colour, emission, metalness.
+// Builds materials and textures, and decodes the images that they use.
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "fovea/image.h"
 #include "framework/scene/gltf/internal.h"
@@ -11,17 +12,32 @@
 namespace fovea::scene::gltf {
 namespace {
 
-double numberOr(const tinygltf::Value& object, const char* key, double fallback) {
-  if (!object.IsObject() || !object.Has(key)) return fallback;
-  const tinygltf::Value& v = object.Get(key);
-  return v.IsNumber() ? v.GetNumberAsDouble() : fallback;
+using json::Value;
+
+// What checkDocument has found valid; null or the fallback if it is absent.
+const Value* memberOf(const Value* object, std::string_view key) {
+  return object ? object->find(key) : nullptr;
 }
 
-glm::vec2 pairOr(const tinygltf::Value& object, const char* key, glm::vec2 fallback) {
-  if (!object.IsObject() || !object.Has(key)) return fallback;
-  const tinygltf::Value& v = object.Get(key);
-  if (!v.IsArray() || v.ArrayLen() != 2 || !v.Get(0).IsNumber() || !v.Get(1).IsNumber()) return fallback;
-  return {float(v.Get(0).GetNumberAsDouble()), float(v.Get(1).GetNumberAsDouble())};
+const Value* extensionOf(const Value* object, std::string_view name) {
+  return memberOf(memberOf(object, "extensions"), name);
+}
+
+double numberOr(const Value* object, std::string_view key, double fallback) {
+  const Value* v = memberOf(object, key);
+  return v && v->isNumber() ? v->real : fallback;
+}
+
+std::array<double, 3> threeOr(const Value* object, std::string_view key, double fallback) {
+  std::array<double, 3> out{fallback, fallback, fallback};
+  const Value* v = memberOf(object, key);
+  for (size_t i = 0; v && i < std::min<size_t>(3, v->items.size()); ++i) out[i] = v->items[i].real;
+  return out;
+}
+
+glm::vec2 pairOr(const Value* object, std::string_view key, glm::vec2 fallback) {
+  const Value* v = memberOf(object, key);
+  return v && v->items.size() == 2 ? glm::vec2(v->items[0].real, v->items[1].real) : fallback;
 }
 
 Wrap wrapOf(int mode) {
@@ -38,39 +54,65 @@ Wrap wrapOf(int mode) {
 // KHR_texture_transform: translation * rotation * scale. The listing in the text of the extension rotates in the
 // opposite direction to its sample model and to every implementation (KhronosGroup/glTF issue 1563); positive angles
 // turn u towards -v.
-glm::mat3x2 textureTransform(const tinygltf::Value& t) {
+glm::mat3x2 textureTransform(const Value* t) {
   const glm::vec2 offset = pairOr(t, "offset", glm::vec2(0.0f)), scale = pairOr(t, "scale", glm::vec2(1.0f));
   const float angle = float(numberOr(t, "rotation", 0.0));
   const float c = std::cos(angle), s = std::sin(angle);
   return glm::mat3x2(c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y);
 }
 
+// The texture coordinates that one material reads: two sets at most, by their TEXCOORD numbers.
+class TexCoords {
+ public:
+  // Makes `texCoord` one of the sets if there is room. Returns whether it is 0 or 1, or nothing if it is a third one.
+  std::optional<uint32_t> add(int texCoord) {
+    for (uint32_t i = 0; i < 2; ++i) {
+      if (sets_[i] < 0) sets_[i] = texCoord;
+      if (sets_[i] == texCoord) return i;
+    }
+    return std::nullopt;
+  }
+  std::array<int, 2> sets() const { return {std::max(sets_[0], 0), sets_[1]}; }
+
+ private:
+  std::array<int, 2> sets_ = {-1, -1};
+};
+
+constexpr const char* kReadExtensions[] = {"KHR_materials_emissive_strength", "KHR_materials_ior",
+                                           "KHR_materials_specular",          "KHR_materials_transmission",
+                                           "KHR_materials_clearcoat",         "KHR_materials_unlit"};
+
 class MaterialBuilder {
  public:
-  explicit MaterialBuilder(Context& c) : c_(c), textureOfImage_(c.model.images.size(), kNoIndex) {}
+  explicit MaterialBuilder(Context& c) : c_(c) {}
 
   Material build(size_t index) {
     const tinygltf::Material& from = c_.model.materials[index];
+    const Value* written = &c_.root.find("materials")->items[index];
+    const Value* pbr = memberOf(written, "pbrMetallicRoughness");
     place_ = nameOf("materials", index, from.name);
-    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    texCoords_ = {};
     Material m;
     m.name = from.name.empty() ? "material " + std::to_string(index) : from.name;
+    const std::vector<double>& color = from.pbrMetallicRoughness.baseColorFactor;
     for (int i = 0; i < 4; ++i)
-      m.baseColor[i] = unitValue(pbr.baseColorFactor.size() == 4 ? pbr.baseColorFactor[size_t(i)] : 1.0,
-                                 "baseColorFactor");
-    m.metallic = metallicFactor(pbr, index);
+      m.baseColor[i] = unitValue(color.size() == 4 ? color[size_t(i)] : 1.0, "baseColorFactor");
 
-    int colorSet = 0, emissionSet = 0;
-    m.baseColorTexture = use(pbr.baseColorTexture, "baseColorTexture", colorSet);
-    emission(from, m, emissionSet);
-    if (m.baseColorTexture && m.emissionTexture && colorSet != emissionSet)
-      c_.warn(place_,
-              "emissiveTexture uses other texture coordinates than baseColorTexture; it is read with those "
-              "of the latter");
-    c_.texCoordOfMaterial.push_back(m.baseColorTexture ? colorSet : emissionSet);
-    metalness(pbr, m);
+    // These two first: the set of the first one is the only one that diffuse materials know.
+    m.baseColorTexture = use(pbr, "baseColorTexture", Kind::Diffuse);
+    emission(from, written, m);
+    if (m.baseColorTexture && m.emissionTexture && m.emissionTexture.set != m.baseColorTexture.set)
+      c_.warn(
+          place_,
+          "emissiveTexture uses other texture coordinates than baseColorTexture; diffuse materials read it "
+          "with those of the latter");
+    metalAndRoughness(pbr, m);
+    m.normalTexture = use(written, "normalTexture", Kind::Data);
+    m.normalScale = finite(numberOr(memberOf(written, "normalTexture"), "scale", 1), "normalTexture.scale");
+    extensions(written, m);
     alpha(from, m);
     m.doubleSided = from.doubleSided;
+    c_.texCoordsOfMaterial.push_back(texCoords_.sets());
     return m;
   }
 
@@ -81,23 +123,19 @@ class MaterialBuilder {
     return float(std::clamp(v, 0.0, 1.0));
   }
 
-  // The default in glTF is 1, a pure metal, which a diffuse renderer shows black. A file that never mentions metal
-  // usually comes from an exporter that wrote no material rather than from one that meant a mirror.
-  float metallicFactor(const tinygltf::PbrMetallicRoughness& pbr, size_t index) {
-    const json::Value* written = c_.root.find("materials")->items[index].find("pbrMetallicRoughness");
-    const bool said = written && (written->find("metallicFactor") || pbr.metallicRoughnessTexture.index >= 0);
-    return said ? unitValue(pbr.metallicFactor, "metallicFactor") : 0.0f;
+  float finite(double v, const char* what) {
+    if (!std::isfinite(float(v))) c_.fail(place_, std::string(what) + " is not a finite number");
+    return float(v);
   }
 
-  void emission(const tinygltf::Material& from, Material& m, int& set) {
-    double strength = 1.0;
-    const auto extension = from.extensions.find("KHR_materials_emissive_strength");
-    if (extension != from.extensions.end()) strength = numberOr(extension->second, "emissiveStrength", 1.0);
+  void emission(const tinygltf::Material& from, const Value* written, Material& m) {
+    const double strength =
+        numberOr(extensionOf(written, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     for (int i = 0; i < 3 && from.emissiveFactor.size() == 3; ++i)
       m.emission[i] = float(std::max(from.emissiveFactor[size_t(i)] * strength, 0.0));
     if (!std::isfinite(m.emission.x + m.emission.y + m.emission.z))
       c_.fail(place_, "the emission is not a finite number");
-    if (m.emission != glm::vec3(0.0f)) m.emissionTexture = use(from.emissiveTexture, "emissiveTexture", set);
+    if (m.emission != glm::vec3(0.0f)) m.emissionTexture = use(written, "emissiveTexture", Kind::Diffuse);
   }
 
   void alpha(const tinygltf::Material& from, Material& m) {
@@ -109,54 +147,119 @@ class MaterialBuilder {
     m.alphaCutoff = 0.5f;
   }
 
-  // One metalness per material: the mean of the texture's blue channel.
-  void metalness(const tinygltf::PbrMetallicRoughness& pbr, Material& m) {
-    const int texture = pbr.metallicRoughnessTexture.index;
-    if (texture >= 0 && m.metallic > 0.0f && c_.model.textures[size_t(texture)].source >= 0) {
-      const image::Image8 image = decode(size_t(c_.model.textures[size_t(texture)].source));
+  // The default in glTF is 1, a pure metal, which is black as a diffuse material. A file that never mentions metal
+  // usually comes from an exporter that wrote no material rather than from one that meant a mirror.
+  void metalAndRoughness(const Value* pbr, Material& m) {
+    m.metallic = unitValue(numberOr(pbr, "metallicFactor", 1), "metallicFactor");
+    m.roughness = unitValue(numberOr(pbr, "roughnessFactor", 1), "roughnessFactor");
+    m.metallicRoughnessTexture = use(pbr, "metallicRoughnessTexture", Kind::Data);
+    if (m.metallicRoughnessTexture && m.metallic > 0.0f) {
+      const std::vector<uint8_t>& rgba = c_.scene.textures[m.metallicRoughnessTexture.texture].rgba;
       uint64_t sum = 0;
-      for (size_t i = 2; i < image.rgba.size(); i += 4) sum += image.rgba[i];
-      m.metallic *= float(double(sum) / (255.0 * double(std::max<size_t>(image.rgba.size() / 4, 1))));
+      for (size_t i = 2; i < rgba.size(); i += 4) sum += rgba[i];
+      m.metallicMean = float(double(sum) / (255.0 * double(std::max<size_t>(rgba.size() / 4, 1))));
+    } else if (!memberOf(pbr, "metallicFactor") && !memberOf(pbr, "metallicRoughnessTexture")) {
+      m.metallicMean = 0;
     }
-    if (m.metallic > 0.99f && m.emission == glm::vec3(0.0f))
-      c_.warn(place_, "a pure metal reflects nothing diffusely and is shown black",
-              "set metallicFactor to 0");
+    if (m.meanMetallic() > 0.99f && m.emission == glm::vec3(0.0f))
+      c_.warn(place_, "a pure metal reflects nothing diffusely and is black as a diffuse material",
+              "set metallicFactor to 0, or render it with full materials");
   }
 
-  TextureUse use(const tinygltf::TextureInfo& info, const char* what, int& set) {
+  void extensions(const Value* written, Material& m) {
+    m.ior = finite(numberOr(extensionOf(written, "KHR_materials_ior"), "ior", 1.5), "ior");
+    if (const Value* e = extensionOf(written, "KHR_materials_specular")) {
+      m.specular = unitValue(numberOr(e, "specularFactor", 1), "specularFactor");
+      const std::array<double, 3> color = threeOr(e, "specularColorFactor", 1);
+      for (int i = 0; i < 3; ++i)
+        m.specularColor[i] = std::max(finite(color[size_t(i)], "specularColorFactor"), 0.0f);
+      m.specularTexture = use(e, "specularTexture", Kind::Data);
+      m.specularColorTexture = use(e, "specularColorTexture", Kind::Color);
+    }
+    if (const Value* e = extensionOf(written, "KHR_materials_transmission")) {
+      m.transmission = unitValue(numberOr(e, "transmissionFactor", 0), "transmissionFactor");
+      m.transmissionTexture = use(e, "transmissionTexture", Kind::Data);
+    }
+    if (const Value* e = extensionOf(written, "KHR_materials_clearcoat")) {
+      m.clearcoat = unitValue(numberOr(e, "clearcoatFactor", 0), "clearcoatFactor");
+      m.clearcoatRoughness =
+          unitValue(numberOr(e, "clearcoatRoughnessFactor", 0), "clearcoatRoughnessFactor");
+      m.clearcoatTexture = use(e, "clearcoatTexture", Kind::Data);
+      m.clearcoatRoughnessTexture = use(e, "clearcoatRoughnessTexture", Kind::Data);
+      if (memberOf(e, "clearcoatNormalTexture"))
+        leftOut("clearcoatNormalTexture of KHR_materials_clearcoat",
+                "the coat follows the surface without a normal map");
+    }
+    m.unlit = extensionOf(written, "KHR_materials_unlit") != nullptr;
+    if (const Value* all = memberOf(written, "extensions"))
+      for (const json::Member& e : all->members)
+        if (std::find(std::begin(kReadExtensions), std::end(kReadExtensions), e.key) ==
+            std::end(kReadExtensions))
+          leftOut(e.key.substr(0, 80), "the material is shown without it");
+  }
+
+  // One warning for each thing that a model asks for, at the first material that does.
+  void leftOut(const std::string& what, const char* instead) {
+    if (leftOut_.insert(what).second) c_.warn(place_, what + " is ignored: " + instead);
+  }
+
+  // Textures that diffuse materials read, those of other colours, and those of data, which are linear.
+  enum class Kind : uint8_t { Diffuse, Color, Data };
+
+  // A model can be shown without what only full materials read.
+  bool readable(size_t image, Kind kind, const char* key) {
+    try {
+      textureOf(image, kind != Kind::Data);
+      return true;
+    } catch (const Error& e) {
+      c_.warn(place_, std::string(key) + " is ignored: " + e.diagnostics().front().message,
+              e.diagnostics().front().remedy);
+      return false;
+    }
+  }
+
+  // The texture that `object` names at `key`.
+  TextureUse use(const Value* object, const char* key, Kind kind) {
     TextureUse u;
-    if (info.index < 0) return u;
-    set = info.texCoord;
-    const tinygltf::Texture& texture = c_.model.textures[size_t(info.index)];
+    const Value* info = memberOf(object, key);
+    if (!info) return u;
+    const tinygltf::Texture& texture = c_.model.textures[size_t(info->find("index")->integer)];
     if (texture.source < 0) {
-      c_.warn(place_,
-              std::string(what) + " names a texture without an image that can be read; it is ignored");
+      c_.warn(place_, std::string(key) + " names a texture without an image that can be read; it is ignored");
       return u;
     }
-    u.texture = textureOf(size_t(texture.source));
+    if (kind != Kind::Diffuse && !readable(size_t(texture.source), kind, key)) return u;
+    u.texture = textureOf(size_t(texture.source), kind != Kind::Data);
     if (texture.sampler >= 0) {
       u.wrapU = wrapOf(c_.model.samplers[size_t(texture.sampler)].wrapS);
       u.wrapV = wrapOf(c_.model.samplers[size_t(texture.sampler)].wrapT);
     }
-    const auto extension = info.extensions.find("KHR_texture_transform");
-    if (extension == info.extensions.end()) return u;
-    u.transform = textureTransform(extension->second);
-    set = int(numberOr(extension->second, "texCoord", set));
+    double texCoord = numberOr(info, "texCoord", 0);
+    if (const Value* transform = extensionOf(info, "KHR_texture_transform")) {
+      u.transform = textureTransform(transform);
+      texCoord = numberOr(transform, "texCoord", texCoord);
+    }
+    const std::optional<uint32_t> set = texCoords_.add(int(texCoord));
+    if (!set)
+      c_.warn(place_, std::string(key) + " uses a third set of texture coordinates, TEXCOORD_" +
+                          std::to_string(int(texCoord)) + "; it is read with those of the first texture");
+    u.set = set.value_or(0);
     return u;
   }
 
-  uint32_t textureOf(size_t image) {
-    uint32_t& known = textureOfImage_[image];
-    if (known != kNoIndex) return known;
+  // An image that is used both as colours and as data gives two textures.
+  uint32_t textureOf(size_t image, bool color) {
+    const auto known = textures_.find({image, color});
+    if (known != textures_.end()) return known->second;
     image::Image8 pixels = decode(image);
     Texture t;
     t.name = imageName(image);
     t.width = pixels.width;
     t.height = pixels.height;
+    t.srgb = color;
     t.rgba = std::move(pixels.rgba);
-    known = uint32_t(c_.scene.textures.size());
     c_.scene.textures.push_back(std::move(t));
-    return known;
+    return textures_[{image, color}] = uint32_t(c_.scene.textures.size() - 1);
   }
 
   std::string imageName(size_t index) const {
@@ -190,8 +293,10 @@ class MaterialBuilder {
   }
 
   Context& c_;
-  std::vector<uint32_t> textureOfImage_;
+  std::map<std::pair<size_t, bool>, uint32_t> textures_;  // by image and whether it holds colours
+  std::set<std::string> leftOut_;
   std::string place_;
+  TexCoords texCoords_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
@@ -80,14 +81,19 @@ class MeshBuilder {
     }
     out.material = materialOf(from.material);
     readPositions(position->second, place, out);
-    readUvs(from, place, out);
+    readTextureCoordinates(from, place, out);
     std::vector<uint32_t> indices = indicesOf(from, place, out.positions.size());
     out.indices = toTriangles(indices, from.mode);
     if (!isCage_) dropDegenerate(out);
     readSkin(from, place, out);
     readTargets(from, place, out);
-    if (!isCage_) readNormals(from, place, out);
-    if (from.attributes.count("COLOR_0")) colorsIgnored_.insert(mesh_);
+    if (!isCage_) {
+      readNormals(from, place, out);
+      readTangents(from, place, out);
+    }
+    readColors(from, place, out);
+    if (isCage_ && (!out.colors.empty() || !out.secondUvs.empty()))
+      c_.warn(place, "a cage keeps neither vertex colours nor a second set of texture coordinates");
     c_.vertices += out.positions.size();
     checkSize(place);
     return !out.indices.empty();
@@ -102,7 +108,7 @@ class MeshBuilder {
   uint32_t materialOf(int material) {
     if (material >= 0) return uint32_t(material);
     if (c_.defaultMaterial == kNoIndex) {
-      // glTF's default material is a white metal, which a diffuse renderer would show black.
+      // glTF's default material is a white rough metal, which would be black as a diffuse material.
       c_.defaultMaterial = uint32_t(c_.scene.materials.size());
       Material m;
       m.name = "default";
@@ -127,19 +133,68 @@ class MeshBuilder {
     }
   }
 
-  void readUvs(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
-    out.uvs.assign(out.positions.size(), glm::vec2(0.0f));
-    const int set = from.material >= 0 ? c_.texCoordOfMaterial[size_t(from.material)] : 0;
+  void readTextureCoordinates(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    std::array<int, 2> sets = {0, -1};
+    if (from.material >= 0) sets = c_.texCoordsOfMaterial[size_t(from.material)];
+    out.uvs = uvsOf(from, place, sets[0], out.positions.size());
+    if (sets[1] >= 0) out.secondUvs = uvsOf(from, place, sets[1], out.positions.size());
+    const Material* material = from.material >= 0 ? &c_.scene.materials[size_t(from.material)] : nullptr;
+    if (!material || !std::any_of(std::begin(kMaterialTextures), std::end(kMaterialTextures),
+                                  [&](auto use) { return bool(material->*use); }))
+      return;
+    for (const int set : sets)
+      if (set >= 0 && !from.attributes.contains("TEXCOORD_" + std::to_string(set)))
+        c_.warn(place, "has no TEXCOORD_" + std::to_string(set) + ", which material `" + material->name +
+                           "` reads: one point of the texture covers it");
+  }
+
+  std::vector<glm::vec2> uvsOf(const tinygltf::Primitive& from, const std::string& place, int set,
+                               size_t count) {
+    std::vector<glm::vec2> uvs(count, glm::vec2(0.0f));
     const std::string name = "TEXCOORD_" + std::to_string(set);
     const auto found = from.attributes.find(name);
-    if (found == from.attributes.end()) return;
+    if (found == from.attributes.end()) return uvs;
     const std::string path = accessorPath(place, name, found->second);
-    checkCount(found->second, out.positions.size(), path);
+    checkCount(found->second, count, path);
     const std::vector<float> v = readFloats(c_, found->second, 2, path);
-    for (size_t i = 0; i < out.uvs.size(); ++i) {
+    for (size_t i = 0; i < count; ++i) {
       const glm::vec2 uv = glm::make_vec2(&v[2 * i]);
-      out.uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
+      uvs[i] = std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0.0f);
     }
+    return uvs;
+  }
+
+  // For attributes without which a mesh can still be shown.
+  bool fits(int accessor, size_t count, const std::string& path) const {
+    if (countOf(accessor) == count) return true;
+    c_.warn(path, "is ignored: it has " + std::to_string(countOf(accessor)) + " elements, POSITION has " +
+                      std::to_string(count));
+    return false;
+  }
+
+  // Linear RGB or RGBA. What is not finite reads as 1.
+  void readColors(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    const auto found = from.attributes.find("COLOR_0");
+    if (found == from.attributes.end()) return;
+    const std::string path = accessorPath(place, "COLOR_0", found->second);
+    if (!fits(found->second, out.positions.size(), path)) return;
+    const size_t components = c_.model.accessors[size_t(found->second)].type == TINYGLTF_TYPE_VEC3 ? 3 : 4;
+    const std::vector<float> v = readFloats(c_, found->second, int(components), path);
+    out.colors.assign(out.positions.size(), glm::vec4(1.0f));
+    for (size_t i = 0; i < v.size(); ++i)
+      if (std::isfinite(v[i])) out.colors[i / components][int(i % components)] = std::max(v[i], 0.0f);
+    colored_.insert(mesh_);
+  }
+
+  // Only where a normal map needs them, and only beside normals of the model (glTF 2.0, 3.7.2.1).
+  void readTangents(const tinygltf::Primitive& from, const std::string& place, Primitive& out) {
+    const auto found = from.attributes.find("TANGENT");
+    if (found == from.attributes.end() || !from.attributes.contains("NORMAL")) return;
+    if (from.material < 0 || !c_.scene.materials[size_t(from.material)].normalTexture) return;
+    const std::string path = accessorPath(place, "TANGENT", found->second);
+    if (!fits(found->second, out.positions.size(), path)) return;
+    const std::vector<float> v = readFloats(c_, found->second, 4, path);
+    for (size_t i = 0; i < out.positions.size(); ++i) out.tangents.push_back(glm::make_vec4(&v[4 * i]));
   }
 
   // Four joints per vertex; further sets are rare and carry little weight.
@@ -290,6 +345,8 @@ class MeshBuilder {
     }
     spread(p.positions);
     spread(p.uvs);
+    spread(p.secondUvs);
+    spread(p.colors);
     spread(p.joints);
     spread(p.weights);
     for (MorphTarget& t : p.targets) {
@@ -299,7 +356,7 @@ class MeshBuilder {
   }
 
  public:
-  std::set<std::string> colorsIgnored_;
+  std::set<std::string> colored_;
 
  private:
   Context& c_;
@@ -318,10 +375,9 @@ void buildMeshes(Context& c) {
   if (c.badNormals > 0)
     c.warn("meshes", std::to_string(c.badNormals) +
                          " normals were zero or not finite; they now follow their triangles");
-  if (!builder.colorsIgnored_.empty())
-    c.warn(*builder.colorsIgnored_.begin(), "vertex colours (COLOR_0) of " +
-                                                std::to_string(builder.colorsIgnored_.size()) +
-                                                " mesh(es) are ignored");
+  if (!builder.colored_.empty())
+    c.warn(*builder.colored_.begin(), "diffuse materials ignore the vertex colours (COLOR_0) of " +
+                                          std::to_string(builder.colored_.size()) + " mesh(es)");
 }
 
 }  // namespace fovea::scene::gltf

@@ -173,8 +173,10 @@ EmitterPoint Emitters::sample(const Receiver& receiver, float choice, float u, f
     if (choice * total < reached) break;
   }
   const float root = std::sqrt(u);
-  const SurfaceHit s = surfaceAt(*frame_.geometry, {chosen->triangle, 0, root * (1.0f - v), root * v});
   p.triangle = chosen->triangle;
+  p.u = root * (1.0f - v);
+  p.v = root * v;
+  const SurfaceHit s = surfaceAt(*frame_.geometry, {p.triangle, 0, p.u, p.v});
   p.position = s.position;
   p.normal = glm::dot(chosen->normal, receiver.position - chosen->centre) > 0 ? s.geometricNormal
                                                                               : -s.geometricNormal;

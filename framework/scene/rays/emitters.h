@@ -14,6 +14,7 @@ namespace fovea::scene {
 
 struct EmitterPoint {
   uint32_t triangle = kNoIndex;  // kNoIndex if no emitter faces the receiver
+  float u = 0, v = 0;            // barycentric weights of the triangle's second and third vertex
   glm::vec3 position{0};         // world space, m
   glm::vec3 normal{0};           // unit, on the side of the receiver
   glm::vec3 radiance{0};         // W/(sr m^2)
