@@ -177,7 +177,7 @@ TEST(PathTraceFull, EqualsAPlainIntegration) {
     wanted += mean;
   }
   EXPECT_NEAR(sum / wanted, 1, 0.005);
-  EXPECT_NEAR(z2, 1, 0.9);
+  EXPECT_NEAR(z2, 1, 0.5) << "of 64 pixels; heavy tails widen the spread of 0.18";
 }
 
 // ---- Glass --------------------------------------------------------------------------------------------------
