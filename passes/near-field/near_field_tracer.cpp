@@ -8,6 +8,7 @@
 
 #include "framework/base/random.h"
 #include "framework/base/threads.h"
+#include "framework/base/weighted_choice.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
@@ -214,7 +215,7 @@ class Tracer {
   glm::vec3 fromEmitters(const TracedSurface& v, uint32_t stream, uint32_t index, Row& statistics) const {
     const uint32_t points = settings_.emitterPoints;
     const float place = uniformFloat(hashCombine(stream, 0) + index * kGoldenRatio);
-    float choice = uniformFloat(hashCombine(stream, 1) + index * kSilverRatio), sum = 0, chosenPart = 0;
+    WeightedChoice choice(uniformFloat(hashCombine(stream, 1) + index * kSilverRatio));
     SurfaceTracer::EmitterRay chosen;
     glm::vec3 light(0);
     for (uint32_t i = 0; i < points; ++i) {
@@ -226,21 +227,12 @@ class Tracer {
       const glm::vec3 its =
           to.radiance * (cosine / (cosine * probabilityAt(to.distance) + float(points) * to.density));
       const float part = its.r + its.g + its.b;
-      if (!(part > 0)) continue;
-      sum += part;
-      // The random number is rescaled after each decision, so one number is enough.
-      const float chance = part / sum;
-      if (choice < chance) {
-        choice /= chance;
-        chosen = to;
-        light = its;
-        chosenPart = part;
-      } else {
-        choice = (choice - chance) / (1 - chance);
-      }
+      if (!(part > 0) || !choice.takes(part)) continue;
+      chosen = to;
+      light = its;
     }
-    if (!(sum > 0) || !surfaces_.sees(v, chosen, statistics.rays)) return glm::vec3(0);
-    return light * (sum / chosenPart);
+    if (!choice.any() || !surfaces_.sees(v, chosen, statistics.rays)) return glm::vec3(0);
+    return light * choice.inverseProbability();
   }
 
   // The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted

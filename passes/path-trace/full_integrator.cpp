@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "framework/base/weighted_choice.h"
 #include "framework/scene/lights.h"
 #include "framework/shader_twins/paraboloid.h"
 
@@ -122,31 +123,22 @@ glm::vec3 FullIntegrator::allLights(const Vertex& v, uint64_t& rays) const {
   return sum;
 }
 
-// Samples one light in proportion to its unoccluded contribution. The random number is rescaled after each decision,
-// so one number is enough.
+// Samples one light in proportion to its unoccluded contribution.
 glm::vec3 FullIntegrator::oneLight(const Vertex& v, const PathSampler& random, uint32_t k,
                                    uint64_t& rays) const {
   glm::vec3 chosen(0);
   Ray shadowRay;
-  float u = frame_.lights.size() > 1 ? random.number(k) : 0.0f, sum = 0, chosenWeight = 0;
+  WeightedChoice choice(frame_.lights.size() > 1 ? random.number(k) : 0.0f);
   for (const Light& light : frame_.lights) {
     Ray ray;
     const glm::vec3 radiance = unshadowed(light, v, ray);
     const float weight = radiance.r + radiance.g + radiance.b;
-    if (!(weight > 0)) continue;
-    sum += weight;
-    const float p = weight / sum;
-    if (u < p) {
-      u /= p;
-      chosen = radiance;
-      chosenWeight = weight;
-      shadowRay = ray;
-    } else {
-      u = (u - p) / (1.0f - p);
-    }
+    if (!(weight > 0) || !choice.takes(weight)) continue;
+    chosen = radiance;
+    shadowRay = ray;
   }
-  if (sum == 0) return glm::vec3(0);
-  return chosen * (sum / chosenWeight) * visibility(shadowRay, rays);
+  if (!choice.any()) return glm::vec3(0);
+  return chosen * choice.inverseProbability() * visibility(shadowRay, rays);
 }
 
 glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, float u2,

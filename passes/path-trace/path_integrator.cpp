@@ -7,6 +7,7 @@
 
 #include "framework/base/low_discrepancy.h"
 #include "framework/base/random.h"
+#include "framework/base/weighted_choice.h"
 #include "framework/scene/lights.h"
 #include "framework/shader_twins/paraboloid.h"
 
@@ -151,31 +152,22 @@ glm::vec3 PathIntegrator::allLights(const PathVertex& v, uint64_t& rays) const {
   return sum;
 }
 
-// Samples one light in proportion to its unoccluded contribution. The random number is rescaled after each decision,
-// so one number is enough.
+// Samples one light in proportion to its unoccluded contribution.
 glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& random, uint32_t k,
                                    uint64_t& rays) const {
   glm::vec3 chosen(0);
   Ray shadowRay;
-  float u = frame_.lights.size() > 1 ? random.number(k) : 0.0f, sum = 0, chosenWeight = 0;
+  WeightedChoice choice(frame_.lights.size() > 1 ? random.number(k) : 0.0f);
   for (const Light& light : frame_.lights) {
     Ray ray;
     const glm::vec3 e = unshadowed(light, v, ray);
     const float weight = e.r + e.g + e.b;
-    if (!(weight > 0)) continue;
-    sum += weight;
-    const float p = weight / sum;
-    if (u < p) {
-      u /= p;
-      chosen = e;
-      chosenWeight = weight;
-      shadowRay = ray;
-    } else {
-      u = (u - p) / (1.0f - p);
-    }
+    if (!(weight > 0) || !choice.takes(weight)) continue;
+    chosen = e;
+    shadowRay = ray;
   }
-  if (sum == 0 || occluded(shadowRay, rays)) return glm::vec3(0);
-  return chosen * (sum / chosenWeight);
+  if (!choice.any() || occluded(shadowRay, rays)) return glm::vec3(0);
+  return chosen * choice.inverseProbability();
 }
 
 // Both ways to reach an emissive triangle, a point chosen on it and a bounce that happens to hit it, are weighted

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/base/weighted_choice.h"
+
 namespace fovea {
 namespace {
 
@@ -21,6 +23,24 @@ TEST(Random, ConsecutiveIndicesAreUniform) {
   for (int c : count) chi2 += (c - expected) * (c - expected) / expected;
   EXPECT_LT(chi2, 63 + 5 * 11.2);
   EXPECT_GT(chi2, 63 - 5 * 11.2);
+}
+
+// Over evenly spaced numbers, each thing is chosen as often as its share of the weights says.
+TEST(Random, WeightedChoiceFollowsTheWeights) {
+  constexpr int kNumbers = 6000;
+  const float weights[] = {1, 0.5f, 4, 0.5f};
+  int count[4] = {};
+  for (int n = 0; n < kNumbers; ++n) {
+    WeightedChoice choice((n + 0.5f) / kNumbers);
+    int chosen = -1;
+    for (int i = 0; i < 4; ++i)
+      if (choice.takes(weights[i])) chosen = i;
+    ASSERT_GE(chosen, 0);
+    EXPECT_FLOAT_EQ(choice.inverseProbability(), 6 / weights[chosen]);
+    ++count[chosen];
+  }
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(count[i], kNumbers * weights[i] / 6, 5) << i;
+  EXPECT_FALSE(WeightedChoice(0.5f).any());
 }
 
 TEST(Random, EveryPartOfTheKeyMatters) {

@@ -15,6 +15,15 @@ const std::vector<std::string>& supportedExtensions() {
   return list;
 }
 
+}  // namespace
+
+bool isSupported(std::string_view extension) {
+  const auto& list = supportedExtensions();
+  return std::find(list.begin(), list.end(), extension) != list.end();
+}
+
+namespace {
+
 class VersionChecker : DocumentReader {
  public:
   using DocumentReader::DocumentReader;
@@ -73,13 +82,9 @@ class VersionChecker : DocumentReader {
   }
 
   bool checkExtensions(Diagnostics& warnings) {
-    const auto supported = [](const std::string& name) {
-      const auto& list = supportedExtensions();
-      return std::find(list.begin(), list.end(), name) != list.end();
-    };
     bool fine = true;
     for (const Value* v : stringsOf("extensionsRequired")) {
-      if (supported(v->string)) continue;
+      if (isSupported(v->string)) continue;
       fine = false;
       error(*v, "extensionsRequired",
             "the model requires the extension `" + v->string + "`, which is not supported",
@@ -88,7 +93,8 @@ class VersionChecker : DocumentReader {
     if (!fine) return false;
     std::vector<std::string> ignored;
     for (const Value* v : stringsOf("extensionsUsed"))
-      if (!supported(v->string) && !v->string.starts_with("KHR_materials_"))  // buildMaterials() names those
+      if (!isSupported(v->string) &&
+          !v->string.starts_with("KHR_materials_"))  // buildMaterials() names those
         ignored.push_back(v->string);
     if (!ignored.empty())
       warnings.warning({source_.name, 0, 0}, "extensionsUsed",

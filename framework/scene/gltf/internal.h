@@ -70,6 +70,9 @@ ResolvedUri resolveUri(const std::filesystem::path& folder, std::string_view uri
 // Throws Error(BadInput) with every mistake and its place.
 void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings);
 
+// Whether models that need this extension can be read.
+bool isSupported(std::string_view extension);
+
 // ---- parse ----
 
 // Images are returned as their encoded bytes (Image::image, as_is), external ones only as their URI.

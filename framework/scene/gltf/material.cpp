@@ -78,10 +78,6 @@ class TexCoords {
   std::array<int, 2> sets_ = {-1, -1};
 };
 
-constexpr const char* kReadExtensions[] = {"KHR_materials_emissive_strength", "KHR_materials_ior",
-                                           "KHR_materials_specular",          "KHR_materials_transmission",
-                                           "KHR_materials_clearcoat",         "KHR_materials_unlit"};
-
 class MaterialBuilder {
  public:
   explicit MaterialBuilder(Context& c) : c_(c) {}
@@ -193,9 +189,7 @@ class MaterialBuilder {
     m.unlit = extensionOf(written, "KHR_materials_unlit") != nullptr;
     if (const Value* all = memberOf(written, "extensions"))
       for (const json::Member& e : all->members)
-        if (std::find(std::begin(kReadExtensions), std::end(kReadExtensions), e.key) ==
-            std::end(kReadExtensions))
-          leftOut(e.key.substr(0, 80), "the material is shown without it");
+        if (!isSupported(e.key)) leftOut(e.key.substr(0, 80), "the material is shown without it");
   }
 
   // One warning for each thing that a model asks for, at the first material that does.
