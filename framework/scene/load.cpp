@@ -30,9 +30,9 @@ bool isModelFile(const fs::path& file) { return file.extension() == ".gltf" || f
 // Loads a model on its own, with all that a picture of it needs.
 Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
   Scene scene = loadGltf(file, warnings);
-  const FirstView added = addFirstView(scene, flatten(scene));
+  const FirstView added = addFirstView(scene);
   std::string list;
-  for (const std::string& what : {added.camera, added.light, added.exposure})
+  for (const std::string& what : {added.camera, added.floor, added.light, added.exposure})
     if (!what.empty()) list += (list.empty() ? "" : ", ") + what;
   if (!list.empty())
     warnings.warning({file.string(), 0, 0}, "", "what the model does not say is assumed: " + list,

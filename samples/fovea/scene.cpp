@@ -84,6 +84,10 @@ Json sceneFileOf(const Scene& s) {
                     {"target", toJson(c.position + c.orientation * glm::vec3(0, 0, -1))},
                     {"fov_deg", rounded(glm::degrees(c.verticalFov))},
                     {"near", rounded(c.zNear)}};
+  if (s.assumedFloor) {
+    const scene::Node& floor = s.nodes.back();
+    file["floor"] = {{"position", toJson(floor.translation)}, {"radius", rounded(floor.scale.x)}};
+  }
   for (size_t i = s.lights.size() - s.assumedLights; i < s.lights.size(); ++i) {
     const scene::Light& light = s.lights[i];
     const bool sun = light.type == scene::LightType::Directional;

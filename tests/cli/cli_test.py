@@ -133,7 +133,7 @@ class Inputs(CliTest):
     def test_numbers_that_are_none(self):
         good = [0, 0, 0, 1, 0, 0, 0, 1, 0]
         self.model(good)
-        self.assertRegex(self.succeeds("scene", "info", "model.gltf").stdout, r"triangles +1 ")
+        self.assertRegex(self.succeeds("scene", "info", "model.gltf").stdout, r"triangles +97 ")  # and the floor's
         for bad in (float("nan"), float("inf")):
             self.model(good[:4] + [bad] + good[5:])
             self.fails(BAD_INPUT, "render", "direct", "--scene", "model.gltf", *SMALL, says=["model.gltf"])
@@ -148,13 +148,13 @@ class Inputs(CliTest):
     def test_what_a_model_does_not_say_is_printed_as_a_scene_file(self):
         self.model([0, 0, 0, 1, 0, 0, 0, 1, 0])
         run = self.succeeds("scene", "info", "model.gltf")
-        self.assertIn("is assumed: a camera that shows the whole of it, a sun and a sky", run.stderr)
+        self.assertIn("is assumed: a camera that shows the whole of it, a floor, a sun", run.stderr)
         values, scene_file = run.stdout.split("as a scene file, to be changed:\n")
         self.write("own.json", scene_file)
         again = self.succeeds("scene", "info", "own.json")
         self.assertEqual(again.stderr, "")
         self.assertNotIn("scene file", again.stdout)
-        for kind in ("camera", "light", "exposure", "sky"):
+        for kind in ("triangles", "bounds", "camera", "light", "exposure", "sky"):
             wanted = [line for line in values.splitlines() if line.startswith(kind)]
             self.assertTrue(wanted, values)
             self.assertEqual([line for line in again.stdout.splitlines() if line.startswith(kind)], wanted)

@@ -86,6 +86,30 @@ TEST(SceneFile, EverythingItCanSay) {
   EXPECT_EQ(s.materials[g.triangles.back().material()].name, "white");
 }
 
+TEST(SceneFile, AFloorLiesUnderTheModels) {
+  TemporaryFolder folder;
+  Diagnostics warnings;
+  const Scene s = loadJson(folder, R"({
+    "models": [{ "builtin": "cornellbox" }],
+    "floor": { "position": [1, -2, 3], "radius": 4, "color": [0.1, 0.2, 0.3] }
+  })",
+                           warnings);
+  const Geometry g = flatten(s);
+  const size_t first = flatten(builtin("cornellbox")).triangles.size();
+  EXPECT_EQ(s.materials[g.triangles.back().material()].baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 1));
+  double area = 0;
+  for (size_t i = first; i < g.triangles.size(); ++i) {
+    const Triangle& t = g.triangles[i];
+    const glm::vec3 a = g.positions[t.v[0]];
+    const glm::vec3 across = glm::cross(g.positions[t.v[1]] - a, g.positions[t.v[2]] - a);
+    EXPECT_FLOAT_EQ(a.y, -2);
+    EXPECT_GT(across.y, 0);  // it faces upwards
+    EXPECT_LE(glm::distance(a, {1, -2, 3}), 4.0001f);
+    area += 0.5 * glm::length(across);
+  }
+  EXPECT_NEAR(area, 16 * 3.14159, 0.002 * area);
+}
+
 TEST(SceneFile, AModelsLightsAndCamerasMoveWithIt) {
   TemporaryFolder folder;
   Diagnostics warnings;
@@ -253,6 +277,7 @@ TEST(SceneFile, AllMistakesAtOnceEachWithItsLine) {
     "camera": { "eye": [0, 0, 0], "target": [0, 0, 0], "fov_dg": 60 },
     "exposure": 0,
     "exposre": 1,
+    "floor": { "radius": 0, "color": [2, 0, 0] },
     "gaze": [{ "t": 1, "x": 2, "y": 0.5 }, { "t": 1 }, 5]
   })");
   for (const char* expected : {"scene.json:2:",
@@ -274,6 +299,8 @@ TEST(SceneFile, AllMistakesAtOnceEachWithItsLine) {
                                "scene.json:9:",
                                "exposure",
                                "did you mean `exposure`",
+                               "floor.radius",
+                               "no surface reflects more than 1",
                                "gaze[0].x",
                                "gaze[1].t",
                                "gaze[2]"})
@@ -316,8 +343,10 @@ TEST(SceneFile, ModelsAreFoundThroughTheVariable) {
   Diagnostics warnings;
   EXPECT_EQ(flatten(load(file.string(), warnings)).triangles.size(), 1u);
   EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("nothing in this scene shines")));
-  // The same model, loaded by its own name.
-  EXPECT_EQ(flatten(load("m/tri.gltf", warnings)).triangles.size(), 1u);
+  // The same model, loaded by its own name, has a floor as well.
+  const Scene bare = load("m/tri.gltf", warnings);
+  EXPECT_TRUE(bare.assumedFloor);
+  EXPECT_EQ(flatten(bare).triangles.size(), 1 + bare.meshes.back().primitives[0].indices.size() / 3);
 }
 
 TEST(Load, BareModelsGetAViewAndASun) {
@@ -329,8 +358,9 @@ TEST(Load, BareModelsGetAViewAndASun) {
   ASSERT_EQ(s.lights.size(), 2u);
   EXPECT_EQ(s.assumedLights, 2u);
   EXPECT_EQ(s.lights[0].type, LightType::Directional);
-  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("is assumed: a camera"), HasSubstr("a sun and a sky"),
-                                       HasSubstr("the exposure"), HasSubstr("scene info")));
+  EXPECT_THAT(warnings.format(),
+              AllOf(HasSubstr("is assumed: a camera"), HasSubstr("a floor, a sun and a sky"),
+                    HasSubstr("the exposure"), HasSubstr("scene info")));
   // The view contains the whole model, and the sun shines on what it sees.
   const glm::vec3 forward = s.cameras[0].orientation * glm::vec3(0, 0, -1);
   for (const glm::vec3 p : {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)})

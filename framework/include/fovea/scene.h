@@ -266,8 +266,9 @@ struct Scene {
   float exposure = 1;        // display = sRGB(exposure * radiance)
   glm::vec3 environment{0};  // radiance where a ray hits nothing
   uint64_t hash = 0;         // hash of all content, for caches and reports
-  // What a model does not say and load() has assumed: camera, exposure and environment, and the last of the lights.
-  bool assumed = false;
+  // What a model does not say and load() has assumed: camera, exposure and environment, and the last of the lights. The
+  // floor, if there is one, is the last of the nodes.
+  bool assumed = false, assumedFloor = false;
   uint32_t assumedLights = 0;
 };
 

@@ -116,9 +116,7 @@ void MotionReader::mover(const Value& v, const std::string& path) {
   }
   if (hasShape) {
     m.scale = readScale(r, "size", glm::vec3(1));
-    m.color = readColor(r, "color", glm::vec3(0.8f));
-    if (m.color.x > 1 || m.color.y > 1 || m.color.z > 1)
-      mistake(r, "color", "no surface reflects more than 1");
+    m.color = readReflectance(r, "color", glm::vec3(0.8f));
     m.emission = readColor(r, "emission", glm::vec3(0));
   }
   how(r, m);

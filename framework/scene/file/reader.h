@@ -36,6 +36,12 @@ inline glm::vec3 readColor(json::ObjectReader& r, std::string_view key, glm::vec
   return c;
 }
 
+inline glm::vec3 readReflectance(json::ObjectReader& r, std::string_view key, glm::vec3 fallback) {
+  const glm::vec3 c = readColor(r, key, fallback);
+  if (c.x > 1 || c.y > 1 || c.z > 1) mistake(r, key, "no surface reflects more than 1");
+  return c;
+}
+
 inline glm::vec3 readDirection(json::ObjectReader& r, std::string_view key, glm::vec3 fallback) {
   const glm::vec3 d = readVector(r, key, fallback);
   const float length = glm::length(d);

@@ -7,6 +7,7 @@
 
 #include "framework/scene/file/reader.h"
 #include "framework/scene/first_view/first_view.h"
+#include "framework/scene/floor.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/motion.h"
 
@@ -45,6 +46,7 @@ class Parser {
               R"(add "models": [{"file": "folder/model.gltf"}] or [{"builtin": "NAME"}])");
     eachItem(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
     if (const Value* c = r.find("camera")) camera(*c);
+    if (const Value* f = r.object("floor")) floor(*f);
     hasExposure_ = r.has("exposure");
     scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
     hasEnvironment_ = r.has("environment");
@@ -73,6 +75,7 @@ class Parser {
       appendModel(out, std::move(model), m.placement);
     }
     errors_.throwIfErrors();
+    if (floor_) addFloor(out, *floor_);
     motion_.apply(out, folder, warnings);
     return out;
   }
@@ -183,6 +186,18 @@ class Parser {
     camera.orientation = lookAlong(forward, up);
   }
 
+  void floor(const Value& v) {
+    ObjectReader r(v, "floor", errors_);
+    r.require("position");
+    r.require("radius");
+    Floor f;
+    f.position = readVector(r, "position", f.position);
+    f.radius = float(r.number("radius", f.radius, 1e-6, 1e9));
+    f.color = readReflectance(r, "color", f.color);
+    r.finish();
+    floor_ = f;
+  }
+
   void lens(const Value& v) {
     ObjectReader r(v, "lens", errors_);
     const auto angle = [&](const char* key) {
@@ -209,6 +224,7 @@ class Parser {
   Diagnostics errors_;
   MotionReader motion_{errors_};
   std::optional<NamedFile> gazeFile_;
+  std::optional<Floor> floor_;
   bool hasExposure_ = false, hasEnvironment_ = false;
 };
 

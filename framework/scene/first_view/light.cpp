@@ -166,12 +166,16 @@ float firstExposure(const Scene& scene, const Geometry& geometry) {
   return std::round(high / unit) * unit;
 }
 
-FirstView addFirstView(Scene& scene, const Geometry& geometry) {
+FirstView addFirstView(Scene& scene) {
   const size_t lights = scene.lights.size();
+  Geometry geometry = flatten(scene);
   FirstView added;
   added.camera = addFirstCamera(scene, geometry);
+  if (!added.camera.empty()) added.floor = addFirstFloor(scene, geometry);
+  if (!added.floor.empty()) geometry = flatten(scene);
   added.light = addFirstLight(scene, geometry);
   scene.assumed = true;
+  scene.assumedFloor = !added.floor.empty();
   scene.assumedLights = uint32_t(scene.lights.size() - lights);
   scene.exposure = firstExposure(scene, geometry);
   if (scene.exposure != 1) added.exposure = fmt::format("the exposure {:.2g}", scene.exposure);

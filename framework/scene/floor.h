@@ -1,0 +1,19 @@
+// A round floor under things that come without one.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "framework/scene/scene.h"
+
+namespace fovea::scene {
+
+struct Floor {
+  glm::vec3 position{0};  // its centre, m
+  float radius = 1;       // m
+  glm::vec3 color{0.5f};  // reflectance
+};
+
+// Appends it as a node, which is seen from above only.
+void addFloor(Scene& scene, const Floor& floor);
+
+}  // namespace fovea::scene
