@@ -16,10 +16,13 @@ class Tonemap : public Pass {
         "display transform from linear radiance to an sRGB image, with the exact transfer function",
         PassKind::Graphics);
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
+    d.input("adapted", image2D(VK_FORMAT_R32_SFLOAT, 1, 1), Usage::StorageRead,
+            "exposure in place of the scene's own (pass adaptation)")
+        .makeOptional();
     d.output("image", image2D(VK_FORMAT_R8G8B8A8_UNORM, widthOf("radiance"), heightOf("radiance")),
              Usage::ColorAttachment, "rgb: sRGB-encoded, a: 1");
     d.parameter("exposure", real(0, 0, 1e9),
-                "factor from radiance to display intensity; 0 uses the scene's own exposure");
+                "factor from radiance to display intensity; 0 uses `adapted` or the scene's own exposure");
     d.parameter(
         "operator", choice("clamp", {"clamp", "reinhard", "agx"}),
         "curve before encoding: `clamp` is linear and clamps to 1 (used by every measure), `reinhard` is "
@@ -30,10 +33,8 @@ class Tonemap : public Pass {
     d.fullscreen("tonemap/tonemap.frag", {"image"})
         .define("REINHARD", is("operator", "reinhard"))
         .define("AGX", is("operator", "agx"))
-        .constant("exposure", [](const RecordContext& ctx) {
-          const float exposure = float(ctx.parameters().real("exposure"));
-          return exposure > 0 ? exposure : ctx.frame().exposure;
-        });
+        .define("ADAPTED", wired("adapted"))
+        .constant("sceneExposure", [](const RecordContext& ctx) { return ctx.frame().exposure; });
     return d;
   }
 };

@@ -1,11 +1,16 @@
-// T(x) = sRGB(clamp01(exposure * x)), with the transfer function of IEC 61966-2-1.
+// T(x) = sRGB(clamp01(exposure * x)), with the transfer function of IEC 61966-2-1. Defines: REINHARD, AGX; ADAPTED, 1 to
+// read the exposure that replaces the scene's own.
 
 uniform texture2D radiance;
+#if ADAPTED
+layout(r32f) uniform readonly image2D adapted;
+#endif
 layout(location = 0) out vec4 image;
 layout(std430) buffer Counters { uint value[]; } counters;
 
 layout(push_constant) uniform Constants {
-  float exposure;
+  float exposure;  // 0 if none is given
+  float sceneExposure;
 #if AGX
   float contrast, saturation;
 #endif
@@ -42,7 +47,12 @@ void main() {
     atomicAdd(counters.value[0], 1u);
     if (any(bvec3(uvec3(special) * (floatBitsToUint(x) & 0x007fffffu)))) x = vec3(0.0);
   }
-  x = clamp(x * exposure, 0.0, 1e30);
+#if ADAPTED
+  float own = imageLoad(adapted, ivec2(0)).r;
+#else
+  float own = sceneExposure;
+#endif
+  x = clamp(x * (exposure > 0.0 ? exposure : own), 0.0, 1e30);
 #if REINHARD
   x /= 1.0 + dot(x, vec3(0.2126, 0.7152, 0.0722));
 #endif

@@ -67,6 +67,18 @@ TEST(Tonemap, TakesTheScenesExposure) {
   expectImage(test, radiance, 3);
 }
 
+TEST(Tonemap, AnAdaptedExposureReplacesTheScenesButNotAGivenOne) {
+  const auto radiance = ramp();
+  for (const double given : {0.0, 2.0}) {
+    PassTest test("tonemap");
+    test.param("exposure", given).viewSize(kWidth, kHeight);
+    test.image("radiance", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, radiance);
+    test.image("adapted", VK_FORMAT_R32_SFLOAT, 1, 1, 1, std::vector<float>{5});
+    test.run();
+    expectImage(test, radiance, given > 0 ? given : 5);
+  }
+}
+
 TEST(Tonemap, NotANumberIsBlackAndCounted) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const std::vector<float> radiance = {nan,  0.5f, 0.5f, 1,   inf, 0.5f, -inf, 1,
