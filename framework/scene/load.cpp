@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "framework/base/paths.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/file/scene_file.h"
 #include "framework/scene/first_view/first_view.h"
 
@@ -27,9 +28,16 @@ uint32_t shifted(uint32_t index, size_t by) { return index == kNoIndex ? kNoInde
 
 bool isModelFile(const fs::path& file) { return file.extension() == ".gltf" || file.extension() == ".glb"; }
 
+void replaceEnvironment(Scene& scene, const LoadOptions& options) {
+  if (options.environment.empty()) return;
+  scene.environmentMap = loadEnvironment(options.environment, 1, 0);
+  scene.hash = contentHash(scene);
+}
+
 // Loads a model on its own, with all that a picture of it needs.
-Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
+Scene loadBareModel(const fs::path& file, Diagnostics& warnings, const LoadOptions& options) {
   Scene scene = loadGltf(file, warnings);
+  replaceEnvironment(scene, options);
   const FirstView added = addFirstView(scene);
   std::string list;
   for (const std::string& what : {added.camera, added.floor, added.light, added.exposure})
@@ -41,8 +49,9 @@ Scene loadBareModel(const fs::path& file, Diagnostics& warnings) {
   return scene;
 }
 
-Scene loadFile(const fs::path& file, Diagnostics& warnings) {
-  Scene scene = isModelFile(file) ? loadBareModel(file, warnings) : loadSceneFile(file, warnings);
+Scene loadFile(const fs::path& file, Diagnostics& warnings, const LoadOptions& options) {
+  Scene scene = isModelFile(file) ? loadBareModel(file, warnings, options) : loadSceneFile(file, warnings);
+  if (!isModelFile(file)) replaceEnvironment(scene, options);
   uint64_t indices = 0;
   for (const Node& n : scene.nodes)
     if (n.mesh != kNoIndex)
@@ -91,7 +100,7 @@ std::vector<fs::path> modelSearchPath() {
 
 std::vector<fs::path> sceneSearchPath() { return dataFolders("scenes"); }
 
-Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
+Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options) {
   const fs::path file(nameOrFile);
   const bool asFile = file.has_parent_path() || file.extension() == ".json" || isModelFile(file);
   std::error_code ec;
@@ -99,20 +108,24 @@ Scene load(const std::string& nameOrFile, Diagnostics& warnings) {
     // A scene file with the name of a built-in scene adds its motion, so it takes precedence.
     for (const fs::path& folder : sceneSearchPath())
       if (const fs::path found = folder / (nameOrFile + ".json"); fs::is_regular_file(found, ec))
-        return loadFile(found, warnings);
+        return loadFile(found, warnings, options);
     for (const std::string& name : builtinNames())
-      if (name == nameOrFile) return builtin(name);
+      if (name == nameOrFile) {
+        Scene scene = builtin(name);
+        replaceEnvironment(scene, options);
+        return scene;
+      }
     unknownScene(nameOrFile);
   }
   if (fs::exists(file, ec)) {
     if (!isModelFile(file) && file.extension() != ".json")
       throw Error(ExitCode::BadInput,
                   nameOrFile + ": is neither a scene file (.json) nor a model (.gltf, .glb)");
-    return loadFile(file, warnings);
+    return loadFile(file, warnings, options);
   }
   if (!file.is_absolute())
     for (const fs::path& folder : isModelFile(file) ? modelSearchPath() : sceneSearchPath())
-      if (fs::is_regular_file(folder / file, ec)) return loadFile(folder / file, warnings);
+      if (fs::is_regular_file(folder / file, ec)) return loadFile(folder / file, warnings, options);
   throw Error(ExitCode::BadInput, nameOrFile + ": there is no such scene or model file");
 }
 

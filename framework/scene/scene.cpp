@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "framework/base/hash.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/subdivision/subdivision.h"
 
@@ -209,6 +210,10 @@ uint64_t contentHash(const Scene& scene) {
   }
   h.add(scene.exposure);
   h.add(&scene.environment[0], 3);
+  if (scene.environmentMap) {
+    h.add(scene.environmentMap->texels());
+    h.add(scene.environmentMap->turn());
+  }
   hashMotion(h, scene);
   hashAnimation(h, scene);
   return h.value();

@@ -80,8 +80,8 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   from.face = start.face;
   from.origin = start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
   const uint32_t stream = randomStream(seed_, 0, kPathStream, point);
-  const uint32_t aimed = surfaces_.hasEmitters() && settings_.emission ? paths / kAimedShare : 0,
-                 others = paths - aimed;
+  const bool shines = !surfaces_.emitters().empty() && settings_.emission;
+  const uint32_t aimed = shines ? paths / kAimedShare : 0, others = paths - aimed;
   const bool isAimed = turn >= others;
   SurfaceTracer::EmitterRay aim;
   if (isAimed) aim = surfaces_.towardsEmitter(from, hashCombine(stream, turn));

@@ -1,5 +1,6 @@
 // G-buffer: the nearest surface through the centre of every pixel.
 #include <algorithm>
+#include <string>
 
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
@@ -30,10 +31,12 @@ class GBuffer : public Pass {
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
     for (const bool textured : {false, true})
-      d.fullscreen("gbuffer/resolve.frag", {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
-                                            "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"})
-          .called(textured ? "resolve with emission textures" : "resolve")
-          .define("EMISSION_TEXTURES", textured);
+      for (const bool mapped : {false, true})
+        d.fullscreen("gbuffer/resolve.frag", {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
+                                              "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"})
+            .called(resolveStep(textured, mapped))
+            .define("EMISSION_TEXTURES", textured)
+            .define("ENVIRONMENT_MAP", mapped);
     return d;
   }
 
@@ -59,6 +62,7 @@ class GBuffer : public Pass {
       const std::vector<scene::Material>& materials = ctx.frame().scene->materials;
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
+      environmentMap_ = ctx.frame().scene->environmentMap != nullptr;
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -73,12 +77,17 @@ class GBuffer : public Pass {
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
-    ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
+    ctx.run(resolveStep(emissionTextures_, environmentMap_));
   }
 
  private:
+  static std::string resolveStep(bool emissionTextures, bool environmentMap) {
+    return std::string("resolve") + (emissionTextures ? " with emission textures" : "") +
+           (environmentMap ? " before an environment map" : "");
+  }
+
   Kernel draw_[3];
-  bool emissionTextures_ = false;
+  bool emissionTextures_ = false, environmentMap_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -108,7 +108,7 @@ class Tracer {
 
   // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
   bool isCloseToEmitter(glm::uvec2 corner, Row& statistics) const {
-    if (!surfaces_.hasEmitters()) return false;
+    if (surfaces_.emitters().empty()) return false;
     const glm::vec2 middle =
         glm::min(glm::vec2(corner) + 0.5f * float(settings_.spacing), glm::vec2(view_.size) - 0.5f);
     const TracedSurface v = surfaces_.look(middle, statistics.rays);
@@ -169,13 +169,16 @@ class Tracer {
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
+    const bool seesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
       light = fromEmitters(v, hashCombine(stream, kAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
-    const TracedSurface hit = surfaces_.arrive(v.origin, direction, reach, statistics.rays);
-    if (!hit.there) return light;
+    const TracedSurface hit =
+        surfaces_.arrive(v.origin, direction, seesOutside ? kFarAway : reach, statistics.rays);
+    if (!hit.there) return light + (seesOutside ? fromOutside(v, direction) : glm::vec3(0));
     const float distance = glm::distance(hit.position, v.position);
+    if (seesOutside && distance > reach) return light;
     const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
     statistics.hits += 1 / probability;
     statistics.length += distance / probability;
@@ -224,8 +227,8 @@ class Tracer {
           surfaces_.towardsEmitter(v, {(float(i) + place) / float(points), u.x, u.y});
       if (!to.there) continue;
       const float cosine = cosineDensity(v, to.direction);
-      const glm::vec3 its =
-          to.radiance * (cosine / (cosine * probabilityAt(to.distance) + float(points) * to.density));
+      const float chance = to.triangle == kNoIndex ? 1.0f : probabilityAt(to.distance);
+      const glm::vec3 its = to.radiance * (cosine / (cosine * chance + float(points) * to.density));
       const float part = its.r + its.g + its.b;
       if (!(part > 0) || !choice.takes(part)) continue;
       chosen = to;
@@ -233,6 +236,13 @@ class Tracer {
     }
     if (!choice.any() || !surfaces_.sees(v, chosen, statistics.rays)) return glm::vec3(0);
     return light * choice.inverseProbability();
+  }
+
+  // The part of a cosine-weighted ray that meets nothing but the environment, beside those aimed at it.
+  glm::vec3 fromOutside(const TracedSurface& v, glm::vec3 direction) const {
+    const SurfaceTracer::Outside outside = surfaces_.outside(direction);
+    const float cosine = cosineDensity(v, direction);
+    return outside.radiance * (cosine / (cosine + float(settings_.emitterPoints) * outside.density));
   }
 
   // The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted

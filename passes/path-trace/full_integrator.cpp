@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/base/weighted_choice.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "framework/shader_twins/paraboloid.h"
 
@@ -29,6 +30,8 @@ FullIntegrator::FullIntegrator(const Frame& frame, const View& view, const RaySc
       view_(view),
       rays_(rays),
       emitters_(frame),
+      environment_(frame.scene->environmentMap.get()),
+      surfaceShare_(surfaceShare(emitters_, environment_)),
       materials_(*frame.scene, *frame.geometry),
       depth_(depth) {}
 
@@ -67,7 +70,7 @@ FullIntegrator::EyePoint FullIntegrator::look(glm::vec2 pixel, uint64_t& rays) c
   while (weight != glm::vec3(0) && point.vertex.size() < kMaxPanes) {
     const RayHit hit = intersect(ray, rays);
     if (!hit) {
-      point.direct += weight * frame_.scene->environment;
+      point.direct += weight * (environment_ ? environment_->radiance(direction) : frame_.scene->environment);
       break;
     }
     ray = beyond(ray, hit);
@@ -141,9 +144,20 @@ glm::vec3 FullIntegrator::oneLight(const Vertex& v, const PathSampler& random, u
   return chosen * choice.inverseProbability() * visibility(shadowRay, rays);
 }
 
+glm::vec3 FullIntegrator::environmentLight(const Vertex& v, float u1, float u2, uint64_t& rays) const {
+  const EnvironmentMap::Sample s = environment_->sample(u1, u2);
+  if (!(s.density > 0)) return glm::vec3(0);
+  const glm::vec3 radiance = s.radiance * reflected(v, s.direction);
+  if (radiance == glm::vec3(0)) return glm::vec3(0);
+  const float density = (1 - surfaceShare_) * s.density;
+  return radiance * visibility({v.origin, s.direction}, rays) /
+         (density + v.bsdf.density(toLocal(v.frame, s.direction)));
+}
+
 glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
-  const EmitterPoint p = emitters_.sample({v.origin, v.frame[2]}, choice, u1, u2);
+  if (choice >= surfaceShare_) return environmentLight(v, u1, u2, rays);
+  const EmitterPoint p = emitters_.sample({v.origin, v.frame[2]}, choice / surfaceShare_, u1, u2);
   if (p.triangle == kNoIndex) return glm::vec3(0);
   Ray ray;
   ray.origin = v.origin;
@@ -156,13 +170,13 @@ glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, 
   if (cosineEmitter <= 0) return glm::vec3(0);
   const glm::vec3 radiance = materials_.emission(p.triangle, p.u, p.v) * reflected(v, w);
   if (radiance == glm::vec3(0)) return glm::vec3(0);
-  const float density = p.density * d2 / cosineEmitter;  // per sr
+  const float density = surfaceShare_ * p.density * d2 / cosineEmitter;  // per sr
   return radiance * visibility(ray, rays) / (density + v.bsdf.density(toLocal(v.frame, w)));
 }
 
 glm::vec3 FullIntegrator::emitted(const Vertex& from, glm::vec3 direction, const RayHit& hit,
                                   const SurfacePoint& at, float density) const {
-  const float perArea = emitters_.density(hit.triangle, {from.origin, from.frame[2]});
+  const float perArea = surfaceShare_ * emitters_.density(hit.triangle, {from.origin, from.frame[2]});
   if (!(perArea > 0) || at.unlit) return glm::vec3(0);
   const float cosine = std::max(std::abs(glm::dot(at.face, direction)), 1e-12f);
   return at.emission * (density / (density + perArea * hit.distance * hit.distance / cosine));
@@ -182,7 +196,14 @@ bool FullIntegrator::bounce(Path& path, uint32_t edges, const PathSampler& rando
   float pass = random.number(k + 7);
   for (uint32_t panes = 0; panes < kMaxPanes; ++panes) {
     const RayHit hit = intersect(ray, rays);
-    if (!hit) return false;
+    if (!hit) {
+      if (environment_ != nullptr) {
+        const float other = (1 - surfaceShare_) * environment_->density(direction);
+        path.light += path.throughput * environment_->radiance(direction) *
+                      (sample->density / (sample->density + other));
+      }
+      return false;
+    }
     const SurfacePoint s = materials_.at(hit);
     const bool glass = materials_.transmits(hit.triangle);
     if (!glass && glm::dot(s.face, direction) >= 0 && !s.doubleSided) return false;
@@ -208,7 +229,7 @@ void FullIntegrator::trace(Path& path, const PathSampler& random, uint64_t& rays
   for (uint32_t edges = 1; edges < depth_; ++edges) {
     const uint32_t k = 8 * edges;
     if (edges > 1) path.light += path.throughput * oneLight(path.vertex, random, k + 2, rays);
-    if (!emitters_.empty()) {
+    if (!emitters_.empty() || environment_ != nullptr) {
       const std::array<float, 2> u = random.pair(k + 4);
       path.light += path.throughput * emitterLight(path.vertex, random.number(k + 6), u[0], u[1], rays);
     } else if (edges + 1 == depth_) {

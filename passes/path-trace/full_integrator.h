@@ -16,8 +16,8 @@ namespace fovea::passes {
 
 // The same rules as those of PathIntegrator, and these:
 //
-// - Directions are chosen by the BSDF, and light from emissive triangles by the balance heuristic between that and
-//   points on them.
+// - Directions are chosen by the BSDF, and light from emissive triangles and the environment map by the balance
+//   heuristic between that and points on them.
 // - Light goes straight through thin glass, which is no edge of a path. Glass has the same faces on both sides for
 //   light, but the eye looks through the back of a single-sided one.
 // - What is unlit is only seen by the eye, directly or through glass.
@@ -66,6 +66,7 @@ class FullIntegrator {
   glm::vec3 allLights(const Vertex& v, uint64_t& rays) const;
   // The same on average, using random number k where there is a choice.
   glm::vec3 oneLight(const Vertex& v, const PathSampler& random, uint32_t k, uint64_t& rays) const;
+  glm::vec3 environmentLight(const Vertex& v, float u1, float u2, uint64_t& rays) const;
   glm::vec3 emitterLight(const Vertex& v, float choice, float u1, float u2, uint64_t& rays) const;
   void trace(Path& path, const PathSampler& random, uint64_t& rays) const;
   // Goes on to the next surface; false if the path ends. `edges` join the vertex of the path to the eye.
@@ -78,6 +79,8 @@ class FullIntegrator {
   const scene::View& view_;
   const scene::RayScene& rays_;
   scene::Emitters emitters_;
+  const scene::EnvironmentMap* environment_;
+  float surfaceShare_;  // of the rays aimed at emitters and environment
   scene::SurfaceMaterials materials_;
   uint32_t depth_;
 };

@@ -8,6 +8,7 @@
 #include "framework/base/low_discrepancy.h"
 #include "framework/base/random.h"
 #include "framework/base/weighted_choice.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "framework/shader_twins/paraboloid.h"
 
@@ -83,7 +84,14 @@ struct PathIntegrator::Wave {
 };
 
 PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RayScene& rays, uint32_t depth)
-    : frame_(frame), view_(view), rays_(rays), emitters_(frame), surfaces_(frame), depth_(depth) {}
+    : frame_(frame),
+      view_(view),
+      rays_(rays),
+      emitters_(frame),
+      environment_(frame.scene->environmentMap.get()),
+      surfaceShare_(surfaceShare(emitters_, environment_)),
+      surfaces_(frame),
+      depth_(depth) {}
 
 RayHit PathIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
   ++rays;
@@ -128,7 +136,8 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
     if (depth_ >= 2) point.direct += point.vertex.reflectance * kInversePi * allLights(point.vertex, rays);
     return point;
   }
-  point.direct = frame_.scene->environment;
+  point.direct =
+      environment_ ? environment_->radiance(glm::normalize(ray.direction)) : frame_.scene->environment;
   return point;
 }
 
@@ -170,12 +179,22 @@ glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& rando
   return chosen * choice.inverseProbability();
 }
 
+// The environment is reached in both ways, too.
+glm::vec3 PathIntegrator::environmentLight(const PathVertex& v, float u1, float u2, uint64_t& rays) const {
+  const EnvironmentMap::Sample s = environment_->sample(u1, u2);
+  const float cosine = glm::dot(v.normal, s.direction);
+  if (!(s.density > 0) || cosine <= 0 || glm::dot(v.face, s.direction) <= 0) return glm::vec3(0);
+  if (occluded({v.origin, s.direction}, rays)) return glm::vec3(0);
+  return s.radiance * (cosine * kInversePi / ((1 - surfaceShare_) * s.density + cosine * kInversePi));
+}
+
 // Both ways to reach an emissive triangle, a point chosen on it and a bounce that happens to hit it, are weighted
 // by the balance heuristic (Veach and Guibas 1995), so neither causes bright spots where emitters touch other
 // surfaces or are small.
 glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
-  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, choice, u1, u2);
+  if (choice >= surfaceShare_) return environmentLight(v, u1, u2, rays);
+  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, choice / surfaceShare_, u1, u2);
   Ray ray;
   ray.origin = v.origin;
   ray.direction = p.position + p.normal * rays_.epsilon() - v.origin;
@@ -186,7 +205,7 @@ glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float 
   if (cosine <= 0 || cosineEmitter <= 0 || glm::dot(v.face, w) <= 0) return glm::vec3(0);
   ray.far = kShadowEnd;
   if (occluded(ray, rays)) return glm::vec3(0);
-  const float density = p.density * d2 / cosineEmitter;  // per sr
+  const float density = surfaceShare_ * p.density * d2 / cosineEmitter;  // per sr
   return p.radiance * (cosine * kInversePi / (density + cosine * kInversePi));
 }
 
@@ -197,7 +216,7 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   const PathVertex& v = path.vertex;
   const uint32_t k = 8 * edges;
   if (edges > 1) path.light += path.throughput * kInversePi * oneLight(v, random, k + 2, rays);
-  if (!emitters_.empty()) {
+  if (shines()) {
     const std::array<float, 2> u = random.pair(k + 4);
     path.light += path.throughput * emitterLight(v, random.number(k + 6), u[0], u[1], rays);
   }
@@ -205,7 +224,14 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   path.direction = cosineDirection(v.normal, u[0], u[1]);
   if (glm::dot(path.direction, v.face) <= 0) return false;
   path.hit = intersect({v.origin, path.direction}, rays);
-  if (!path.hit) return false;
+  if (!path.hit) {
+    if (environment_ != nullptr) {
+      const float own = glm::dot(v.normal, path.direction) * kInversePi,
+                  other = (1 - surfaceShare_) * environment_->density(path.direction);
+      path.light += path.throughput * environment_->radiance(path.direction) * (own / (own + other));
+    }
+    return false;
+  }
   surfaces_.prefetch(path.hit.triangle);
   return true;
 }
@@ -215,7 +241,8 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
 bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
   const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
   if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
-  if (const float density = emitters_.density(path.hit.triangle, {path.vertex.origin, path.vertex.normal});
+  if (const float density =
+          surfaceShare_ * emitters_.density(path.hit.triangle, {path.vertex.origin, path.vertex.normal});
       density > 0) {
     const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.direction));
     const float other =
@@ -298,8 +325,8 @@ void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampl
     wave.paths[i].throughput = first.reflectance;
     wave.alive[i] = uint8_t(i);
   }
-  // Light from an emitter comes along at least two edges, all other light along at least three.
-  const uint32_t edgesAtLeast = emitters_.empty() ? 3 : 2;
+  // Light of the lights comes along at least three edges, all other light along at least two.
+  const uint32_t edgesAtLeast = shines() ? 2 : 3;
   for (uint32_t edges = 1; depth_ >= edgesAtLeast && edges < depth_ && wave.count > 0; ++edges) {
     if (lastByLight(edges)) {
       reflectLast(wave, edges, rays);

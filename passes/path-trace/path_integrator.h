@@ -57,8 +57,8 @@ class PathIntegrator {
   // Returns the surface that the eye sees at `pixel` (pixels, centres at +0.5), between the near and the far plane.
   EyePoint look(glm::vec2 pixel, uint64_t& rays) const;
   // Samples the light that reaches the eye from there by all other paths of at most `depth` edges: at least two
-  // reflections of light from the scene's lights, at least one from emissive triangles. light[i] is that of path
-  // random[i]. The paths are traced together, so that each waits for memory while the others proceed.
+  // reflections of light from the scene's lights, at least one from emissive triangles and the environment map.
+  // light[i] is that of path random[i]. The paths are traced together, so that each waits for memory while the others proceed.
   static constexpr size_t kMaxPaths = 32;
   void indirect(const PathVertex& first, std::span<const PathSampler> random, std::span<glm::vec3> light,
                 uint64_t& rays) const;
@@ -84,20 +84,25 @@ class PathIntegrator {
   bool reflect(Path& path) const;
   void bounce(Wave& wave, uint32_t edges, uint64_t& rays) const;
   void reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const;
-  // Without emitters the last edge is a shadow ray.
-  bool lastByLight(uint32_t edges) const { return emitters_.empty() && edges + 1 == depth_; }
+  // Whether there is light that is not one of the scene's lights.
+  bool shines() const { return !emitters_.empty() || environment_ != nullptr; }
+  // Without it the last edge is a shadow ray.
+  bool lastByLight(uint32_t edges) const { return !shines() && edges + 1 == depth_; }
   // Irradiance of one light on a vertex, ignoring occlusion.
   glm::vec3 unshadowed(const scene::Light& light, const PathVertex& v, scene::Ray& shadowRay) const;
   glm::vec3 allLights(const PathVertex& v, uint64_t& rays) const;  // irradiance
   // The same on average, using random number k where there is a choice.
   glm::vec3 oneLight(const PathVertex& v, const PathSampler& random, uint32_t k, uint64_t& rays) const;
-  // Irradiance from emissive triangles, divided by pi.
+  glm::vec3 environmentLight(const PathVertex& v, float u1, float u2, uint64_t& rays) const;
+  // Irradiance from emissive triangles or the environment map, divided by pi.
   glm::vec3 emitterLight(const PathVertex& v, float choice, float u1, float u2, uint64_t& rays) const;
 
   const scene::Frame& frame_;
   const scene::View& view_;
   const scene::RayScene& rays_;
   scene::Emitters emitters_;
+  const scene::EnvironmentMap* environment_;
+  float surfaceShare_;  // of the rays aimed at emitters and environment
   SurfaceTable surfaces_;
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;

@@ -30,6 +30,14 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
   addPassesOption(command, options.passes);
 }
 
+void addEnvironmentOption(CLI::App& command, std::string& file) {
+  command
+      .add_option("--environment", file,
+                  "Light from all around instead of the scene's environment: an equirectangular\n"
+                  "image in linear radiance (.exr, .hdr, .pfm)")
+      ->type_name("FILE");
+}
+
 CLI::Validator numberBetween(double low, double high) {
   return CLI::Validator(
       [=](const std::string& text) {

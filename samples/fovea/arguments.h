@@ -16,6 +16,8 @@ void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
 // GRAPH, --set, --plugin, --passes
 void addGraphOptions(CLI::App& command, GraphOptions& options);
+// --environment
+void addEnvironmentOption(CLI::App& command, std::string& file);
 // --gaze, --radius, --layer, --exposure, --json
 void addCompareOptions(CLI::App& command, CompareOptions& options);
 // Adds an option that may be given several times, each time with one value.

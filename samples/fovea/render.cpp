@@ -32,7 +32,7 @@ constexpr double kSlowFrameMs = 500;
 
 struct RenderOptions {
   GraphOptions graph;
-  std::string scene, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
+  std::string scene, environment, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
   double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0;
   std::vector<std::string> outputs;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
@@ -130,7 +130,7 @@ void Render::loadInputs() {
   std::vector<scene::GazeSample> trace;
   if (!options_.gazeTrace.empty()) trace = scene::readGazeCsv(options_.gazeTrace);
   progress_.stage("loading scene " + options_.scene);
-  scene_ = scene::load(options_.scene, messages_);
+  scene_ = scene::load(options_.scene, messages_, {options_.environment});
   if (lens_) {
     if (bound.views.size() < 2)
       throw Error(ExitCode::Usage,
@@ -351,6 +351,7 @@ void addRender(CLI::App& program, Action& action) {
                    "Scene: a .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("SCENE");
+  addEnvironmentOption(*command, options->environment);
   addOutputOptions(*command, *options);
   command->add_option("--size", options->size, "Picture size, 1 to 16384 pixels a side; default 1024x1024")
       ->type_name("WxH");

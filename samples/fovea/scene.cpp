@@ -7,6 +7,7 @@
 
 #include "fovea/scene.h"
 #include "framework/graph/report/report.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/load.h"
 #include "framework/scene/motion/animation.h"
 #include "framework/scene/scene.h"
@@ -76,7 +77,7 @@ double rounded(float value) { return std::stod(fmt::format("{:.5g}", value)); }
 Json toJson(glm::vec3 v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
 // A scene file that shows the same as a model on its own (samples/scenes/README.md).
-Json sceneFileOf(const Scene& s) {
+Json sceneFileOf(const Scene& s, const std::string& environment) {
   const scene::Camera& c = s.cameras.at(0);
   Json file = Json::object();
   file["models"] = {{{"file", s.source}}};
@@ -99,14 +100,17 @@ Json sceneFileOf(const Scene& s) {
          {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
   }
   file["exposure"] = rounded(s.exposure);
-  file["environment"] = toJson(s.environment);
+  if (s.environmentMap)
+    file["environment"] = {{"file", environment}};
+  else
+    file["environment"] = toJson(s.environment);
   return file;
 }
 
-void printSceneFile(const Scene& s) {
+void printSceneFile(const Scene& s, const std::string& environment) {
   fmt::print("\nas a scene file, to be changed:\n{{");
   const char* before = "\n";
-  const Json file = sceneFileOf(s);
+  const Json file = sceneFileOf(s, environment);
   for (const auto& [key, value] : file.items()) {
     fmt::print("{}  \"{}\": {}", before, key, value.dump(-1, ' ', false, Json::error_handler_t::replace));
     before = ",\n";
@@ -114,9 +118,9 @@ void printSceneFile(const Scene& s) {
   fmt::print("\n}}\n");
 }
 
-ExitCode info(const std::string& name) {
+ExitCode info(const std::string& name, const scene::LoadOptions& options) {
   Diagnostics messages;
-  const Scene s = scene::load(name, messages);
+  const Scene s = scene::load(name, messages, options);
   const scene::Geometry geometry = scene::flatten(s);
   printWarnings(messages);
   line("scene", s.name);
@@ -140,9 +144,12 @@ ExitCode info(const std::string& name) {
   if (s.gaze.size() > 1)
     line("gaze", fmt::format("{} samples over {:.3g} s", s.gaze.size(), s.gaze.back().time));
   line("exposure", fmt::format("{:.4g}", s.exposure));
-  line("sky", formatVector(s.environment) + " W/(sr m^2)");
+  if (s.environmentMap)
+    line("sky", fmt::format("a map of {}x{} texels", s.environmentMap->width(), s.environmentMap->height()));
+  else
+    line("sky", formatVector(s.environment) + " W/(sr m^2)");
   line("hash", formatHash(s.hash));
-  if (s.assumed) printSceneFile(s);
+  if (s.assumed) printSceneFile(s, options.environment);
   return ExitCode::Ok;
 }
 
@@ -155,7 +162,10 @@ void addScene(CLI::App& program, Action& action) {
   infoCommand->add_option("SCENE", *name, "A .json, .gltf or .glb file, or a bare name (cornellbox)")
       ->required()
       ->type_name("");
-  infoCommand->callback([name, &action] { action = [name] { return info(*name); }; });
+  auto options = std::make_shared<scene::LoadOptions>();
+  addEnvironmentOption(*infoCommand, options->environment);
+  infoCommand->callback(
+      [name, options, &action] { action = [name, options] { return info(*name, *options); }; });
   addSceneExport(*command, action);
 }
 

@@ -20,6 +20,7 @@ layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages
 layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // ObjectRecord
 
 layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, vertices that may move
+layout(set = 1, binding = 10) uniform sampler2D sceneEnvironment;       // equirectangular map, one texel if there is none
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
@@ -200,6 +201,24 @@ bool alphaTest(uint material, vec2 uv) {
   float cutoff = texelFetch(sceneMaterials, first + 1).a;
   if (cutoff <= 0.0) return true;
   return texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a >= cutoff;
+}
+
+// ---- Environment -------------------------------------------------------------------------------------------------
+
+// Radiance of the environment map from a direction, which is unit; the same as scene::EnvironmentMap::radiance.
+vec3 environmentRadiance(vec3 direction) {
+  ivec2 size = textureSize(sceneEnvironment, 0);
+  float around = (atan(direction.x, -direction.z) + frame.environmentTurn) / (2.0 * kPi) + 0.5;
+  vec2 p = vec2(fract(around), acos(clamp(direction.y, -1.0, 1.0)) / kPi) * vec2(size) - 0.5;
+  vec2 base = floor(p), f = p - base;
+  ivec2 first = ivec2(base);
+  int left = (first.x + size.x) % size.x, right = (first.x + 1) % size.x;
+  int top = clamp(first.y, 0, size.y - 1), bottom = clamp(first.y + 1, 0, size.y - 1);
+  vec3 upper = mix(texelFetch(sceneEnvironment, ivec2(left, top), 0).rgb,
+                   texelFetch(sceneEnvironment, ivec2(right, top), 0).rgb, f.x);
+  vec3 lower = mix(texelFetch(sceneEnvironment, ivec2(left, bottom), 0).rgb,
+                   texelFetch(sceneEnvironment, ivec2(right, bottom), 0).rgb, f.x);
+  return mix(upper, lower, f.y);
 }
 
 // ---- Lights ------------------------------------------------------------------------------------------------------

@@ -49,7 +49,11 @@ void main() {
 #else
   vec3 emission = loadMaterial(material).emission;
 #endif
+#if ENVIRONMENT_MAP
+  if (background) emission = environmentRadiance(normalize(pixelRay(p)));
+#else
   if (background) emission = frame.environment;
+#endif
 
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
   gbufferNormal = background ? vec4(0.0) : vec4(normal, 0.0);

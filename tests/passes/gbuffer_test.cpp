@@ -11,6 +11,7 @@
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/octahedral.h"
 #include "tests/passes/ray_reference.h"
+#include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
@@ -92,7 +93,9 @@ class Comparison {
       if (pixel.id != kBackground)
         return "id " + std::to_string(pixel.id) + " where there is only background";
       if (pixel.position.w != 0) return "background with a distance";
-      return glm::length(pixel.emission - scene_.environment) < 1e-3f ? "" : "wrong environment";
+      const auto& map = scene_.environmentMap;
+      const glm::vec3 want = map ? map->radiance(glm::vec3(glm::normalize(ray))) : scene_.environment;
+      return glm::distance(pixel.emission, want) <= 1e-3f * (1 + glm::length(want)) ? "" : "wrong environment";
     }
     ++hits_;
     const scene::Triangle& triangle = geometry_.triangles[hit.triangle];
@@ -193,6 +196,15 @@ TEST(GBuffer, MaterialsAsGltfSays) {
     Comparison comparison(test, scene, cull);
     EXPECT_LT(comparison.run(), 0.02) << "cull " << cull;
   }
+}
+
+TEST(GBuffer, AnEnvironmentMapFillsTheBackground) {
+  scene::Scene scene = materials();
+  scene.environmentMap = skyWithSun();
+  PassTest test("gbuffer");
+  test.viewSize(96, 64).scene(scene);
+  test.run();
+  EXPECT_LT(Comparison(test, scene, true).run(), 0.02);
 }
 
 // An off-axis projection, as for the eyes of a head-mounted display.

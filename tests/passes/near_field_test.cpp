@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <set>
 
 #include "fovea/error.h"
@@ -10,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/vpl_intensity_reference.h"
+#include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
@@ -106,6 +108,32 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
     }
     EXPECT_NEAR(all / wantAll, 1, bound(area / (area + 12), 16))
         << "area " << area << ", bounces " << bounces;
+  }
+}
+
+// A black floor in the open, under a sky with a sun.
+TEST(NearField, AllLightOfTheEnvironment) {
+  scene::Scene s;
+  const uint32_t black = addMaterial(s, glm::vec3(0));
+  addQuad(s, black, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
+  s.environmentMap = skyWithSun();
+  scene::Camera& camera = s.cameras.emplace_back();
+  camera.position = {0, 3, 0};
+  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
+  const scene::Geometry geometry = scene::flatten(s);
+  const scene::RayScene rays(s, geometry);
+  const scene::Frame frame = scene::makeFrame(s, geometry, {16, 16}, 0, 1);
+  const glm::dvec3 want = irradianceFrom(*s.environmentMap, {0, 1, 0}) / glm::pi<double>();
+  for (const float area : {0.05f, 5.0f}) {
+    NearFieldSettings settings;
+    settings.foveaRadius = 2;
+    settings.area = area;
+    settings.samples = 1024;
+    std::vector<glm::vec4> image(64);
+    passes::traceNearField(frame, frame.views[0], rays, settings, image);
+    glm::dvec3 mean(0);
+    for (const glm::vec4& texel : image) mean += glm::dvec3(texel) / double(image.size());
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], want[c], 0.01 * want[c]) << area;
   }
 }
 

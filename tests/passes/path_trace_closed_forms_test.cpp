@@ -9,6 +9,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/scene.h"
 #include "tests/passes/path_trace_run.h"
+#include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
@@ -70,6 +71,56 @@ TEST(PathTrace, SpotLightOnAPlane) {
     const double c = glm::dot(w, axis), edge = (c - std::cos(0.5)) / (std::cos(0.2) - std::cos(0.5));
     return std::pow(std::clamp(edge, 0.0, 1.0), 2) * -w.y / glm::dot(p - at, p - at);
   });
+}
+
+// An open plane under a sky with a sun, alone and beside an emissive rectangle that shares the aimed rays with it.
+TEST(PathTrace, EnvironmentOnAPlane) {
+  const glm::vec3 rho(0.7f, 0.5f, 0.2f);
+  scene::Scene s = plane(rho);
+  s.environmentMap = skyWithSun();
+  const glm::dvec3 open = glm::dvec3(rho) / kPi * irradianceFrom(*s.environmentMap, {0, 1, 0});
+  PathTraceSettings settings = independent(4, 256);
+  expectMean(trace(s, 16, settings), open, "a sky");
+  settings.independent = false;
+  expectMean(trace(s, 16, settings), open, "a sky, Sobol' points");
+
+  // A rectangle below the plane takes half of the aimed rays but sends nothing here.
+  const uint32_t lamp = addMaterial(s, glm::vec3(0));
+  s.materials[lamp].emission = glm::vec3(5);
+  addQuad(s, lamp, {-1, -1, -1}, {2, 0, 0}, {0, 0, 2});
+  expectMean(trace(s, 16, settings), open, "a sky and a hidden lamp");
+}
+
+TEST(PathTrace, TheEyeSeesTheEnvironment) {
+  scene::Scene s = plane(glm::vec3(0));
+  s.environmentMap = skyWithSun();
+  lookAlong(s, {0, 1, 0}, {0.6f, 0.5f, -0.3f}, 1.2f);
+  for (const bool full : {false, true}) {
+    PathTraceSettings settings = independent(4, 2);
+    settings.full = full;
+    const Traced t = trace(s, 16, settings);
+    const scene::View view = makeView(s.cameras[0], {16, 16}, flatten(s));
+    for (size_t i = 0; i < t.direct.size(); ++i) {
+      const glm::vec3 d = glm::normalize(view.rayDirection({float(i % 16) + 0.5f, float(i / 16) + 0.5f}));
+      ASSERT_LT(glm::distance(glm::vec3(t.direct[i]), s.environmentMap->radiance(d)), 1e-4f) << i;
+    }
+  }
+}
+
+// Full materials that are white reflect all light of an even sky, whatever their roughness.
+TEST(PathTrace, EnvironmentMakesAFurnaceOfFullMaterials) {
+  for (const float roughness : {0.05f, 0.3f, 1.0f})
+    for (const float metallic : {0.0f, 1.0f}) {
+      scene::Scene s = plane(glm::vec3(1));
+      s.materials[0].roughness = roughness;
+      s.materials[0].metallic = metallic;
+      s.environmentMap =
+          std::make_shared<const scene::EnvironmentMap>(8, 4, std::vector<glm::vec3>(32, glm::vec3(2)));
+      PathTraceSettings settings = independent(4, 512);
+      settings.full = true;
+      const glm::dvec3 mean = meanOf(trace(s, 8, settings).radiance);
+      EXPECT_NEAR(mean.g, 2, 0.02) << roughness << ' ' << metallic;
+    }
 }
 
 // Form factor from a small surface to a parallel rectangle whose corner lies on its normal, a and b long, c

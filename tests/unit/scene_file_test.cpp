@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
+#include "fovea/image.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/scene.h"
 #include "scene_support.h"
 
@@ -84,6 +87,29 @@ TEST(SceneFile, EverythingItCanSay) {
   // The materials of both models are there, and each model refers to its own.
   EXPECT_EQ(s.materials.size(), 1 + builtin("cornellbox").materials.size());
   EXPECT_EQ(s.materials[g.triangles.back().material()].name, "white");
+}
+
+TEST(SceneFile, AnEnvironmentMayBeAnImage) {
+  TemporaryFolder folder;
+  fovea::image::write(folder.path() / "sky.pfm", {{"", {2, 1, 3, {1, 2, 3, 4, 5, 6}}}});
+  Diagnostics warnings;
+  const Scene s = loadJson(folder, R"({
+    "models": [{ "builtin": "cornellbox" }],
+    "environment": { "file": "sky.pfm", "intensity": 2, "turn_deg": 90 }
+  })",
+                           warnings);
+  ASSERT_TRUE(s.environmentMap);
+  EXPECT_EQ(s.environmentMap->texels().at(1), glm::vec3(8, 10, 12));
+  EXPECT_FLOAT_EQ(s.environmentMap->turn(), glm::half_pi<float>());
+  // The program's option replaces it, and the hash knows them apart.
+  const std::string file = (folder.path() / "scene.json").string(), sky = (folder.path() / "sky.pfm").string();
+  const Scene other = load(file, warnings, {sky});
+  EXPECT_EQ(other.environmentMap->texels().at(1), glm::vec3(4, 5, 6));
+  EXPECT_NE(other.hash, s.hash);
+  EXPECT_THAT(errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "environment": {"file": "none.exr"}})"),
+              HasSubstr("none.exr"));
+  EXPECT_THAT(errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "environment": {"fill": "a.exr"}})"),
+              HasSubstr("did you mean `file`"));
 }
 
 TEST(SceneFile, AFloorLiesUnderTheModels) {

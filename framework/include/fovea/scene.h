@@ -108,6 +108,7 @@ struct Primitive {
   std::vector<glm::vec4> tangents{};
 };
 
+class EnvironmentMap;    // framework/scene/environment/environment_map.h
 struct SubdivisionCage;  // framework/scene/subdivision/subdivision.h
 class Stencils;
 
@@ -264,8 +265,10 @@ struct Scene {
   float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), metres
   std::optional<Lens> lens;  // of these views; without one they have the camera's field of view
   float exposure = 1;        // display = sRGB(exposure * radiance)
-  glm::vec3 environment{0};  // radiance where a ray hits nothing
-  uint64_t hash = 0;         // hash of all content, for caches and reports
+  // Where a ray hits nothing: light from all around, or else a radiance that is only seen.
+  std::shared_ptr<const EnvironmentMap> environmentMap;
+  glm::vec3 environment{0};
+  uint64_t hash = 0;  // hash of all content, for caches and reports
   // What a model does not say and load() has assumed: camera, exposure and environment, and the last of the lights. The
   // floor, if there is one, is the last of the nodes.
   bool assumed = false, assumedFloor = false;
@@ -405,10 +408,15 @@ struct Frame {
 
 // ---- Loading ---------------------------------------------------------------------------------------------------
 
+struct LoadOptions {
+  std::string
+      environment{};  // an image of the light all around, which replaces the scene's environment; "": none
+};
+
 // `nameOrFile` is the bare name of a built-in scene or scene file, or a .json, .gltf or .glb file. A model on its own
-// gets what a picture of it needs and it does not say, a camera, light and an exposure, with a warning. Throws Error(BadInput) with file, place and
-// remedy; for a missing model the message also says where to get it.
-Scene load(const std::string& nameOrFile, Diagnostics& warnings);
+// gets what a picture of it needs and it does not say, such as a camera, light and an exposure, with a warning. Throws
+// Error(BadInput) with file, place and remedy; for a missing model the message also says where to get it.
+Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options = {});
 
 // Names of the built-in scenes, sorted. These scenes are generated in code, deterministically, and register
 // themselves as passes do.

@@ -9,6 +9,7 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/animator.h"
+#include "framework/scene/device/environment_image.h"
 #include "framework/scene/device/gpu_textures.h"
 #include "framework/scene/lights.h"
 
@@ -137,12 +138,14 @@ struct GpuScene::Impl {
   gpu::Device& device;
   uint32_t triangleCount, staticTriangles, vertexCount;
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
+  float environmentTurn;
   uint32_t staticVertices, firstMovingLight;
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one per slot
   std::unique_ptr<Animator> animator;  // null if nothing moves
   GpuTextures textures;
+  gpu::Image environmentMap;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -155,10 +158,12 @@ struct GpuScene::Impl {
         staticTriangles(g.staticTriangles),
         vertexCount(uint32_t(g.positions.size())),
         environment(scene.environment),
+        environmentTurn(scene.environmentMap ? scene.environmentMap->turn() : 0),
         staticVertices(g.staticVertices()),
         firstMovingLight(g.light().firstMoving),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
         textures(d, scene),
+        environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
@@ -264,6 +269,7 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 7 textures
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 10 environment map
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
@@ -282,7 +288,7 @@ void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, slots}};
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
   poolInfo.poolSizeCount = uint32_t(std::size(sizes));
@@ -313,7 +319,8 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
                                   previous.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorImageInfo image{nearest, textures.image().view(),
-                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+      environmentInfo{nearest, environmentMap.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   VkWriteDescriptorSet writes[kBindingCount]{};
   for (uint32_t i = 0; i < kBindingCount; ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -325,6 +332,8 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
       writes[i].pBufferInfo = &blocks[i];
     else if (i == 7)
       writes[i].pImageInfo = &image;
+    else if (i == 10)
+      writes[i].pImageInfo = &environmentInfo;
     else
       writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
   }
@@ -360,6 +369,7 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   block.boundsMin = s.boundsMin;
   block.boundsMax = s.boundsMax;
   block.environment = s.environment;
+  block.environmentTurn = s.environmentTurn;
   block.firstMovingVertex = s.staticVertices;
   block.firstMovingTriangle = s.firstMovingLight;
   impl_->store(slot, 0, block);

@@ -8,6 +8,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "fovea/image.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/export/files.h"
 #include "framework/scene/export/mitsuba_materials.h"
 #include "framework/scene/file/scene_file.h"
@@ -109,7 +111,9 @@ class MitsubaWriter {
     header();
     camera();
     for (const Light& light : lightsAt(scene_, options_.time)) emitter(light);
-    if (scene_.environment != glm::vec3(0)) {
+    if (scene_.environmentMap) {
+      environmentMap(*scene_.environmentMap);
+    } else if (scene_.environment != glm::vec3(0)) {
       // Here it is only visible; as a `constant` emitter it would also light the scene.
       line("<!-- Where nothing is hit (alpha 0), the scene shows " + triple(scene_.environment) + ". -->");
       warn("environment",
@@ -140,6 +144,18 @@ class MitsubaWriter {
                             ? makeFrame(scene_, geometry_, options_.size, 1, 1, 1.0 / options_.time)
                             : makeFrame(scene_, geometry_, options_.size, 0, 1);
     moveObjects(frame, geometry_);
+  }
+
+  // Mitsuba sees the middle of the picture along +Z.
+  void environmentMap(const EnvironmentMap& map) {
+    image::Image picture{map.width(), map.height(), 3, {}};
+    for (const glm::vec3& t : map.texels()) picture.data.insert(picture.data.end(), {t.r, t.g, t.b});
+    image::write(folder_ / "environment.exr", {{"", std::move(picture)}});
+    line("<emitter type=\"envmap\">");
+    line("  <string name=\"filename\" value=\"environment.exr\"/>");
+    line(fmt::format("  <transform name=\"to_world\"><rotate y=\"1\" angle=\"{}\"/></transform>",
+                     180 + glm::degrees(double(map.turn()))));
+    line("</emitter>");
   }
 
   void header() {

@@ -30,7 +30,8 @@ struct MitsubaOptions {
 //   emission        A double-sided surface that emits becomes two copies, 1e-5 of the scene's diagonal apart.
 //   normals         Mitsuba does not turn interpolated normals towards the visible side of the surface.
 //   backs           The backs of single-sided surfaces are black in Mitsuba; here the eye looks through them.
-//   environment     Only the eye sees it here, so it is left out; the alpha channel of the picture shows where it is.
+//   environment     A map is written as an image. A mere colour, which only the eye sees here, is left out; the alpha
+//                   channel of the picture shows where it is.
 //   range           Mitsuba does not limit the range of lights.
 //   full materials  Metals become `principled`, dielectrics the sum of a `plastic` and a `roughplastic`. Both lack the
 //                   light that is scattered more than once among microfacets (2% of a metal of roughness 0.35) and

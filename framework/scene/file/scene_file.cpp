@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/file/reader.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/floor.h"
@@ -25,6 +26,11 @@ struct ModelEntry {
   Placement placement;
   std::optional<SubdivisionEntry> subdivision;
   AnimationChoice animation;
+};
+
+struct EnvironmentEntry {
+  NamedFile file;
+  float intensity = 1, turn = 0;  // turn: radians
 };
 
 class Parser {
@@ -50,7 +56,10 @@ class Parser {
     hasExposure_ = r.has("exposure");
     scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
     hasEnvironment_ = r.has("environment");
-    scene_.environment = readColor(r, "environment", glm::vec3(0));
+    if (const Value* e = r.find("environment"); e && e->isObject())
+      environment(*e);
+    else
+      scene_.environment = readColor(r, "environment", glm::vec3(0));
     scene_.ipd = float(r.number("ipd", scene_.ipd, 0, 10));
     if (const Value* l = r.find("lens")) lens(*l);
     gaze(r);
@@ -76,6 +85,9 @@ class Parser {
     }
     errors_.throwIfErrors();
     if (floor_) addFloor(out, *floor_);
+    if (environment_)
+      out.environmentMap =
+          loadEnvironment(findFile(environment_->file, folder), environment_->intensity, environment_->turn);
     motion_.apply(out, folder, warnings);
     return out;
   }
@@ -186,6 +198,17 @@ class Parser {
     camera.orientation = lookAlong(forward, up);
   }
 
+  void environment(const Value& v) {
+    ObjectReader r(v, "environment", errors_);
+    r.require("file");
+    EnvironmentEntry e;
+    e.file = {"environment", r.text("file"), "", v.where.location(), "environment.file"};
+    e.intensity = float(r.number("intensity", 1, 0, 1e12));
+    e.turn = float(glm::radians(r.number("turn_deg", 0, -360, 360)));
+    r.finish();
+    environment_ = e;
+  }
+
   void floor(const Value& v) {
     ObjectReader r(v, "floor", errors_);
     r.require("position");
@@ -224,12 +247,13 @@ class Parser {
   Diagnostics errors_;
   MotionReader motion_{errors_};
   std::optional<NamedFile> gazeFile_;
+  std::optional<EnvironmentEntry> environment_;
   std::optional<Floor> floor_;
   bool hasExposure_ = false, hasEnvironment_ = false;
 };
 
 void warnOfDarkness(const Scene& scene, Diagnostics& warnings) {
-  const bool shines = !scene.lights.empty() || scene.environment != glm::vec3(0) ||
+  const bool shines = !scene.lights.empty() || scene.environment != glm::vec3(0) || scene.environmentMap ||
                       std::any_of(scene.materials.begin(), scene.materials.end(),
                                   [](const Material& m) { return m.emission != glm::vec3(0); });
   if (!shines)

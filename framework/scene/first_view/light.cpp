@@ -40,7 +40,9 @@ Picture trace(const Scene& scene, const Geometry& geometry) {
       const TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
       picture.surfaces.push_back(seen);
       if (!seen.there) {
-        picture.pixels.push_back(scene.environment);
+        const glm::vec3 direction = glm::normalize(view.rayDirection(glm::vec2(x, y) + 0.5f));
+        picture.pixels.push_back(scene.environmentMap ? tracer.outside(direction).radiance
+                                                      : scene.environment);
         continue;
       }
       const glm::vec3 rho = tracer.reflectance(seen);

@@ -79,4 +79,12 @@ class Emitters {
   std::vector<uint32_t> place_;  // index in emitters_ of every triangle of the geometry; empty if none emits
 };
 
+class EnvironmentMap;
+
+// The share of the rays aimed at light sources that go to emissive surfaces; the others go to the environment. All do
+// where there is none, and half of them where there are both.
+inline float surfaceShare(const Emitters& emitters, const EnvironmentMap* environment) {
+  return environment == nullptr ? 1.0f : emitters.empty() ? 0.0f : 0.5f;
+}
+
 }  // namespace fovea::scene

@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "framework/base/random.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "framework/shader_twins/paraboloid.h"
 
@@ -25,7 +26,12 @@ glm::vec2 streamSequence(uint32_t stream, uint32_t turn) {
 }
 
 SurfaceTracer::SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays)
-    : frame_(frame), view_(view), rays_(rays), emitters_(frame) {}
+    : frame_(frame),
+      view_(view),
+      rays_(rays),
+      emitters_(frame),
+      environment_(frame.scene->environmentMap.get()),
+      surfaceShare_(surfaceShare(emitters_, environment_)) {}
 
 TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) const {
   const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
@@ -101,7 +107,14 @@ SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, 
 
 SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, glm::vec3 u) const {
   EmitterRay ray;
-  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, u.x, u.y, u.z);
+  if (u.x >= surfaceShare_) {
+    if (environment_ == nullptr) return ray;
+    const EnvironmentMap::Sample s = environment_->sample(u.y, u.z);
+    if (!(s.density > 0) || glm::dot(v.normal, s.direction) <= 0 || glm::dot(v.face, s.direction) <= 0)
+      return ray;
+    return {true, s.direction, kFarAway, (1 - surfaceShare_) * s.density, kNoIndex, s.radiance};
+  }
+  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, u.x / surfaceShare_, u.y, u.z);
   const glm::vec3 to = p.position - v.origin;
   const float d2 = glm::dot(to, to);
   if (p.triangle == kNoIndex || !(d2 > 0)) return ray;
@@ -111,7 +124,7 @@ SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, 
   if (!(cosine > 0) || glm::dot(v.normal, ray.direction) <= 0 || glm::dot(v.face, ray.direction) <= 0)
     return ray;
   ray.there = true;
-  ray.density = p.density * d2 / cosine;
+  ray.density = surfaceShare_ * p.density * d2 / cosine;
   ray.triangle = p.triangle;
   ray.radiance = p.radiance;
   return ray;
@@ -123,11 +136,16 @@ bool SurfaceTracer::sees(const TracedSurface& v, const EmitterRay& to, uint64_t&
 }
 
 float SurfaceTracer::emitterDensity(const TracedSurface& v, const TracedSurface& hit) const {
-  const float density = emitters_.density(hit.triangle, {v.origin, v.normal});
+  const float density = surfaceShare_ * emitters_.density(hit.triangle, {v.origin, v.normal});
   if (!(density > 0)) return 0;
   const glm::vec3 to = hit.position - v.origin;
   const float d2 = glm::dot(to, to);
   return density * d2 * std::sqrt(d2) / std::max(std::abs(glm::dot(hit.face, to)), 1e-12f);
+}
+
+SurfaceTracer::Outside SurfaceTracer::outside(glm::vec3 direction) const {
+  if (environment_ == nullptr) return {};
+  return {environment_->radiance(direction), (1 - surfaceShare_) * environment_->density(direction)};
 }
 
 // The part of one point on an emissive surface in the balance heuristic (Veach and Guibas 1995), beside `count`
@@ -135,7 +153,7 @@ float SurfaceTracer::emitterDensity(const TracedSurface& v, const TracedSurface&
 // ever hit, and points on a close one make bright spots.
 glm::vec3 SurfaceTracer::fromEmitters(const TracedSurface& v, uint32_t count, uint32_t stream,
                                       uint64_t& rays) const {
-  if (emitters_.empty()) return glm::vec3(0);
+  if (!hasEmitters()) return glm::vec3(0);
   const EmitterRay to = towardsEmitter(v, stream);
   if (!to.there || !sees(v, to, rays)) return glm::vec3(0);
   const float cosine = glm::dot(v.normal, to.direction) * glm::one_over_pi<float>();
@@ -145,18 +163,25 @@ glm::vec3 SurfaceTracer::fromEmitters(const TracedSurface& v, uint32_t count, ui
 glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
                                 uint64_t& rays) const {
   if (bounces == 0) return fromEmitters(v, 0, stream, rays);
+  // The part of cosine-weighted rays in the balance heuristic.
+  const auto balance = [&](float density, glm::vec3 direction) {
+    const float cosine = float(count) * glm::dot(v.normal, direction) * glm::one_over_pi<float>();
+    return cosine / (density + cosine);
+  };
   glm::vec3 sum(0);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, i));
     if (glm::dot(direction, v.face) <= 0) continue;
     const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
-    if (!next.there) continue;
+    if (!next.there) {
+      if (const Outside light = outside(direction); light.density > 0)
+        sum += light.radiance * balance(light.density, direction);
+      continue;
+    }
     const glm::vec3 rho = reflectance(next);
     sum += direct(next, rho, rays);
-    if (const float density = emitterDensity(v, next); density > 0) {
-      const float cosine = float(count) * glm::dot(v.normal, direction) * glm::one_over_pi<float>();
-      sum += emitted(next) * (cosine / (density + cosine));
-    }
+    if (const float density = emitterDensity(v, next); density > 0)
+      sum += emitted(next) * balance(density, direction);
     sum += rho * gather(next, bounces - 1, 1, hashCombine(stream, i + 2), rays);
   }
   return sum / float(count) + fromEmitters(v, count, stream, rays);

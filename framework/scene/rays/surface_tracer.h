@@ -47,16 +47,17 @@ class SurfaceTracer {
   glm::vec3 gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
                    uint64_t& rays) const;
 
-  // The ray from v to a point on an emissive surface.
+  // The ray from v to a point on an emissive surface, or to the scene's environment map.
   struct EmitterRay {
     bool there = false;      // whether a point was found that faces v and may light it; it may be hidden
     glm::vec3 direction{0};  // unit
-    float distance = 0;      // m
+    float distance = 0;      // m; kFarAway to the environment
     float density = 0;       // probability density of the direction, per sr
-    uint32_t triangle = kNoIndex;
-    glm::vec3 radiance{0};  // W/(sr m^2)
+    uint32_t triangle = kNoIndex;  // kNoIndex in the environment
+    glm::vec3 radiance{0};         // W/(sr m^2)
   };
-  bool hasEmitters() const { return !emitters_.empty(); }
+  bool hasEmitters() const { return !emitters_.empty() || environment_ != nullptr; }
+  bool hasEnvironment() const { return environment_ != nullptr; }
   const Emitters& emitters() const { return emitters_; }
   EmitterRay towardsEmitter(const TracedSurface& v, uint32_t stream) const;
   // u: uniform in [0, 1); x chooses the emitter.
@@ -65,6 +66,13 @@ class SurfaceTracer {
   // Density with which towardsEmitter() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not
   // emit.
   float emitterDensity(const TracedSurface& v, const TracedSurface& hit) const;
+  // The light of the environment map that a ray from v carries if it hits nothing: its radiance, and the density with
+  // which towardsEmitter() chooses the direction, per sr. Zeros without a map.
+  struct Outside {
+    glm::vec3 radiance{0};
+    float density = 0;
+  };
+  Outside outside(glm::vec3 direction) const;
 
  private:
   TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
@@ -75,6 +83,8 @@ class SurfaceTracer {
   const View& view_;
   const RayScene& rays_;
   Emitters emitters_;
+  const EnvironmentMap* environment_;
+  float surfaceShare_;  // probability with which towardsEmitter() chooses a surface, not the environment
 };
 
 }  // namespace fovea::scene

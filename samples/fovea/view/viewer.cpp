@@ -63,7 +63,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   made->changes = changesOf(settings.graph.set);
   if (!scene) {
     scene = std::make_shared<LoadedScene>();
-    scene->scene = scene::load(settings.scene, made->messages);
+    scene->scene = scene::load(settings.scene, made->messages, {settings.environment});
     scene->geometry = scene::flatten(scene->scene);
   }
   made->scene = std::move(scene);

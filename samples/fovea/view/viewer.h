@@ -26,7 +26,7 @@ namespace fovea::view {
 // What runs. It changes when a page chooses something else.
 struct Settings {
   bench::GraphOptions graph;
-  std::string scene;
+  std::string scene, environment;
   glm::uvec2 size{512, 512};
   uint32_t seed = 1;
 };

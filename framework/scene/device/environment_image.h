@@ -1,0 +1,14 @@
+// The environment map of a scene as shaders read it (common/scene.glsl, environmentRadiance).
+#pragma once
+
+#include "framework/gpu/resources.h"
+#include "framework/scene/environment/environment_map.h"
+
+namespace fovea::scene {
+
+// Half floats, clamped to their range; a single black texel without a map. In
+// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. Throws Error(BadInput) if the map is too large for the device, and
+// Error(OutOfMemory).
+gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map);
+
+}  // namespace fovea::scene

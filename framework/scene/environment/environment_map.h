@@ -1,0 +1,60 @@
+// Light from all around a scene, from infinitely far away.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "fovea/error.h"
+
+namespace fovea::scene {
+
+// An equirectangular map: the middle of the picture is seen along -Z and its upper edge is the zenith, +Y. Light is
+// interpolated between the centres of the texels.
+class EnvironmentMap {
+ public:
+  // texels: radiance, W/(sr m^2), in rows from the zenith down; what is not finite or below 0 counts as black. turn: the
+  // angle in radians by which the map is turned about +Y, counter-clockwise seen from above.
+  EnvironmentMap(uint32_t width, uint32_t height, std::vector<glm::vec3> texels, float turn = 0);
+
+  // Directions are unit.
+  glm::vec3 radiance(glm::vec3 direction) const;
+  // The probability density with which sample() chooses a direction, per sr. It is 0 only where the map is black.
+  float density(glm::vec3 direction) const;
+  struct Sample {
+    glm::vec3 direction{0};
+    glm::vec3 radiance{0};
+    float density = 0;  // 0: the map is black
+  };
+  // A direction in proportion to the light from there, to within the size of a texel. u, v: uniform in [0, 1).
+  Sample sample(float u, float v) const;
+
+  uint32_t width() const { return width_; }
+  uint32_t height() const { return height_; }
+  const std::vector<glm::vec3>& texels() const { return texels_; }
+  float turn() const { return turn_; }
+
+ private:
+  struct Place {  // in texels, from the upper left corner
+    float x, y;
+  };
+  Place placeOf(glm::vec3 direction) const;
+  const glm::vec3& texel(int x, int y) const;
+  float solidAngle(uint32_t row) const;  // of a texel, sr
+  float densityIn(uint32_t column, uint32_t row) const;
+
+  uint32_t width_, height_;
+  std::vector<glm::vec3> texels_;
+  float turn_;
+  // Cumulative: columns_ has a row for each row of texels, which ends with 1; rows_ has an entry for each.
+  std::vector<float> columns_, rows_;
+};
+
+// Reads an EXR, HDR or PFM image, whose values are multiplied by `intensity`. Throws Error(BadInput) that names the file
+// if it cannot be read or is not twice as wide as high.
+std::shared_ptr<const EnvironmentMap> loadEnvironment(const std::filesystem::path& file, float intensity,
+                                                      float turn);
+
+}  // namespace fovea::scene

@@ -1,0 +1,142 @@
+// Light from all around: an equirectangular map, and how directions in it are chosen.
+#include "framework/scene/environment/environment_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+
+#include "fovea/image.h"
+#include "framework/base/random.h"
+#include "scene_support.h"
+
+namespace fovea::scene {
+namespace {
+
+using test::errorOf;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+constexpr double kSphere = 4 * glm::pi<double>();
+
+glm::vec3 directionAt(double u, double v) {  // of a place in the picture
+  const double phi = (u - 0.5) * glm::two_pi<double>(), theta = v * glm::pi<double>();
+  return glm::vec3(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
+}
+
+// Random light with a few black texels and one that is very bright.
+EnvironmentMap speckled(uint32_t width = 16, float turn = 0) {
+  std::vector<glm::vec3> texels;
+  for (uint32_t i = 0; i < width * width / 2; ++i) {
+    const float r = uniformFloat(randomStream(5, i, 0, 0));
+    texels.push_back(r < 0.3f ? glm::vec3(0) : r * glm::vec3(1, 2, 0.5f));
+  }
+  texels[37] = glm::vec3(200, 100, 50);
+  return {width, width / 2, std::move(texels), turn};
+}
+
+// Points that lie evenly on the sphere, each in the middle of an equal share of it.
+template <class Function>
+void overTheSphere(uint32_t side, const Function& visit) {
+  for (uint32_t j = 0; j < side; ++j)
+    for (uint32_t i = 0; i < 2 * side; ++i)
+      visit(directionAt((i + 0.5) / (2 * side), std::acos(1 - 2 * (j + 0.5) / side) / glm::pi<double>()));
+}
+
+TEST(EnvironmentMap, MiddleLiesAheadAndTheUpperEdgeAbove) {
+  std::vector<glm::vec3> texels(8 * 4, glm::vec3(0));
+  const auto at = [&](uint32_t x, uint32_t y) -> glm::vec3& { return texels[y * 8 + x]; };
+  for (uint32_t x = 0; x < 8; ++x) at(x, 0) = {0, 0, 1};
+  at(3, 1) = at(4, 1) = at(3, 2) = at(4, 2) = {1, 0, 0};  // ahead
+  at(5, 1) = at(6, 1) = at(5, 2) = at(6, 2) = {0, 1, 0};  // to the right
+  const EnvironmentMap map(8, 4, texels), turned(8, 4, texels, glm::half_pi<float>());
+  EXPECT_EQ(map.radiance({0, 0, -1}), glm::vec3(1, 0, 0));
+  EXPECT_EQ(map.radiance({1, 0, 0}), glm::vec3(0, 1, 0));
+  EXPECT_EQ(map.radiance({0, 1, 0}), glm::vec3(0, 0, 1));
+  EXPECT_EQ(map.radiance({0, -1, 0}), glm::vec3(0));
+  // Counter-clockwise from above: what was to the right is ahead, and what was ahead is to the left.
+  EXPECT_LT(glm::distance(turned.radiance({0, 0, -1}), {0, 1, 0}), 1e-5f);
+  EXPECT_LT(glm::distance(turned.radiance({-1, 0, 0}), {1, 0, 0}), 1e-5f);
+}
+
+TEST(EnvironmentMap, IsInterpolatedAlsoAcrossItsSeam) {
+  std::vector<glm::vec3> texels(4 * 2, glm::vec3(0));
+  texels[0] = texels[4] = glm::vec3(8);
+  const EnvironmentMap map(4, 2, texels);
+  EXPECT_NEAR(map.radiance(directionAt(0, 0.5)).r, 4, 1e-4);       // halfway between the last column and the first
+  EXPECT_NEAR(map.radiance(directionAt(0.125, 0.5)).r, 8, 1e-4);   // the middle of the first
+  EXPECT_NEAR(map.radiance(directionAt(0.1875, 0.5)).r, 6, 1e-4);  // a quarter of the way to the second
+}
+
+TEST(EnvironmentMap, DensityIsOneOverTheSphere) {
+  for (const float turn : {0.0f, 1.0f}) {
+    const EnvironmentMap map = speckled(16, turn);
+    double sum = 0;
+    overTheSphere(512, [&](glm::vec3 d) {
+      sum += double(map.density(d));
+      if (map.radiance(d) != glm::vec3(0)) ASSERT_GT(map.density(d), 0);
+    });
+    EXPECT_NEAR(sum / (2 * 512 * 512) * kSphere, 1, 2e-3);
+  }
+}
+
+TEST(EnvironmentMap, SamplesFollowTheirDensityAndMeetTheLight) {
+  const EnvironmentMap map = speckled(16, 0.5f);
+  glm::dvec3 want(0), got(0);
+  overTheSphere(512, [&](glm::vec3 d) { want += glm::dvec3(map.radiance(d)) * kSphere / (2.0 * 512 * 512); });
+  constexpr uint32_t kSide = 400;
+  double above = 0, wantAbove = 0;
+  for (uint32_t i = 0; i < kSide; ++i)
+    for (uint32_t j = 0; j < kSide; ++j) {
+      const EnvironmentMap::Sample s =
+          map.sample((float(i) + 0.5f) / float(kSide), (float(j) + 0.5f) / float(kSide));
+      ASSERT_NEAR(glm::length(s.direction), 1, 1e-5);
+      ASSERT_NEAR(s.density, map.density(s.direction), 2e-3 * s.density);
+      ASSERT_EQ(s.radiance, map.radiance(s.direction));
+      got += glm::dvec3(s.radiance) / double(s.density) / double(kSide * kSide);
+      above += s.direction.x > 0.3f && s.direction.y > 0.2f ? 1.0 / (kSide * kSide) : 0;
+    }
+  overTheSphere(512, [&](glm::vec3 d) {
+    if (d.x > 0.3f && d.y > 0.2f) wantAbove += double(map.density(d)) * kSphere / (2.0 * 512 * 512);
+  });
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.005 * want[c]);
+  EXPECT_NEAR(above, wantAbove, 0.01);
+}
+
+TEST(EnvironmentMap, ConstantLightIsChosenUniformly) {
+  const EnvironmentMap map(8, 4, std::vector<glm::vec3>(32, glm::vec3(3)));
+  overTheSphere(64, [&](glm::vec3 d) {
+    ASSERT_NEAR(map.density(d), 1 / kSphere, 1e-3 / kSphere);
+    ASSERT_NEAR(map.radiance(d).g, 3, 1e-5);
+  });
+}
+
+TEST(EnvironmentMap, BlackAndBrokenTexelsSendNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  const EnvironmentMap map(2, 1, {{nan, inf, -1}, {0, -inf, nan}});
+  EXPECT_EQ(map.sample(0.3f, 0.6f).density, 0);
+  EXPECT_EQ(map.density({0, 0, -1}), 0);
+  EXPECT_EQ(map.radiance({1, 0, 0}), glm::vec3(0));
+}
+
+TEST(EnvironmentMap, IsReadFromAnImageTwiceAsWideAsHigh) {
+  TemporaryFolder folder;
+  const auto write = [&](const char* name, uint32_t width, uint32_t height) {
+    image::Image picture{width, height, 3, {}};
+    for (uint32_t i = 0; i < width * height; ++i) picture.data.insert(picture.data.end(), {1, float(i), 0.5f});
+    image::write(folder.path() / name, {{"", picture}});
+    return folder.path() / name;
+  };
+  const auto map = loadEnvironment(write("sky.exr", 4, 2), 2, 0.25f);
+  EXPECT_EQ(map->texels().at(5), glm::vec3(2, 10, 1));
+  EXPECT_EQ(map->turn(), 0.25f);
+  const std::string message = errorOf([&] { loadEnvironment(write("square.exr", 4, 4), 1, 0); });
+  EXPECT_THAT(message, HasSubstr("square.exr"));
+  EXPECT_THAT(message, HasSubstr("twice as wide as high"));
+  EXPECT_THAT(errorOf([&] { loadEnvironment(folder.path() / "none.exr", 1, 0); }), HasSubstr("none.exr"));
+}
+
+}  // namespace
+}  // namespace fovea::scene
