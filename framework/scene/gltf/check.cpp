@@ -5,8 +5,6 @@
 #include <algorithm>
 
 namespace fovea::scene::gltf {
-namespace {
-
 const std::vector<std::string>& supportedExtensions() {
   static const std::vector<std::string> list = {
     "EXT_meshopt_compression",
@@ -25,8 +23,6 @@ const std::vector<std::string>& supportedExtensions() {
   };
   return list;
 }
-
-}  // namespace
 
 const json::Value* memberOf(const json::Value* object, std::string_view key) {
   return object ? object->find(key) : nullptr;

@@ -72,7 +72,8 @@ ResolvedUri resolveUri(const std::filesystem::path& folder, std::string_view uri
 // Throws Error(BadInput) with every mistake and its place.
 void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings);
 
-// Whether models that need this extension can be read.
+// The extensions that are read: models that need others are refused.
+const std::vector<std::string>& supportedExtensions();
 bool isSupported(std::string_view extension);
 
 inline constexpr std::string_view kMeshopt = "EXT_meshopt_compression";
