@@ -117,7 +117,7 @@ TEST(GltfMeshopt, EqualsTheUncompressedModel) {
 
 TEST(GltfMeshopt, TheFileOfAPlaceholderIsNotLookedFor) {
   TriangleDocument d = compressedDocument(WavyGrid(4));
-  d.moreBuffers.insert(d.moreBuffers.find("{") + 1, R"("uri":"fallback.bin",)");
+  d.moreBuffers.insert(d.moreBuffers.find('{') + 1, R"("uri":"fallback.bin",)");
   EXPECT_EQ(errorOfText(d.json()), "");
   EXPECT_EQ(errorOfText(d.glb(), "model.glb"), "");
 }

@@ -76,7 +76,7 @@ template <class Base>
 Decoded decodeWith(draco::DecoderBuffer& buffer) {
   Decoded out;
   CheckedDecoder<Base> decoder(kMaxBytesPerByte * uint64_t(buffer.remaining_size()));
-  if (!decoder.Decode(draco::DecoderOptions(), &buffer, out.mesh.get()).ok())
+  if (!decoder.Decode(draco::DecoderOptions(), &buffer, &*out.mesh).ok())
     out.problem = decoder.problem().empty() ? "is damaged or cut short" : decoder.problem();
   return out;
 }
