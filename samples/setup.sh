@@ -14,7 +14,7 @@ packages=(
   # maths, JSON, command line, text, hashes
   libglm-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   # models, images, rays, mesh simplification, subdivision surfaces
-  libtinygltf-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev libosd-dev
+  libtinygltf-dev libdraco-dev libopenimageio-dev openimageio-tools libembree-dev libmeshoptimizer-dev libosd-dev
   # `fovea view`: web server, JPEG
   libcivetweb-dev libturbojpeg0-dev
   # images without OpenImageIO, for the preset `portable`

@@ -40,7 +40,7 @@ class Flattener {
   explicit Flattener(const Scene& scene) : scene_(scene), poses_(scene) {}
 
   Geometry run() {
-    checkLimits();
+    makeRoom();
     for (const Mesh& mesh : scene_.meshes)
       for (const Primitive& p : mesh.primitives) {
         coarse_ = coarse_ || !p.lightIndices.empty();
@@ -67,7 +67,8 @@ class Flattener {
   }
 
  private:
-  void checkLimits() const {
+  // Lists that grow would be copied again and again, and take twice the memory.
+  void makeRoom() {
     if (scene_.materials.size() > 0xffff)
       throw Error(ExitCode::BadInput,
                   "scene `" + scene_.name + "`: " + std::to_string(scene_.materials.size()) +
@@ -87,6 +88,10 @@ class Flattener {
                       " triangles with " + std::to_string(vertices) + " vertices; at most " +
                       std::to_string(kMaxTriangles) + " of either can be used",
                   "simplify the model or instance it less often");
+    out_.triangles.reserve(triangles);
+    out_.positions.reserve(vertices);
+    out_.normals.reserve(vertices);
+    out_.uvs.reserve(vertices);
   }
 
   void begin(const std::string& name, uint32_t node, bool dynamic) {

@@ -59,6 +59,7 @@ Scene loadFile(const fs::path& file, Diagnostics& warnings, const LoadOptions& o
   if (indices == 0)
     throw Error(ExitCode::BadInput, file.string() + ": the scene has no triangles",
                 "give it a model with meshes");
+  if (addLightLevels(scene)) scene.hash = contentHash(scene);
   return scene;
 }
 

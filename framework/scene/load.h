@@ -18,4 +18,8 @@ std::vector<std::filesystem::path> sceneSearchPath();
 // gives the rules.
 Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings);
 
+// Gives a scene whose nodes draw more than a million triangles coarser Primitive::lightIndices, each mesh once for all
+// of its nodes. Returns whether it did.
+bool addLightLevels(Scene& scene);
+
 }  // namespace fovea::scene

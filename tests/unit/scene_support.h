@@ -117,6 +117,7 @@ struct TriangleDocument {
   std::string views = R"([{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}])";
   std::string nodes = R"([{"mesh":0}])";
   std::string scenes = R"([{"nodes":[0]}])";
+  std::string moreBuffers;  // starts with a comma
   std::string extra;
 
   std::string json(bool binary = false) const {
@@ -125,7 +126,7 @@ struct TriangleDocument {
     return R"({"asset":)" + asset + R"(,"scene":0,"scenes":)" + scenes + R"(,"nodes":)" + nodes +
            R"(,"meshes":[{"name":"tri","primitives":[)" + primitive + R"(]}],"accessors":)" + accessors +
            R"(,"bufferViews":)" + views + R"(,"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
-           (binary ? "" : R"(,"uri":")" + uri + "\"") + "}]" + extra + "}";
+           (binary ? "" : R"(,"uri":")" + uri + "\"") + "}" + moreBuffers + "]" + extra + "}";
   }
 
   std::string glb() const {

@@ -5,17 +5,37 @@
 #include <algorithm>
 
 namespace fovea::scene::gltf {
-namespace {
-
 const std::vector<std::string>& supportedExtensions() {
   static const std::vector<std::string> list = {
-      "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-      "KHR_materials_ior",   "KHR_materials_specular",  "KHR_materials_transmission",
-      "KHR_materials_unlit", "KHR_mesh_quantization",   "KHR_texture_transform"};
+    "EXT_meshopt_compression",
+#if FOVEA_DRACO
+    "KHR_draco_mesh_compression",
+#endif
+    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform"
+  };
   return list;
 }
 
-}  // namespace
+const json::Value* memberOf(const json::Value* object, std::string_view key) {
+  return object ? object->find(key) : nullptr;
+}
+
+const json::Value* extensionOf(const json::Value* object, std::string_view name) {
+  return memberOf(memberOf(object, "extensions"), name);
+}
+
+bool isPlaceholder(const json::Value& buffer) {
+  const json::Value* fallback = memberOf(extensionOf(&buffer, kMeshopt), "fallback");
+  return fallback && fallback->boolean;
+}
 
 bool isSupported(std::string_view extension) {
   const auto& list = supportedExtensions();

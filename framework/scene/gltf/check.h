@@ -14,6 +14,11 @@ inline std::string at(std::string_view array, size_t i) {
   return std::string(array) + "[" + std::to_string(i) + "]";
 }
 
+// The place of an extension of the object at `path`.
+inline std::string inside(const std::string& path, std::string_view extension) {
+  return json::joinPath(json::joinPath(path, "extensions"), extension);
+}
+
 // What all three parts need: access to lists of objects, indices into other lists, and extensions.
 class DocumentReader {
  public:
@@ -104,8 +109,7 @@ class DocumentReader {
     const Value* v = all->find(name);
     if (!v) return nullptr;
     if (!v->isObject()) {
-      error(*v, json::joinPath(json::joinPath(path, "extensions"), name),
-            "expected an object, found " + v->describe());
+      error(*v, inside(path, name), "expected an object, found " + v->describe());
       return nullptr;
     }
     return v;

@@ -93,6 +93,23 @@ class ContentChecker : DocumentReader {
     for (const json::Member& m : v.members) indexValue(m.value, json::joinPath(path, m.key), "accessors");
   }
 
+  void checkCompressed(const Value& e, const std::string& path, const Value& primitive) {
+    index(e, path, "bufferView", "bufferViews", true);
+    ObjectReader r(e, path, errors_);
+    const Value* attributes = r.require("attributes") ? r.object("attributes") : nullptr;
+    if (!attributes) return;
+    ObjectReader ids(*attributes, path + ".attributes", errors_);
+    for (const json::Member& a : attributes->members) {
+      ids.integer(a.key, 0, 0, kIntMax);
+      if (!memberOf(primitive.find("attributes"), a.key))
+        error(a.value, path + ".attributes", "the primitive has no attribute `" + a.key.substr(0, 32) + "`");
+    }
+    const Value* mode = primitive.find("mode");
+    if (mode && mode->isInt() && mode->integer != 4 && mode->integer != 5)
+      error(*mode, path, "mode " + std::to_string(mode->integer) + " cannot be compressed",
+            "only triangles (4) and triangle strips (5) can");
+  }
+
   void checkMesh(const Value& v, const std::string& path) {
     nameOfObject(v, path);
     const Value* primitives = v.find("primitives");
@@ -109,6 +126,8 @@ class ContentChecker : DocumentReader {
       if (const Value* targets = r.array("targets"))
         for (size_t i = 0; i < targets->items.size(); ++i)
           checkAttributes(targets->items[i], at(place + ".targets", i));
+      if (const Value* e = isSupported(kDraco) ? extension(p, place, kDraco) : nullptr)
+        checkCompressed(*e, inside(place, kDraco), p);
     });
     if (const Value* weights = ObjectReader(v, path, errors_).array("weights"))
       numbersIfPresent(v, path, "weights", weights->items.size());

@@ -1,6 +1,7 @@
 // Checks sizes and offsets in a glTF document: buffers, views, accessors, images.
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "framework/scene/gltf/check.h"
 
@@ -46,6 +47,7 @@ class DataChecker : DocumentReader {
   void run() {
     checkBuffers();
     checkBufferViews();
+    findCompressedAccessors();
     each("accessors", [&](const Value& v, const std::string& path) { checkAccessor(v, path); });
     checkImagesAndTextures();
   }
@@ -74,16 +76,19 @@ class DataChecker : DocumentReader {
       ObjectReader r(v, path, errors_);
       if (!r.require("byteLength")) return;
       const int64_t size = r.integer("byteLength", 0, 1, int64_t(kMaxFileBytes));
+      if (const Value* e = extension(v, path, kMeshopt))
+        ObjectReader(*e, inside(path, kMeshopt), errors_).boolean("fallback", false);
+      if (isPlaceholder(v)) return void(++i);
       total += uint64_t(std::max<int64_t>(size, 0));
       checkUri(v, path, true);
       if (!v.find("uri")) {
         if (!source_.binary || i > 0)
           error(v, path, "the buffer has no uri",
                 "only the first buffer of a GLB file may live in the file itself");
-        else if (uint64_t(size) > source_.binarySize)
+        else if (uint64_t(size) > source_.chunk.size())
           error(v, path,
                 "byteLength " + std::to_string(size) + " exceeds the GLB's BIN chunk of " +
-                    std::to_string(source_.binarySize) + " bytes");
+                    std::to_string(source_.chunk.size()) + " bytes");
       }
       ++i;
     });
@@ -91,9 +96,11 @@ class DataChecker : DocumentReader {
       error(*root_.find("buffers"), "buffers",
             "the buffers have " + std::to_string(total) + " bytes in all; at most " +
                 std::to_string(kMaxBufferBytes) + " can be read");
+    bufferBytes_ = total;
   }
 
   void checkBufferViews() {
+    uint64_t compressed = 0;
     each("bufferViews", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
       ObjectReader r(v, path, errors_);
@@ -103,12 +110,77 @@ class DataChecker : DocumentReader {
       r.integer("byteStride", 4, 1, 252);
       r.integer("target", 34962, 0, kIntMax);
       if (buffer < 0) return;
-      const int64_t size = integerAt("buffers", buffer, "byteLength", 0);
-      if (offset + length > size)
+      checkRange(v, path, buffer, offset, length);
+      if (const Value* e = extension(v, path, kMeshopt)) {
+        compressed += checkCompressed(*e, inside(path, kMeshopt), v);
+        if (compressed > bufferBytes_)
+          error(*e, inside(path, kMeshopt), "the compressed data of different buffer views overlap");
+      } else if (isPlaceholder(root_.find("buffers")->items[size_t(buffer)])) {
         error(v, path,
-              "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) + " of buffers[" +
-                  std::to_string(buffer) + "], which has " + std::to_string(size) + " bytes");
+              "buffers[" + std::to_string(buffer) +
+                  "] has no data of its own: only compressed buffer views " + "can lie in it");
+      }
     });
+  }
+
+  void checkRange(const Value& v, const std::string& path, int64_t buffer, int64_t offset, int64_t length) {
+    const int64_t size = integerAt("buffers", buffer, "byteLength", 0);
+    if (offset + length > size)
+      error(v, path,
+            "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) + " of buffers[" +
+                std::to_string(buffer) + "], which has " + std::to_string(size) + " bytes");
+  }
+
+  // Returns the number of compressed bytes.
+  uint64_t checkCompressed(const Value& e, const std::string& path, const Value& view) {
+    ObjectReader r(e, path, errors_);
+    const int64_t buffer = index(e, path, "buffer", "buffers", true);
+    const int64_t offset = r.integer("byteOffset", 0, 0, kIntMax);
+    const int64_t length = r.require("byteLength") ? r.integer("byteLength", 0, 1, kIntMax) : 0;
+    const int64_t stride = r.require("byteStride") ? r.integer("byteStride", 0, 1, 256) : 0;
+    const int64_t count = r.require("count") ? r.integer("count", 0, 1, kIntMax) : 0;
+    const std::string mode =
+        r.require("mode") ? r.choice("mode", "", {"ATTRIBUTES", "TRIANGLES", "INDICES"}) : "";
+    const std::string filter =
+        r.choice("filter", "NONE", {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"});
+    if (buffer < 0 || length == 0 || stride == 0 || count == 0 || mode.empty()) return 0;
+    checkRange(e, path, buffer, offset, length);
+    if (isPlaceholder(root_.find("buffers")->items[size_t(buffer)]))
+      error(e, path, "buffers[" + std::to_string(buffer) + "] has no data of its own");
+    checkLayout(e, path, stride, count, mode, filter);
+    const Value* written = view.find("byteLength");
+    if (written && written->integer != count * stride)
+      error(e, path,
+            std::to_string(count) + " elements of " + std::to_string(stride) +
+                " bytes do not fill the byteLength " + std::to_string(written->integer) +
+                " of the buffer view");
+    if (const Value* s = view.find("byteStride"); s && s->integer != stride)
+      error(e, path,
+            "byteStride " + std::to_string(stride) + " is not that of the buffer view, " +
+                std::to_string(s->integer));
+    // The densest block has 4 bytes for 256 elements of each byte of the stride.
+    constexpr int64_t kDensest = 64;
+    if (count * stride > kDensest * length)
+      error(e, path,
+            std::to_string(length) + " bytes cannot hold " + std::to_string(count) + " elements of " +
+                std::to_string(stride) + " bytes: the data is cut short, or `count` is wrong");
+    return uint64_t(length);
+  }
+
+  // The strides that each mode and each filter have.
+  void checkLayout(const Value& e, const std::string& path, int64_t stride, int64_t count,
+                   const std::string& mode, const std::string& filter) {
+    const bool attributes = mode == "ATTRIBUTES";
+    if (attributes ? stride % 4 != 0 : stride != 2 && stride != 4)
+      error(e, path, "byteStride " + std::to_string(stride) + " is impossible in mode " + mode,
+            attributes ? "a multiple of 4 up to 256 is possible" : "2 and 4 are possible");
+    if (mode == "TRIANGLES" && count % 3 != 0)
+      error(e, path, "count " + std::to_string(count) + " is no multiple of 3, as in mode TRIANGLES");
+    if (!attributes && filter != "NONE")
+      error(e, path, "filter " + filter + " is for mode ATTRIBUTES, this is " + mode);
+    if ((filter == "OCTAHEDRAL" && stride != 4 && stride != 8) || (filter == "QUATERNION" && stride != 8))
+      error(e, path, "byteStride " + std::to_string(stride) + " is impossible with filter " + filter,
+            filter == "QUATERNION" ? "8 is possible" : "4 and 8 are possible");
   }
 
   // A number of another object, of any type; the check of that object reports an invalid one.
@@ -158,12 +230,34 @@ class DataChecker : DocumentReader {
     }
     for (const char* key : {"min", "max"}) numbersIfPresent(v, path, key, size_t(componentCount(type)));
     checkSpan(v, path, view, offset, count, elementBytes(type, component), true);
-    if (!v.find("bufferView") && uint64_t(count) > kMaxZeroElements)
+    if (!v.find("bufferView") && uint64_t(count) > kMaxZeroElements && !compressed_.contains(&v))
       error(v, path,
             "an accessor without a bufferView claims " + std::to_string(count) + " elements; at most " +
                 std::to_string(kMaxZeroElements) + " are accepted");
     if (v.find("sparse"))
       checkSparse(*v.find("sparse"), path + ".sparse", count, elementBytes(type, component));
+  }
+
+  // Accessors that get their elements from a compressed primitive, where their number is checked.
+  void findCompressedAccessors() {
+    if (!isSupported(kDraco)) return;
+    const Value* accessors = root_.find("accessors");
+    const auto add = [&](const Value* i) {
+      if (i && i->isInt() && i->integer >= 0 && uint64_t(i->integer) < sizeOf("accessors"))
+        compressed_.insert(&accessors->items[size_t(i->integer)]);
+    };
+    const Value* meshes = root_.find("meshes");
+    for (size_t m = 0; m < sizeOf("meshes"); ++m) {
+      const Value* primitives = meshes->items[m].find("primitives");
+      for (size_t i = 0; primitives && i < primitives->items.size(); ++i) {
+        const Value* p = &primitives->items[i];
+        const Value* e = extensionOf(p, kDraco);
+        if (!e) continue;
+        add(p->find("indices"));
+        if (const Value* decoded = e->find("attributes"))
+          for (const json::Member& a : decoded->members) add(memberOf(p->find("attributes"), a.key));
+      }
+    }
   }
 
   void checkSparse(const Value& v, const std::string& path, int64_t elements, int64_t bytes) {
@@ -193,7 +287,9 @@ class DataChecker : DocumentReader {
   void checkImagesAndTextures() {
     each("images", [&](const Value& v, const std::string& path) {
       nameOfObject(v, path);
-      index(v, path, "bufferView", "bufferViews");
+      const int64_t view = index(v, path, "bufferView", "bufferViews");
+      if (view >= 0 && extensionOf(&root_.find("bufferViews")->items[size_t(view)], kMeshopt))
+        error(v, path, "the image lies in bufferViews[" + std::to_string(view) + "], which is compressed");
       ObjectReader(v, path, errors_).text("mimeType");
       if (v.find("uri") && v.find("bufferView"))
         error(v, path, "an image has either a uri or a bufferView, this one both");
@@ -211,6 +307,9 @@ class DataChecker : DocumentReader {
       index(v, path, "sampler", "samplers");
     });
   }
+
+  uint64_t bufferBytes_ = 0;  // of buffers that are read
+  std::set<const Value*> compressed_;
 };
 
 }  // namespace

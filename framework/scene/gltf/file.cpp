@@ -48,7 +48,8 @@ void splitGlb(Source& s) {
   if (next + 8 + binLength > length)
     badGlb(s, "the BIN chunk claims " + std::to_string(binLength) + " bytes, the file holds " +
                   std::to_string(length - next - 8));
-  if (std::memcmp(&b[size_t(next) + 4], "BIN\0", 4) == 0) s.binarySize = binLength;
+  if (std::memcmp(&b[size_t(next) + 4], "BIN\0", 4) == 0)
+    s.chunk = std::span(b).subspan(size_t(next) + 8, size_t(binLength));
 }
 
 int hexDigit(char c) {

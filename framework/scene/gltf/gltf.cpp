@@ -36,6 +36,8 @@ Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings) {
     gltf::checkDocument(root, source, warnings);
     tinygltf::Model model;
     gltf::parseModel(source, root, model);
+    gltf::decodeBufferViews(source, root, model);
+    gltf::decodePrimitives(source, root, model);
     gltf::Context c{source, root, model, scene, warnings};
     gltf::buildMaterials(c);
     gltf::buildMeshes(c);

@@ -4,6 +4,7 @@
 //   check   parses the JSON with the project's own parser and applies every rule that keeps tinygltf and the code
 //           below inside their buffers
 //   parse   calls tinygltf, shut off from the file system except for the buffers that `check` allowed
+//   decode  puts the content of compressed buffer views and primitives into buffers of their own
 //   build   makes materials, meshes, nodes, skins and animations
 //
 // tinygltf 2.7 was found to leave the following unguarded. It overflows the stack on deep `extras`, throws on the image
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,9 +48,9 @@ struct Source {
   std::filesystem::path folder;  // absolute; nothing outside it is read
   std::string name;              // as given by the user, for messages
   std::vector<uint8_t> bytes;
-  bool binary = false;      // GLB
-  std::string_view json;    // inside bytes
-  uint64_t binarySize = 0;  // size of the BIN chunk
+  bool binary = false;             // GLB
+  std::string_view json;           // inside bytes
+  std::span<const uint8_t> chunk;  // the BIN chunk of a GLB, inside bytes
 };
 
 Source readSource(const std::filesystem::path& file);
@@ -70,13 +72,36 @@ ResolvedUri resolveUri(const std::filesystem::path& folder, std::string_view uri
 // Throws Error(BadInput) with every mistake and its place.
 void checkDocument(const json::Value& root, const Source& source, Diagnostics& warnings);
 
-// Whether models that need this extension can be read.
+// The extensions that are read: models that need others are refused.
+const std::vector<std::string>& supportedExtensions();
 bool isSupported(std::string_view extension);
+
+inline constexpr std::string_view kMeshopt = "EXT_meshopt_compression";
+inline constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
+
+// What checkDocument has found valid; null if it is absent.
+const json::Value* memberOf(const json::Value* object, std::string_view key);
+const json::Value* extensionOf(const json::Value* object, std::string_view name);
+
+// Whether a buffer merely reserves the places of compressed buffer views, so that nothing of it is read.
+bool isPlaceholder(const json::Value& buffer);
 
 // ---- parse ----
 
 // Images are returned as their encoded bytes (Image::image, as_is), external ones only as their URI.
 void parseModel(const Source& source, const json::Value& root, tinygltf::Model& model);
+
+// ---- decode ----
+
+// Both throw Error(BadInput) with the place of what cannot be decoded.
+void decodeBufferViews(const Source& source, const json::Value& root, tinygltf::Model& model);
+void decodePrimitives(const Source& source, const json::Value& root, tinygltf::Model& model);
+
+// The bytes of a buffer view, or of a part of a buffer. Throws Error(Internal) past the end of the buffer.
+std::span<const uint8_t> bytesOf(const tinygltf::Model& model, int bufferView);
+std::span<const uint8_t> bytesOf(const tinygltf::Model& model, size_t buffer, size_t offset, size_t length);
+// Adds a buffer and returns its number.
+int addBuffer(tinygltf::Model& model, std::vector<unsigned char> bytes);
 
 // ---- build ----
 

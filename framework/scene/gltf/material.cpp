@@ -14,15 +14,7 @@ namespace {
 
 using json::Value;
 
-// What checkDocument has found valid; null or the fallback if it is absent.
-const Value* memberOf(const Value* object, std::string_view key) {
-  return object ? object->find(key) : nullptr;
-}
-
-const Value* extensionOf(const Value* object, std::string_view name) {
-  return memberOf(memberOf(object, "extensions"), name);
-}
-
+// What checkDocument has found valid; the fallback if it is absent.
 double numberOr(const Value* object, std::string_view key, double fallback) {
   const Value* v = memberOf(object, key);
   return v && v->isNumber() ? v->real : fallback;

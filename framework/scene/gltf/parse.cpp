@@ -2,7 +2,7 @@
 // `checkDocument` has seen.
 #include <tiny_gltf.h>
 
-#include <set>
+#include <algorithm>
 
 #include "framework/scene/gltf/internal.h"
 
@@ -61,7 +61,7 @@ Allowed allowedFiles(const Source& source, const json::Value& root) {
   if (!buffers) return allowed;
   for (const json::Value& b : buffers->items) {
     const json::Value* uri = b.find("uri");
-    if (!uri || isDataUri(uri->string)) continue;
+    if (!uri || isDataUri(uri->string) || isPlaceholder(b)) continue;
     // Two buffers may use different lengths of one file. As tinygltf requires exact sizes, this is refused.
     const std::string name = source.folder.string() + "/" + resolveUri(source.folder, uri->string).decoded;
     const uint64_t size = uint64_t(b.find("byteLength")->integer);
@@ -84,6 +84,84 @@ std::string shorten(std::string text) {
   return text.empty() ? "the file cannot be read as glTF" : text;
 }
 
+bool isPrimitiveToDecode(const json::Value& primitive) {
+  return isSupported(kDraco) && extensionOf(&primitive, kDraco);
+}
+
+void leaveOutIndices(json::Value& primitive) {
+  if (isPrimitiveToDecode(primitive))
+    std::erase_if(primitive.members, [](const json::Member& m) { return m.key == "indices"; });
+}
+
+bool hasCompressed(const json::Value& root) {
+  bool found = false;
+  if (const json::Value* buffers = root.find("buffers"))
+    for (const json::Value& b : buffers->items) found = found || isPlaceholder(b);
+  if (const json::Value* meshes = root.find("meshes"))
+    for (const json::Value& mesh : meshes->items)
+      for (const json::Value& p : mesh.find("primitives")->items) found = found || isPrimitiveToDecode(p);
+  return found;
+}
+
+// The document without what is still to be decoded, because tinygltf insists on the data of buffers and indices: each
+// placeholder has one byte, and primitives have no indices.
+std::string withoutCompressed(json::Value root) {
+  static const json::Value kOneByte =
+      json::parse(R"({"byteLength":1,"uri":"data:application/octet-stream;base64,AA=="})", "placeholder");
+  for (json::Member& list : root.members) {
+    if (list.key == "buffers")
+      std::replace_if(list.value.items.begin(), list.value.items.end(), isPlaceholder, kOneByte);
+    if (list.key != "meshes") continue;
+    for (json::Value& mesh : list.value.items)
+      for (json::Member& part : mesh.members)
+        if (part.key == "primitives")
+          std::for_each(part.value.items.begin(), part.value.items.end(), leaveOutIndices);
+  }
+  return json::print(root);
+}
+
+void append(std::vector<uint8_t>& to, uint32_t value) {
+  for (int i = 0; i < 4; ++i) to.push_back(uint8_t(value >> 8 * i));
+}
+
+// Appends a chunk of a GLB file (glTF 2.0, 4.4.3).
+void append(std::vector<uint8_t>& to, std::string_view type, std::span<const uint8_t> content,
+            uint8_t padding) {
+  const size_t size = (content.size() + 3) / 4 * 4;
+  append(to, uint32_t(size));
+  to.insert(to.end(), type.begin(), type.end());
+  to.insert(to.end(), content.begin(), content.end());
+  to.insert(to.end(), size - content.size(), padding);
+}
+
+// A GLB file made of a document and the binary chunk of a source.
+std::vector<uint8_t> glbOf(const std::string& document, const Source& source) {
+  std::vector<uint8_t> glb = {'g', 'l', 'T', 'F', 2, 0, 0, 0, 0, 0, 0, 0};
+  append(glb, "JSON", {reinterpret_cast<const uint8_t*>(document.data()), document.size()}, ' ');
+  if (!source.chunk.empty()) append(glb, std::string_view("BIN\0", 4), source.chunk, 0);
+  std::vector<uint8_t> size;
+  append(size, uint32_t(glb.size()));
+  std::copy(size.begin(), size.end(), glb.begin() + 8);
+  return glb;
+}
+
+bool load(const Source& source, const json::Value& root, tinygltf::TinyGLTF& loader, tinygltf::Model& model,
+          std::string& error) {
+  std::string warning;
+  const std::string folder = source.folder.string();
+  std::string document;
+  std::vector<uint8_t> glb;
+  std::span<const uint8_t> file = source.bytes;
+  std::string_view text = source.json;
+  if (hasCompressed(root)) {
+    text = document = withoutCompressed(root);
+    if (source.binary) file = glb = glbOf(document, source);
+  }
+  if (source.binary)
+    return loader.LoadBinaryFromMemory(&model, &error, &warning, file.data(), unsigned(file.size()), folder);
+  return loader.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), folder);
+}
+
 }  // namespace
 
 void parseModel(const Source& source, const json::Value& root, tinygltf::Model& model) {
@@ -91,15 +169,10 @@ void parseModel(const Source& source, const json::Value& root, tinygltf::Model& 
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks({&fileExists, &expandPath, &readWholeFile, &writeNothing, &allowed});
   loader.SetImageLoader(&keepEncoded, nullptr);
-  std::string error, warning;
+  std::string error;
   bool ok = false;
   try {
-    if (source.binary)
-      ok = loader.LoadBinaryFromMemory(&model, &error, &warning, source.bytes.data(),
-                                       unsigned(source.bytes.size()), source.folder.string());
-    else
-      ok = loader.LoadASCIIFromString(&model, &error, &warning, source.json.data(),
-                                      unsigned(source.json.size()), source.folder.string());
+    ok = load(source, root, loader, model, error);
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory, source.name + ": not enough memory for the model's buffers");
   } catch (const std::exception& e) {
