@@ -7,6 +7,7 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -22,18 +23,30 @@ class GBuffer : public Pass {
         PassKind::Graphics);
     d.recorded();
     d.view();
+    const SizeExpr full = fullMaterials();
     d.output("gbuffer", "gbuffer", gbufferOutput(), "one surface per pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
               "triangle visible at each pixel, 0xffffffff if none");
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
+    declareMaterials(d,
+                     "`full` takes everything that glTF says of them, with normal maps and what they reflect "
+                     "beside their diffuse layer");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
+    std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
+                                       "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};
     for (const bool textured : {false, true})
-      d.fullscreen("gbuffer/resolve.frag", {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
-                                            "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"})
+      d.fullscreen("gbuffer/resolve.frag", images)
           .called(textured ? "resolve with emission textures" : "resolve")
-          .define("EMISSION_TEXTURES", textured);
+          .when(!full)
+          .define("EMISSION_TEXTURES", textured)
+          .define("FULL", 0);
+    images.push_back("gbuffer.specular");
+    d.fullscreen("gbuffer/resolve.frag", images)
+        .called("resolve full materials")
+        .when(full)
+        .define("FULL", 1);
     return d;
   }
 
@@ -74,6 +87,7 @@ class GBuffer : public Pass {
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
+    ctx.run("resolve full materials");
   }
 
  private:
