@@ -1,12 +1,17 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (Eq. 2 of
 // the paper without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1, 1 for all
 // pages but the first; NEAR_FIELD 0/1, 1 to add the light of pass near-field; MASKED 0/1, 1 to shade only the listed
-// blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl.
+// blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl; GLOSS 0/1, 1 to find also the light that the surfaces of
+// full materials reflect, see common/vpl_gloss.glsl.
+#if GLOSS
+#include "common/vpl_gloss.glsl"
+#endif
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
@@ -37,6 +42,10 @@ layout(r32ui) uniform readonly uimage2DArray atlas;
 layout(rgba16f) uniform readonly image2D nearField;
 #endif
 
+#if GLOSS
+layout(rgba16f) uniform readonly image2D gbufferSpecular;
+#endif
+
 layout(push_constant) uniform Constants {
 #if !MASKED
   ivec4 area;  // corners of the part of the grid to shade
@@ -53,6 +62,10 @@ const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
 struct Receiver {
   vec3 position, normal, face, sum;
+#if GLOSS
+  Lobe lobe;
+  vec3 gloss;  // sum of the light under the lobe
+#endif
 };
 
 // Bounds of the receivers of a subgroup. Without pixels, low > high.
@@ -115,7 +128,7 @@ Emitter handOver(Emitter e, uint lane) {
   e.axes[1] = subgroupShuffle(e.axes[1], lane);
 #endif
   e.axes[2] = subgroupShuffle(e.axes[2], lane);
-#if KERNEL_DISC
+#if KERNEL_DISC || GLOSS
   e.area = subgroupShuffle(e.area, lane);
 #endif
   return e;
@@ -190,7 +203,17 @@ void main() {
     receivers[k].face = octDecode(imageLoad(gbufferFace, p).xy);
 #endif
     receivers[k].sum = vec3(0.0);
+#if GLOSS
+    receivers[k].lobe = lobeOf(receivers[k].normal, view.eye - position.xyz, imageLoad(gbufferSpecular, p));
+    receivers[k].gloss = vec3(0.0);
+#endif
   }
+#if GLOSS
+  // A CPU device skips a loop of zero turns, but not a branch.
+  bool glossy = false;
+  for (int k = 0; k < kPixels; ++k) glossy = glossy || (valid[k] && receivers[k].lobe.share > 0.0);
+  int turns = subgroupAny(glossy) ? 1 : 0;
+#endif
   Block block = blockOf(receivers, valid);
 #if SHADOWED
   AtlasLayout maps = atlasLayout(imageSize(atlas));
@@ -209,6 +232,9 @@ void main() {
       uint lane = subgroupBallotFindLSB(left);
       left.xy &= ~(lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
       Emitter e = handOver(own, lane);
+#if GLOSS
+      float light[kPixels];
+#endif
       for (int k = 0; k < kPixels; ++k) {
 #if SHADOWED
         float t = transfer(receivers[k], e, firstSlot + (first + lane) * kSubsets + subset, maps, shadowBias);
@@ -216,7 +242,17 @@ void main() {
         float t = transfer(receivers[k], e, 0u);
 #endif
         receivers[k].sum += t * e.intensity;
+#if GLOSS
+        light[k] = t;
+#endif
       }
+#if GLOSS
+      for (int turn = 0; turn < turns; ++turn)
+        for (int k = 0; k < kPixels; ++k) {
+          float lobe = lobeTowards(receivers[k].lobe, receivers[k].normal, e.position - receivers[k].position, e.area);
+          receivers[k].gloss += (light[k] * lobe) * e.intensity;
+        }
+#endif
     }
   }
   for (int k = 0; k < kPixels; ++k) {
@@ -231,5 +267,16 @@ void main() {
     sum += imageLoad(partial, at).rgb;
 #endif
     imageStore(partial, at, vec4(min(sum, 65504.0), 0.0));
+#if GLOSS
+    vec3 gloss = receivers[k].gloss * (float(INTERLEAVE * INTERLEAVE) / receivers[k].lobe.albedo);
+#if NEAR_FIELD && !ACCUMULATE
+    gloss += imageLoad(nearField, samplePixel(at, pixels)).rgb;
+#endif
+#if ACCUMULATE
+    gloss += imageLoad(partialGloss, at).rgb;
+#endif
+    gloss = mix(sum, gloss, receivers[k].lobe.share);
+    imageStore(partialGloss, at, vec4(min(gloss, 65504.0), 0.0));
+#endif
   }
 }
