@@ -14,6 +14,16 @@ namespace {
 
 using namespace graph;
 
+// Whether a material has textures of more than colours, or takes its colours' from the second coordinates.
+bool hasSurfaceTextures(const scene::Material& m) {
+  return std::ranges::any_of(scene::kMaterialTextures, [&](const auto member) {
+    const scene::TextureUse& use = m.*member;
+    const bool color =
+        member == &scene::Material::baseColorTexture || member == &scene::Material::emissionTexture;
+    return use && (!color || use.set != 0);
+  });
+}
+
 class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -43,10 +53,12 @@ class GBuffer : public Pass {
           .define("EMISSION_TEXTURES", textured)
           .define("FULL", 0);
     images.push_back("gbuffer.specular");
-    d.fullscreen("gbuffer/resolve.frag", images)
-        .called("resolve full materials")
-        .when(full)
-        .define("FULL", 1);
+    for (const bool textured : {false, true})
+      d.fullscreen("gbuffer/resolve.frag", images)
+          .called(textured ? "resolve full materials with textures" : "resolve full materials")
+          .when(full)
+          .define("SURFACE_TEXTURES", textured)
+          .define("FULL", 1);
     return d;
   }
 
@@ -72,6 +84,7 @@ class GBuffer : public Pass {
       const std::vector<scene::Material>& materials = ctx.frame().scene->materials;
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
+      surfaceTextures_ = std::any_of(materials.begin(), materials.end(), hasSurfaceTextures);
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -87,12 +100,12 @@ class GBuffer : public Pass {
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
-    ctx.run("resolve full materials");
+    ctx.run(surfaceTextures_ ? "resolve full materials with textures" : "resolve full materials");
   }
 
  private:
   Kernel draw_[3];
-  bool emissionTextures_ = false;
+  bool emissionTextures_ = false, surfaceTextures_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -7,13 +7,16 @@
 
 // Texels of a SurfaceRecord and of its textures in it.
 const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
-          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19, kClearcoatRoughnessTexture = 22;
+          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
+          kClearcoatRoughnessTexture = 22;
 
 struct TextureCoordinates {
   vec2 first, second;
 };
 
-// White where the material has no such texture. `texel` is the first of the three that describe it.
+// White where the material has no such texture. `texel` is the first of the three that describe it. If SURFACE_TEXTURES
+// is 0, no material has any but those of base colour and emission, with the first coordinates.
+#if SURFACE_TEXTURES
 vec4 surfaceTexture(int texel, TextureCoordinates at) {
   vec4 place = texelFetch(sceneMaterials, texel), result = vec4(1.0);
   bool second = (uint(place.w) & kTextureSecondSet) != 0u;
@@ -22,6 +25,12 @@ vec4 surfaceTexture(int texel, TextureCoordinates at) {
     result = sampleSceneTexture(texel, second ? at.second : at.first);
   return result;
 }
+
+vec4 colorTexture(int texel, TextureCoordinates at) { return surfaceTexture(texel, at); }
+#else
+vec4 surfaceTexture(int texel, TextureCoordinates at) { return vec4(1.0); }
+vec4 colorTexture(int texel, TextureCoordinates at) { return sampleSceneTexture(texel, at.first); }
+#endif
 
 TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
@@ -55,7 +64,7 @@ vec3 cornerTangent(vec3 corner, vec3 edgeB, vec3 edgeC, vec3 across) {
 vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edgeC, vec3 normal, float side,
                   TextureCoordinates at) {
   vec3 bent = normal;
-  bool mapped = frame.firstTangent != 0u && texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
+  bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u && texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
   for (int turns = mapped ? 1 : 0; turns > 0; --turns) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
     vec4 a = texelFetch(sceneMaterials, first);
@@ -68,9 +77,7 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
     t -= normal * dot(normal, t);
     float d = length(t);
     vec3 tangent = t / max(d, 1e-6), bitangent = a.w * cross(normal, tangent);
-    vec3 m = 2.0 * sampleSceneTexture(surface + kNormalTexture,
-                                      (uint(texelFetch(sceneMaterials, surface + kNormalTexture).w) & kTextureSecondSet) != 0u
-                                          ? at.second : at.first).rgb - 1.0;
+    vec3 m = 2.0 * surfaceTexture(surface + kNormalTexture, at).rgb - 1.0;
     m.xy *= texelFetch(sceneMaterials, surface + 2).y;
     vec3 n = side * m.x * tangent + m.y * bitangent + m.z * normal;
     float size = length(n);
@@ -90,7 +97,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   vec4 base = texelFetch(sceneMaterials, surface), specular = texelFetch(sceneMaterials, surface + 1);
   vec4 factors = texelFetch(sceneMaterials, surface + 2), coat = texelFetch(sceneMaterials, surface + 3);
-  vec3 color = base.rgb * surfaceTexture(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
+  vec3 color = base.rgb * colorTexture(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
   color = min(color, 1.0);
   vec4 metallicRoughness = surfaceTexture(surface + kMetallicRoughnessTexture, at);
   float metallic = base.a * metallicRoughness.b, roughness = factors.x * metallicRoughness.g;
@@ -121,7 +128,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
 
   vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
   for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
-    emission *= surfaceTexture(first + kEmissionTexture, at).rgb;
+    emission *= colorTexture(first + kEmissionTexture, at).rgb;
   if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
   return FullSurface(albedo, g, emission);
 }

@@ -54,9 +54,9 @@ MirrorAlbedo meanMirrorAlbedo(float roughness) { return mirrorAlbedoOf(albedoRow
 // mirror: mean albedo of a mirror.
 vec3 lostAlbedo(vec3 fresnel, float mirror) { return fresnel * fresnel * mirror / (1.0 - fresnel * (1.0 - mirror)); }
 vec3 lostAlbedo(Gloss g, MirrorAlbedo mean) {
-  float f0 = g.dielectricF0, f90 = dielectricF90(g);
+  vec3 f0 = g.metallic > 0.0 ? vec3(g.dielectricF0) : g.f0;
   vec3 metalF0 = clamp((g.f0 - (1.0 - g.metallic) * f0) / max(g.metallic, 1e-3), 0.0, 1.0);
-  return mix(lostAlbedo(vec3(mix(f0, f90, kDielectricCurve)), mean.all),
+  return mix(lostAlbedo(mix(f0, vec3(dielectricF90(g)), kDielectricCurve), mean.all),
              lostAlbedo(mix(metalF0, vec3(1.0), kMetalCurve), mean.all), g.metallic);
 }
 
@@ -97,7 +97,7 @@ struct Reflector {
   Gloss gloss;
   vec3 normal, out_;  // out_: to the eye
   MirrorAlbedo mean;
-  vec3 lost;               // of the lobe of light that is scattered more than once, times what the direction `out_` loses
+  vec3 lost;  // of the lobe of light that is scattered more than once, times what the direction `out_` loses
   float dielectricF90, layer;  // layer: 1 / (1 - mean albedo above the diffuse layer)
 };
 
@@ -109,8 +109,8 @@ Reflector reflectorOf(Gloss g, vec3 normal, vec3 toEye) {
   return Reflector(g, normal, toEye, mean, lost, f90, layer);
 }
 
-// Radiance towards the eye for each unit of irradiance from a direction. albedo: reflectance of the diffuse layer as the
-// eye sees it.
+// Radiance towards the eye for each unit of irradiance from a direction. albedo: reflectance of the diffuse layer as
+// the eye sees it.
 vec3 reflected(Reflector r, vec3 direction, vec3 albedo) {
   Gloss g = r.gloss;
   MirrorAlbedo a = mirrorAlbedo(dot(r.normal, direction), g.roughness);

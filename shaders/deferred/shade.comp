@@ -68,6 +68,19 @@ struct Receiver {
 #endif
 };
 
+#if GLOSS
+// The sum of the squared differences between the normal of a receiver and those beside and above or below it, which are
+// the next of the same subset; 0 for those of other surfaces.
+float turnOf(Receiver receivers[kPixels], bool valid[kPixels], int k) {
+  vec3 normal = receivers[k].normal, beside = subgroupShuffleXor(normal, 1u) - normal;
+  bool there = subgroupShuffleXor(valid[k], 1u);
+  int other = k ^ 1;
+  vec3 below = receivers[other].normal - normal;
+  float x = dot(beside, beside), y = dot(below, below);
+  return (there && x < kSharpEdge ? x : 0.0) + (valid[other] && y < kSharpEdge ? y : 0.0);
+}
+#endif
+
 // Bounds of the receivers of a subgroup. Without pixels, low > high.
 struct Block {
   vec3 centre, reach;        // box around their positions
@@ -188,6 +201,42 @@ float transfer(Receiver r, Emitter e, uint slot
 #endif
 }
 
+// Adds the light of the subset's VPLs to the receivers, and if `glossy`, which is a constant, that under their lobes.
+void gather(inout Receiver receivers[kPixels], Block block, uint subset, bool glossy) {
+#if SHADOWED
+  AtlasLayout maps = atlasLayout(imageSize(atlas));
+#endif
+  // Each lane takes a VPL of its own, and those that may light something are passed to all lanes, one after another.
+  // On a CPU, where every lane's load from a uniform buffer has its own cost, loading them in every lane costs as
+  // much as everything else.
+  uint lanes = subgroupBallotBitCount(subgroupBallot(true));
+  for (uint first = 0u; first * kSubsets + subset < PAGE_VPLS; first += lanes) {
+    uint mine = (first + gl_SubgroupInvocationID) * kSubsets + subset;
+    Vpl vpl = vpls.list[min(mine, PAGE_VPLS - 1u)];
+    Emitter own = emitterOf(vpl);
+    uvec4 left = subgroupBallot(mine < PAGE_VPLS && mayLight(vpl, block));
+    while ((left.x | left.y) != 0u) {
+      uint lane = subgroupBallotFindLSB(left);
+      left.xy &= ~(lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
+      Emitter e = handOver(own, lane);
+      for (int k = 0; k < kPixels; ++k) {
+#if SHADOWED
+        float t = transfer(receivers[k], e, firstSlot + (first + lane) * kSubsets + subset, maps, shadowBias);
+#else
+        float t = transfer(receivers[k], e, 0u);
+#endif
+        receivers[k].sum += t * e.intensity;
+#if GLOSS
+        if (glossy) {
+          vec3 toLight = e.position - receivers[k].position;
+          receivers[k].gloss += (t * lobeTowards(receivers[k].lobe, receivers[k].normal, toLight, e.area)) * e.intensity;
+        }
+#endif
+      }
+    }
+  }
+}
+
 void main() {
   uvec2 subset2 = subsetOfGroup();
   ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
@@ -209,52 +258,22 @@ void main() {
 #endif
   }
 #if GLOSS
-  // A CPU device skips a loop of zero turns, but not a branch.
   bool glossy = false;
   for (int k = 0; k < kPixels; ++k) glossy = glossy || (valid[k] && receivers[k].lobe.share > 0.0);
-  int turns = subgroupAny(glossy) ? 1 : 0;
+  glossy = subgroupAny(glossy);
 #endif
   Block block = blockOf(receivers, valid);
-#if SHADOWED
-  AtlasLayout maps = atlasLayout(imageSize(atlas));
-#endif
-  // Each lane takes a VPL of its own, and those that may light something are passed to all lanes, one after another.
-  // On a CPU, where every lane's load from a uniform buffer has its own cost, loading them in every lane costs as
-  // much as everything else.
-  uint lanes = subgroupBallotBitCount(subgroupBallot(true));
   uint subset = subset2.y * INTERLEAVE + subset2.x;
-  for (uint first = 0u; first * kSubsets + subset < PAGE_VPLS; first += lanes) {
-    uint mine = (first + gl_SubgroupInvocationID) * kSubsets + subset;
-    Vpl vpl = vpls.list[min(mine, PAGE_VPLS - 1u)];
-    Emitter own = emitterOf(vpl);
-    uvec4 left = subgroupBallot(mine < PAGE_VPLS && mayLight(vpl, block));
-    while ((left.x | left.y) != 0u) {
-      uint lane = subgroupBallotFindLSB(left);
-      left.xy &= ~(lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
-      Emitter e = handOver(own, lane);
 #if GLOSS
-      float light[kPixels];
-#endif
-      for (int k = 0; k < kPixels; ++k) {
-#if SHADOWED
-        float t = transfer(receivers[k], e, firstSlot + (first + lane) * kSubsets + subset, maps, shadowBias);
-#else
-        float t = transfer(receivers[k], e, 0u);
-#endif
-        receivers[k].sum += t * e.intensity;
-#if GLOSS
-        light[k] = t;
-#endif
-      }
-#if GLOSS
-      for (int turn = 0; turn < turns; ++turn)
-        for (int k = 0; k < kPixels; ++k) {
-          float lobe = lobeTowards(receivers[k].lobe, receivers[k].normal, e.position - receivers[k].position, e.area);
-          receivers[k].gloss += (light[k] * lobe) * e.intensity;
-        }
-#endif
-    }
+  // A CPU device skips a loop of zero turns, but not a branch. Most groups show nothing glossy.
+  for (int turn = glossy ? 0 : 1; turn > 0; --turn) gather(receivers, block, subset, false);
+  for (int turn = glossy ? 1 : 0; turn > 0; --turn) {
+    for (int k = 0; k < kPixels; ++k) complete(receivers[k].lobe, turnOf(receivers, valid, k));
+    gather(receivers, block, subset, true);
   }
+#else
+  gather(receivers, block, subset, false);
+#endif
   for (int k = 0; k < kPixels; ++k) {
     ivec2 at = sampleAt(k, size);
     if (any(greaterThanEqual(at, size))) continue;

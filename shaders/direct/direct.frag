@@ -1,7 +1,7 @@
 // L = emission + rho / pi * sum over the lights of E_l * visibility_l. Defines: SHADOW_FILTER; ONE_LIGHT, 1 if there
 // is one light, 2 if that has one map, 0 for any number of lights. A single light is read from a constant place,
-// because a CPU device loads indexed data lane by lane. GLOSS 0/1, 1 for full materials: in place of rho / pi stands all
-// that a surface reflects.
+// because a CPU device loads indexed data lane by lane. GLOSS 0/1, 1 for full materials: in place of rho / pi stands
+// all that a surface reflects.
 #if GLOSS
 #include "common/gloss.glsl"
 #endif

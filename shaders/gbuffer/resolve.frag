@@ -57,13 +57,15 @@ void main() {
 #if FULL
   TextureCoordinates at = textureCoordinates(triangle, weights, uv);
   float side = dot(cross(edgeB, edgeC), face) < 0.0 ? -1.0 : 1.0;
-  normal = mappedNormal(int(frame.firstSurface) + int(material) * kSurfaceTexels, index, weights, edgeB, edgeC, normal, side, at);
+  int record = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  normal = mappedNormal(record, index, weights, edgeB, edgeC, normal, side, at);
   vec3 toEye = normalize(view.eye - position);
   float cosine = dot(normal, toEye);
   if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
   vec3 albedo = surface.albedo, emission = surface.emission;
-  vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);  // of normal, albedo, emission
+  // Of normal, albedo and emission.
+  vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
 #else
   const vec3 alphas = vec3(0.0);
   vec3 albedo = materialReflectance(material, uv).rgb;

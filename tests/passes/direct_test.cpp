@@ -312,7 +312,7 @@ TEST(DirectFull, EachLightTypeEqualsTheBsdf) {
         }
       }
       EXPECT_LT(most, 0.05);
-      EXPECT_LT(std::sqrt(squares / all), 0.01);
+      EXPECT_LT(std::sqrt(squares / all), 0.012);
     }
 }
 

@@ -21,8 +21,8 @@ inline scene::BsdfParameters bsdfParameters(glm::vec3 baseColor, float metallic,
   return p;
 }
 
-// What the surface above the diffuse layer reflects of light from one direction, by the formulas of bsdf.h. averageCurve
-// and `mean` belong to the same Fresnel curve as `a`.
+// What the surface above the diffuse layer reflects of light from one direction, by the formulas of bsdf.h.
+// averageCurve and `mean` belong to the same Fresnel curve as `a`.
 inline glm::dvec3 surfaceAlbedo(glm::dvec3 f0, double f90, double averageCurve, const scene::Albedo& a,
                                 const scene::Albedo& mean) {
   const glm::dvec3 fresnel = glm::mix(f0, glm::dvec3(f90), averageCurve);

@@ -90,7 +90,7 @@ TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
 }
 
-// With full materials a pixel in doubt becomes what the BSDF of the path tracer says, as its neighbours do in pass direct.
+// With full materials a pixel in doubt becomes what the BSDF of the path tracer says, as its neighbours in pass direct.
 TEST(ShadowRays, FullMaterialsAreThoseOfTheBsdf) {
   Room room = litBoxes();
   room.scene.materials[0].metallic = 0.5f;

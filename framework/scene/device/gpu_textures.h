@@ -9,8 +9,8 @@
 
 namespace fovea::scene {
 
-// The textures that diffuse or full materials use, as 8-bit RGBA in their stored encoding; a single white texel if there
-// are none.
+// The textures that diffuse or full materials use, as 8-bit RGBA in their stored encoding; a single white texel if
+// there are none.
 class GpuTextures {
  public:
   // Throws Error(BadInput) naming a texture that is too large for the device, and Error(OutOfMemory).

@@ -23,8 +23,8 @@ struct FrameBlock {
   float unused2 SHARED_ZERO;
   uint firstMovingVertex SHARED_ZERO;    // vertices below it never move
   uint firstMovingTriangle SHARED_ZERO;  // of the triangles used for voxels and VPL maps
-  // Texel of `sceneMaterials` at which the SurfaceRecords start, 0 if there are none; then that of the tables of albedos,
-  // of the tangents (0 if no surface has a normal map) and of the VertexDetails (0 if there are none).
+  // Texel of `sceneMaterials` at which the SurfaceRecords start, 0 if there are none; then that of the tables of
+  // albedos, of the tangents (0 if no surface has a normal map) and of the VertexDetails (0 if there are none).
   uint firstSurface SHARED_ZERO;
   uint firstAlbedo SHARED_ZERO;
   uint firstTangent SHARED_ZERO;
