@@ -64,7 +64,8 @@ vec3 cornerTangent(vec3 corner, vec3 edgeB, vec3 edgeC, vec3 across) {
 vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edgeC, vec3 normal, float side,
                   TextureCoordinates at) {
   vec3 bent = normal;
-  bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u && texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
+  bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u &&
+                texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
   for (int turns = mapped ? 1 : 0; turns > 0; --turns) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
     vec4 a = texelFetch(sceneMaterials, first);

@@ -37,8 +37,8 @@ Lobe lobeOf(vec3 normal, vec3 toEye, vec4 specular) {
 }
 
 // Neighbours of the same subset see other parts of a reflection where the surface is bent, and between them each VPL is
-// asked at one pixel only. This widens a lobe for it, and completes it. turn2: squared difference between their normals, of which a quarter is about what makes
-// their lobes overlap.
+// asked at one pixel only. This widens a lobe for it, and completes it. turn2: squared difference between their normals,
+// of which a quarter is about what makes their lobes overlap.
 const float kSharpEdge = 0.25;  // squared difference between normals of two surfaces
 void complete(inout Lobe l, float turn2) {
   l.albedo = mirrorAlbedo(l.cosine, sqrt(sqrt(l.alpha2))).all;
@@ -48,10 +48,10 @@ void complete(inout Lobe l, float turn2) {
 // D V of GGX, per sr, for light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V
 // (Heitz 2014). Simpler forms of V lose up to a seventh of the light.
 //
-// A disc fills the solid angle area / (d^2 + area / pi), as the kernel `disc` has it, and its halfway vectors a quarter of
-// that, divided by the cosine between halfway vector and light. A lobe that is that much wider makes the disc as bright
-// as a mirror would. With the square of this cosine, u / 2, it is dimmer at grazing angles and never brighter; l.a2 and
-// what is added to it are multiplied by u.
+// A disc fills the solid angle area / (d^2 + area / pi), as the kernel `disc` has it, and its halfway vectors a quarter
+// of that, divided by the cosine between halfway vector and light. A lobe that is that much wider makes the disc as
+// bright as a mirror would. With the square of this cosine, u / 2, it is dimmer at grazing angles and never brighter;
+// l.a2 and what is added to it are multiplied by u.
 float lobeTowards(Lobe l, vec3 normal, vec3 toLight, float area) {
   float d2 = max(dot(toLight, toLight), 1e-12), d = sqrt(d2);
   float facing = dot(normal, toLight);

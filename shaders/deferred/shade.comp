@@ -229,7 +229,8 @@ void gather(inout Receiver receivers[kPixels], Block block, uint subset, bool gl
 #if GLOSS
         if (glossy) {
           vec3 toLight = e.position - receivers[k].position;
-          receivers[k].gloss += (t * lobeTowards(receivers[k].lobe, receivers[k].normal, toLight, e.area)) * e.intensity;
+          float lobe = lobeTowards(receivers[k].lobe, receivers[k].normal, toLight, e.area);
+          receivers[k].gloss += (t * lobe) * e.intensity;
         }
 #endif
       }
