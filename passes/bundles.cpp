@@ -47,20 +47,32 @@ ResourceSpec spreadBuffer() { return buffer("VplSpread", kTexel); }
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 
 std::vector<MemberSpec> gbufferOutput() {
+  const SizeExpr full = parameter("materials");
   return {
       member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
              "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
       member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-             "xyz: unit shading normal, on the side of the face towards the eye"),
+             "xyz: unit shading normal, on the side of the face towards the eye; a: with full materials, the "
+             "reflectance of the surface at grazing incidence"),
       member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
              "geometric normal on the side towards the eye, octahedral encoding"),
       member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-             "rgb: diffuse reflectance, base colour times (1 - metallic)"),
-      member("emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
-             "rgb: emitted radiance, W/(sr m^2), in the background the environment"),
+             "rgb: diffuse reflectance, base colour times (1 - metallic); with full materials, that of the "
+             "layer "
+             "below the surface as the eye sees it, and a: how much of the surface is metal"),
+      member(
+          "emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
+          "rgb: emitted radiance, W/(sr m^2), in the background the environment; a: with full materials, the "
+          "mean of the channels of `specular` for the dielectric part"),
       member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
              "material | object << 16; background 0xffffffff"),
-      member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane")};
+      member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane"),
+      member("specular",
+             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1)),
+             Usage::ColorAttachment,
+             "with full materials, rgb: reflectance of the surface at normal incidence, a: roughness (the "
+             "square "
+             "root of GGX's alpha); otherwise one undefined texel")};
 }
 std::vector<MemberSpec> gbufferMembers(Usage usage, std::initializer_list<std::string_view> names) {
   return read(gbufferOutput(), names, usage);

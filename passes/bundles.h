@@ -28,7 +28,7 @@ graph::ResourceSpec spreadBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 
-// The bundle `gbuffer`: position, normal, face, albedo, emission, id, depth.
+// The bundle `gbuffer`: position, normal, face, albedo, emission, id, depth, specular (needs a parameter `materials`).
 std::vector<graph::MemberSpec> gbufferOutput();
 std::vector<graph::MemberSpec> gbufferMembers(graph::Usage usage,
                                               std::initializer_list<std::string_view> names);

@@ -45,6 +45,21 @@ namespace {
 // Parameter of a pass with a view: how many places in its pixels the view takes in turn, one a frame.
 constexpr const char* kJitterParameter = "jitter";
 
+// Parameter of a pass that knows full materials, and its value if it asks for them.
+constexpr const char* kMaterialsParameter = "materials";
+const graph::Value kFullMaterials = std::string("full");
+
+// Whether the scene on the device has to have them.
+bool wantsFullMaterials(const graph::Plan& plan) {
+  const std::vector<graph::BoundPass>& passes = plan.graph->passes;
+  for (size_t i = 0; i < passes.size(); ++i) {
+    if (!plan.passLive[i] || passes[i].declaration->kind == graph::PassKind::Host) continue;
+    const graph::Value* value = passes[i].parameters.find(kMaterialsParameter);
+    if (value && *value == kFullMaterials) return true;
+  }
+  return false;
+}
+
 // Parts of graphs have inputs that the graph around them wires.
 void refuseInputs(const graph::Description& description) {
   Diagnostics messages;
@@ -83,13 +98,15 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
 void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
   if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
-  gpuScene_ =
-      before ? before->gpuScene_ : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_);
+  const bool full = wantsFullMaterials(*plan_);
+  const bool sameScene = before && before->gpuScene_->fullMaterials() == full;
+  gpuScene_ = sameScene ? before->gpuScene_
+                        : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_, full);
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;
   executorOptions.hostProgress = options_.hostProgress;
-  executorOptions.keepContents = keepContents;
+  executorOptions.keepContents = keepContents && sameScene;  // what passes keep was made of the scene
   executor_ = std::make_unique<graph::Executor>(device_, plan_, graph::Registry::global(), *gpuScene_,
                                                 executorOptions, before ? before->executor_.get() : nullptr);
 }

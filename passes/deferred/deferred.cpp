@@ -10,6 +10,7 @@
 #include "framework/gpu/resources.h"
 #include "passes/acuity.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 #include "shaders/common/records/vpl.h"
 #include "shaders/deferred/records.h"
 
@@ -45,7 +46,7 @@ class Deferred : public Pass {
     d.view();
     const SizeExpr width = widthOf("gbuffer.position"), height = heightOf("gbuffer.position");
     d.input("gbuffer", "gbuffer",
-            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo"}),
+            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "specular"}),
             "surfaces seen by the eye");
     d.input("vpls", vplBuffer(), Usage::Uniform, "light sources; empty slots have zero intensity");
     d.input(
@@ -69,8 +70,14 @@ class Deferred : public Pass {
     d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "rgb: filtered indirect irradiance / pi, W/(sr m^2); multiplied by the reflectance rho it gives "
              "`indirect`; background 0; a: 1, or that of `traced`");
-    d.output("indirect", color, Usage::ColorAttachment,
-             "rgb: indirect radiance rho E / pi towards the eye; background 0");
+    d.output(
+        "gloss", glossImage(width, height), Usage::StorageRead | Usage::StorageWrite,
+        "with full materials, rgb: filtered indirect light under the lobe of each surface, W/(sr m^2), a "
+        "mean that the share which the surface reflects makes a part of `indirect`; background 0; without "
+        "`shade` only; otherwise one undefined texel");
+    d.output(
+        "indirect", color, Usage::ColorAttachment,
+        "rgb: indirect radiance towards the eye, rho E / pi and what glossy surfaces reflect; background 0");
     d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
               "estimate of each pixel from its own subset");
@@ -79,6 +86,10 @@ class Deferred : public Pass {
                       max(coarse() * ceilDiv(height, 2), 1)),
               Usage::StorageRead | Usage::StorageWrite,
               "for `periphery` 2, estimate of one pixel in each square of 2 x 2 from its own subset");
+    d.scratch("partial_gloss", glossImage(width, height), Usage::StorageRead | Usage::StorageWrite,
+              "as `partial`, for `gloss`");
+    d.scratch("coarse_gloss", glossImage(coarse() * ceilDiv(width, 2), coarse() * ceilDiv(height, 2)),
+              Usage::StorageRead | Usage::StorageWrite, "as `coarse`, for `gloss`");
     d.scratch(
         "edges", buffer("EdgeList", 16),
         Usage::StorageRead | Usage::StorageWrite | Usage::TexelRead | Usage::Indirect | Usage::TransferWrite,
@@ -112,6 +123,7 @@ class Deferred : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `deferred`: `shade` says which blocks to shade, so `periphery` has nothing to decide",
                   "leave `periphery` at 1, or `shade` unwired");
+    checkMaterials(ctx, "deferred");
     preparePages(ctx, 1, pages_);
     if (ctx.evaluate(coarse()) != 0) preparePages(ctx, 2, coarsePages_);
   }
@@ -131,6 +143,11 @@ class Deferred : public Pass {
 
  private:
   static SizeExpr coarse() { return parameter("periphery") - 1; }  // 0 or 1
+  // An image that is needed for full materials, and else a single texel.
+  static ResourceSpec glossImage(const SizeExpr& width, const SizeExpr& height) {
+    return image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
+                   max(fullMaterials() * height, 1));
+  }
 
   // Shades the part `area` of the grid of samples, without its part `hole`.
   void shade(RecordContext& ctx, const std::vector<Kernel>& pages, const Square& area, const Square& hole) {
@@ -177,6 +194,7 @@ class Deferred : public Pass {
         d,
         "outside the fovea, where the eye resolves no more than every second pixel, one pixel of each "
         "square of this width is shaded, and the filter interpolates; 1 shades all pixels");
+    declareMaterials(d, "`full` finds also the light that glossy surfaces reflect");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),
@@ -196,6 +214,7 @@ class Deferred : public Pass {
           .define("SCALE", scale)
           .define("TRACED", scale == 1 ? wired("traced") : SizeExpr(0))
           .define("NEAR_FIELD", wired("near_field"))
+          .define("GLOSS", fullMaterials() * !masked)
           .constant("filterCos", [](const RecordContext& ctx) {
             return std::cos(glm::radians(float(ctx.parameters().real("filter_angle"))));
           });
@@ -215,7 +234,8 @@ class Deferred : public Pass {
     filter("filter blocks", true, 1).when(masked).indirect("shade.dispatch");
     d.fullscreen("deferred/compose.frag", {"indirect", "radiance"})
         .when(isRead("indirect") || isRead("radiance"))
-        .define("HAS_DIRECT", wired("direct"));
+        .define("HAS_DIRECT", wired("direct"))
+        .define("GLOSS", fullMaterials() * (masked + 1));
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {
@@ -249,6 +269,7 @@ class Deferred : public Pass {
     defines["KERNEL_DISC"] = ctx.parameters().text("kernel") == "disc" ? "1" : "0";
     defines["NEAR_FIELD"] = ctx.has("near_field") ? "1" : "0";
     defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
+    defines["GLOSS"] = fullMaterials(ctx.parameters()) && !masked_ ? "1" : "0";
     defines["TILED"] = "0";
     if (ctx.has("atlas")) {
       const VkExtent3D maps = ctx.extent("atlas");

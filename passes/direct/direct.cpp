@@ -6,6 +6,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -15,13 +16,17 @@ using namespace graph;
 class Direct : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("direct",
-                      "direct lighting: emission plus rho / pi times the unoccluded irradiance of each light",
-                      PassKind::Graphics);
+    PassDeclaration d(
+        "direct",
+        "direct lighting: emission plus rho / pi times the unoccluded irradiance of each light, "
+        "or with full materials all that the surface reflects of it",
+        PassKind::Graphics);
     d.recorded();
-    d.input("gbuffer", "gbuffer",
-            gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission"}),
-            "surfaces seen by the eye");
+    d.view();
+    d.input(
+        "gbuffer", "gbuffer",
+        gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission", "specular"}),
+        "surfaces seen by the eye");
     d.input("maps", "shadow-maps", shadowMapMembers(), "shadow maps of the lights");
     d.output(
         "direct",
@@ -32,17 +37,21 @@ class Direct : public Pass {
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow filter: `none` makes one comparison (jagged edges), `bilinear` interpolates four, "
                 "`pcf` averages 3x3 bilinear ones (softer edges)");
+    declareMaterials(d, "`full` lights all that the surface reflects");
     const auto shade = [&](const char* name, int kind) {
       d.fullscreen("direct/direct.frag", {"direct"})
           .called(name)
           .define("SHADOW_FILTER", parameter("filter"))
-          .define("ONE_LIGHT", kind);
+          .define("ONE_LIGHT", kind)
+          .define("GLOSS", fullMaterials());
     };
     shade("many lights", 0);
     shade("one light", 1);
     shade("one map", 2);
     return d;
   }
+
+  void prepare(PrepareContext& ctx) override { checkMaterials(ctx, "direct"); }
 
   void record(RecordContext& ctx) override {
     const std::vector<scene::Light>& lights = ctx.frame().lights;

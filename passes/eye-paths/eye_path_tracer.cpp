@@ -26,7 +26,11 @@ float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 
 class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const EyePathSettings& settings)
-      : view_(view), rays_(rays), settings_(settings), seed_(frame.seed), surfaces_(frame, view, rays) {}
+      : view_(view),
+        rays_(rays),
+        settings_(settings),
+        seed_(frame.seed),
+        surfaces_(frame, view, rays, settings.fullMaterials) {}
 
   EyePathStart look(glm::vec2 pixel, uint64_t& rays) const {
     const TracedSurface v = surfaces_.look(pixel, rays);

@@ -20,15 +20,16 @@ struct EyePathSettings {
   uint32_t region = scene::kRegionFovea;  // region of the image in which the paths start
   uint32_t imageShare64ths = 26;          // share of the whole image for the region `mixed`
   float foveaRadius = 0.25f;              // image widths
-  uint32_t points = 1024;    // number of screen points, the same in every frame: scene::screenPoint()
-  uint32_t bounces = 2;      // reflections of light on its way to the visible point
-  bool emission = true;      // whether the ends show the light that surfaces emit themselves
-  uint32_t gathered = 2;     // rays that gather the second of these reflections
-  uint32_t renewFrames = 1;  // frames in which every start is renewed once, a share of them in each
-  float stray = 0;           // image widths; a start that is still seen this close to its place is kept
-  uint32_t traceFrames = 1;  // frames in which every path is traced anew once, a share in each frame
-  uint32_t turn = 0;         // which share has its turn, for both cycles
-  uint32_t threads = 0;      // 0 uses one per core; the result does not depend on it
+  uint32_t points = 1024;      // number of screen points, the same in every frame: scene::screenPoint()
+  uint32_t bounces = 2;        // reflections of light on its way to the visible point
+  bool emission = true;        // whether the ends show the light that surfaces emit themselves
+  bool fullMaterials = false;  // framework/scene/materials/bounced.h
+  uint32_t gathered = 2;       // rays that gather the second of these reflections
+  uint32_t renewFrames = 1;    // frames in which every start is renewed once, a share of them in each
+  float stray = 0;             // image widths; a start that is still seen this close to its place is kept
+  uint32_t traceFrames = 1;    // frames in which every path is traced anew once, a share in each frame
+  uint32_t turn = 0;           // which share has its turn, for both cycles
+  uint32_t threads = 0;        // 0 uses one per core; the result does not depend on it
 };
 
 struct EyePathStatistics {

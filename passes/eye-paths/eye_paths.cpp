@@ -8,6 +8,7 @@
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -53,6 +54,7 @@ class EyePaths : public Pass {
     d.parameter("trace_frames", integer(1, 1, 1000),
                 "frames in which all paths are traced anew, those of a share of the points in each frame; "
                 "the others keep the light they found unless their start is new");
+    declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
     return d;
@@ -71,6 +73,7 @@ class EyePaths : public Pass {
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.emission = p.flag("emission");
+    settings.fullMaterials = fullMaterials(p);
     settings.gathered = uint32_t(p.integer("gathered"));
     const bool hurries = frame.saccade > 0 && p.integer("saccade_renew_frames") > 0;
     settings.renewFrames = ctx.firstFrame() ? 1

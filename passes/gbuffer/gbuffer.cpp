@@ -1,6 +1,5 @@
 // G-buffer: the nearest surface through the centre of every pixel.
 #include <algorithm>
-#include <string>
 
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
@@ -8,11 +7,22 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
+
+// Whether a material has textures of more than colours, or takes its colours' from the second coordinates.
+bool hasSurfaceTextures(const scene::Material& m) {
+  return std::ranges::any_of(scene::kMaterialTextures, [&](const auto member) {
+    const scene::TextureUse& use = m.*member;
+    const bool color =
+        member == &scene::Material::baseColorTexture || member == &scene::Material::emissionTexture;
+    return use && (!color || use.set != 0);
+  });
+}
 
 class GBuffer : public Pass {
  public:
@@ -23,20 +33,32 @@ class GBuffer : public Pass {
         PassKind::Graphics);
     d.recorded();
     d.view();
+    const SizeExpr full = fullMaterials();
     d.output("gbuffer", "gbuffer", gbufferOutput(), "one surface per pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
               "triangle visible at each pixel, 0xffffffff if none");
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
+    declareMaterials(d,
+                     "`full` takes everything that glTF says of them, with normal maps and what they reflect "
+                     "beside their diffuse layer");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
+    std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
+                                       "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};
     for (const bool textured : {false, true})
-      for (const bool mapped : {false, true})
-        d.fullscreen("gbuffer/resolve.frag", {"gbuffer.position", "gbuffer.normal", "gbuffer.face",
-                                              "gbuffer.albedo", "gbuffer.emission", "gbuffer.id"})
-            .called(resolveStep(textured, mapped))
-            .define("EMISSION_TEXTURES", textured)
-            .define("ENVIRONMENT_MAP", mapped);
+      d.fullscreen("gbuffer/resolve.frag", images)
+          .called(textured ? "resolve with emission textures" : "resolve")
+          .when(!full)
+          .define("EMISSION_TEXTURES", textured)
+          .define("FULL", 0);
+    images.push_back("gbuffer.specular");
+    for (const bool textured : {false, true})
+      d.fullscreen("gbuffer/resolve.frag", images)
+          .called(textured ? "resolve full materials with textures" : "resolve full materials")
+          .when(full)
+          .define("SURFACE_TEXTURES", textured)
+          .define("FULL", 1);
     return d;
   }
 
@@ -62,7 +84,7 @@ class GBuffer : public Pass {
       const std::vector<scene::Material>& materials = ctx.frame().scene->materials;
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
-      environmentMap_ = ctx.frame().scene->environmentMap != nullptr;
+      surfaceTextures_ = std::any_of(materials.begin(), materials.end(), hasSurfaceTextures);
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -77,17 +99,13 @@ class GBuffer : public Pass {
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
-    ctx.run(resolveStep(emissionTextures_, environmentMap_));
+    ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
+    ctx.run(surfaceTextures_ ? "resolve full materials with textures" : "resolve full materials");
   }
 
  private:
-  static std::string resolveStep(bool emissionTextures, bool environmentMap) {
-    return std::string("resolve") + (emissionTextures ? " with emission textures" : "") +
-           (environmentMap ? " before an environment map" : "");
-  }
-
   Kernel draw_[3];
-  bool emissionTextures_ = false, environmentMap_ = false;
+  bool emissionTextures_ = false, surfaceTextures_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -8,6 +8,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 #include "passes/near-field/near_field_tracer.h"
 
 namespace fovea::passes {
@@ -35,6 +36,7 @@ class NearFieldPixels : public Pass {
     d.parameter(
         "bounces", integer(2, 1, 64),
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
+    declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("pixels", "pixels that got rays");
     return d;
@@ -57,6 +59,7 @@ class NearFieldPixels : public Pass {
     settings.area = ctx.inputAs<glm::vec4>("spread")[0].x;
     settings.samples = uint32_t(p.integer("samples"));
     settings.bounces = uint32_t(p.integer("bounces"));
+    settings.fullMaterials = fullMaterials(p);
     settings.seed = frame.seed;  // the turn stays 0: without a mean over frames, new rays would flicker
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
     const NearFieldStatistics statistics =

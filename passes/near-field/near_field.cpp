@@ -8,6 +8,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 #include "passes/near-field/near_field_tracer.h"
 
 namespace fovea::passes {
@@ -52,6 +53,7 @@ class NearField : public Pass {
                 "fovea is that of wide blocks");
     d.parameter("emitter_points", integer(4, 1, 64),
                 "points on surfaces that shine, of which the ray aimed at them chooses one");
+    declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
     d.counter("gathered",
@@ -76,6 +78,7 @@ class NearField : public Pass {
     settings.emitterPoints = uint32_t(p.integer("emitter_points"));
     settings.turn = uint32_t(ctx.frameNumber());
     settings.seed = frame.seed;
+    settings.fullMaterials = fullMaterials(p);
     NearFieldStatistics statistics;
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {

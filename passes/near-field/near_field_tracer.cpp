@@ -44,7 +44,7 @@ class Tracer {
          std::span<glm::vec4> image)
       : view_(view),
         settings_(settings),
-        surfaces_(frame, view, rays),
+        surfaces_(frame, view, rays, settings.fullMaterials),
         image_(image),
         columns_((view.size.x + 1) / 2),
         rows_((view.size.y + 1) / 2),

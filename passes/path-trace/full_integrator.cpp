@@ -48,10 +48,7 @@ Ray FullIntegrator::beyond(Ray ray, const RayHit& hit) {
 FullIntegrator::Vertex FullIntegrator::vertexAt(const SurfacePoint& point, glm::vec3 direction) const {
   const float side = glm::dot(point.face, direction) < 0 ? 1.0f : -1.0f;
   const glm::vec3 face = side * point.face, out = -direction;
-  glm::vec3 normal = side * point.normal;
-  if (const float cosine = glm::dot(normal, out); cosine < kLeastCosine)
-    normal = glm::normalize(normal + (kLeastCosine - cosine) * out);
-  const glm::mat3 frame = orthonormalFrame(normal);
+  const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   return {point.position, point.position + (face + out) * rays_.epsilon(), face, frame,
           Bsdf(point.bsdf, glm::normalize(toLocal(frame, out)))};
 }

@@ -11,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "passes/acuity.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -28,6 +29,7 @@ class ShadowRays : public Pass {
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
             "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
             "where rays decide");
+    declareMaterials(d, "`full` takes everything that glTF says of them");
     declarePeriphery(
         d,
         "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves no more "
@@ -42,7 +44,7 @@ class ShadowRays : public Pass {
     const auto direct = ctx.outputAs<uint64_t>("direct");
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
-    const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays);
+    const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, fullMaterials(ctx.parameters()));
     const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
@@ -62,9 +64,7 @@ class ShadowRays : public Pass {
           ++doubted;
           const scene::TracedSurface v = surfaces.look(glm::vec2(x, y) + 0.5f, count);
           if (v.there) {
-            const glm::vec3 radiance =
-                surfaces.emitted(v) + surfaces.direct(v, surfaces.reflectance(v), count);
-            pixel = glm::packHalf4x16(glm::vec4(glm::min(radiance, 65504.0f), 1));
+            pixel = glm::packHalf4x16(glm::vec4(glm::min(surfaces.seen(v, count), 65504.0f), 1));
           } else {  // the ray falls between two triangles, so the map's result stays
             pixel = (pixel & 0xffffffffffffu) | kSure << 48;
           }

@@ -205,6 +205,8 @@ bool alphaTest(uint material, vec2 uv) {
 
 // ---- Environment -------------------------------------------------------------------------------------------------
 
+bool hasEnvironmentMap() { return textureSize(sceneEnvironment, 0).x > 1; }
+
 // Radiance of the environment map from a direction, which is unit; the same as scene::EnvironmentMap::radiance.
 vec3 environmentRadiance(vec3 direction) {
   ivec2 size = textureSize(sceneEnvironment, 0);

@@ -4,7 +4,7 @@
 // Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
 // irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl); TRACED 0/1, 1 if rays have found the
 // light of some pixels, of which none lies in the periphery; NEAR_FIELD 0/1, 1 if that of pass near-field is to be
-// added to it.
+// added to it; GLOSS 0/1, 1 to filter also the light that glossy surfaces reflect.
 //
 // Pixels whose window does not hold all subsets are listed and processed by the EDGES variant, which packs these few
 // pixels into its work groups. With MASKED most windows extend beyond the blocks, so EDGES processes all pixels of
@@ -86,12 +86,38 @@ layout(push_constant) uniform Constants {
   float filterCos;    // least cosine between normals
 };
 
+// Light of a sample: irradiance / pi, with GLOSS also that under the lobe of glossy surfaces.
+#if GLOSS
+#define Light mat2x3
+layout(rgba16f) uniform writeonly image2D gloss;
+Light loadLight(ivec2 at) { return mat2x3(imageLoad(partial, at).rgb, imageLoad(partialGloss, at).rgb); }
+Light handedOver(Light light, uint lane) {
+  return mat2x3(subgroupShuffle(light[0], lane), subgroupShuffle(light[1], lane));
+}
+#else
+#define Light vec3
+Light loadLight(ivec2 at) { return imageLoad(partial, at).rgb; }
+Light handedOver(Light light, uint lane) { return subgroupShuffle(light, lane); }
+#endif
+
+struct Weighted {  // a sum of samples, and of their weights
+  Light light;
+  float weight;
+};
+const Weighted kNoSamples = Weighted(Light(0.0), 0.0);
+
+void add(inout Weighted sum, Light light, float weight) {
+  sum.light += light;
+  sum.weight += weight;
+}
+
 struct Centre {
-  vec3 position, normal, sum;
+  vec3 position, normal;
+  Light sum;
   float plane;    // m; below 0: background
   uint found;     // subsets in the sum
 #if SCALE > 1
-  vec4 others;  // rgb: sum of samples on other surfaces that face the same way, a: their number
+  Weighted others;  // samples on other surfaces that face the same way
 #endif
 #if MASKED
   vec4 outside;   // rgb: sum of the base over the window's pixels of the surface outside the mask, a: their number
@@ -134,12 +160,12 @@ Centre centreAt(ivec2 p, ivec2 size) {
   Centre c;
   c.position = position.xyz;
   c.normal = imageLoad(gbufferNormal, inside).xyz;
-  c.sum = vec3(0.0);
+  c.sum = Light(0.0);
   c.plane = surface ? filterPlane * position.w : -1.0;
   c.found = 0u;
   c.missing = uvec2(0u);
 #if SCALE > 1
-  c.others = vec4(0.0);
+  c.others = kNoSamples;
 #endif
 #if MASKED
   c.outside = vec4(0.0);
@@ -162,7 +188,7 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first) {
       vec4 position = imageLoad(gbufferPosition, at);
       if (q != inside) position.w = 0.0;
       vec3 normal = imageLoad(gbufferNormal, at).xyz;
-      vec3 value = imageLoad(partial, inside).rgb;
+      Light value = loadLight(inside);
 #if MASKED
       bool shaded = isShaded(inside);
       vec4 known = vec4(imageLoad(base, inside).rgb, 1.0);
@@ -182,7 +208,7 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first) {
           centres[k].missing |= subsetBit(ivec2(dx, dy));
 #if SCALE > 1
           if (sameSurface(centres[k], position, normal, kWiderPlane * centres[k].plane, kWiderCos))
-            centres[k].others += vec4(value, 1.0);
+            add(centres[k].others, value, 1.0);
 #endif
         }
       }
@@ -192,23 +218,23 @@ void filterWindows(inout Centre centres[kPixels], ivec2 first) {
 
 #if SCALE > 1
 void addOthers(inout Centre c) {
-  c.sum += c.others.rgb;
-  c.found += uint(c.others.a);
+  c.sum += c.others.light;
+  c.found += uint(c.others.weight);
 }
 #else
 void addOthers(inout Centre c) {}
 #endif
 
 #if EDGES
-// Adds a sample, weighting nearer pixels more; a: weight.
-void addSample(inout vec4 sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
+// Adds a sample, weighting nearer pixels more.
+void addSample(inout Weighted sum, Centre c, ivec2 p, ivec2 d, ivec2 size, float plane, float least) {
   ivec2 q = p + d;
   if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size))) return;
   if (!isShaded(q)) return;
   ivec2 at = samplePixel(q, imageSize(gbufferPosition));
   if (!sameSurface(c, imageLoad(gbufferPosition, at), imageLoad(gbufferNormal, at).xyz, plane, least)) return;
   float w = 1.0 / float(max(d.x * d.x + d.y * d.y, 1));
-  sum += vec4(imageLoad(partial, q).rgb * w, w);
+  add(sum, loadLight(q) * w, w);
 }
 
 // Removes one subset from the mask and returns it.
@@ -219,9 +245,9 @@ int nextSubset(inout uvec2 left, out uvec2 bit) {
   return subset;
 }
 
-void take(inout Centre c, vec4 sum, uvec2 bit) {
-  if (sum.a == 0.0) return;
-  c.sum += sum.rgb / sum.a;
+void take(inout Centre c, Weighted sum, uvec2 bit) {
+  if (sum.weight == 0.0) return;
+  c.sum += sum.light / sum.weight;
   ++c.found;
   c.missing &= ~bit;
 }
@@ -230,9 +256,9 @@ void take(inout Centre c, vec4 sum, uvec2 bit) {
 ivec2 placeInWindow(ivec2 offset) { return offset - INTERLEAVE * ivec2(greaterThanEqual(offset, ivec2(INTERLEAVE - INTERLEAVE / 2))); }
 
 // The sample of a subset on the other side of the pixel, used where an edge leaves the surface.
-vec4 lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
+Weighted lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least) {
   ivec2 inside = placeInWindow(offset), across = inside + INTERLEAVE * (2 * ivec2(lessThan(inside, ivec2(0))) - 1);
-  vec4 sum = vec4(0.0);
+  Weighted sum = kNoSamples;
   addSample(sum, c, p, ivec2(across.x, inside.y), size, plane, least);
   addSample(sum, c, p, ivec2(inside.x, across.y), size, plane, least);
   addSample(sum, c, p, across, size, plane, least);
@@ -242,9 +268,9 @@ vec4 lookAcross(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float 
 // A sample from anywhere in the wide window, except where it was searched before: of its 4 x 4 samples the
 // middle four are the one in the window and those on the other side. window: search the window again if it was
 // missing under other bounds.
-vec4 lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least, bool window) {
+Weighted lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, float least, bool window) {
   ivec2 first = offset - 2 * INTERLEAVE;
-  vec4 sum = vec4(0.0);
+  Weighted sum = kNoSamples;
   for (int i = 0; i < 12; ++i) {
     int place = i < 4 ? i : i < 8 ? 4 * (i / 2 - 1) + 3 * (i & 1) : i + 4;
     addSample(sum, c, p, first + INTERLEAVE * ivec2(place & 3, place >> 2), size, plane, least);
@@ -273,12 +299,12 @@ void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool 
     other.normal = subgroupShuffle(c.normal, owner);
     float otherPlane = subgroupShuffle(plane, owner);
     ivec2 at = subgroupShuffle(p, owner), offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE);
-    vec4 sum = across ? lookAcross(other, at, offset, size, otherPlane, least)
+    Weighted sum = across ? lookAcross(other, at, offset, size, otherPlane, least)
                       : lookWider(other, at, offset, size, otherPlane, least, window);
     uint from = owner | uint(subset) << 16u;
     for (uint lane = 0u; lane < min(lanes, total - first); ++lane) {
       uint to = subgroupShuffle(from, lane), found = to >> 16u;
-      vec4 handed = subgroupShuffle(sum, lane);
+      Weighted handed = Weighted(handedOver(sum.light, lane), subgroupShuffle(sum.weight, lane));
       if ((to & 0xffffu) == gl_SubgroupInvocationID)
         take(c, handed, found < 32u ? uvec2(1u << found, 0u) : uvec2(0u, 1u << (found - 32u)));
     }
@@ -297,7 +323,7 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
     int turns = wanted ? 1 : 0;  // on a CPU device a loop of zero turns is skipped, a branch is not
     for (int k = 0; k < turns; ++k) {
       if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) continue;
-      c.sum += imageLoad(partial, q).rgb;
+      c.sum += loadLight(q);
       ++c.found;
       c.missing &= ~bit;
     }
@@ -306,20 +332,20 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
 #endif
 
 #if SCALE > 1
-vec3 lastResort(ivec2 p, ivec2 size) {
-  vec3 sum = vec3(0.0);
+Light lastResort(ivec2 p, ivec2 size) {
+  Light sum = Light(0.0);
   for (uint i = 0u; i < kSubsets; ++i)
-    sum += imageLoad(partial, clamp(p + placeInWindow(ivec2(i % INTERLEAVE, i / INTERLEAVE)), ivec2(0), size - 1)).rgb;
+    sum += loadLight(clamp(p + placeInWindow(ivec2(i % INTERLEAVE, i / INTERLEAVE)), ivec2(0), size - 1));
   return sum / float(kSubsets);
 }
 #else
-vec3 lastResort(ivec2 p, ivec2 size) { return imageLoad(partial, p).rgb; }  // its normal has length 0, or is NaN
+Light lastResort(ivec2 p, ivec2 size) { return loadLight(p); }  // its normal has length 0, or is NaN
 #endif
 
 // The mean over the subsets, and whether fewer than half of them were found on the surface. p: the sample around which
 // the window lies; size: of the grid. All lanes of a subgroup come here, including those without a pixel, which are not
 // `wanted`.
-vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
+Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
   incomplete = false;
   bool based = false;
 #if MASKED
@@ -357,6 +383,17 @@ vec3 meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool in
 }
 #endif
 
+// Writes the light of a pixel. known: what rays have found there, if a is above 0.
+void store(ivec2 p, Light light, vec4 known) {
+#if GLOSS
+  imageStore(gloss, p, vec4(light[1], 1.0));
+  vec3 mean = light[0];
+#else
+  vec3 mean = light;
+#endif
+  imageStore(irradiance, p, known.a > 0.0 ? known : vec4(mean, 1.0));
+}
+
 #if EDGES
 #if MASKED
 const int kItems = kListedColumns;
@@ -382,10 +419,8 @@ void main() {
     for (int i = 0; i < kPixels; ++i) {
       ivec2 p = first + ivec2(0, i);
       bool surface = centres[i].plane >= 0.0, incomplete;
-      vec3 mean = meanOfSubsets(centres[i], min(p, size - 1) / SCALE, imageSize(partial), surface, incomplete);
-      vec4 known = tracedAt(min(p, size - 1));
-      if (all(lessThan(p, size)))
-        imageStore(irradiance, p, known.a > 0.0 ? known : vec4(surface ? mean : vec3(0.0), 1.0));
+      Light mean = meanOfSubsets(centres[i], min(p, size - 1) / SCALE, imageSize(partial), surface, incomplete);
+      if (all(lessThan(p, size))) store(p, surface ? mean : Light(0.0), tracedAt(min(p, size - 1)));
       surfaces += subgroupBallotBitCount(subgroupBallot(surface));
       found += subgroupBallotBitCount(subgroupBallot(incomplete));
     }
@@ -423,8 +458,7 @@ uint resolve(ivec2 first, ivec2 size) {
     if (surface && centres[k].found < kEnough && known[k].a == 0.0)
       edgePixels.list[end - 1u + before[k]] = uint(p.x) | uint(p.y) << 16u;
     else if (all(lessThan(p, size))) {
-      vec3 mean = surface ? centres[k].sum / float(centres[k].found) : vec3(0.0);
-      imageStore(irradiance, p, known[k].a > 0.0 ? known[k] : vec4(mean, 1.0));
+      store(p, surface ? centres[k].sum / float(max(centres[k].found, 1u)) : Light(0.0), known[k]);
     }
   }
   return surfaces;

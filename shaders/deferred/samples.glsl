@@ -14,6 +14,15 @@ layout(rgba16f) uniform image2D coarse;
 layout(rgba16f) uniform image2D partial;
 #endif
 
+#if GLOSS
+#if SCALE > 1
+layout(rgba16f) uniform image2D coarseGloss;
+#define partialGloss coarseGloss
+#else
+layout(rgba16f) uniform image2D partialGloss;
+#endif
+#endif
+
 // The pixel that a sample of the grid is shaded at. It takes all places of its square in turn, so that edges between
 // surfaces do not fall into the gaps of a regular grid.
 ivec2 samplePixel(ivec2 at, ivec2 size) {

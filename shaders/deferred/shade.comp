@@ -1,12 +1,17 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 // Irradiance from one page of VPLs, each pixel from one of INTERLEAVE^2 subsets of them (Eq. 2 of
 // the paper without rho):
 //   E = sum over l of I_l cos_s cos_l Vis / d^2,   I_l = rho_l Phi_l / pi
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1, 1 for all
 // pages but the first; NEAR_FIELD 0/1, 1 to add the light of pass near-field; MASKED 0/1, 1 to shade only the listed
-// blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl.
+// blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl; GLOSS 0/1, 1 to find also the light that the surfaces of
+// full materials reflect, see common/vpl_gloss.glsl.
+#if GLOSS
+#include "common/vpl_gloss.glsl"
+#endif
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #include "common/paraboloid.glsl"
@@ -37,6 +42,10 @@ layout(r32ui) uniform readonly uimage2DArray atlas;
 layout(rgba16f) uniform readonly image2D nearField;
 #endif
 
+#if GLOSS
+layout(rgba16f) uniform readonly image2D gbufferSpecular;
+#endif
+
 layout(push_constant) uniform Constants {
 #if !MASKED
   ivec4 area;  // corners of the part of the grid to shade
@@ -53,7 +62,24 @@ const uint kSubsets = INTERLEAVE * INTERLEAVE;
 
 struct Receiver {
   vec3 position, normal, face, sum;
+#if GLOSS
+  Lobe lobe;
+  vec3 gloss;  // sum of the light under the lobe
+#endif
 };
+
+#if GLOSS
+// The sum of the squared differences between the normal of a receiver and those beside and above or below it, which are
+// the next of the same subset; 0 for those of other surfaces.
+float turnOf(Receiver receivers[kPixels], bool valid[kPixels], int k) {
+  vec3 normal = receivers[k].normal, beside = subgroupShuffleXor(normal, 1u) - normal;
+  bool there = subgroupShuffleXor(valid[k], 1u);
+  int other = k ^ 1;
+  vec3 below = receivers[other].normal - normal;
+  float x = dot(beside, beside), y = dot(below, below);
+  return (there && x < kSharpEdge ? x : 0.0) + (valid[other] && y < kSharpEdge ? y : 0.0);
+}
+#endif
 
 // Bounds of the receivers of a subgroup. Without pixels, low > high.
 struct Block {
@@ -115,7 +141,7 @@ Emitter handOver(Emitter e, uint lane) {
   e.axes[1] = subgroupShuffle(e.axes[1], lane);
 #endif
   e.axes[2] = subgroupShuffle(e.axes[2], lane);
-#if KERNEL_DISC
+#if KERNEL_DISC || GLOSS
   e.area = subgroupShuffle(e.area, lane);
 #endif
   return e;
@@ -175,23 +201,8 @@ float transfer(Receiver r, Emitter e, uint slot
 #endif
 }
 
-void main() {
-  uvec2 subset2 = subsetOfGroup();
-  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
-  Receiver receivers[kPixels];
-  bool valid[kPixels];
-  for (int k = 0; k < kPixels; ++k) {
-    ivec2 at = sampleAt(k, size), p = samplePixel(at, pixels);
-    vec4 position = imageLoad(gbufferPosition, p);
-    valid[k] = position.w > 0.0 && all(lessThan(at, size));
-    receivers[k].position = position.xyz;
-    receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
-#if SHADOWED
-    receivers[k].face = octDecode(imageLoad(gbufferFace, p).xy);
-#endif
-    receivers[k].sum = vec3(0.0);
-  }
-  Block block = blockOf(receivers, valid);
+// Adds the light of the subset's VPLs to the receivers, and if `glossy`, which is a constant, that under their lobes.
+void gather(inout Receiver receivers[kPixels], Block block, uint subset, bool glossy) {
 #if SHADOWED
   AtlasLayout maps = atlasLayout(imageSize(atlas));
 #endif
@@ -199,7 +210,6 @@ void main() {
   // On a CPU, where every lane's load from a uniform buffer has its own cost, loading them in every lane costs as
   // much as everything else.
   uint lanes = subgroupBallotBitCount(subgroupBallot(true));
-  uint subset = subset2.y * INTERLEAVE + subset2.x;
   for (uint first = 0u; first * kSubsets + subset < PAGE_VPLS; first += lanes) {
     uint mine = (first + gl_SubgroupInvocationID) * kSubsets + subset;
     Vpl vpl = vpls.list[min(mine, PAGE_VPLS - 1u)];
@@ -216,9 +226,55 @@ void main() {
         float t = transfer(receivers[k], e, 0u);
 #endif
         receivers[k].sum += t * e.intensity;
+#if GLOSS
+        if (glossy) {
+          vec3 toLight = e.position - receivers[k].position;
+          float lobe = lobeTowards(receivers[k].lobe, receivers[k].normal, toLight, e.area);
+          receivers[k].gloss += (t * lobe) * e.intensity;
+        }
+#endif
       }
     }
   }
+}
+
+void main() {
+  uvec2 subset2 = subsetOfGroup();
+  ivec2 size = imageSize(partial), pixels = imageSize(gbufferPosition);
+  Receiver receivers[kPixels];
+  bool valid[kPixels];
+  for (int k = 0; k < kPixels; ++k) {
+    ivec2 at = sampleAt(k, size), p = samplePixel(at, pixels);
+    vec4 position = imageLoad(gbufferPosition, p);
+    valid[k] = position.w > 0.0 && all(lessThan(at, size));
+    receivers[k].position = position.xyz;
+    receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
+#if SHADOWED
+    receivers[k].face = octDecode(imageLoad(gbufferFace, p).xy);
+#endif
+    receivers[k].sum = vec3(0.0);
+#if GLOSS
+    receivers[k].lobe = lobeOf(receivers[k].normal, view.eye - position.xyz, imageLoad(gbufferSpecular, p));
+    receivers[k].gloss = vec3(0.0);
+#endif
+  }
+#if GLOSS
+  bool glossy = false;
+  for (int k = 0; k < kPixels; ++k) glossy = glossy || (valid[k] && receivers[k].lobe.share > 0.0);
+  glossy = subgroupAny(glossy);
+#endif
+  Block block = blockOf(receivers, valid);
+  uint subset = subset2.y * INTERLEAVE + subset2.x;
+#if GLOSS
+  // A CPU device skips a loop of zero turns, but not a branch. Most groups show nothing glossy.
+  for (int turn = glossy ? 0 : 1; turn > 0; --turn) gather(receivers, block, subset, false);
+  for (int turn = glossy ? 1 : 0; turn > 0; --turn) {
+    for (int k = 0; k < kPixels; ++k) complete(receivers[k].lobe, turnOf(receivers, valid, k));
+    gather(receivers, block, subset, true);
+  }
+#else
+  gather(receivers, block, subset, false);
+#endif
   for (int k = 0; k < kPixels; ++k) {
     ivec2 at = sampleAt(k, size);
     if (any(greaterThanEqual(at, size))) continue;
@@ -231,5 +287,16 @@ void main() {
     sum += imageLoad(partial, at).rgb;
 #endif
     imageStore(partial, at, vec4(min(sum, 65504.0), 0.0));
+#if GLOSS
+    vec3 gloss = receivers[k].gloss * (float(INTERLEAVE * INTERLEAVE) / receivers[k].lobe.albedo);
+#if NEAR_FIELD && !ACCUMULATE
+    gloss += imageLoad(nearField, samplePixel(at, pixels)).rgb;
+#endif
+#if ACCUMULATE
+    gloss += imageLoad(partialGloss, at).rgb;
+#endif
+    gloss = mix(sum, gloss, receivers[k].lobe.share);
+    imageStore(partialGloss, at, vec4(min(gloss, 65504.0), 0.0));
+#endif
   }
 }

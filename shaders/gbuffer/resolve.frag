@@ -1,6 +1,10 @@
 // The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
 // the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
-// buffer, Burns and Hunt, JCGT 2013).
+// buffer, Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of
+// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl).
+#if FULL
+#include "common/full_material.glsl"
+#endif
 #include "common/pixel_ray.glsl"
 #include "common/scene.glsl"
 
@@ -11,6 +15,13 @@ layout(location = 2) out vec2 gbufferFace;
 layout(location = 3) out vec4 gbufferAlbedo;
 layout(location = 4) out vec4 gbufferEmission;
 layout(location = 5) out uint gbufferId;
+#if FULL
+layout(location = 6) out vec4 gbufferSpecular;
+
+// Least cosine between the normal of shading and the direction to the eye. A normal map, or interpolation on a coarse
+// mesh, may turn the normal away from an eye that sees the surface; the normal is then bent back.
+const float kLeastCosine = 0.01;
+#endif
 
 const uint kNothing = 0xffffffffu;
 const float kMaxHalf = 65504.0;
@@ -43,22 +54,39 @@ void main() {
   if (dot(normal, face) < 0.0) normal = -normal;
   vec2 uv = mat3x2(sceneUv(triangle.x), sceneUv(triangle.y), sceneUv(triangle.z)) * weights;
   uint material = materialOf(triangle);
+#if FULL
+  TextureCoordinates at = textureCoordinates(triangle, weights, uv);
+  float side = dot(cross(edgeB, edgeC), face) < 0.0 ? -1.0 : 1.0;
+  int record = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  normal = mappedNormal(record, index, weights, edgeB, edgeC, normal, side, at);
+  vec3 toEye = normalize(view.eye - position);
+  float cosine = dot(normal, toEye);
+  if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
+  FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
+  vec3 albedo = surface.albedo, emission = surface.emission;
+  // Of normal, albedo and emission.
+  vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
+#else
+  const vec3 alphas = vec3(0.0);
   vec3 albedo = materialReflectance(material, uv).rgb;
 #if EMISSION_TEXTURES
   vec3 emission = materialEmission(material, uv);
 #else
   vec3 emission = loadMaterial(material).emission;
 #endif
-#if ENVIRONMENT_MAP
-  if (background) emission = environmentRadiance(normalize(pixelRay(p)));
-#else
-  if (background) emission = frame.environment;
 #endif
+  if (background) emission = frame.environment;
+  // A CPU device skips a loop of zero turns, but not a branch.
+  for (int turns = background && hasEnvironmentMap() ? 1 : 0; turns > 0; --turns)
+    emission = environmentRadiance(normalize(pixelRay(p)));
 
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
-  gbufferNormal = background ? vec4(0.0) : vec4(normal, 0.0);
+  gbufferNormal = background ? vec4(0.0) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
-  gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, 0.0);
-  gbufferEmission = vec4(min(emission, kMaxHalf), 0.0);
+  gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, alphas.y);
+  gbufferEmission = vec4(min(emission, kMaxHalf), alphas.z);
   gbufferId = background ? kNothing : triangle.w;
+#if FULL
+  gbufferSpecular = background ? vec4(0.0) : vec4(surface.gloss.f0, surface.gloss.roughness);
+#endif
 }

@@ -1,7 +1,7 @@
 // Tests the conversion of irradiance to radiance, pixel by pixel.
 #include <gtest/gtest.h>
 
-#include "tests/passes/deferred_reference.h"
+#include "tests/passes/full_materials_reference.h"
 
 namespace fovea::test {
 namespace {
@@ -27,7 +27,11 @@ void compose(bool withDirect) {
   const auto input = [&](const char* port, glm::vec3 (*value)(int)) {
     test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(value));
   };
-  input("gbuffer.albedo", albedoAt);
+  GBuffer(kWidth, kHeight, [](int x, int y) {
+    SurfacePixel p;
+    p.albedo = albedoAt(y * kWidth + x);
+    return p;
+  }).wire(test);
   input("irradiance", irradianceAt);
   if (withDirect) input("direct", directAt);
   test.run();
@@ -38,6 +42,44 @@ void compose(bool withDirect) {
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(indirect[size_t(4 * i + c)], reflected[c], 1e-3f * reflected[c]) << i;
       EXPECT_NEAR(radiance[size_t(4 * i + c)], all[c], 1e-3f * all[c]) << i;
+    }
+  }
+}
+
+// Where there is no light under the lobe, the irradiance stands in for it.
+TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
+  const scene::BsdfParameters material = bsdfParameters({0.8f, 0.5f, 0.2f}, 0.5f, 0.4f);
+  const glm::vec3 eye(0, 2, 1);
+  GBuffer g(kWidth, kHeight, [&](int x, int y) {
+    SurfacePixel p;
+    p.position = {float(x), 0, float(y)};
+    p.distance = 1;
+    setMaterial(p, material, glm::normalize(eye - p.position).y);
+    return p;
+  });
+  g.full = true;
+  for (const bool wired : {false, true}) {
+    PassTest test("compose");
+    g.wire(test);
+    scene::Scene s;
+    s.materials.emplace_back();
+    s.cameras.emplace_back();
+    s.cameras[0].position = eye;
+    test.scene(s).param("materials", "full");
+    test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(directAt));
+    if (wired) test.image("gloss", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(albedoAt));
+    test.run();
+    const auto radiance = test.floats("radiance");
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      if (i == 7) continue;  // beyond what a half holds
+      const SurfacePixel& p = g.pixels[size_t(i)];
+      const float cosine = glm::normalize(eye - p.position).y;
+      const glm::dvec3 reflects =
+          glm::mix(dielectricAlbedo(material, cosine), metalAlbedo(material, cosine), 0.5);
+      const glm::dvec3 want = glm::dvec3(p.albedo) * glm::dvec3(directAt(i)) +
+                              reflects * glm::dvec3(wired ? albedoAt(i) : directAt(i));
+      // A mixture of metal and dielectric has one curve for both.
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(radiance[size_t(4 * i + c)], want[c], 0.01 * want[c]) << i;
     }
   }
 }

@@ -34,7 +34,7 @@ std::vector<glm::uvec2> find(const GBuffer& seen, double reach, double width, do
   PassTest test("contacts");
   test.param("fovea_radius", foveaRadius).param("width", width).param("rise", double(kRise));
   test.param("reach", reach / std::sqrt(kArea / glm::pi<double>()));
-  seen.wire(test, "gbuffer", 2);
+  seen.wire(test);
   test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");
   test.run();
   return test.values<glm::uvec2>("contacts");

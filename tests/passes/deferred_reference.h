@@ -29,6 +29,8 @@ struct SurfacePixel {
   float distance = 0;  // to the eye; 0 in the background
   glm::vec3 normal{0, 1, 0};
   glm::vec3 albedo{0.5f};
+  glm::vec4 specular{0};            // rgb: reflectance at normal incidence, a: roughness
+  float grazing = 0, metallic = 0;  // in alpha of the normal and of the albedo
 };
 
 struct GBuffer {
@@ -47,26 +49,34 @@ struct GBuffer {
     }
   }
 
-  // The bundle at `port`, with only the first `members` of position, normal, face and albedo.
-  void wire(PassTest& test, const std::string& port = "gbuffer", int members = 4) const {
+  bool full = false;  // materials
+
+  // Those members of the bundle at `port` that the pass reads.
+  void wire(PassTest& test, const std::string& port = "gbuffer") const {
     std::vector<float> position;
-    std::vector<uint16_t> normal, face, albedo;
+    std::vector<uint16_t> normal, face, albedo, specular;
     const auto half = [](std::vector<uint16_t>& to, std::initializer_list<float> values) {
       for (float v : values) to.push_back(glm::packHalf1x16(v));
     };
     for (const SurfacePixel& p : pixels) {
       position.insert(position.end(), {p.position.x, p.position.y, p.position.z, p.distance});
-      half(normal, {p.normal.x, p.normal.y, p.normal.z, 0});
+      half(normal, {p.normal.x, p.normal.y, p.normal.z, p.grazing});
       const glm::vec2 oct = octEncode(glm::normalize(p.normal));
       for (const float v : {oct.x, oct.y}) face.push_back(glm::packSnorm1x16(v));
-      half(albedo, {p.albedo.r, p.albedo.g, p.albedo.b, 0});
+      half(albedo, {p.albedo.r, p.albedo.g, p.albedo.b, p.metallic});
+      if (full || specular.empty()) half(specular, {p.specular.r, p.specular.g, p.specular.b, p.specular.a});
     }
     const auto w = uint32_t(width), h = uint32_t(height);
     test.viewSize(w, h);
-    test.image(port + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
-    test.image(port + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
-    if (members > 2) test.image(port + ".face", VK_FORMAT_R16G16_SNORM, w, h, 1, face);
-    if (members > 3) test.image(port + ".albedo", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
+    for (const graph::MemberSpec& m : test.declaration().findPort(port)->members) {
+      const std::string name = port + "." + m.name;
+      if (m.name == "position") test.image(name, VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, position);
+      if (m.name == "normal") test.image(name, VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, normal);
+      if (m.name == "face") test.image(name, VK_FORMAT_R16G16_SNORM, w, h, 1, face);
+      if (m.name == "albedo") test.image(name, VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, albedo);
+      if (m.name == "specular")
+        test.image(name, VK_FORMAT_R16G16B16A16_SFLOAT, full ? w : 1, full ? h : 1, 1, specular);
+    }
   }
 };
 

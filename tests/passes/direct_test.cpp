@@ -6,7 +6,10 @@
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
+#include "fovea/error.h"
 #include "fovea/test.h"
+#include "framework/scene/lights.h"
+#include "tests/passes/full_materials_reference.h"
 #include "tests/passes/shadow_view.h"
 
 namespace fovea::test {
@@ -14,7 +17,8 @@ namespace {
 
 constexpr int kWidth = 64, kHeight = 48;  // receivers
 constexpr int kSize = 256;                // texels of a shadow map
-constexpr float kExtent = 2;              // receivers cover [-2, 2] x [-2, 2] of the plane y = 0
+const glm::vec3 kEye(0.4f, 1.7f, 0.9f);
+constexpr float kExtent = 2;  // receivers cover [-2, 2] x [-2, 2] of the plane y = 0
 
 const glm::vec3 kAlbedo(0.5f, 0.25f, 0.75f), kEmission(0.0625f, 0, 0.125f);
 const glm::vec3 kSphereCentre(0.1f, 0.7f, -0.1f);
@@ -40,6 +44,7 @@ scene::Scene lit(std::vector<scene::Light> lights) {
   scene::Scene s;
   s.materials.emplace_back();
   s.cameras.emplace_back();
+  s.cameras[0].position = kEye;
   s.lights = std::move(lights);
   return s;
 }
@@ -154,30 +159,43 @@ std::vector<float> shadowDepth(const std::vector<ShadowView>& views, uint32_t la
 
 struct Surface {
   glm::vec3 normal{0, 1, 0};
-  glm::vec2 face{0, 1};  // octahedral (0, 1, 0)
-  float distance = 5;    // 0 in the background
+  glm::vec2 face{0, 1};                             // octahedral (0, 1, 0)
+  float distance = 5;                               // 0 in the background
+  const scene::BsdfParameters* material = nullptr;  // if it is full
 };
 
 // Direct radiance, RGBA, of the plane of receivers.
 std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vector<ShadowView>& views,
                          const std::vector<float>& depth, const char* filter, const Surface& surface = {}) {
-  std::vector<float> position, normal, face, albedo, emission;
+  std::vector<float> position, normal, face, albedo, emission, specular;
+  const bool full = surface.material != nullptr;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const glm::vec3 p = receiver(x, y);
       position.insert(position.end(), {p.x, p.y, p.z, surface.distance});
-      normal.insert(normal.end(), {surface.normal.x, surface.normal.y, surface.normal.z, 0});
+      SurfacePixel pixel;
+      pixel.albedo = kAlbedo;
+      const float dielectric = full ? surface.material->specularF0.g : 0;
+      if (full) setMaterial(pixel, *surface.material, glm::normalize(kEye - p).y);
+      normal.insert(normal.end(), {surface.normal.x, surface.normal.y, surface.normal.z, pixel.grazing});
       face.insert(face.end(), {surface.face.x, surface.face.y});
-      albedo.insert(albedo.end(), {kAlbedo.r, kAlbedo.g, kAlbedo.b, 0});
-      emission.insert(emission.end(), {kEmission.r, kEmission.g, kEmission.b, 0});
+      albedo.insert(albedo.end(), {pixel.albedo.r, pixel.albedo.g, pixel.albedo.b, pixel.metallic});
+      const glm::vec3 emitted = full ? glm::vec3(0) : kEmission;
+      emission.insert(emission.end(), {emitted.r, emitted.g, emitted.b, dielectric});
+      if (full || specular.empty())
+        specular.insert(specular.end(),
+                        {pixel.specular.r, pixel.specular.g, pixel.specular.b, pixel.specular.a});
     }
   PassTest test("direct");
   test.param("filter", filter).viewSize(kWidth, kHeight).scene(lit(lights));
+  test.param("materials", full ? "full" : "diffuse");
   test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(normal));
   test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, kWidth, kHeight, 1, snorms(face));
   test.image("gbuffer.albedo", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(albedo));
   test.image("gbuffer.emission", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(emission));
+  test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, full ? kWidth : 1, full ? kHeight : 1, 1,
+             halves(specular));
   test.image("maps.depth", VK_FORMAT_D32_SFLOAT, kSize, kSize, layerCount(lights), depth);
   test.buffer("maps.views", views, "ShadowView");
   test.run();
@@ -252,6 +270,69 @@ TEST(Direct, FaceTurnedAwayIsDark) {
   terminator.normal = glm::normalize(glm::vec3(0.9f, 0.5f, 0));
   EXPECT_EQ(expectRadiance(shadeUnshadowed({sun({-1, 0.1f, 0})}, terminator), {}, always), kWidth * kHeight);
 }
+
+// ---- Full materials -------------------------------------------------------------------------------------------------
+
+// Metals, dielectrics and what is between, smooth and rough.
+std::vector<scene::BsdfParameters> fullMaterials() {
+  std::vector<scene::BsdfParameters> list;
+  for (const float roughness : {0.25f, 0.5f, 0.8f, 1.0f})
+    for (const float metallic : {0.0f, 0.4f, 1.0f})
+      list.push_back(bsdfParameters({0.9f, 0.5f, 0.2f}, metallic, roughness));
+  list.push_back(bsdfParameters(glm::vec3(0.5f), 0, 0.3f));
+  list.back().specularF0 = glm::vec3(0.02f);
+  list.back().specularF90 = 0.5f;
+  list.push_back(bsdfParameters(glm::vec3(0.8f), 0, 0.4f));
+  list.back().transmission = 0.6f;
+  return list;
+}
+
+TEST(DirectFull, EachLightTypeEqualsTheBsdf) {
+  for (const scene::Light& light : {sun({0.3f, -1, 0.6f}), sun({-1, -0.3f, 0.2f}), point({0.4f, 1.5f, -0.3f}),
+                                    spot({-0.5f, 2, 0.5f}, {0.4f, -1, 0})})
+    for (const scene::BsdfParameters& material : fullMaterials()) {
+      SCOPED_TRACE(testing::Message() << "light type " << int(light.type) << ", roughness "
+                                      << material.roughness << ", metallic " << material.metallic);
+      Surface surface;
+      surface.material = &material;
+      const std::vector<float> got = shadeUnshadowed({light}, surface);
+      const glm::mat3 frame = scene::orthonormalFrame({0, 1, 0});
+      double squares = 0, all = 0, most = 0;
+      for (int i = 0; i < kWidth * kHeight; ++i) {
+        const glm::vec3 p = receiver(i % kWidth, i / kWidth);
+        const scene::Bsdf bsdf(material, scene::toLocal(frame, glm::normalize(kEye - p)));
+        const scene::LightSample l = scene::sampleLight(light, p);
+        for (int c = 0; c < 3; ++c) {
+          const double want = double(l.irradiance[c] * bsdf.evaluate(scene::toLocal(frame, l.direction))[c]),
+                       value = double(got[4 * size_t(i) + size_t(c)]);
+          // Dielectrics have a polynomial for Fresnel's equations, and mixtures one curve for both of their parts.
+          most = std::max(most, std::abs(value - want) / (want + 1e-3));
+          squares += (value - want) * (value - want);
+          all += want * want;
+        }
+      }
+      EXPECT_LT(most, 0.05);
+      EXPECT_LT(std::sqrt(squares / all), 0.012);
+    }
+}
+
+TEST(DirectFull, TheGBufferHasToBeFullAsWell) {
+  PassTest test("direct");
+  test.param("materials", "full").viewSize(8, 8).scene(lit({sun({0, -1, 0})}));
+  GBuffer(8, 8, [](int, int) { return SurfacePixel{}; }).wire(test);
+  test.image("gbuffer.emission", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, std::vector<uint16_t>(256));
+  test.image("maps.depth", VK_FORMAT_D32_SFLOAT, 8, 8, 1, std::vector<float>(64));
+  test.buffer("maps.views", std::vector<ShadowView>(kMaxShadowLayers), "ShadowView");
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("those of the G-buffer are not"), std::string::npos) << e.what();
+  }
+}
+
+// ---- Shadows --------------------------------------------------------------------------------------------------------
 
 // Whether the sphere stands between p and the light; -1 if p is too close to the rim of its shadow for a map
 // of this resolution.

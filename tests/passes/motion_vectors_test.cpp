@@ -16,8 +16,8 @@ constexpr uint32_t kNone = 0xffffffffu;
 std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, uint32_t object = 0,
                                 const std::function<void(scene::Frame&)>& change = {}) {
   PassTest test("motion-vectors");
-  now.seen.wire(test, "gbuffer", 2);
-  before.seen.wire(test, "previous", 2);
+  now.seen.wire(test);
+  before.seen.wire(test, "previous");
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              std::vector<uint32_t>(size_t(kSize.x * kSize.y), object << 16));
   test.scene(now.scene).beforeFrame([&](PassTest&, scene::Frame& frame) {

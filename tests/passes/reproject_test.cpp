@@ -64,10 +64,10 @@ void wire(PassTest& test, const Eye& first, const GBuffer& second, const std::ve
   std::vector<uint16_t> half;
   for (const glm::vec3& v : irradiance)
     for (const float x : {v.r, v.g, v.b, 1.0f}) half.push_back(glm::packHalf1x16(x));
-  first.seen.wire(test, "source_gbuffer", 2);
+  first.seen.wire(test, "source_gbuffer");
   test.image("source_irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(first.seen.width),
              uint32_t(first.seen.height), 1, half);
-  second.wire(test, "gbuffer", 3);
+  second.wire(test);
   test.param("source_view", "first");
   test.beforeFrame([view = first.view](PassTest&, scene::Frame& frame) {
     frame.views.push_back(view);

@@ -9,6 +9,9 @@
 #include "fovea/test.h"
 #include "framework/base/random.h"
 #include "framework/scene/lights.h"
+#include "framework/scene/materials/surface_materials.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
@@ -85,6 +88,45 @@ TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   EXPECT_GT(shadowed, 10);
   EXPECT_GT(background, 50);
   EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
+}
+
+// With full materials a pixel in doubt becomes what the BSDF of the path tracer says, as its neighbours in pass direct.
+TEST(ShadowRays, FullMaterialsAreThoseOfTheBsdf) {
+  Room room = litBoxes();
+  room.scene.materials[0].metallic = 0.5f;
+  room.scene.materials[0].roughness = 0.4f;
+  room.scene.materials[0].clearcoat = 0.5f;
+  PassTest test("shadow-rays");
+  test.viewSize(kSize.x, kSize.y).scene(room.scene).param("materials", "full");
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1,
+             std::vector<uint64_t>(room.pixels.size(), glm::packHalf4x16({1, 2, 3, 0})));
+  test.run();
+  const auto after = test.values<uint64_t>("direct");
+  const scene::SurfaceMaterials materials(room.scene, room.geometry);
+  const scene::View& view = test.lastFrame().views[0];
+  int lit = 0;
+  for (uint32_t i = 0; i < room.pixels.size(); ++i) {
+    const glm::dvec3 ray(view.rayDirection(glm::vec2(int(i) % kSize.x, int(i) / kSize.x) + 0.5f));
+    const RayHit hit = castRay(room.scene, room.geometry, glm::dvec3(view.eye), ray);
+    if (!hit) continue;
+    const scene::SurfacePoint p = materials.at({hit.triangle, 0, float(hit.u), float(hit.v)});
+    const glm::vec3 out = glm::normalize(view.eye - p.position);
+    const glm::mat3 frame = scene::orthonormalFrame(scene::normalTowards(p, out));
+    const scene::Bsdf bsdf(p.bsdf, scene::toLocal(frame, out));
+    glm::dvec3 want(p.emission);
+    for (const scene::Light& light : room.scene.lights) {
+      const scene::LightSample l = scene::sampleLight(light, p.position);
+      RayOptions options;
+      if (light.type == scene::LightType::Point) options.tMax = l.distance;
+      const glm::dvec3 origin = glm::dvec3(p.position) + 1e-5 * glm::dvec3(p.face);
+      if (castRay(room.scene, room.geometry, origin, glm::dvec3(l.direction), options)) continue;
+      want += glm::dvec3(l.irradiance * bsdf.evaluate(scene::toLocal(frame, l.direction)));
+      ++lit;
+    }
+    const glm::vec4 got = glm::unpackHalf4x16(after[i]);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 5e-3 * want[c] + 1e-4) << "pixel " << i;
+  }
+  EXPECT_GT(lit, 500);
 }
 
 // Where the eye resolves little, the shadow map's answer stays.

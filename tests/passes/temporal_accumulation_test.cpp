@@ -30,7 +30,7 @@ std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samp
   PassTest test("temporal-accumulation");
   test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 3);
   test.beforeFrame([saccade](PassTest&, scene::Frame& f) { f.saccade = saccade; });
-  eye.seen.wire(test, "gbuffer", 2);
+  eye.seen.wire(test);
   const uint32_t block = samples.size() == history.size() ? 1 : 2;
   test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, origin);
   test.image("samples", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x) / block, uint32_t(kSize.y) / block,

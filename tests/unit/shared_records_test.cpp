@@ -106,14 +106,29 @@ TEST(SharedRecords, Voxels) {
 TEST(SharedRecords, Scene) {
   using namespace scene;
   const char* header = "common/records/scene.h";
-  expectLayout(
-      header, "FrameBlock", sizeof(FrameBlock),
-      {AT(FrameBlock, index), AT(FrameBlock, seed), AT(FrameBlock, lightCount), AT(FrameBlock, triangleCount),
-       AT(FrameBlock, staticTriangleCount), AT(FrameBlock, vertexCount), AT(FrameBlock, time),
-       AT(FrameBlock, exposure), AT(FrameBlock, boundsMin), AT(FrameBlock, unused0),
-       AT(FrameBlock, boundsMax), AT(FrameBlock, unused1), AT(FrameBlock, environment),
-       AT(FrameBlock, unused2), AT(FrameBlock, firstMovingVertex), AT(FrameBlock, firstMovingTriangle),
-       AT(FrameBlock, unused3), AT(FrameBlock, unused4)});
+  expectLayout(header, "FrameBlock", sizeof(FrameBlock),
+               {AT(FrameBlock, index),
+                AT(FrameBlock, seed),
+                AT(FrameBlock, lightCount),
+                AT(FrameBlock, triangleCount),
+                AT(FrameBlock, staticTriangleCount),
+                AT(FrameBlock, vertexCount),
+                AT(FrameBlock, time),
+                AT(FrameBlock, exposure),
+                AT(FrameBlock, boundsMin),
+                AT(FrameBlock, unused0),
+                AT(FrameBlock, boundsMax),
+                AT(FrameBlock, unused1),
+                AT(FrameBlock, environment),
+                AT(FrameBlock, unused2),
+                AT(FrameBlock, firstMovingVertex),
+                AT(FrameBlock, firstMovingTriangle),
+                AT(FrameBlock, firstSurface),
+                AT(FrameBlock, firstAlbedo),
+                AT(FrameBlock, firstTangent),
+                AT(FrameBlock, firstDetail),
+                AT(FrameBlock, unused3),
+                AT(FrameBlock, unused4)});
   expectLayout(header, "ViewBlock", sizeof(ViewBlock),
                {AT(ViewBlock, worldToView), AT(ViewBlock, viewToClip), AT(ViewBlock, worldToClip),
                 AT(ViewBlock, clipToWorld), AT(ViewBlock, previousWorldToClip), AT(ViewBlock, eye),
@@ -136,6 +151,20 @@ TEST(SharedRecords, Scene) {
                {AT(MaterialRecord, baseColor), AT(MaterialRecord, alpha), AT(MaterialRecord, emission),
                 AT(MaterialRecord, alphaCutoff), AT(MaterialRecord, colorTexture),
                 AT(MaterialRecord, emissionTexture)});
+  expectLayout(header, "SurfaceRecord", sizeof(SurfaceRecord),
+               {AT(SurfaceRecord, baseColor), AT(SurfaceRecord, metallic), AT(SurfaceRecord, specularF0),
+                AT(SurfaceRecord, specular), AT(SurfaceRecord, roughness), AT(SurfaceRecord, normalScale),
+                AT(SurfaceRecord, transmission), AT(SurfaceRecord, unlit), AT(SurfaceRecord, clearcoat),
+                AT(SurfaceRecord, clearcoatRoughness), AT(SurfaceRecord, unused0), AT(SurfaceRecord, unused1),
+                AT(SurfaceRecord, metallicRoughnessTexture), AT(SurfaceRecord, normalTexture),
+                AT(SurfaceRecord, specularTexture), AT(SurfaceRecord, specularColorTexture),
+                AT(SurfaceRecord, transmissionTexture), AT(SurfaceRecord, clearcoatTexture),
+                AT(SurfaceRecord, clearcoatRoughnessTexture)});
+  expectLayout(header, "TangentRecord", sizeof(TangentRecord),
+               {AT(TangentRecord, corner0), AT(TangentRecord, bitangentSign), AT(TangentRecord, corner1),
+                AT(TangentRecord, unused0), AT(TangentRecord, corner2), AT(TangentRecord, unused1)});
+  expectLayout(header, "VertexDetail", sizeof(VertexDetail),
+               {AT(VertexDetail, color), AT(VertexDetail, uv), AT(VertexDetail, unused)});
   expectLayout("common/records/shadow.h", "ShadowView", sizeof(ShadowView),
                {AT(ShadowView, worldToClip), AT(ShadowView, right), AT(ShadowView, texelWidth),
                 AT(ShadowView, up), AT(ShadowView, texelHeight), AT(ShadowView, bias),

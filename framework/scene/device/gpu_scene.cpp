@@ -10,8 +10,10 @@
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/animator.h"
 #include "framework/scene/device/environment_image.h"
+#include "framework/scene/device/full_materials.h"
 #include "framework/scene/device/gpu_textures.h"
 #include "framework/scene/lights.h"
+#include "framework/scene/materials/bounced.h"
 
 namespace fovea::scene {
 
@@ -140,6 +142,8 @@ struct GpuScene::Impl {
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
   float environmentTurn;
   uint32_t staticVertices, firstMovingLight;
+  bool fullMaterials;
+  FullMaterials full;
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one per slot
@@ -152,7 +156,7 @@ struct GpuScene::Impl {
   std::vector<VkDescriptorSet> sets;
   std::vector<DrawRun> runs;
 
-  Impl(gpu::Device& d, const Scene& scene, const Geometry& g)
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& g, bool fullMaterials_)
       : device(d),
         triangleCount(uint32_t(g.triangles.size())),
         staticTriangles(g.staticTriangles),
@@ -161,8 +165,9 @@ struct GpuScene::Impl {
         environmentTurn(scene.environmentMap ? scene.environmentMap->turn() : 0),
         staticVertices(g.staticVertices()),
         firstMovingLight(g.light().firstMoving),
+        fullMaterials(fullMaterials_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
-        textures(d, scene),
+        textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
@@ -178,9 +183,7 @@ struct GpuScene::Impl {
                             kTexelUsage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                             gpu::MemoryKind::Device});
     attributes = makeBuffer(device, "scene attributes", attributeList(g), kTexelUsage);
-    std::vector<MaterialRecord> list;
-    for (const Material& m : scene.materials) list.push_back(materialEntry(scene, m));
-    materials = makeBuffer(device, "scene materials", list, kTexelUsage);
+    materials = makeBuffer(device, "scene materials", materialList(scene, g), kTexelUsage);
   }
   ~Impl() {
     vkDestroyDescriptorPool(device.handle(), pool, nullptr);
@@ -189,6 +192,7 @@ struct GpuScene::Impl {
 
   TextureRecord textureEntry(const Scene& scene, const TextureUse& use) const;
   MaterialRecord materialEntry(const Scene& scene, const Material& m) const;
+  std::vector<glm::vec4> materialList(const Scene& scene, const Geometry& g);
   void makeUniforms(uint32_t slots);
   void makeMoves(const Scene& scene, const Geometry& g, uint32_t slots);
   void storeObjects(const Frame& frame, uint32_t slot) const;
@@ -206,7 +210,8 @@ TextureRecord GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse&
   const TexturePages::Place* place = textures.find(use.texture);
   if (!place) return {};
   const Texture& t = scene.textures[use.texture];
-  const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear);
+  const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear) |
+                         (use.set == 1 ? kTextureSecondSet : 0);
   const glm::mat3x2& m = use.transform;
   return {float(place->page),
           float(place->x),
@@ -220,14 +225,30 @@ TextureRecord GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse&
 
 MaterialRecord GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
   MaterialRecord record;
-  record.baseColor = glm::vec3(m.baseColor) * (1.0f - m.meanMetallic());
+  record.baseColor = bouncedColor(m, fullMaterials);
   record.alpha = m.baseColor.a;
-  record.emission = m.emission;
+  record.emission = fullMaterials && m.unlit ? glm::vec3(0) : m.emission;
   record.alphaCutoff = m.masked ? m.alphaCutoff : 0.0f;
   record.colorTexture = textureEntry(scene, m.baseColorTexture);
   record.emissionTexture = textureEntry(scene, m.emissionTexture);
   if (m.doubleSided) record.colorTexture.flags += float(kMaterialDoubleSided);
   return record;
+}
+
+std::vector<glm::vec4> GpuScene::Impl::materialList(const Scene& scene, const Geometry& g) {
+  static_assert(sizeof(MaterialRecord) % sizeof(glm::vec4) == 0);
+  std::vector<glm::vec4> texels(scene.materials.size() * (sizeof(MaterialRecord) / sizeof(glm::vec4)));
+  auto* records = reinterpret_cast<MaterialRecord*>(texels.data());
+  for (size_t i = 0; i < scene.materials.size(); ++i) records[i] = materialEntry(scene, scene.materials[i]);
+  if (fullMaterials)
+    full = appendFullMaterials(
+        scene, g, [&](const TextureUse& use) { return textureEntry(scene, use); }, texels);
+  if (const uint64_t limit = device.limits().maxTexelBufferElements; texels.size() > limit)
+    throw Error(ExitCode::OutOfMemory,
+                "scene materials: " + std::to_string(texels.size()) +
+                    " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
+                "use diffuse materials");
+  return texels;
 }
 
 void GpuScene::Impl::makeUniforms(uint32_t slots) {
@@ -340,8 +361,9 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }
 
-GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight)
-    : impl_(std::make_unique<Impl>(device, scene, geometry)) {
+GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
+                   bool fullMaterials)
+    : impl_(std::make_unique<Impl>(device, scene, geometry, fullMaterials)) {
   const uint32_t slots = std::max(1u, framesInFlight);
   impl_->makeUniforms(slots);
   impl_->makeMoves(scene, geometry, slots);
@@ -372,6 +394,10 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
   block.environmentTurn = s.environmentTurn;
   block.firstMovingVertex = s.staticVertices;
   block.firstMovingTriangle = s.firstMovingLight;
+  block.firstSurface = s.full.firstSurface;
+  block.firstAlbedo = s.full.firstAlbedo;
+  block.firstTangent = s.full.firstTangent;
+  block.firstDetail = s.full.firstDetail;
   impl_->store(slot, 0, block);
   uint32_t layer = 0;
   for (size_t i = 0; i < frame.lights.size(); ++i) {
@@ -400,6 +426,7 @@ gpu::Buffer& GpuScene::positions() const { return impl_->positions; }
 gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
 gpu::Buffer& GpuScene::previous() const { return impl_->previous; }
 gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
+bool GpuScene::fullMaterials() const { return impl_->fullMaterials; }
 const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
 uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }
 uint32_t GpuScene::vertexCount() const { return impl_->vertexCount; }

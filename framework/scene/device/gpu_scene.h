@@ -24,7 +24,10 @@ class GpuScene : public FrameDescriptors {
  public:
   // Uploads everything and waits for the upload. Throws Error(OutOfMemory) naming what did not fit, and
   // Error(BadInput) if there are more than kMaxLights lights or a texture is larger than the device supports.
-  GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight);
+  // fullMaterials: whether a pass asks for all that glTF says of materials. Surfaces from which light bounces on its
+  // way to the picture are diffuse in any case, but metals are then no longer black: they keep their colour.
+  GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
+           bool fullMaterials = false);
   ~GpuScene() override;
 
   // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views or kMaxLights lights.
@@ -47,7 +50,8 @@ class GpuScene : public FrameDescriptors {
   gpu::Buffer& positions() const;   // vec4: world space, m; w 1
   gpu::Buffer& attributes() const;  // vec4: octahedral normal, uv
   gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
-  gpu::Buffer& materials() const;   // MaterialRecord each
+  gpu::Buffer& materials() const;   // MaterialRecord each, then what full materials need
+  bool fullMaterials() const;
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;

@@ -29,11 +29,14 @@ void changeLayout(VkCommandBuffer cmd, VkImage image, bool toCopy) {
   vkCmdPipelineBarrier2(cmd, &info);
 }
 
-std::vector<uint32_t> usedTextures(const Scene& scene) {
+std::vector<uint32_t> usedTextures(const Scene& scene, bool fullMaterials) {
   std::vector<bool> used(scene.textures.size());
   for (const Material& m : scene.materials)
-    for (const TextureUse* use : {&m.baseColorTexture, &m.emissionTexture})
-      if (use->texture < used.size()) used[use->texture] = true;
+    for (const auto member : kMaterialTextures) {
+      const bool diffuse = member == &Material::baseColorTexture || member == &Material::emissionTexture;
+      const uint32_t texture = (m.*member).texture;
+      if ((diffuse || fullMaterials) && texture < used.size()) used[texture] = true;
+    }
   std::vector<uint32_t> list;
   for (uint32_t i = 0; i < used.size(); ++i) {
     const Texture& t = scene.textures[i];
@@ -44,8 +47,9 @@ std::vector<uint32_t> usedTextures(const Scene& scene) {
 
 }  // namespace
 
-GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene) : index_(scene.textures.size(), -1) {
-  const std::vector<uint32_t> textures = usedTextures(scene);
+GpuTextures::GpuTextures(gpu::Device& device, const Scene& scene, bool fullMaterials)
+    : index_(scene.textures.size(), -1) {
+  const std::vector<uint32_t> textures = usedTextures(scene, fullMaterials);
   const uint32_t maxSide = device.limits().maxImageDimension2D;
   std::vector<glm::uvec2> sizes;
   for (uint32_t t : textures) {

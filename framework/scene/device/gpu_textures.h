@@ -9,11 +9,12 @@
 
 namespace fovea::scene {
 
-// The textures that materials use, as 8-bit RGBA in their stored encoding; a single white texel if there are none.
+// The textures that diffuse or full materials use, as 8-bit RGBA in their stored encoding; a single white texel if
+// there are none.
 class GpuTextures {
  public:
   // Throws Error(BadInput) naming a texture that is too large for the device, and Error(OutOfMemory).
-  GpuTextures(gpu::Device& device, const Scene& scene);
+  GpuTextures(gpu::Device& device, const Scene& scene, bool fullMaterials);
   // Null if no material uses the texture.
   const TexturePages::Place* find(uint32_t texture) const;
   gpu::Image& image() { return image_; }  // in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL

@@ -9,12 +9,20 @@
 namespace fovea::scene {
 namespace {
 
+constexpr float kLeastCosine = 0.01f;  // between the normal and the direction to the viewer
+
 template <class T>
 T interpolated(const std::vector<T>& list, const Triangle& t, float u, float v) {
   return list[t.v[0]] * (1.0f - u - v) + list[t.v[1]] * u + list[t.v[2]] * v;
 }
 
 }  // namespace
+
+glm::vec3 normalTowards(const SurfacePoint& point, glm::vec3 out) {
+  const glm::vec3 normal = glm::dot(point.face, out) > 0 ? point.normal : -point.normal;
+  const float cosine = glm::dot(normal, out);
+  return cosine < kLeastCosine ? glm::normalize(normal + (kLeastCosine - cosine) * out) : normal;
+}
 
 SurfaceMaterials::SurfaceMaterials(const Scene& scene, const Geometry& geometry)
     : scene_(scene), geometry_(geometry) {

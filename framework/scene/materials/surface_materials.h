@@ -21,6 +21,10 @@ struct SurfacePoint {
   bool unlit = false, doubleSided = false;
 };
 
+// The shading normal on the side of a viewer in the direction `out`, who sees the surface. A normal map, or
+// interpolation on a coarse mesh, may turn it away from the viewer; it is then bent back.
+glm::vec3 normalTowards(const SurfacePoint& point, glm::vec3 out);
+
 // Keeps references to both: they have to outlive it.
 class SurfaceMaterials {
  public:

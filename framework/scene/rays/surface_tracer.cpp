@@ -6,6 +6,7 @@
 #include "framework/base/random.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
+#include "framework/scene/materials/bounced.h"
 #include "framework/shader_twins/paraboloid.h"
 
 namespace fovea::scene {
@@ -25,13 +26,15 @@ glm::vec2 streamSequence(uint32_t stream, uint32_t turn) {
           uniformFloat(hashCombine(stream, 1u) + turn * 2447445414u)};
 }
 
-SurfaceTracer::SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays)
+SurfaceTracer::SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays, bool fullMaterials)
     : frame_(frame),
       view_(view),
       rays_(rays),
       emitters_(frame),
       environment_(frame.scene->environmentMap.get()),
-      surfaceShare_(surfaceShare(emitters_, environment_)) {}
+      surfaceShare_(surfaceShare(emitters_, environment_)) {
+  if (fullMaterials) materials_.emplace(*frame.scene, *frame.geometry);
+}
 
 TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) const {
   const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
@@ -42,6 +45,8 @@ TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) c
   const float side = front ? 1.0f : -1.0f;
   v.there = true;
   v.triangle = hit.triangle;
+  v.u = hit.u;
+  v.v = hit.v;
   v.position = s.position;
   v.normal = side * s.shadingNormal;
   v.face = side * s.geometricNormal;
@@ -72,23 +77,43 @@ TracedSurface SurfaceTracer::arrive(glm::vec3 origin, glm::vec3 direction, float
 }
 
 glm::vec3 SurfaceTracer::reflectance(const TracedSurface& v) const {
-  return glm::vec3(scene::reflectance(*frame_.scene, *v.material, v.uv));
+  return bouncedReflectance(*frame_.scene, *v.material, v.uv, materials_.has_value());
 }
 
-glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) const {
+template <class Function>
+glm::vec3 SurfaceTracer::fromLights(const TracedSurface& v, uint64_t& rays, const Function& respond) const {
   glm::vec3 sum(0);
   for (const Light& light : frame_.lights) {
     const LightSample l = sampleLight(light, v.position);
-    const float cosine = glm::dot(v.normal, l.direction);
-    if (cosine <= 0 || glm::dot(v.face, l.direction) <= 0 || l.irradiance == glm::vec3(0)) continue;
+    if (glm::dot(v.face, l.direction) <= 0 || l.irradiance == glm::vec3(0)) continue;
+    const glm::vec3 response = respond(l.irradiance, l.direction);
+    if (response == glm::vec3(0)) continue;
     Ray ray;
     ray.origin = v.origin;
     ray.direction = l.direction;
     if (l.distance < kFarAway) ray.far = l.distance * kShadowEnd;
     ++rays;
-    if (!rays_.occluded(ray)) sum += l.irradiance * cosine;
+    if (!rays_.occluded(ray)) sum += response;
   }
   return sum;
+}
+
+glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) const {
+  return fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
+    return irradiance * std::max(glm::dot(v.normal, direction), 0.0f);
+  });
+}
+
+glm::vec3 SurfaceTracer::seen(const TracedSurface& v, uint64_t& rays) const {
+  if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
+  const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
+  if (point.unlit) return point.emission;
+  const glm::vec3 out = glm::normalize(view_.eye - v.position);
+  const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
+  const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));
+  return point.emission + fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
+           return irradiance * bsdf.evaluate(toLocal(frame, direction));
+         });
 }
 
 glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {

@@ -1,11 +1,12 @@
-// Traces single rays through the triangles and evaluates the diffuse light at what they hit, for passes that
-// trace few rays.
+// Traces single rays through the triangles and evaluates the light at what they hit, for passes that trace few rays.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "framework/scene/frame.h"
+#include "framework/scene/materials/surface_materials.h"
 #include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
 
@@ -15,6 +16,7 @@ namespace fovea::scene {
 struct TracedSurface {
   bool there = false;
   uint32_t triangle = kNoIndex;  // index into Geometry::triangles
+  float u = 0, v = 0;            // barycentric weights of the triangle's second and third vertex
   glm::vec3 position{0};         // world space, m
   glm::vec3 origin{0};           // start of rays that leave it, just off the surface
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side reached
@@ -31,12 +33,16 @@ glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u);
 // light the back is black. `rays` counts the rays traced.
 class SurfaceTracer {
  public:
-  SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays);
+  // Surfaces are diffuse for light that bounces between them. fullMaterials: as in materials/bounced.h;
+  // what the eye sees, seen(), is then all that the surface reflects.
+  SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays, bool fullMaterials = false);
 
   // The surface that the eye sees at `pixel` (pixels, centres at +0.5).
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
   // The surface met within `reach` metres. direction: unit.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
+  // Radiance towards the eye from v, which the eye sees, emitted or reflected once.
+  glm::vec3 seen(const TracedSurface& v, uint64_t& rays) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
   // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
@@ -76,6 +82,9 @@ class SurfaceTracer {
 
  private:
   TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
+  // The sum over the lights that reach v of what `respond` makes of their irradiance and direction.
+  template <class Function>
+  glm::vec3 fromLights(const TracedSurface& v, uint64_t& rays, const Function& respond) const;
   glm::vec3 irradiance(const TracedSurface& v, uint64_t& rays) const;
   glm::vec3 fromEmitters(const TracedSurface& v, uint32_t count, uint32_t stream, uint64_t& rays) const;
 
@@ -85,6 +94,7 @@ class SurfaceTracer {
   Emitters emitters_;
   const EnvironmentMap* environment_;
   float surfaceShare_;  // probability with which towardsEmitter() chooses a surface, not the environment
+  std::optional<SurfaceMaterials> materials_;  // if they are full
 };
 
 }  // namespace fovea::scene

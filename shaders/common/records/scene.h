@@ -23,10 +23,16 @@ struct FrameBlock {
   float environmentTurn SHARED_ZERO;  // radians by which the map is turned about +Y
   uint firstMovingVertex SHARED_ZERO;    // vertices below it never move
   uint firstMovingTriangle SHARED_ZERO;  // of the triangles used for voxels and VPL maps
+  // Texel of `sceneMaterials` at which the SurfaceRecords start, 0 if there are none; then that of the tables of
+  // albedos, of the tangents (0 if no surface has a normal map) and of the VertexDetails (0 if there are none).
+  uint firstSurface SHARED_ZERO;
+  uint firstAlbedo SHARED_ZERO;
+  uint firstTangent SHARED_ZERO;
+  uint firstDetail SHARED_ZERO;
   uint unused3 SHARED_ZERO;
   uint unused4 SHARED_ZERO;
 };
-SHARED_SIZE(FrameBlock, 96)
+SHARED_SIZE(FrameBlock, 112)
 SHARED_OFFSET(FrameBlock, boundsMin, 32)
 SHARED_OFFSET(FrameBlock, firstMovingVertex, 80)
 
@@ -92,6 +98,7 @@ SHARED_CONSTANT uint kWrapClamp = 1u;
 SHARED_CONSTANT uint kWrapMirror = 2u;
 SHARED_CONSTANT uint kTextureLinear = 16u;        // not sRGB-encoded
 SHARED_CONSTANT uint kMaterialDoubleSided = 32u;  // only in the flags of a material's base colour texture
+SHARED_CONSTANT uint kTextureSecondSet = 64u;     // full materials take the second texture coordinates
 
 // Where a texture lies in `sceneTextures`, and how it is laid over the uv of a surface. Three texels of floats.
 struct TextureRecord {
@@ -117,5 +124,61 @@ struct MaterialRecord {
 };
 SHARED_SIZE(MaterialRecord, 128)
 SHARED_OFFSET(MaterialRecord, colorTexture, 32)
+
+// ---- Full materials ----
+// What only they need follows the MaterialRecords in `sceneMaterials`, if any pass asks for it.
+
+// The rest of scene::Material; factors of the textures. Base colour and emission have the textures of MaterialRecord.
+// 25 texels.
+struct SurfaceRecord {
+  vec3 baseColor SHARED_ZERO;
+  float metallic SHARED_ZERO;
+  vec3 specularF0 SHARED_ZERO;  // of the dielectric part, where `specular` is 1
+  float specular SHARED_ZERO;
+  float roughness SHARED_ZERO;  // perceptual
+  float normalScale SHARED_ZERO;
+  float transmission SHARED_ZERO;
+  float unlit SHARED_ZERO;  // 1: shows its base colour
+  float clearcoat SHARED_ZERO;
+  float clearcoatRoughness SHARED_ZERO;
+  float unused0 SHARED_ZERO;
+  float unused1 SHARED_ZERO;
+  TextureRecord metallicRoughnessTexture;
+  TextureRecord normalTexture;
+  TextureRecord specularTexture;
+  TextureRecord specularColorTexture;
+  TextureRecord transmissionTexture;
+  TextureRecord clearcoatTexture;
+  TextureRecord clearcoatRoughnessTexture;
+};
+SHARED_SIZE(SurfaceRecord, 400)
+SHARED_OFFSET(SurfaceRecord, roughness, 32)
+SHARED_OFFSET(SurfaceRecord, metallicRoughnessTexture, 64)
+
+// Tables of scene::AlbedoTable: kAlbedoSide rows of as many texels, which are the albedo of a perfect mirror and the
+// part of it that Fresnel's curve gives to F90 for metals and for dielectrics with an index of refraction of 1.5; then
+// a row of its means over the directions.
+SHARED_CONSTANT uint kAlbedoSide = 48u;
+SHARED_CONSTANT float kAlbedoLeastRoot = 0.02f;  // square root of the cosine of the first column
+
+// The same as scene::TriangleTangents. Three texels.
+struct TangentRecord {
+  vec3 corner0 SHARED_ZERO;
+  float bitangentSign SHARED_ZERO;
+  vec3 corner1 SHARED_ZERO;
+  float unused0 SHARED_ZERO;
+  vec3 corner2 SHARED_ZERO;
+  float unused1 SHARED_ZERO;
+};
+SHARED_SIZE(TangentRecord, 48)
+
+// What few models give their vertices. Two texels.
+struct VertexDetail {
+  vec4 color SHARED_DEFAULT(1);
+  vec2 uv SHARED_ZERO;  // second texture coordinates
+  vec2 unused SHARED_ZERO;
+};
+SHARED_SIZE(VertexDetail, 32)
+SHARED_OFFSET(VertexDetail, uv, 16)
 
 SHARED_END

@@ -1,0 +1,28 @@
+#include "passes/materials.h"
+
+#include "fovea/error.h"
+
+namespace fovea::passes {
+
+using namespace graph;
+
+void declareMaterials(PassDeclaration& d, const std::string& what) {
+  d.parameter("materials", choice("diffuse", {"diffuse", "full"}),
+              "what surfaces are: `diffuse` takes all for Lambertian and metals for black; " + what);
+}
+
+bool fullMaterials(const Parameters& parameters) { return parameters.text("materials") == "full"; }
+
+SizeExpr fullMaterials() { return parameter("materials"); }
+
+void checkMaterials(const PassContext& ctx, const std::string& pass) {
+  const VkExtent3D specular = ctx.extent("gbuffer.specular"), position = ctx.extent("gbuffer.position");
+  if (!fullMaterials(ctx.parameters()) ||
+      (specular.width == position.width && specular.height == position.height))
+    return;
+  throw Error(ExitCode::BadInput,
+              "pass `" + pass + "`: materials are `full`, but those of the G-buffer are not",
+              "give both passes the same `materials`");
+}
+
+}  // namespace fovea::passes

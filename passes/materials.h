@@ -1,0 +1,18 @@
+// The parameter `materials` of passes that know more of surfaces than that they are diffuse.
+#pragma once
+
+#include <string>
+
+#include "fovea/pass.h"
+
+namespace fovea::passes {
+
+// what: what the pass does with full materials.
+void declareMaterials(graph::PassDeclaration& d, const std::string& what);
+bool fullMaterials(const graph::Parameters& parameters);
+// 0 or 1.
+graph::SizeExpr fullMaterials();
+// Throws Error(BadInput) if the pass asks for full materials, but the one that made its input `gbuffer` did not.
+void checkMaterials(const graph::PassContext& ctx, const std::string& pass);
+
+}  // namespace fovea::passes

@@ -1,0 +1,137 @@
+// Full materials at a point of a surface; the same as scene::SurfaceMaterials.
+#ifndef FOVEA_FULL_MATERIAL_GLSL
+#define FOVEA_FULL_MATERIAL_GLSL
+
+#include "common/gloss.glsl"
+#include "common/scene.glsl"
+
+// Texels of a SurfaceRecord and of its textures in it.
+const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
+          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
+          kClearcoatRoughnessTexture = 22;
+
+struct TextureCoordinates {
+  vec2 first, second;
+};
+
+// White where the material has no such texture. `texel` is the first of the three that describe it. If SURFACE_TEXTURES
+// is 0, no material has any but those of base colour and emission, with the first coordinates.
+#if SURFACE_TEXTURES
+vec4 surfaceTexture(int texel, TextureCoordinates at) {
+  vec4 place = texelFetch(sceneMaterials, texel), result = vec4(1.0);
+  bool second = (uint(place.w) & kTextureSecondSet) != 0u;
+  // A CPU device skips a loop of zero turns, but not a branch. Few materials have most of the textures.
+  for (int turns = place.x < 0.0 ? 0 : 1; turns > 0; --turns)
+    result = sampleSceneTexture(texel, second ? at.second : at.first);
+  return result;
+}
+
+vec4 colorTexture(int texel, TextureCoordinates at) { return surfaceTexture(texel, at); }
+#else
+vec4 surfaceTexture(int texel, TextureCoordinates at) { return vec4(1.0); }
+vec4 colorTexture(int texel, TextureCoordinates at) { return sampleSceneTexture(texel, at.first); }
+#endif
+
+TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
+  vec2 second = uv;
+  for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
+    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz) + 1;
+    second = mat3x2(texelFetch(sceneMaterials, texel.x).xy, texelFetch(sceneMaterials, texel.y).xy,
+                    texelFetch(sceneMaterials, texel.z).xy) * weights;
+  }
+  return TextureCoordinates(uv, second);
+}
+
+vec3 vertexColor(uvec4 triangle, vec3 weights) {
+  vec3 color = vec3(1.0);
+  for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
+    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz);
+    color = mat3(texelFetch(sceneMaterials, texel.x).rgb, texelFetch(sceneMaterials, texel.y).rgb,
+                 texelFetch(sceneMaterials, texel.z).rgb) * weights;
+  }
+  return color;
+}
+
+// The direction of a corner's tangent, wherever the triangle is now.
+vec3 cornerTangent(vec3 corner, vec3 edgeB, vec3 edgeC, vec3 across) {
+  vec3 t = corner.x * edgeB + corner.y * edgeC + corner.z * across;
+  float d = length(t);
+  return d > 0.0 ? t / d : t;
+}
+
+// normal: interpolated, on the side of the triangle that the eye sees; side: 1 if it is the one seen counter-clockwise,
+// else -1.
+vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edgeC, vec3 normal, float side,
+                  TextureCoordinates at) {
+  vec3 bent = normal;
+  bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u &&
+                texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
+  for (int turns = mapped ? 1 : 0; turns > 0; --turns) {
+    int first = int(frame.firstTangent) + 3 * int(triangle);
+    vec4 a = texelFetch(sceneMaterials, first);
+    vec3 b = texelFetch(sceneMaterials, first + 1).xyz, c = texelFetch(sceneMaterials, first + 2).xyz;
+    vec3 across = cross(edgeB, edgeC);
+    float area = length(across);
+    across *= area > 0.0 ? inversesqrt(area) : 0.0;
+    vec3 t = mat3(cornerTangent(a.xyz, edgeB, edgeC, across), cornerTangent(b, edgeB, edgeC, across),
+                  cornerTangent(c, edgeB, edgeC, across)) * weights;
+    t -= normal * dot(normal, t);
+    float d = length(t);
+    vec3 tangent = t / max(d, 1e-6), bitangent = a.w * cross(normal, tangent);
+    vec3 m = 2.0 * surfaceTexture(surface + kNormalTexture, at).rgb - 1.0;
+    m.xy *= texelFetch(sceneMaterials, surface + 2).y;
+    vec3 n = side * m.x * tangent + m.y * bitangent + m.z * normal;
+    float size = length(n);
+    bent = d > 1e-6 && size > 1e-6 ? n / size : normal;
+  }
+  return bent;
+}
+
+// What the G-buffer keeps of a surface.
+struct FullSurface {
+  vec3 albedo;  // of the diffuse layer, as the eye sees it
+  Gloss gloss;
+  vec3 emission;
+};
+
+FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine) {
+  int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  vec4 base = texelFetch(sceneMaterials, surface), specular = texelFetch(sceneMaterials, surface + 1);
+  vec4 factors = texelFetch(sceneMaterials, surface + 2), coat = texelFetch(sceneMaterials, surface + 3);
+  vec3 color = base.rgb * colorTexture(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
+  color = min(color, 1.0);
+  vec4 metallicRoughness = surfaceTexture(surface + kMetallicRoughnessTexture, at);
+  float metallic = base.a * metallicRoughness.b, roughness = factors.x * metallicRoughness.g;
+  float f90 = specular.a * surfaceTexture(surface + kSpecularTexture, at).a;
+  vec3 f0 = min(specular.rgb * surfaceTexture(surface + kSpecularColorTexture, at).rgb, 1.0) * f90;
+  float transmission = factors.z * surfaceTexture(surface + kTransmissionTexture, at).r;
+
+  Gloss g = Gloss(mix(f0, color, metallic), mix(f90, 1.0, metallic), roughness, metallic, dot(f0, vec3(1.0 / 3.0)));
+  MirrorAlbedo a = mirrorAlbedo(cosine, roughness), mean = meanMirrorAlbedo(roughness);
+  Gloss dielectric = Gloss(f0, f90, roughness, 0.0, g.dielectricF0);
+  vec3 albedo = color * ((1.0 - metallic) * (1.0 - transmission)) * (1.0 - surfaceAlbedo(dielectric, a, mean));
+
+  // The coat takes light from what is below it, and joins its lobe.
+  for (int turns = coat.x > 0.0 ? 1 : 0; turns > 0; --turns) {
+    float share = coat.x * surfaceTexture(surface + kClearcoatTexture, at).r;
+    float coatRoughness = coat.y * surfaceTexture(surface + kClearcoatRoughnessTexture, at).g;
+    MirrorAlbedo c = mirrorAlbedo(cosine, coatRoughness), coatMean = meanMirrorAlbedo(coatRoughness);
+    float reflects = share * (0.04 * (c.all - c.dielectricF90) + c.dielectricF90);
+    float onAverage = share * (0.04 * (coatMean.all - coatMean.dielectricF90) + coatMean.dielectricF90);
+    float passes = (1.0 - reflects) * (1.0 - onAverage);
+    float below = passes * dot(surfaceAlbedo(g, a, mean), vec3(1.0 / 3.0));
+    albedo *= passes;
+    g.f0 = g.f0 * passes + 0.04 * share;
+    g.f90 = g.f90 * passes + share;
+    g.dielectricF0 = g.dielectricF0 * passes + 0.04 * share;
+    g.roughness = mix(roughness, coatRoughness, reflects / max(reflects + below, 1e-6));
+  }
+
+  vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
+  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
+    emission *= colorTexture(first + kEmissionTexture, at).rgb;
+  if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
+  return FullSurface(albedo, g, emission);
+}
+
+#endif
