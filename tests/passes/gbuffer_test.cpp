@@ -95,7 +95,8 @@ class Comparison {
       if (pixel.position.w != 0) return "background with a distance";
       const auto& map = scene_.environmentMap;
       const glm::vec3 want = map ? map->radiance(glm::vec3(glm::normalize(ray))) : scene_.environment;
-      return glm::distance(pixel.emission, want) <= 1e-3f * (1 + glm::length(want)) ? "" : "wrong environment";
+      return glm::distance(pixel.emission, want) <= 1e-3f * (1 + glm::length(want)) ? ""
+                                                                                    : "wrong environment";
     }
     ++hits_;
     const scene::Triangle& triangle = geometry_.triangles[hit.triangle];

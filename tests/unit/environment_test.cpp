@@ -65,7 +65,7 @@ TEST(EnvironmentMap, IsInterpolatedAlsoAcrossItsSeam) {
   std::vector<glm::vec3> texels(4 * 2, glm::vec3(0));
   texels[0] = texels[4] = glm::vec3(8);
   const EnvironmentMap map(4, 2, texels);
-  EXPECT_NEAR(map.radiance(directionAt(0, 0.5)).r, 4, 1e-4);       // halfway between the last column and the first
+  EXPECT_NEAR(map.radiance(directionAt(0, 0.5)).r, 4, 1e-4);  // halfway between the last column and the first
   EXPECT_NEAR(map.radiance(directionAt(0.125, 0.5)).r, 8, 1e-4);   // the middle of the first
   EXPECT_NEAR(map.radiance(directionAt(0.1875, 0.5)).r, 6, 1e-4);  // a quarter of the way to the second
 }
@@ -125,7 +125,8 @@ TEST(EnvironmentMap, IsReadFromAnImageTwiceAsWideAsHigh) {
   TemporaryFolder folder;
   const auto write = [&](const char* name, uint32_t width, uint32_t height) {
     image::Image picture{width, height, 3, {}};
-    for (uint32_t i = 0; i < width * height; ++i) picture.data.insert(picture.data.end(), {1, float(i), 0.5f});
+    for (uint32_t i = 0; i < width * height; ++i)
+      picture.data.insert(picture.data.end(), {1, float(i), 0.5f});
     image::write(folder.path() / name, {{"", picture}});
     return folder.path() / name;
   };

@@ -102,7 +102,8 @@ TEST(SceneFile, AnEnvironmentMayBeAnImage) {
   EXPECT_EQ(s.environmentMap->texels().at(1), glm::vec3(8, 10, 12));
   EXPECT_FLOAT_EQ(s.environmentMap->turn(), glm::half_pi<float>());
   // The program's option replaces it, and the hash knows them apart.
-  const std::string file = (folder.path() / "scene.json").string(), sky = (folder.path() / "sky.pfm").string();
+  const std::string file = (folder.path() / "scene.json").string(),
+                    sky = (folder.path() / "sky.pfm").string();
   const Scene other = load(file, warnings, {sky});
   EXPECT_EQ(other.environmentMap->texels().at(1), glm::vec3(4, 5, 6));
   EXPECT_NE(other.hash, s.hash);
