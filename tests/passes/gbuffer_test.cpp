@@ -95,7 +95,7 @@ class Comparison {
       if (pixel.position.w != 0) return "background with a distance";
       const auto& map = scene_.environmentMap;
       const glm::vec3 want = map ? map->radiance(glm::vec3(glm::normalize(ray))) : scene_.environment;
-      return glm::distance(pixel.emission, want) <= 1e-3f * (1 + glm::length(want)) ? ""
+      return glm::distance(pixel.emission, want) <= 2e-3f * (1 + glm::length(want)) ? ""
                                                                                     : "wrong environment";
     }
     ++hits_;

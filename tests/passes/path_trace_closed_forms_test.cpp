@@ -79,7 +79,7 @@ TEST(PathTrace, EnvironmentOnAPlane) {
   scene::Scene s = plane(rho);
   s.environmentMap = skyWithSun();
   const glm::dvec3 open = glm::dvec3(rho) / kPi * irradianceFrom(*s.environmentMap, {0, 1, 0});
-  PathTraceSettings settings = independent(4, 256);
+  PathTraceSettings settings = independent(4, 8192);
   expectMean(trace(s, 16, settings), open, "a sky");
   settings.independent = false;
   expectMean(trace(s, 16, settings), open, "a sky, Sobol' points");
@@ -116,10 +116,11 @@ TEST(PathTrace, EnvironmentMakesAFurnaceOfFullMaterials) {
       s.materials[0].metallic = metallic;
       s.environmentMap =
           std::make_shared<const scene::EnvironmentMap>(8, 4, std::vector<glm::vec3>(32, glm::vec3(2)));
-      PathTraceSettings settings = independent(4, 512);
+      PathTraceSettings settings = independent(4, 4096);
       settings.full = true;
-      const glm::dvec3 mean = meanOf(trace(s, 8, settings).radiance);
-      EXPECT_NEAR(mean.g, 2, 0.02) << roughness << ' ' << metallic;
+      const Traced t = trace(s, 8, settings);
+      EXPECT_NEAR(meanOf(t.radiance).g, 2, 0.02) << roughness << ' ' << metallic;
+      EXPECT_LT(errorOfMean(t).g, 0.005) << roughness << ' ' << metallic;
     }
 }
 

@@ -120,7 +120,7 @@ TEST(SharedRecords, Scene) {
                 AT(FrameBlock, boundsMax),
                 AT(FrameBlock, unused1),
                 AT(FrameBlock, environment),
-                AT(FrameBlock, unused2),
+                AT(FrameBlock, environmentTurn),
                 AT(FrameBlock, firstMovingVertex),
                 AT(FrameBlock, firstMovingTriangle),
                 AT(FrameBlock, firstSurface),
