@@ -19,8 +19,8 @@ struct FrameBlock {
   float unused0 SHARED_ZERO;
   vec3 boundsMax SHARED_ZERO;
   float unused1 SHARED_ZERO;
-  vec3 environment SHARED_ZERO;       // radiance where nothing is hit, without an environment map
-  float environmentTurn SHARED_ZERO;  // radians by which the map is turned about +Y
+  vec3 environment SHARED_ZERO;          // radiance where nothing is hit, without an environment map
+  float environmentTurn SHARED_ZERO;     // radians by which the map is turned about +Y
   uint firstMovingVertex SHARED_ZERO;    // vertices below it never move
   uint firstMovingTriangle SHARED_ZERO;  // of the triangles used for voxels and VPL maps
   // Texel of `sceneMaterials` at which the SurfaceRecords start, 0 if there are none; then that of the tables of
