@@ -17,9 +17,6 @@ using namespace scene;
 
 constexpr float kShadowEnd = 0.9999f;  // shadow rays end just short of the point they are aimed at
 constexpr uint32_t kMaxPanes = 16;     // of glass that light passes on one edge
-// Least cosine between the normal of shading and the direction to the viewer. A normal map, or interpolation on a
-// coarse mesh, may turn the normal away from a viewer who sees the surface; the normal is then bent back.
-constexpr float kLeastCosine = 0.01f;
 
 float mean(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
 
