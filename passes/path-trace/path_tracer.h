@@ -30,7 +30,8 @@ struct PathTraceImages {
   std::span<glm::vec4> radiance;  // direct + indirect, W/(sr m^2)
   // Emission plus light from the scene's lights reflected once; in the background the environment.
   std::span<glm::vec4> direct;
-  std::span<glm::vec4> indirect;      // all other light; that of emissive triangles is here, as VPLs carry it
+  std::span<glm::vec4>
+      indirect;  // all other light; that of emissive triangles and of an environment map is here
   std::span<glm::vec4> variance;      // estimated variance of the mean `radiance`
   std::span<glm::vec4> halfA, halfB;  // radiance from each half of the samples; the halves are independent
 };

@@ -8,19 +8,13 @@
 #endif
 
 #if SCALE > 1
-layout(rgba16f) uniform image2D coarse;
 #define partial coarse
-#else
-layout(rgba16f) uniform image2D partial;
+#define partialGloss coarseGloss
 #endif
 
+layout(rgba16f) uniform image2D partial;
 #if GLOSS
-#if SCALE > 1
-layout(rgba16f) uniform image2D coarseGloss;
-#define partialGloss coarseGloss
-#else
 layout(rgba16f) uniform image2D partialGloss;
-#endif
 #endif
 
 // The pixel that a sample of the grid is shaded at. It takes all places of its square in turn, so that edges between
