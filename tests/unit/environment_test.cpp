@@ -76,7 +76,9 @@ TEST(EnvironmentMap, DensityIsOneOverTheSphere) {
     double sum = 0;
     overTheSphere(512, [&](glm::vec3 d) {
       sum += double(map.density(d));
-      if (map.radiance(d) != glm::vec3(0)) ASSERT_GT(map.density(d), 0);
+      if (map.radiance(d) != glm::vec3(0)) {
+        ASSERT_GT(map.density(d), 0);
+      }
     });
     EXPECT_NEAR(sum / (2 * 512 * 512) * kSphere, 1, 2e-3);
   }
