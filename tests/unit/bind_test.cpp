@@ -121,6 +121,34 @@ TEST(Bind, SizesFollowFromViewsParametersAndInputs) {
   EXPECT_EQ(c.graph->passes[c.pass("l")].view, 1u);
 }
 
+// An input that a parameter makes unnecessary is left open, and what only it needs does not run. Its wire is checked.
+TEST(Bind, InputsUnderACondition) {
+  const std::shared_ptr<Registry> registry = basicRegistry();
+  PassDeclaration d("mix", "Reads a second image if `fast` is off");
+  d.input("image", image2D(kColor), Usage::Sampled, "read");
+  d.input("more", image2D(kColor), Usage::Sampled, "read, too").when(!parameter("fast"));
+  d.output("mixed", image2D(kColor), Usage::StorageWrite, "made");
+  d.parameter("fast", flag(false), "saves work");
+  registry->add(d, nullptr);
+  const auto bindWith = [&](const char* fast, const char* wire, Diagnostics& messages) {
+    return bindText(fmt::format(R"({{"passes": {{
+      "s": {{"type": "source"}}, "f": {{"type": "filter", "inputs": {{"image": "s"}}}},
+      "m": {{"type": "mix", "params": {{"fast": {}}}, "inputs": {{"image": "s", "more": "{}"}}}}}},
+      "outputs": {{"o": "m"}}}})",
+                                fast, wire),
+                    *registry, messages);
+  };
+  Diagnostics messages;
+  const auto all = bindWith("false", "f", messages), some = bindWith("true", "f", messages);
+  EXPECT_EQ(all->passes[2].accesses.size(), 3u);
+  EXPECT_EQ(some->passes[2].accesses.size(), 2u);
+  EXPECT_TRUE(compile(all, {}).passLive[1]);
+  EXPECT_FALSE(compile(some, {}).passLive[1]);
+  const auto kept = bindWith("true", "f@previous", messages);
+  for (const BoundResource& r : kept->resources) EXPECT_FALSE(r.history) << r.name;
+  EXPECT_THROW(bindWith("true", "nothing", messages), Error);
+}
+
 TEST(Bind, QuantitiesOfTheScene) {
   Registry registry;
   PassDeclaration d("count", "Counts");

@@ -130,6 +130,18 @@ TEST_F(PassFiles, DeclareAPass) {
   EXPECT_NE(registry_.create("blur"), nullptr);
 }
 
+TEST_F(PassFiles, InputsUnderACondition) {
+  const auto file = [](const char* condition) {
+    return fmt::format(R"({{"doc": "x", "inputs": {{"a": {{"doc": "x", "when": "{}"}}}},
+      "outputs": {{"image": {{"doc": "x", "format": "rgba8"}}}}, "params": {{"fast": {{"doc": "x", "default": true}}}},
+      "steps": [{{"shader": "a.comp", "over": "image"}}]}})",
+                       condition);
+  };
+  expectReport(file("wired(a)"), "the condition `wired(a)` is not over");
+  expectReport(file("slow"), "the condition `slow` is not over");
+  expectReport(file("image.width"), "the condition `image.width` is not over");
+}
+
 TEST_F(PassFiles, MayLieInFoldersOfTheirOwn) {
   write("blur/blur.pass.json", kBlur);
   EXPECT_EQ(added(), "");

@@ -6,6 +6,7 @@
 
 #include "framework/base/hash.h"
 #include "framework/graph/compile/binding.h"
+#include "framework/graph/pass/evaluate.h"
 
 namespace fovea::graph {
 namespace detail {
@@ -210,6 +211,18 @@ void declarePasses(Binding& b, std::vector<Value>& values) {
                         "add \"outputs\": {\"image\": \"pass.port\"}");
 }
 
+// Inputs that a pass does not use with these parameters count as not wired. Their wires have been checked all the same.
+void openUnusedInputs(Binding& b) {
+  for (Port& port : b.ports) {
+    if (!port.wire) continue;
+    const Parameters& parameters = b.graph.passes[port.pass].parameters;
+    if (holds(port.spec->condition, parameters)) continue;
+    port.wire = nullptr;
+    port.source = kNone;
+    port.value = {};
+  }
+}
+
 // ---- Resources and accesses --------------------------------------------------------------------------
 
 void makeExternals(Binding& b) {
@@ -382,6 +395,7 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   detail::makeResources(b);
   detail::followValues(b);
   detail::checkTypes(b);
+  detail::openUnusedInputs(b);
   const std::vector<uint32_t> order = detail::orderPasses(b);
   detail::makeVersions(b, order);
   detail::evaluateSizes(b, order);

@@ -17,6 +17,21 @@ std::optional<int64_t> wholeNumber(const Parameters& parameters, std::string_vie
   return 0;
 }
 
+bool holds(const SizeExpr& condition, const Parameters& parameters) {
+  std::string why;
+  const auto leaf = [&](const SizeExpr::Term& term) -> std::optional<int64_t> {
+    switch (term.op) {
+      case SizeExpr::Op::Constant:
+        return term.constant;
+      case SizeExpr::Op::Parameter:
+        return wholeNumber(parameters, term.name);
+      default:  // ParameterIs, as others were refused when the pass was registered
+        return parameters.text(term.name) == term.choice;
+    }
+  };
+  return evaluate(condition, why, leaf).value_or(1) != 0;
+}
+
 int64_t quantityOf(const ResourceDesc& desc, SizeExpr::Op what) {
   switch (what) {
     case SizeExpr::Op::PortWidth:

@@ -126,8 +126,10 @@ class Reader {
     ObjectReader reader(m.value, path, diagnostics_);
     if (!m.value.isObject()) return port.members.push_back(member("", image2D(), Usage::None));
     port.doc = reader.text("doc");
-    if (port.direction != Direction::Output && port.direction != Direction::Scratch)
-      port.optional = reader.boolean("optional", false);
+    if (port.direction != Direction::Output && port.direction != Direction::Scratch) {
+      if (reader.has("when")) port.when(expressionAt(reader, "when", 1));
+      port.optional = reader.boolean("optional", port.optional);
+    }
     if (port.direction == Direction::Output || port.direction == Direction::Scratch) {
       const std::string keep = reader.choice("keep", "frame", {"frame", "view", "scene"});
       port.lifetime = keep == "view"    ? Lifetime::View

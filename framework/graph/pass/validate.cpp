@@ -90,6 +90,7 @@ class Validator {
     const bool wired = port.direction == Direction::Input || port.direction == Direction::InOut;
     if (port.optional && port.direction != Direction::Input && port.direction != Direction::InOut)
       wrong(fmt::format("port `{}`: only inputs can be optional", port.name));
+    checkCondition(port);
     if (wired && port.lifetime != Lifetime::Transient)
       wrong(fmt::format("port `{}`: an input lives as long as its producer says", port.name));
     std::set<std::string> names;
@@ -140,15 +141,35 @@ class Validator {
       checkSize(*size, path);
   }
 
+  // The parameter, if it is one that expressions can use.
+  const ParameterSpec* countable(const std::string& name) const {
+    using Type = ParameterSpec::Type;
+    const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
+                                [&](const ParameterSpec& s) { return s.name == name; });
+    const bool counts = p != d_.parameters.end() &&
+                        (p->type == Type::Int || p->type == Type::Choice || p->type == Type::Bool);
+    return counts ? &*p : nullptr;
+  }
+
+  void checkCondition(const PortSpec& port) {
+    using Op = SizeExpr::Op;
+    for (const SizeExpr::Term& term : port.condition.terms()) {
+      const bool named = term.op == Op::Parameter || term.op == Op::ParameterIs;
+      const ParameterSpec* p = named ? countable(term.name) : nullptr;
+      const bool known = p && (term.op == Op::Parameter || std::find(p->choices.begin(), p->choices.end(),
+                                                                     term.choice) != p->choices.end());
+      if (term.op != Op::Constant && term.op < Op::Add && !known)
+        wrong(
+            fmt::format("port `{}`: the condition `{}` is not over whole-number parameters, choices or flags",
+                        port.name, port.condition.print()));
+    }
+  }
+
   void checkSize(const SizeExpr& size, const std::string& path) {
     using Op = SizeExpr::Op;
     for (const SizeExpr::Term& term : size.terms()) {
       if (term.op == Op::Parameter) {
-        const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
-                                    [&](const ParameterSpec& s) { return s.name == term.name; });
-        using Type = ParameterSpec::Type;
-        if (p == d_.parameters.end() ||
-            (p->type != Type::Int && p->type != Type::Choice && p->type != Type::Bool))
+        if (!countable(term.name))
           wrong(fmt::format(
               "port `{}`: size `{}` is over `{}`, which is no whole-number parameter, choice or flag", path,
               size.print(), term.name));
@@ -240,10 +261,8 @@ class Validator {
           term.op == Op::Read)
         stepPort(step, term.name);
       if (term.op != Op::Parameter && term.op != Op::ParameterIs) continue;
-      const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
-                                  [&](const ParameterSpec& s) { return s.name == term.name; });
-      using Type = ParameterSpec::Type;
-      if (p == d_.parameters.end() || p->type == Type::Real || p->type == Type::Text)
+      const ParameterSpec* p = countable(term.name);
+      if (!p)
         refuse("is over no whole-number parameter, choice or flag");
       else if (term.op == Op::ParameterIs &&
                std::find(p->choices.begin(), p->choices.end(), term.choice) == p->choices.end())

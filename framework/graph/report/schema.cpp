@@ -205,9 +205,10 @@ Json resourceProperties() {
   return properties;
 }
 
-Json portSchema(const char* key, Json value) {
+// own: properties beside those of the resource.
+Json portSchema(const Json& own) {
   Json properties = resourceProperties();
-  properties[key] = std::move(value);
+  properties.update(own);
   properties["bundle"] = {{"type", "string"}};
   properties["members"] =
       anyOf({described("names of images of any format", {{"type", "array"}, {"items", {{"type", "string"}}}}),
@@ -244,8 +245,12 @@ Json stepSchema() {
 }  // namespace
 
 std::string passFileSchema() {
-  const Json text = {{"type", "string"}}, keep = {{"enum", {"frame", "view", "scene"}}},
-             optional = {{"type", "boolean"}};
+  const Json text = {{"type", "string"}};
+  const Json input = {
+      {"optional", {{"type", "boolean"}}},
+      {"when", described("a condition over parameters; the input counts as not wired if this is 0",
+                         {{"$ref", "#/definitions/expression"}})}};
+  const Json output = {{"keep", {{"enum", {"frame", "view", "scene"}}}}};
   const Json parameter = objectOf({{"doc", text},
                                    {"default", {{"type", Json::array({"boolean", "number", "string"})}}},
                                    {"min", {{"type", "number"}}},
@@ -255,10 +260,10 @@ std::string passFileSchema() {
   Json schema = objectOf({{"$schema", text},
                           {"doc", described("what the pass does, in one line", text)},
                           {"view", described("whether it renders from a camera", {{"type", "boolean"}})},
-                          {"inputs", portSchema("optional", optional)},
-                          {"updated", portSchema("optional", optional)},
-                          {"outputs", portSchema("keep", keep)},
-                          {"scratch", portSchema("keep", keep)},
+                          {"inputs", portSchema(input)},
+                          {"updated", portSchema(input)},
+                          {"outputs", portSchema(output)},
+                          {"scratch", portSchema(output)},
                           {"params", mapOf(parameter)},
                           {"counters", mapOf(text)},
                           {"steps", {{"type", "array"}, {"minItems", 1}, {"items", stepSchema()}}}});

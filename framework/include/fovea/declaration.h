@@ -211,6 +211,7 @@ struct PortSpec {
   std::vector<MemberSpec> members;
   Lifetime lifetime = Lifetime::Transient;  // for outputs and scratch
   bool optional = false;                    // for inputs
+  SizeExpr condition;                       // 0 leaves an optional input open, however it is wired
 
   // These change the port in place, so that calls can be chained: d.output(...).keep(Lifetime::View)
   PortSpec& keep(Lifetime l) {
@@ -219,6 +220,13 @@ struct PortSpec {
   }
   PortSpec& makeOptional() {
     optional = true;
+    return *this;
+  }
+  // An optional input that counts as wired only if the condition, over parameters of the pass, holds. What nothing else
+  // needs does not run otherwise.
+  PortSpec& when(SizeExpr isTrue) {
+    optional = true;
+    condition = std::move(isTrue);
     return *this;
   }
 };
