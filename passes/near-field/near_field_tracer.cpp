@@ -12,6 +12,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
+#include "passes/near-field/cached_light.h"
 
 namespace fovea::passes {
 namespace {
@@ -19,16 +20,16 @@ namespace {
 using namespace scene;
 
 constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
-                   kAimStream = 0x6e656169u, kCellStream = 0x6e656363u;
+                   kAimStream = 0x6e656169u;
 constexpr uint32_t kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
-constexpr float kRenewed = 0.25f;  // probability of gathering anew what the cache knows
-constexpr float kClose = 2;        // an emitter closer than so many widths of a wide block splits it
+constexpr float kClose = 2;  // an emitter closer than so many widths of a wide block splits it
 constexpr float kSameCos = 0.9f, kSameSlope = 0.1f;  // least and largest of two samples on the same surface
 constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
 
 // What one row of the picture, or one part of a list, adds.
-struct Row : NearFieldStatistics {
-  std::vector<GatherCache::Sample> samples;
+struct Row : GatheredLight {
+  uint64_t shaded = 0;
+  double hits = 0, length = 0;
 };
 
 // The sample of `spacing` x `spacing` pixels outside the fovea, and where it was taken.
@@ -186,29 +187,15 @@ class Tracer {
     ++statistics.shaded;
     const glm::vec3 rho = surfaces_.reflectance(hit);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
-    radiance += rho * gathered(hit, randomStream(stream, turn, kGatherStream, order), statistics);
+    radiance +=
+        rho * gatheredLight(surfaces_, hit, settings_.bounces - 1,
+                            randomStream(stream, turn, kGatherStream, order), settings_.cache, statistics);
     if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
       const float cosine = cosineDensity(v, direction);
       light += emitted * (cosine / (cosine * probability +
                                     float(settings_.emitterPoints) * surfaces_.emitterDensity(v, hit)));
     }
     return light + radiance * (partAt(distance) / probability);
-  }
-
-  // The mean radiance that reaches v after further bounces and from emissive surfaces.
-  glm::vec3 gathered(const TracedSurface& v, uint32_t stream, Row& statistics) const {
-    uint64_t cell = 0;
-    std::optional<glm::vec3> known;
-    if (settings_.cache) {
-      const auto number = [&](uint32_t i) { return uniformFloat(randomStream(stream, i, kCellStream, 0)); };
-      cell = settings_.cache->cellOf(v.position, v.face, glm::vec3(number(0), number(1), number(2)) - 0.5f);
-      known = settings_.cache->find(cell);
-      if (known && number(3) >= kRenewed) return *known;
-    }
-    ++statistics.gathered;
-    const glm::vec3 light = surfaces_.gather(v, settings_.bounces - 1, 1, stream, statistics.rays);
-    if (settings_.cache) statistics.samples.push_back({cell, light});
-    return known.value_or(light);
   }
 
   // The part of a ray aimed at emissive surfaces, in the balance heuristic beside the cosine-weighted one, which may
