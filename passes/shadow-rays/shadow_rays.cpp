@@ -64,7 +64,8 @@ class ShadowRays : public Pass {
           ++doubted;
           const scene::TracedSurface v = surfaces.look(glm::vec2(x, y) + 0.5f, count);
           if (v.there) {
-            pixel = glm::packHalf4x16(glm::vec4(glm::min(surfaces.seen(v, count), 65504.0f), 1));
+            const glm::vec3 out = glm::normalize(ctx.view().eye - v.position);
+            pixel = glm::packHalf4x16(glm::vec4(glm::min(surfaces.seen(v, out, count), 65504.0f), 1));
           } else {  // the ray falls between two triangles, so the map's result stays
             pixel = (pixel & 0xffffffffffffu) | kSure << 48;
           }

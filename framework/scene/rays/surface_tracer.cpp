@@ -104,11 +104,10 @@ glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) cons
   });
 }
 
-glm::vec3 SurfaceTracer::seen(const TracedSurface& v, uint64_t& rays) const {
+glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays) const {
   if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
   const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
   if (point.unlit) return point.emission;
-  const glm::vec3 out = glm::normalize(view_.eye - v.position);
   const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));
   return point.emission + fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {

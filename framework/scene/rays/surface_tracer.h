@@ -34,15 +34,16 @@ glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u);
 class SurfaceTracer {
  public:
   // Surfaces are diffuse for light that bounces between them. fullMaterials: as in materials/bounced.h;
-  // what the eye sees, seen(), is then all that the surface reflects.
+  // what is seen of them, seen(), is then all that the surface reflects.
   SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays, bool fullMaterials = false);
 
   // The surface that the eye sees at `pixel` (pixels, centres at +0.5).
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
   // The surface met within `reach` metres. direction: unit.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
-  // Radiance towards the eye from v, which the eye sees, emitted or reflected once.
-  glm::vec3 seen(const TracedSurface& v, uint64_t& rays) const;
+  // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights that is
+  // reflected once.
+  glm::vec3 seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
   // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
