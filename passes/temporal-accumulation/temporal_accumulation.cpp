@@ -34,7 +34,9 @@ class TemporalAccumulation : public Pass {
             "motion-vectors)");
     d.input(
         "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-        "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, smaller than "
+        "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, negative where "
+        "its "
+        "surface asks for no samples (pass reflections), smaller than "
         "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as long "
         "the mean is there, if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,

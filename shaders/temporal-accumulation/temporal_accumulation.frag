@@ -35,21 +35,22 @@ vec4 fromHistory(ivec2 p) {
 #if BLOCKS
 struct Sample {
   vec3 value;
-  int side;    // width of its block
-  bool found;  // whether there is a sample
-  bool own;    // whether it lies on the pixel's surface
+  int side;     // width of its block
+  bool found;   // whether there is a sample
+  bool wanted;  // whether the block's surface asks for samples at all
+  bool own;     // whether it lies on the pixel's surface
 };
 
 // Decodes sampleCode() of passes/near-field. It avoids divisions, which a CPU device executes one lane at a time.
 Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
   ivec2 inside = clamp(p, ivec2(0), size - 1);
   vec4 value = imageLoad(samples, inside >> shift);
-  int code = int(value.a), side = max(code & 15, 1);
+  int code = int(abs(value.a)), side = max(code & 15, 1);
   bool found = p == inside && code >> 10 == 0;
   ivec2 from = min((inside & -side) + ivec2(code >> 4 & 7, code >> 7 & 7), size - 1);
   bool own = found && sameSurface(position.xyz, normal, normal, imageLoad(gbufferPosition, from),
                                   imageLoad(gbufferNormal, from).xyz, planeTolerance * position.w, leastCos);
-  return Sample(value.rgb, side, found, own);
+  return Sample(value.rgb, side, found, value.a >= 0.0, own);
 }
 
 float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
@@ -101,7 +102,7 @@ void main() {
   if (!wide && its > 1.0 && old.a > frames) old.a = frames * frames / old.a;
   float count = s.own ? min(old.a + its, most) : old.a;
   vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(its / count, 1.0)), count) : old;
-  int without = surface && !(old.a > 0.0) ? 1 : 0;  // a CPU device skips a loop of zero turns, but not a branch
+  int without = surface && s.wanted && !(old.a > 0.0) ? 1 : 0;  // a CPU device skips a loop of zero turns, but not a branch
   for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side, its);
   mean = surface ? result : vec4(0.0);
 }

@@ -72,6 +72,20 @@ TEST(TemporalAccumulation, MeanOfTheFramesSoFar) {
   }
 }
 
+// A surface that asks for no samples borrows none around it.
+TEST(TemporalAccumulation, NothingWhereNoSamplesAreWanted) {
+  const Eye eye({0, 0, 0});
+  auto samples = everywhere(kSize / 2, {4, 2, 1, passes::sampleCode(2, {1, 0}, true)});
+  const glm::ivec2 alone = kSize / 4, size = kSize / 2;
+  for (const float sign : {1.0f, -1.0f}) {
+    samples[size_t(alone.y * size.x + alone.x)] = {0, 0, 0, sign * kNoSample.a};
+    const auto got = accumulate(eye, samples, everywhere(kSize, glm::vec4(0)));
+    const float* v = &got[4 * size_t(2 * alone.y * kSize.x + 2 * alone.x)];
+    EXPECT_EQ(v[0], sign > 0 ? 4 : 0);
+    EXPECT_EQ(v[4 * 2], 4) << "its neighbour has a sample";
+  }
+}
+
 // Larger blocks have correspondingly smaller weights.
 TEST(TemporalAccumulation, BlocksOfEightChangeLess) {
   const Eye eye({0, 0, 0});
