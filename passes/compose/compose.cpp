@@ -26,7 +26,12 @@ class Compose : public Pass {
     d.input("gloss", color, Usage::StorageRead,
             "rgb: with full materials, indirect light under the lobe of each surface, W/(sr m^2) (pass "
             "deferred); if not wired, the irradiance stands in for it")
-        .makeOptional();
+        .when(fullMaterials());
+    d.input(
+         "reflections", color, Usage::StorageRead,
+         "rgb: with full materials, indirect light under the narrow lobes of smooth surfaces, W/(sr m^2), in "
+         "place of `gloss`; a: 0 where there is none (pass reflections)")
+        .when(fullMaterials());
     d.input("direct", color, Usage::StorageRead, "rgb: radiance to which the indirect light is added")
         .makeOptional();
     const ResourceSpec picture =
@@ -38,7 +43,8 @@ class Compose : public Pass {
     declareMaterials(d, "`full` adds what glossy surfaces reflect");
     d.fullscreen("compose/compose.frag", {"indirect", "radiance"})
         .define("HAS_DIRECT", wired("direct"))
-        .define("GLOSS", fullMaterials() * (SizeExpr(2) - wired("gloss")));
+        .define("GLOSS", fullMaterials() * (SizeExpr(2) - wired("gloss")))
+        .define("REFLECTIONS", wired("reflections"));
     return d;
   }
 

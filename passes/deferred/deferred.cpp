@@ -235,7 +235,8 @@ class Deferred : public Pass {
     d.fullscreen("deferred/compose.frag", {"indirect", "radiance"})
         .when(isRead("indirect") || isRead("radiance"))
         .define("HAS_DIRECT", wired("direct"))
-        .define("GLOSS", fullMaterials() * (masked + 1));
+        .define("GLOSS", fullMaterials() * (masked + 1))
+        .define("REFLECTIONS", 0);
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {

@@ -11,7 +11,7 @@
 
 // The lobe of a dull dielectric reflects little, and hardly other light than its diffuse layer. From the first
 // roughness to the second it passes over into that, and with the second VPLs need not be asked.
-const float kDullFrom = 0.45, kDullTo = 0.6, kMetalF0 = 0.15;
+const float kDullFrom = 0.45, kDullTo = 0.6;
 
 struct Lobe {
   vec3 toEye;  // unit
@@ -31,8 +31,7 @@ Lobe lobeOf(vec3 normal, vec3 toEye, vec4 specular) {
   l.alpha2 = l.a2;
   l.masking = sqrt(l.a2 + (1.0 - l.a2) * l.cosine * l.cosine);
   l.albedo = 1.0;
-  bool metal = max(max(specular.r, specular.g), specular.b) > kMetalF0;
-  l.share = metal ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
+  l.share = looksMetallic(specular) ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
   return l;
 }
 

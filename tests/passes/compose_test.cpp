@@ -84,6 +84,58 @@ TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
   }
 }
 
+// For metals the light passes over from rays to VPLs between the roughness 0.7 and 0.85.
+TEST(Compose, SmoothSurfacesReflectWhatRaysFind) {
+  for (const auto& [roughness, share] : {std::pair(0.1f, 1.0), {0.76f, 0.6}, {0.9f, 0.0}}) {
+    const scene::BsdfParameters metal = bsdfParameters(glm::vec3(0.9f), 1, roughness);
+    GBuffer g(kWidth, kHeight, [&](int x, int y) {
+      SurfacePixel p;
+      p.position = {float(x), 0, float(y)};
+      p.distance = 1;
+      setMaterial(p, metal, 1);
+      return p;
+    });
+    g.full = true;
+    PassTest test("compose");
+    g.wire(test);
+    scene::Scene s;
+    s.materials.emplace_back();
+    s.cameras.emplace_back();
+    s.cameras[0].position = {0, 1000, 0};
+    test.scene(s).param("materials", "full");
+    std::vector<uint16_t> traced = image(directAt);
+    traced[4 * 4 + 3] = 0;  // a pixel without a ray
+    test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(irradianceAt));
+    test.image("gloss", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(albedoAt));
+    test.image("reflections", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, traced);
+    test.run();
+    const auto radiance = test.floats("radiance");
+    const double reflects = metalAlbedo(metal, 1).r;
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      if (i == 7) continue;  // beyond what a half holds
+      for (int c = 0; c < 3; ++c) {
+        const double want =
+            reflects * glm::mix(double(albedoAt(i)[c]), double(directAt(i)[c]), i == 4 ? 0.0 : share);
+        EXPECT_NEAR(radiance[size_t(4 * i + c)], want, 0.01 * want + 1e-4)
+            << i << ", roughness " << roughness;
+      }
+    }
+  }
+}
+
+// With diffuse materials nothing needs the light under lobes, so that what makes it does not run.
+TEST(Compose, DiffuseSurfacesAskForNoReflections) {
+  PassTest test("compose");
+  test.viewSize(kWidth, kHeight);
+  GBuffer(kWidth, kHeight, [](int, int) { return SurfacePixel{}; }).wire(test);
+  for (const char* port : {"irradiance", "reflections", "gloss"})
+    test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(albedoAt));
+  test.run();
+  const auto radiance = test.floats("radiance");
+  for (int i = 0; i < kWidth * kHeight; ++i)
+    EXPECT_NEAR(radiance[size_t(4 * i)], 0.5f * albedoAt(i).r, 1e-3f) << i;
+}
+
 TEST(Compose, IrradianceTimesReflectance) { compose(false); }
 TEST(Compose, DirectLightAddedUpToWhatAHalfHolds) { compose(true); }
 

@@ -1,0 +1,29 @@
+// Picks the pixel of each block from which a ray of pass reflections leaves, if its surface is smooth enough for one.
+#include "common/gloss.glsl"
+
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(rgba16f) uniform readonly image2D gbufferSpecular;
+layout(location = 0) out uvec4 points;
+
+layout(push_constant) uniform Constants { uint frameIndex; };
+
+// samplePixel(turn, 2, block) of passes/near-field/near_field_tracer.h.
+ivec2 samplePixel(ivec2 block) {
+  int turn_ = int(frameIndex & 3u) + ((block.x & 1) * 2 ^ (block.y & 1) * 3);
+  return ivec2(turn_ & 1, (turn_ ^ turn_ >> 1) & 1);
+}
+
+void main() {
+  ivec2 block = ivec2(gl_FragCoord.xy), inside = samplePixel(block), p = 2 * block + inside;
+  ivec2 size = imageSize(gbufferPosition);
+  bool there = all(lessThan(p, size)) && imageSize(gbufferSpecular) == size;  // else materials are diffuse
+  p = there ? p : ivec2(0);
+  vec4 position = imageLoad(gbufferPosition, p), specular = imageLoad(gbufferSpecular, p);
+  there = there && position.w > 0.0 && tracedShare(specular) > 0.0;
+  uint code = uint(2 | inside.x << 4 | inside.y << 7 | (there ? 0 : 1 << 10));
+  points = uvec4(there ? floatBitsToUint(position.w) : 0u,
+                 packSnorm2x16(octEncode(normalize(imageLoad(gbufferNormal, p).xyz))),
+                 packSnorm2x16(imageLoad(gbufferFace, p).xy), code | packUnorm2x16(vec2(0.0, specular.a)));
+}

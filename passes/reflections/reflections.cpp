@@ -1,0 +1,231 @@
+// What smooth surfaces reflect.
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <glm/gtc/packing.hpp>
+#include <vector>
+
+#include "fovea/error.h"
+#include "fovea/pass.h"
+#include "framework/base/random.h"
+#include "framework/base/threads.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/lights.h"
+#include "framework/scene/materials/albedo_table.h"
+#include "framework/scene/materials/microfacets.h"
+#include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/octahedral.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "passes/near-field/cached_light.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+constexpr uint32_t kMirrorStream = 0x6d697272u, kLightStream = 0x6d696c69u;
+constexpr float kCellWidth = 0.02f;  // of the cache's cells, in mean distances of the mirrors from the eye
+constexpr float kSharp = 0.04f;      // GGX's alpha from which neighbours share all of their light
+constexpr float kSameSlope = 0.1f;   // most of a line between two points of one surface, against its plane
+
+// A texel of pass mirrors, and the light that was found for it.
+struct Mirror {
+  Mirror(glm::uvec4 texel, glm::uvec2 block, const scene::View& view)
+      : there(texel.x != 0),
+        code(texel.w & 0xffffu),
+        roughness(glm::unpackUnorm2x16(texel.w).y),
+        alpha(scene::ggxAlpha(roughness)),
+        normal(scene::octDecode(glm::unpackSnorm2x16(texel.y))),
+        face(scene::octDecode(glm::unpackSnorm2x16(texel.z))) {
+    const glm::uvec2 pixel = 2u * block + glm::uvec2(code >> 4 & 7u, code >> 7 & 7u);
+    away = glm::normalize(view.rayDirection(glm::vec2(pixel) + 0.5f));
+    position = view.eye + std::bit_cast<float>(texel.x) * away;
+  }
+
+  bool there;
+  uint32_t code;
+  float roughness, alpha;
+  glm::vec3 normal, face, away{0}, position{0};  // away: from the eye
+  glm::vec3 light{0};                            // mean under the lobe, W/(sr m^2)
+};
+
+// The light that mirrors reflect, for one thread or more.
+class Tracer {
+ public:
+  Tracer(const scene::SurfaceTracer& surfaces, float epsilon, uint32_t bounces, const GatherCache& cache)
+      : surfaces_(surfaces), epsilon_(epsilon), bounces_(bounces), cache_(cache) {}
+
+  // The mean over `count` rays, beginning with number `turn` of all that leave the block. stream: of the block.
+  glm::vec3 lightAt(const Mirror& m, uint32_t stream, uint32_t turn, uint32_t count,
+                    GatheredLight& sum) const {
+    const glm::mat3 frame = scene::orthonormalFrame(m.normal);
+    glm::vec3 out = scene::toLocal(frame, -m.away);
+    out.z = std::max(out.z, 1e-3f);  // a bent normal may face away from the eye
+    out = glm::normalize(out);
+    glm::vec3 light(0);
+    for (uint32_t i = turn; i < turn + count; ++i)
+      light += underLobe(m, frame, out, scene::streamSequence(stream, i),
+                         randomStream(stream, i, kLightStream, 0), sum);
+    const float albedo = scene::AlbedoTable::schlick().at(out.z, m.roughness).total();
+    return light / (float(count) * std::max(albedo, 1e-3f));
+  }
+
+ private:
+  // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets.
+  glm::vec3 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
+                      GatheredLight& sum) const {
+    const glm::vec3 h = scene::sampleVisibleNormal(out, m.alpha, u.x, u.y);
+    const glm::vec3 in = 2 * glm::dot(out, h) * h - out, direction = scene::toWorld(frame, in);
+    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return glm::vec3(0);
+    const float hidden = scene::smithLambda(out, m.alpha);
+    const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
+    const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;
+    const scene::TracedSurface hit = surfaces_.arrive(origin, direction, scene::kFarAway, sum.rays);
+    if (!hit.there) return weight * surfaces_.outside(direction).radiance;
+    const glm::vec3 gathered = gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, sum);
+    return weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered);
+  }
+
+  const scene::SurfaceTracer& surfaces_;
+  float epsilon_;
+  uint32_t bounces_;
+  const GatherCache& cache_;
+};
+
+// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap.
+float overlap(const Mirror& m, const Mirror& neighbour) {
+  const glm::vec3 to = neighbour.position - m.position;
+  if (!neighbour.there || std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
+  const glm::vec3 turned =
+      2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
+  const float blurred = std::min(m.alpha / kSharp, 1.0f);
+  return blurred * blurred * std::exp(-glm::dot(turned, turned) / (m.alpha * m.alpha));
+}
+
+class Reflections : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d(
+        "reflections",
+        "indirect light under the narrow lobes of smooth surfaces, found with a ray per block of "
+        "pixels and frame: VPLs would show as blurred discs there",
+        PassKind::Host);
+    d.view();
+    d.input("mirrors", image2D(VK_FORMAT_R32G32B32A32_UINT), Usage::HostRead,
+            "pixels that reflect in a narrow lobe (pass mirrors)");
+    d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("mirrors"), heightOf("mirrors")),
+             Usage::HostWrite,
+             "rgb: mean indirect light under the lobe, W/(sr m^2), at one pixel of each block of 2 x 2; a: "
+             "code of that pixel as in pass near-field, negative where it does not reflect, for pass "
+             "temporal-accumulation");
+    d.parameter(
+        "bounces", integer(2, 1, 64),
+        "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
+    d.parameter("first_samples", integer(16, 1, 1024),
+                "rays per sample after a camera cut, when there is no history to build on");
+    d.counter("mirrors", "pixels from which rays leave");
+    d.counter("rays", "rays traced, including those towards lights");
+    d.counter("gathered", "rays at whose ends light of further bounces was gathered rather than known");
+    return d;
+  }
+
+  void execute(HostContext& ctx) override {
+    const scene::Frame& frame = ctx.frame();
+    const auto texels = ctx.inputAs<glm::uvec4>("mirrors");
+    const auto samples = ctx.outputAs<uint64_t>("samples");
+    const uint32_t width = ctx.extent("mirrors").width, height = ctx.extent("mirrors").height;
+    if (const glm::uvec2 size = (ctx.view().size + 1u) / 2u; size != glm::uvec2(width, height))
+      throw Error(ExitCode::BadInput,
+                  "pass `reflections`: `mirrors` has " + std::to_string(width) + "x" +
+                      std::to_string(height) + " texels, half its view has " + std::to_string(size.x) + "x" +
+                      std::to_string(size.y),
+                  "wire mirrors of the view that the pass looks through");
+    mirrors_.clear();
+    for (uint32_t i = 0; i < texels.size(); ++i)
+      mirrors_.emplace_back(texels[i], glm::uvec2(i % width, i / width), ctx.view());
+    if (ctx.firstFrame()) cache_.clear();
+    Row sum;
+    if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
+      sum = trace(ctx, glm::uvec2(width, height));
+    forRows(height, [&](uint32_t y) {
+      for (uint32_t x = 0; x < width; ++x) {
+        const glm::vec3 light = glm::min(meanAround(glm::ivec2(x, y), glm::ivec2(width, height)), 65504.0f);
+        const Mirror& m = mirrors_[size_t(y) * width + x];
+        const float code = m.there ? float(m.code) : -float(m.code);
+        samples[size_t(y) * width + x] = glm::packHalf4x16(glm::vec4(light, code));
+      }
+    });
+    ctx.counter("mirrors", double(sum.mirrors));
+    ctx.counter("rays", double(sum.rays));
+    ctx.counter("gathered", double(sum.gathered));
+  }
+
+ private:
+  // What one row of texels adds.
+  struct Row : GatheredLight {
+    uint64_t mirrors = 0;
+  };
+
+  template <class Function>
+  static void forRows(uint32_t count, const Function& function) {
+    std::atomic<uint32_t> next = 0;
+    onThreads(std::min(threadCount(0), count), [&] {
+      for (uint32_t row = next++; row < count; row = next++) function(row);
+    });
+  }
+
+  // Finds the light of all mirrors.
+  Row trace(HostContext& ctx, glm::uvec2 size) {
+    double distance = 0, count = 0;
+    for (const Mirror& m : mirrors_) {
+      if (!m.there) continue;
+      distance += double(glm::distance(m.position, ctx.view().eye));
+      ++count;
+    }
+    Row sum;
+    if (count == 0) return sum;
+    cache_.setCellWidth(kCellWidth * float(distance / count));
+    const scene::Frame& frame = ctx.frame();
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, true);
+    const Tracer tracer(surfaces, rays->epsilon(), uint32_t(ctx.parameters().integer("bounces")), cache_);
+    const uint32_t samples = ctx.firstFrame() ? uint32_t(ctx.parameters().integer("first_samples")) : 1;
+    const auto turn = uint32_t(ctx.frameNumber());
+    std::vector<Row> rows(size.y);
+    forRows(size.y, [&](uint32_t y) {
+      for (uint32_t x = 0; x < size.x; ++x) {
+        Mirror& m = mirrors_[size_t(y) * size.x + x];
+        if (!m.there) continue;
+        ++rows[y].mirrors;
+        m.light = tracer.lightAt(m, randomStream(frame.seed, x, kMirrorStream, y), turn, samples, rows[y]);
+      }
+    });
+    for (const Row& row : rows) {  // in a fixed order
+      sum.mirrors += row.mirrors;
+      sum.rays += row.rays;
+      sum.gathered += row.gathered;
+      cache_.add(row.samples);
+    }
+    return sum;
+  }
+
+  // The mean over 3 x 3 texels: single rays are poor estimates of what wide lobes reflect.
+  glm::vec3 meanAround(glm::ivec2 at, glm::ivec2 size) const {
+    const Mirror& m = mirrors_[size_t(at.y * size.x + at.x)];
+    glm::vec4 sum(m.light, 1);
+    for (int y = std::max(at.y - 1, 0); m.there && y <= std::min(at.y + 1, size.y - 1); ++y)
+      for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
+        const Mirror& other = mirrors_[size_t(y * size.x + x)];
+        if (&other != &m) sum += overlap(m, other) * glm::vec4(other.light, 1);
+      }
+    return glm::vec3(sum) / sum.w;
+  }
+
+  std::vector<Mirror> mirrors_;
+  GatherCache cache_;  // of the frames so far
+};
+
+FOVEA_PASS(Reflections);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,72 @@
+// Compares the pixels from which reflections are traced with the plain rule.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <glm/gtc/packing.hpp>
+
+#include "framework/shader_twins/octahedral.h"
+#include "passes/near-field/near_field_tracer.h"
+#include "tests/passes/deferred_reference.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kWidth = 30, kHeight = 21;
+
+// Rough and smooth columns, the last half of them metal, a row of background and one that reflects nothing.
+GBuffer surfaces() {
+  return {kWidth, kHeight, [](int x, int y) {
+            SurfacePixel p;
+            p.position = {float(x), float(y), -5};
+            p.distance = y == 3 ? 0.0f : glm::length(p.position);
+            p.normal = glm::normalize(glm::vec3(0.1f * float(x), 1, 0.1f * float(y)));
+            const float f0 = x < kWidth / 2 ? 0.04f : 0.6f;
+            p.specular = glm::vec4(glm::vec3(y == 8 ? 0.0f : f0), 0.1f * float(x % 11));
+            return p;
+          }};
+}
+
+TEST(Mirrors, OnePixelOfEachBlockThatIsSmooth) {
+  GBuffer g = surfaces();
+  g.full = true;
+  int found = 0, rough = 0;
+  for (const uint32_t frames : {1u, 2u, 3u, 4u}) {
+    PassTest test("mirrors");
+    g.wire(test);
+    test.run(frames);
+    const auto texels = test.values<glm::uvec4>("points");
+    const int columns = (kWidth + 1) / 2;
+    ASSERT_EQ(int(texels.size()), columns * ((kHeight + 1) / 2));
+    for (int i = 0; i < int(texels.size()); ++i) {
+      const glm::uvec4 texel = texels[size_t(i)];
+      const glm::uvec2 block(i % columns, i / columns), inside = passes::samplePixel(frames - 1, 2, block);
+      const glm::ivec2 p(2u * block + inside);
+      const bool within = p.x < kWidth && p.y < kHeight;
+      const SurfacePixel& pixel = within ? g.at(p.x, p.y) : g.at(0, 3);
+      const bool there = pixel.distance > 0 && pixel.specular.r > 0;
+      const bool smooth = there && pixel.specular.a < (pixel.specular.r > 0.15f ? 0.85f : 0.45f);
+      EXPECT_EQ(texel.w & 0xffffu, passes::sampleCode(2, inside, smooth)) << i;
+      EXPECT_EQ(texel.x, smooth ? std::bit_cast<uint32_t>(pixel.distance) : 0u) << i;
+      found += smooth;
+      rough += there && !smooth;
+      if (!smooth) continue;
+      EXPECT_NEAR(glm::unpackUnorm2x16(texel.w).y, pixel.specular.a, 1e-3);
+      for (const uint32_t normal : {texel.y, texel.z})
+        EXPECT_LT(glm::distance(scene::octDecode(glm::unpackSnorm2x16(normal)), pixel.normal), 2e-3f);
+    }
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(rough, 100);
+}
+
+// Without full materials the G-buffer knows no reflectance.
+TEST(Mirrors, NoneWithDiffuseMaterials) {
+  const GBuffer g = surfaces();
+  PassTest test("mirrors");
+  g.wire(test);
+  test.run();
+  for (const glm::uvec4& texel : test.values<glm::uvec4>("points")) EXPECT_EQ(texel.x, 0u);
+}
+
+}  // namespace
+}  // namespace fovea::test

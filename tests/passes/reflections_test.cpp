@@ -1,0 +1,168 @@
+// Compares what smooth surfaces reflect with the radiance of closed rooms, and with what a mirror shows.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+
+#include "fovea/error.h"
+#include "passes/near-field/near_field_tracer.h"
+#include "tests/passes/deferred_reference.h"
+#include "tests/passes/vpl_intensity_reference.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kSide = 16, kTexels = kSide / 2;
+
+// The texels of pass mirrors for what the camera sees.
+std::vector<glm::uvec4> mirrorsOf(const std::vector<Seen>& pixels, float roughness) {
+  std::vector<glm::uvec4> texels;
+  for (uint32_t i = 0; i < kTexels * kTexels; ++i) {
+    const glm::uvec2 block(i % kTexels, i / kTexels), inside = passes::samplePixel(0, 2, block);
+    const glm::uvec2 p = 2u * block + inside;
+    const Seen& seen = pixels[size_t(p.y) * kSide + p.x];
+    const uint32_t normal = glm::packSnorm2x16(octEncode(seen.normal));
+    const float distance = seen.there ? glm::length(seen.position) : 0.0f;  // the eye is at the origin
+    texels.emplace_back(
+        std::bit_cast<uint32_t>(distance), normal, normal,
+        passes::sampleCode(2, inside, seen.there) | glm::packUnorm2x16(glm::vec2(0, roughness)));
+  }
+  return texels;
+}
+
+PassTest& wire(PassTest& test, const Room& room, const std::vector<glm::uvec4>& texels) {
+  test.viewSize(uint32_t(room.size.x), uint32_t(room.size.y)).scene(room.scene);
+  test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, uint32_t(room.size.x) / 2, uint32_t(room.size.y) / 2, 1,
+             texels);
+  return test;
+}
+
+std::vector<glm::vec4> samplesOf(const PassTest& test) {
+  std::vector<glm::vec4> samples;
+  for (const uint64_t texel : test.values<uint64_t>("samples")) samples.push_back(glm::unpackHalf4x16(texel));
+  return samples;
+}
+
+// Walls that emit {1, 2, 4} and reflect half of what they get: with light of up to n reflections a wall sends
+// (2 - 1 / 2^n) times its own emission. Under any lobe, the mean of it is the same.
+TEST(Reflections, TheLightOfAClosedRoomUnderAnyLobe) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+  s.materials[m].emission = {1, 2, 4};
+  addRoom(s, walls, 2);
+  const Room room = lookInto(std::move(s), 8, glm::ivec2(kSide), 1.6f);
+  for (const float roughness : {0.0f, 0.2f, 0.45f, 0.8f})
+    for (const int bounces : {2, 3}) {
+      PassTest test("reflections");
+      test.param("bounces", bounces).param("first_samples", 1024);
+      wire(test, room, mirrorsOf(room.pixels, roughness)).run();
+      const auto samples = samplesOf(test);
+      glm::dvec3 mean(0);
+      for (const glm::vec4& sample : samples) mean += glm::dvec3(sample) / double(samples.size());
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mean[c] / (1 << c), 2 - std::exp2(-bounces), 0.03)
+            << roughness << ", bounces " << bounces;
+      EXPECT_EQ(test.counter("mirrors"), kTexels * kTexels);
+    }
+}
+
+// A camera that looks along -z at a mirror, in which a box and a wall behind it are seen.
+Room mirroredBox() {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f));
+  s.materials[grey].specular = 0;
+  addBox(s, grey, {-9, -9, -6}, {9, 9, -5});
+  addBox(s, grey, {-9, -9, 3}, {9, 9, 4});
+  addBox(s, grey, {-1.6f, -1.1f, 1}, {0.9f, 1.3f, 2});
+  s.lights.push_back(pointLight({1.5f, 2, -3}, {30, 20, 10}));
+  return lookInto(std::move(s), 8, glm::ivec2(kSide));
+}
+
+TEST(Reflections, WhatStandsBeforeAMirror) {
+  const Room room = mirroredBox();
+  PassTest test("reflections");
+  test.param("bounces", 1).param("first_samples", 256);
+  wire(test, room, mirrorsOf(room.pixels, 0)).run();
+  const auto samples = samplesOf(test);
+  int onBox = 0, hidden = 0;
+  for (uint32_t i = 0; i < samples.size(); ++i) {
+    const glm::uvec2 block(i % kTexels, i / kTexels), p = 2u * block + passes::samplePixel(0, 2, block);
+    const glm::dvec3 at(room.pixels[p.y * kSide + p.x].position);
+    const glm::dvec3 direction = glm::normalize(at) * glm::dvec3(1, 1, -1);
+    const RayHit hit = castRay(room.scene, room.geometry, at + glm::dvec3(0, 0, 1e-4), direction);
+    ASSERT_TRUE(hit);
+    const glm::dvec3 there = at + hit.t * direction, to = glm::dvec3(room.scene.lights[0].position) - there;
+    RayOptions open;
+    open.tMax = 1;
+    const bool lit = !castRay(room.scene, room.geometry, there - 1e-4 * direction, to, open);
+    onBox += there.z < 2.5;
+    hidden += !lit;
+    const double d = glm::length(to), cosine = lit ? -to.z / d : 0;
+    for (int c = 0; c < 3; ++c) {
+      const double want = 0.5 / glm::pi<double>() * double(room.scene.lights[0].color[c]) * cosine / (d * d);
+      EXPECT_NEAR(samples[i][c], want, 0.02 * want + 2e-3) << i;
+    }
+  }
+  EXPECT_GT(onBox, 2);
+  EXPECT_GT(hidden, 0);
+  EXPECT_LT(onBox + hidden, kTexels * kTexels);
+}
+
+// The code goes on with the sample, and where nothing reflects there is none.
+TEST(Reflections, CodesOfTheSamples) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+  s.materials[m].emission = glm::vec3(1);
+  addRoom(s, walls, 2);
+  Room room = lookInto(std::move(s), 8, glm::ivec2(kSide));
+  for (int i = 0; i < kSide * kSide; ++i) room.pixels[size_t(i)].there = i % kSide < kSide / 2;
+  const auto texels = mirrorsOf(room.pixels, 0.1f);
+  PassTest test("reflections");
+  wire(test, room, texels).run(2);
+  const auto samples = samplesOf(test);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].a, (texels[i].x != 0 ? 1.0f : -1.0f) * float(texels[i].w & 0xffffu));
+    EXPECT_EQ(samples[i].r > 0, texels[i].x != 0);
+  }
+  EXPECT_EQ(test.counter("mirrors"), kTexels * kTexels / 2);
+}
+
+// Single rays under a wide lobe are poor estimates, so neighbours whose lobes overlap share theirs; texels that have no
+// neighbours cannot.
+TEST(Reflections, NeighboursShareTheirLight) {
+  const Room room = mirroredBox();
+  const auto variance = [&](bool alone) {
+    auto texels = mirrorsOf(room.pixels, 0.45f);
+    for (uint32_t i = 0; i < texels.size(); ++i)
+      if (alone && (i % 2 != 0 || i / kTexels % 2 != 0)) texels[i].x = 0;
+    const auto light = [&](int rays, uint32_t seed) {
+      PassTest test("reflections");
+      test.param("bounces", 1).param("first_samples", rays).seed(seed);
+      wire(test, room, texels).run();
+      return samplesOf(test);
+    };
+    const auto want = light(1024, 1);
+    double sum = 0;
+    for (uint32_t seed = 2; seed < 12; ++seed) {
+      const auto got = light(1, seed);
+      for (uint32_t y = 0; y < kTexels; y += 2)
+        for (uint32_t x = 0; x < kTexels; x += 2)
+          sum += std::pow(double(got[y * kTexels + x].r - want[y * kTexels + x].r), 2);
+    }
+    return sum;
+  };
+  EXPECT_LT(variance(false), 0.3 * variance(true));
+}
+
+TEST(Reflections, MirrorsOfAnotherViewAreRefused) {
+  const Room room = closedRoom(false, 8, glm::ivec2(kSide));
+  PassTest test("reflections");
+  test.viewSize(kSide + 2, kSide).scene(room.scene);
+  test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, kTexels, kTexels, 1,
+             std::vector<glm::uvec4>(kTexels * kTexels, glm::uvec4(0)));
+  EXPECT_THROW(test.run(), Error);
+}
+
+}  // namespace
+}  // namespace fovea::test
