@@ -144,6 +144,9 @@ TEST(Bind, InputsUnderACondition) {
   EXPECT_EQ(some->passes[2].accesses.size(), 2u);
   EXPECT_TRUE(compile(all, {}).passLive[1]);
   EXPECT_FALSE(compile(some, {}).passLive[1]);
+  Diagnostics warnings;
+  warnAboutPlan(compile(some, {}), warnings);
+  EXPECT_TRUE(warnings.list().empty()) << "a parameter spares the pass, so that it is no mistake";
   const auto kept = bindWith("true", "f@previous", messages);
   for (const BoundResource& r : kept->resources) EXPECT_FALSE(r.history) << r.name;
   EXPECT_THROW(bindWith("true", "nothing", messages), Error);

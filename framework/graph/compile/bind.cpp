@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "framework/base/hash.h"
 #include "framework/graph/compile/binding.h"
@@ -211,12 +212,20 @@ void declarePasses(Binding& b, std::vector<Value>& values) {
                         "add \"outputs\": {\"image\": \"pass.port\"}");
 }
 
+// Marks a pass and those that it reads from.
+void spare(Binding& b, uint32_t pass) {
+  if (std::exchange(b.graph.passes[pass].spared, true)) return;
+  for (const Port& port : b.portsOf(pass))
+    if (port.source != kNone) spare(b, b.ports[port.source].pass);
+}
+
 // Inputs that a pass does not use with these parameters count as not wired. Their wires have been checked all the same.
 void openUnusedInputs(Binding& b) {
   for (Port& port : b.ports) {
     if (!port.wire) continue;
     const Parameters& parameters = b.graph.passes[port.pass].parameters;
     if (holds(port.spec->condition, parameters)) continue;
+    if (port.source != kNone) spare(b, b.ports[port.source].pass);
     port.wire = nullptr;
     port.source = kNone;
     port.value = {};

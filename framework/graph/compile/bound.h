@@ -50,6 +50,7 @@ struct BoundPass {
   Parameters parameters;
   uint32_t view = 0;                 // index into BoundGraph::views
   std::span<const Access> accesses;  // declaration order; a part of BoundGraph::accesses
+  bool spared = false;               // its output, or what follows from it, is left unused by a parameter
 };
 
 // The access through which the pass reaches a port or a member ("surface.position"). Throws Error(Internal) with the

@@ -118,7 +118,7 @@ std::shared_ptr<const Plan> PlanCache::compile(std::shared_ptr<const BoundGraph>
 void warnAboutPlan(const Plan& plan, Diagnostics& diagnostics) {
   const BoundGraph& graph = *plan.graph;
   for (size_t p = 0; p < graph.passes.size(); ++p)
-    if (!plan.passLive[p])
+    if (!plan.passLive[p] && !graph.passes[p].spared)
       diagnostics.warning(
           {}, "passes." + graph.passes[p].name,
           fmt::format("pass `{}` does not run: nothing needs what it makes", graph.passes[p].name),

@@ -94,7 +94,7 @@ class PlanCache {
   size_t hits_ = 0;
 };
 
-// Adds warnings about a plan for `fovea check`: passes that are culled, and why nothing needs them.
+// Adds warnings about a plan for `fovea check`: passes that are culled though no parameter spares them.
 void warnAboutPlan(const Plan& plan, Diagnostics& diagnostics);
 
 }  // namespace fovea::graph
