@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "benchmarks/runner/inputs.h"
+#include "framework/base/files.h"
 #include "framework/base/hash.h"
 #include "framework/base/text_file.h"
 #include "framework/graph/report/report.h"
@@ -141,6 +142,7 @@ std::string Fingerprint::key(const Job& job) const {
 }
 
 void BenchFolder::prepare(uint64_t bytes, uint64_t referenceBytes) const {
+  checkOutputs({folder_ / "report.json"});
   for (const fs::path& folder : {folder_ / "results", folder_ / "pictures", folder_ / "tables", cache_}) {
     makeFolder(folder);
     tryWriting(folder);

@@ -5,6 +5,8 @@
 
 #include <atomic>
 
+#include "fovea/error.h"
+
 namespace fovea::bench {
 namespace {
 
@@ -18,16 +20,25 @@ extern "C" void onInterrupt(int) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
 }
 
-}  // namespace
+extern "C" void onInterruptStop(int) {
+  static constexpr char kText[] = "\nfovea: interrupted\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
+  _exit(int(ExitCode::Interrupted));
+}
 
-void catchInterrupts() {
+void handle(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = onInterrupt;
-  action.sa_flags = SA_RESTART | SA_RESETHAND;  // the second signal finds the default action
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART | SA_RESETHAND;  // a second signal finds the default action
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
+
+}  // namespace
+
+void stopAtInterrupts() { handle(onInterruptStop); }
+void catchInterrupts() { handle(onInterrupt); }
 
 bool interrupted() { return asked; }
 

@@ -19,6 +19,7 @@
 #include "benchmarks/runner/progress.h"
 #include "benchmarks/runner/timings.h"
 #include "fovea/scene.h"
+#include "framework/base/files.h"
 #include "framework/base/random.h"
 #include "framework/base/text_file.h"
 #include "framework/scene/load.h"
@@ -295,6 +296,7 @@ ExitCode Bench::compare(const Json& now, const Json& before) const {
 }
 
 Json readBaseline(const std::string& file) {
+  noteRead(file);
   std::ifstream in(file, std::ios::binary);
   Json run = Json::parse(in, nullptr, false);
   const auto good = [](const Json& repeat) {
@@ -315,8 +317,9 @@ ExitCode Bench::run() {
   Json before;
   if (!options_.baseline.empty() && !isProgram) before = readBaseline(options_.baseline);
   if (!options_.output.empty()) checkTextWritable(options_.output);
-  catchInterrupts();
   open();
+  catchInterrupts();
+  if (!options_.output.empty()) checkOutputs({options_.output});
   Json now = {{"with", describe(options_, device_->name())}, {"repeats", Json::array()}};
   if (!before.is_null()) {
     const std::string other = firstDifference(before["with"], now["with"]);

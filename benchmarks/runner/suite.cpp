@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "benchmarks/runner/inputs.h"
+#include "framework/base/files.h"
 #include "framework/base/json.h"
 
 namespace fovea::bench {
@@ -465,12 +466,14 @@ Suite loadSuite(const std::string& nameOrFile, const std::vector<fs::path>& fold
         ExitCode::BadInput, "there is no suite `" + nameOrFile + "`",
         nearest.empty() ? "name a .json file, or one of: " + list : "did you mean `" + nearest + "`?");
   }
-  std::ifstream in(found, std::ios::binary);
+  const std::string reason = whyUnreadable(found);
   std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in)
-    throw Error(ExitCode::BadInput, "cannot read the suite `" + found.string() + "`",
+  if (reason.empty()) text << std::ifstream(found, std::ios::binary).rdbuf();
+  if (!reason.empty() || !text)
+    throw Error(ExitCode::BadInput,
+                "cannot read the suite `" + found.string() + "`" + (reason.empty() ? "" : ": " + reason),
                 "check its name and permissions");
+  noteRead(found);
   return parseSuite(text.str(), found, overrides);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "framework/base/legible.h"
+
 namespace fovea {
 namespace {
 
@@ -57,7 +59,7 @@ std::string Diagnostic::format() const {
   text += message;
   if (!path.empty()) text += " (at " + path + ")";
   if (!remedy.empty()) text += "\n  -> " + remedy;
-  return text;
+  return legible(text);
 }
 
 void Diagnostics::error(SourceLocation where, std::string path, std::string message, std::string remedy) {

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
+#include "framework/base/files.h"
+
 namespace fovea::json {
 namespace {
 
@@ -252,9 +254,9 @@ Value parse(std::string_view text, std::string_view file) {
 }
 
 Value parseFile(const std::filesystem::path& file) {
-  std::error_code ec;
-  if (std::filesystem::is_directory(file, ec))
-    throw Error(ExitCode::BadInput, fmt::format("cannot read {}: it is a folder", file.string()));
+  if (const std::string reason = whyUnreadable(file); !reason.empty())
+    throw Error(ExitCode::BadInput, fmt::format("cannot read {}: {}", file.string(), reason));
+  noteRead(file);
   std::ifstream in(file, std::ios::binary);
   if (!in)
     throw Error(ExitCode::BadInput, fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
 
 namespace fovea {
 
@@ -85,8 +86,9 @@ std::vector<fs::path> dataDirectories() {
 std::vector<fs::path> dataFolders(std::string_view kind) {
   std::vector<fs::path> list;
   for (const fs::path& directory : dataDirectories()) {
-    addFolder(list, directory / kind);
-    if (kind == "scenes") addFolder(list, directory / "samples/scenes");
+    // A folder that cannot be looked into is not passed over in silence for the next one.
+    for (const fs::path& folder : {directory / kind, directory / "samples" / kind})
+      if (isFolder(folder)) addFolder(list, folder);
   }
   return list;
 }

@@ -1,13 +1,13 @@
 #include "framework/base/text_file.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
 
 namespace fovea {
 
@@ -20,36 +20,32 @@ namespace {
               "choose another place, or make room and permission there");
 }
 
-fs::path temporaryName(const fs::path& file) { return file.string() + ".partial" + std::to_string(getpid()); }
-
 struct CloseFile {
   void operator()(std::FILE* f) const { std::fclose(f); }
 };
 
+void writeTo(const fs::path& file, const std::string& text) {
+  const auto check = [](bool good) {
+    if (!good) throw std::runtime_error(std::strerror(errno));
+  };
+  std::unique_ptr<std::FILE, CloseFile> out(std::fopen(file.c_str(), "wb"));
+  check(out != nullptr);
+  check(std::fwrite(text.data(), 1, text.size(), out.get()) == text.size());
+  check(std::fclose(out.release()) == 0);  // a full disk may only be noticed here
+}
+
 }  // namespace
 
-void writeText(const fs::path& file, const std::string& text) {
-  const fs::path temporary = temporaryName(file);
-  std::unique_ptr<std::FILE, CloseFile> out(std::fopen(temporary.c_str(), "wb"));
-  if (!out) fail(file, std::strerror(errno));
-  const auto giveUp = [&](int error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    fail(file, std::strerror(error));
-  };
-  if (std::fwrite(text.data(), 1, text.size(), out.get()) != text.size() || std::fflush(out.get()) != 0)
-    giveUp(errno);
-  if (std::fclose(out.release()) != 0) giveUp(errno);  // a full disk may only be noticed here
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) giveUp(errno);
+void writeText(const fs::path& file, const std::string& text) try {
+  OutputFile output(file);
+  writeTo(output.temporary(), text);
+  output.finish();
+} catch (const std::exception& e) {
+  fail(file, e.what());
 }
 
 void checkTextWritable(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) fail(file, "it is a folder");
-  const fs::path temporary = temporaryName(file);
-  std::unique_ptr<std::FILE, CloseFile> out(std::fopen(temporary.c_str(), "wb"));
-  if (!out) fail(file, std::strerror(errno));
-  fs::remove(temporary, ignored);
+  if (const std::string reason = whyUnwritable(file); !reason.empty()) fail(file, reason);
 }
 
 }  // namespace fovea

@@ -6,7 +6,7 @@
 
 namespace fovea {
 
-// Writes under a temporary name, checks and renames. Throws Error(CannotWrite) naming the file and the reason.
+// Writes as an OutputFile (files.h). Throws Error(CannotWrite) naming the file and the reason.
 void writeText(const std::filesystem::path& file, const std::string& text);
 // Throws Error(CannotWrite) if `file` cannot be created there; leaves nothing behind.
 void checkTextWritable(const std::filesystem::path& file);

@@ -221,7 +221,8 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen) {
   deviceInfo.enabledExtensionCount = 1;
   deviceInfo.ppEnabledExtensionNames = extensions;
   const VkResult result = vkCreateDevice(physical, &deviceInfo, nullptr, &device);
-  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_FEATURE_NOT_PRESENT)
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_FEATURE_NOT_PRESENT ||
+      result == VK_ERROR_UNKNOWN)
     throw Error(ExitCode::NoDevice, "device `" + info.name + "` refuses to start: " + resultName(result),
                 "choose another device or update its driver");
   check(result, "creating the device `" + info.name + "`");

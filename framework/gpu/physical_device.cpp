@@ -286,15 +286,23 @@ VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCrea
   VkInstance instance = VK_NULL_HANDLE;
   const VkResult result = vkCreateInstance(&info, nullptr, &instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;
+  // The loader reports a lack of memory, too, when it cannot read the description of a driver.
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+    throw Error(ExitCode::NoDevice, std::string("the Vulkan loader does not start: ") + resultName(result),
+                "a driver or its description (a .json file in vulkan/icd.d, or named in VK_DRIVER_FILES or "
+                "VK_ICD_FILENAMES) is damaged: install it again");
   check(result, "creating the Vulkan instance");
   return instance;
 }
 
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance) {
+  if (!instance) return {};
   uint32_t count = 0;
-  if (!instance || vkEnumeratePhysicalDevices(instance, &count, nullptr) != VK_SUCCESS) return {};
+  const VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_INCOMPATIBLE_DRIVER) return {};
+  check(result, "listing the Vulkan devices");
   std::vector<VkPhysicalDevice> handles(count);
-  vkEnumeratePhysicalDevices(instance, &count, handles.data());
+  check(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "listing the Vulkan devices");
   std::vector<PhysicalDevice> list;
   for (uint32_t i = 0; i < count; ++i) list.push_back(describe(handles[i], i));
   return list;

@@ -54,6 +54,10 @@ void check(VkResult result, const std::string& what) {
   switch (result) {
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
     case VK_ERROR_OUT_OF_HOST_MEMORY:
+    case VK_ERROR_OUT_OF_POOL_MEMORY:
+    case VK_ERROR_FRAGMENTED_POOL:
+    case VK_ERROR_MEMORY_MAP_FAILED:
+    case VK_ERROR_TOO_MANY_OBJECTS:
       throw Error(ExitCode::OutOfMemory, text, "use a smaller image, fewer VPLs or smaller shadow maps");
     case VK_ERROR_DEVICE_LOST:
       throw Error(ExitCode::DeviceLost, text,

@@ -46,6 +46,7 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
     spec["oiio:ColorSpace"] = "sRGB";
   } else {
     spec["compression"] = "zip";
+    spec["DateTime"] = "";  // else the time of day, and no two files of the same picture would be equal
   }
   for (const auto& [key, value] : pixels.metadata) spec.attribute(key, value);
   const bool written =

@@ -1,12 +1,8 @@
 #include "fovea/image.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -15,6 +11,8 @@
 #include <stdexcept>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
+#include "framework/base/threads.h"
 #include "framework/image/codec.h"
 #include "framework/image/pfm.h"
 
@@ -53,24 +51,6 @@ std::string checkExtension(const fs::path& file) {
   throw Error(ExitCode::CannotWrite, "cannot write `" + file.string() + "`: " + first,
               "choose a folder that exists, is writable and has room");
 }
-
-fs::path folderOf(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
-// In the same folder, so that the final rename is atomic, and with the same extension, because libraries depend on it.
-fs::path temporaryName(const fs::path& file, const std::string& extension) {
-  return folderOf(file) /
-         ("." + file.stem().string() + ".tmp" + std::to_string(::getpid()) + "." + extension);
-}
-
-struct RemoveOnExit {
-  fs::path file;
-  ~RemoveOnExit() {
-    std::error_code ignored;
-    if (!file.empty()) fs::remove(file, ignored);
-  }
-};
 
 // ---- Layers <-> channels -----------------------------------------------------------------------------------------
 
@@ -209,27 +189,17 @@ std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit,
   return {};
 }
 
-// Brings everything to the disk before the rename; a crash must not leave an empty file under the final name.
-void synchronise(const fs::path& file) {
-  const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (handle < 0) throw std::runtime_error(std::strerror(errno));
-  const int result = ::fsync(handle);
-  const int reason = errno;
-  ::close(handle);
-  if (result != 0 && reason != EINVAL) throw std::runtime_error(std::strerror(reason));
-}
-
 void writeChecked(const fs::path& temporary, const std::string& extension, const Pixels& pixels) {
   const bool pfm = extension == "pfm";
   pfm ? writePfm(temporary, pixels) : codec::write(temporary, pixels);
-  synchronise(temporary);
   const Pixels back = pfm ? readPfm(temporary) : codec::read(temporary);
   const std::string part = difference(pixels, back, extension == "png", !pfm);
   if (!part.empty()) throw std::runtime_error(part + " reads back different from what was written");
 }
 
-std::string withDiskSpace(const std::string& reason, const fs::path& folder, size_t bytes) {
+std::string withDiskSpace(const std::string& reason, const fs::path& file, size_t bytes) {
   std::error_code failed;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const fs::space_info space = fs::space(folder, failed);
   if (failed || space.available >= bytes) return reason;
   return "the disk is full (" + std::to_string(space.available / 1024) + " KiB free): " + reason;
@@ -250,17 +220,8 @@ std::vector<std::string> writableExtensions() {
 }
 
 void checkWritable(const fs::path& file) {
-  const std::string extension = checkExtension(file);
-  std::error_code failed;
-  const fs::path folder = folderOf(file);
-  if (!fs::exists(folder, failed)) cannotWrite(file, "the folder `" + folder.string() + "` does not exist");
-  if (!fs::is_directory(folder, failed)) cannotWrite(file, "`" + folder.string() + "` is not a folder");
-  if (fs::is_directory(file, failed)) cannotWrite(file, "it is a folder");
-  // Trying is the only reliable test for every file system and user.
-  const RemoveOnExit temporary{temporaryName(file, extension)};
-  const int handle = ::open(temporary.file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (handle < 0) cannotWrite(file, std::strerror(errno));
-  ::close(handle);
+  checkExtension(file);
+  if (const std::string reason = whyUnwritable(file); !reason.empty()) cannotWrite(file, reason);
 }
 
 void write(const fs::path& file, const std::vector<Layer>& layers, const Metadata& metadata) {
@@ -279,15 +240,16 @@ void write(const fs::path& file, const std::vector<Layer>& layers, const Metadat
     if (channels == 2) pixels.channels = {"Y", "A"};
   }
   if (extension == "png") quantise(pixels);
-  const RemoveOnExit temporary{temporaryName(file, extension)};
   try {
-    writeChecked(temporary.file, extension, pixels);
-    fs::rename(temporary.file, file);
+    OutputFile output(file);
+    writeChecked(output.temporary(), extension, pixels);
+    output.finish();
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory, "not enough memory to write `" + file.string() + "`");
   } catch (const std::exception& e) {
+    throwIfNoThreads();
     const size_t room = extension == "png" ? pixels.data.size() / 64 + 4096 : pixels.data.size() + 4096;
-    cannotWrite(file, withDiskSpace(e.what(), folderOf(file), room));
+    cannotWrite(file, withDiskSpace(e.what(), file, room));
   }
 }
 
@@ -299,11 +261,14 @@ namespace {
   throw Error(ExitCode::BadInput, "cannot read image `" + name + "`: " + reason);
 }
 
+[[noreturn]] void noMemoryFor(const std::string& name) {
+  throw Error(ExitCode::OutOfMemory, "not enough memory to read image `" + name + "`", "make it smaller");
+}
+
 // The library's own message for a missing file is often about formats.
 void checkReadable(const fs::path& file) {
-  std::error_code failed;
-  if (fs::is_directory(file, failed)) cannotRead(file.string(), "it is a folder");
-  if (::access(file.c_str(), R_OK) != 0) cannotRead(file.string(), std::strerror(errno));
+  if (const std::string reason = whyUnreadable(file); !reason.empty()) cannotRead(file.string(), reason);
+  noteRead(file);
 }
 
 }  // namespace
@@ -312,6 +277,8 @@ File read(const fs::path& file) {
   checkReadable(file);
   try {
     return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::read(file));
+  } catch (const std::bad_alloc&) {
+    noMemoryFor(file.string());
   } catch (const std::exception& e) {
     cannotRead(file.string(), e.what());
   }
@@ -330,6 +297,8 @@ Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name) {
   if (!png && !jpeg) cannotRead(name, size == 0 ? "it is empty" : "it is neither PNG nor JPEG");
   try {
     return codec::decode8(bytes, size);
+  } catch (const std::bad_alloc&) {
+    noMemoryFor(name);
   } catch (const std::exception& e) {
     cannotRead(name, e.what());
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fovea/error.h"
+#include "framework/base/budget.h"
 #include "framework/scene/materials/tangents.h"
 #include "framework/scene/motion/deform.h"
 #include "framework/scene/motion/motion.h"
@@ -88,6 +89,9 @@ class Flattener {
                       " triangles with " + std::to_string(vertices) + " vertices; at most " +
                       std::to_string(kMaxTriangles) + " of either can be used",
                   "simplify the model or instance it less often");
+    constexpr uint64_t kBytesOfTriangle = 128;  // its record, and its place in the structures of rays
+    claimContent(triangles * kBytesOfTriangle + vertices * sizeof(float) * 8,
+                 "scene `" + scene_.name + "`: " + std::to_string(triangles) + " triangles of all nodes");
     out_.triangles.reserve(triangles);
     out_.positions.reserve(vertices);
     out_.normals.reserve(vertices);

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <sstream>
 
+#include "framework/base/budget.h"
 #include "framework/base/paths.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/file/scene_file.h"
@@ -57,8 +58,9 @@ Scene loadFile(const fs::path& file, Diagnostics& warnings, const LoadOptions& o
     if (n.mesh != kNoIndex)
       for (const Primitive& p : scene.meshes[n.mesh].primitives) indices += p.indices.size();
   if (indices == 0)
-    throw Error(ExitCode::BadInput, file.string() + ": the scene has no triangles",
-                "give it a model with meshes");
+    throw Error(ExitCode::BadInput,
+                file.string() + ": the scene has no triangles, and points and lines are not drawn",
+                "export the model with its surfaces as meshes of triangles");
   if (addLightLevels(scene)) scene.hash = contentHash(scene);
   return scene;
 }
@@ -102,6 +104,7 @@ std::vector<fs::path> modelSearchPath() {
 std::vector<fs::path> sceneSearchPath() { return dataFolders("scenes"); }
 
 Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options) {
+  const ContentBudget budget;
   const fs::path file(nameOrFile);
   const bool asFile = file.has_parent_path() || file.extension() == ".json" || isModelFile(file);
   std::error_code ec;

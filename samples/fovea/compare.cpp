@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "benchmarks/runner/compared.h"
+#include "framework/base/files.h"
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
 #include "samples/fovea/arguments.h"
@@ -65,6 +66,7 @@ void print(const Options& options, const Compared& compared, const Row (&rows)[3
 ExitCode compare(const Options& options) {
   if (!options.errorImage.empty()) image::checkWritable(options.errorImage);
   const Compared c = loadCompared(options.image, options.reference, options.halves, options.common);
+  if (!options.errorImage.empty()) checkOutputs({options.errorImage});
   const auto measures = image::compare(c.image, c.reference, c.halves, c.fovea, options.pixelsPerDegree);
   image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
   if (c.perfectIndirect) floor = image::meanSquaredError(*c.perfectIndirect, c.reference, c.fovea);

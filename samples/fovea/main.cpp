@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/runner/interrupt.h"
 #include "fovea/error.h"
+#include "framework/base/legible.h"
 #include "framework/base/memory.h"
+#include "framework/base/threads.h"
 #include "framework/graph/pass/registry.h"
 #include "samples/fovea/commands.h"
 
@@ -77,8 +80,7 @@ ExitCode parseAndRun(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return ExitCode(program.exit(e));  // --help, --version
-    return report(ExitCode::Usage,
-                  std::string(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
+    return report(ExitCode::Usage, legible(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
   }
   graph::Registry::throwIfRegistrationsFailed();
   return action();
@@ -93,6 +95,10 @@ ExitCode run(int argc, char** argv) {
     return report(
         ExitCode::OutOfMemory,
         "error: the computer's memory is exhausted\n  -> render a smaller --size, or a smaller scene");
+  } catch (const std::system_error& e) {
+    if (isNoThread(e)) return report(ExitCode::OutOfMemory, noThread(e).what());
+    return report(ExitCode::Internal,
+                  std::string("error: a defect of fovea, not of your input: ") + e.what());
   } catch (const std::exception& e) {
     return report(ExitCode::Internal,
                   std::string("error: a defect of fovea, not of your input: ") + e.what());
@@ -105,6 +111,7 @@ ExitCode run(int argc, char** argv) {
 }  // namespace fovea::cli
 
 int main(int argc, char** argv) {
+  fovea::bench::stopAtInterrupts();
   fovea::keepFreedMemory();
   const fovea::ExitCode code = fovea::cli::run(argc, argv);
   if (std::fflush(stdout) != 0 && code == fovea::ExitCode::Ok) {

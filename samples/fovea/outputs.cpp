@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/plan.h"
 #include "samples/fovea/arguments.h"
@@ -17,6 +19,7 @@ using Type = gpu::FormatInfo::Type;
 
 constexpr const char* kDisplay = "image";
 constexpr const char* kLinear = "radiance";
+constexpr uint64_t kLateFrame = 99'999'999;  // out_%d.png and out_%04d.png meet in late frames only
 
 bool isPicture(const graph::ResourceDesc& desc) {
   return desc.kind == graph::ResourceKind::Image && !desc.volume && desc.layers == 1;
@@ -76,6 +79,15 @@ std::string OutputFiles::File::path(uint64_t frame) const {
   return sequence ? fmt::format("{}{:0{}}{}", prefix, frame, digits, suffix) : name;
 }
 
+std::optional<uint64_t> OutputFiles::File::frameOf(const std::filesystem::path& other) const {
+  const std::string text = other.filename().string();
+  const std::string start = std::filesystem::path(prefix).filename().string();
+  if (!sequence || !text.starts_with(start) || text.size() <= start.size()) return {};
+  uint64_t frame = 0;
+  const auto [end, error] = std::from_chars(text.data() + start.size(), text.data() + text.size(), frame);
+  return error == std::errc() && sameFile(path(frame), other) ? std::optional(frame) : std::nullopt;
+}
+
 OutputFiles::File OutputFiles::parse(const std::string& text) {
   File file;
   std::string name = text;
@@ -109,9 +121,6 @@ OutputFiles::OutputFiles(std::vector<std::string> names) {
       throw Error(ExitCode::Usage,
                   fmt::format("cannot tell a picture format from the output name `{}`", name),
                   "this build writes " + quoteList(known));
-    for (const File& other : files_)
-      if (other.name == file.name)
-        throw Error(ExitCode::Usage, "the output `" + file.name + "` is given twice", "name it once");
     files_.push_back(std::move(file));
   }
 }
@@ -122,6 +131,20 @@ bool OutputFiles::hasSequence() const {
 
 void OutputFiles::checkWritable() const {
   for (const File& file : files_) image::checkWritable(file.path(0));
+}
+
+std::vector<std::filesystem::path> OutputFiles::paths(std::vector<std::filesystem::path> others) const {
+  for (const File& file : files_)
+    if (!file.sequence) others.emplace_back(file.name);
+  std::vector<std::filesystem::path> list;
+  for (const File& file : files_) {
+    list.emplace_back(file.path(0));
+    if (!file.sequence) continue;
+    list.emplace_back(file.path(kLateFrame));
+    for (const std::filesystem::path& other : others)
+      if (const auto frame = file.frameOf(other); frame && *frame > 0) list.emplace_back(file.path(*frame));
+  }
+  return list;
 }
 
 std::vector<std::string> OutputFiles::outputsOf(const graph::BoundGraph& graph, glm::uvec2 size) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,13 +21,15 @@ namespace fovea::cli {
 class OutputFiles {
  public:
   // Takes names as on the command line; "out_%04d.exr" is a sequence with one file per frame. Throws Error(Usage) on
-  // an invalid pattern, an unknown extension or a file named twice.
+  // an invalid pattern or an unknown extension.
   explicit OutputFiles(std::vector<std::string> names);
 
   bool empty() const { return files_.empty(); }
   bool hasSequence() const;
   // Throws Error(CannotWrite) if a file could not be written. Call it before anything is rendered.
   void checkWritable() const;
+  // The files that it may write: of a sequence the first, a late one, and each that is among `others`.
+  std::vector<std::filesystem::path> paths(std::vector<std::filesystem::path> others) const;
   // Names of the graph outputs to read back. Throws Error(BadInput) if the graph lacks an output that a file shows.
   std::vector<std::string> outputsOf(const graph::BoundGraph& graph, glm::uvec2 size);
 
@@ -50,6 +53,8 @@ class OutputFiles {
     int digits = 0;
     std::string first, last;  // first and last file written so far
     std::string path(uint64_t frame) const;
+    // The frame of a sequence that this file would be.
+    std::optional<uint64_t> frameOf(const std::filesystem::path& other) const;
     std::string shown() const;      // the output that it shows, if it is a single one
     std::string extension() const;  // lower case, without the dot
   };

@@ -9,6 +9,7 @@
 #include "benchmarks/runner/progress.h"
 #include "benchmarks/runner/timings.h"
 #include "fovea/scene.h"
+#include "framework/base/files.h"
 #include "framework/base/text_file.h"
 #include "framework/graph/report/report.h"
 #include "framework/image/overlay.h"
@@ -59,6 +60,7 @@ class Render {
 
  private:
   void checkFiles();
+  void checkOutputNames() const;
   void chooseOutputs();
   void loadInputs();
   void useFoveaAngle(const graph::BoundGraph& bound);
@@ -111,6 +113,18 @@ void Render::checkFiles() {
   outputs_->checkWritable();
   for (const std::string& file : {options_.timings, options_.trace})
     if (!file.empty()) checkTextWritable(file);
+  checkOutputNames();
+}
+
+// Runs again when more files were read.
+void Render::checkOutputNames() const {
+  std::vector<std::filesystem::path> others = filesRead(), texts;
+  for (const std::string& file : {options_.timings, options_.trace})
+    if (!file.empty()) texts.emplace_back(file);
+  others.insert(others.end(), texts.begin(), texts.end());
+  std::vector<std::filesystem::path> files = outputs_->paths(std::move(others));
+  files.insert(files.end(), texts.begin(), texts.end());
+  checkOutputs(files);
 }
 
 // A run without any other output writes a picture.
@@ -145,6 +159,7 @@ void Render::loadInputs() {
   scene_.gazeGap = 0.001 * options_.gazeGapMs;
   if (options_.foveaDegrees > 0) useFoveaAngle(bound);
   chooseOutputs();
+  checkOutputNames();
   stopIfInterrupted();
 }
 
@@ -184,6 +199,7 @@ void Render::buildPlan() {
 void Render::buildExecutor() {
   progress_.stage("preparing " + description_.name);
   run_->prepare();
+  checkOutputNames();
   timings_ = std::make_unique<Timings>(run_->plan());
   showFovea();
   info_ = {device_->name(),
@@ -309,8 +325,8 @@ void Render::report() const {
 
 ExitCode Render::run() {
   checkFiles();
-  catchInterrupts();
   loadInputs();
+  catchInterrupts();
   buildPlan();
   buildExecutor();
   renderFrames();

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "fovea/scene.h"
+#include "framework/base/files.h"
 #include "framework/scene/export/gltf.h"
 #include "framework/scene/export/mitsuba.h"
 #include "framework/scene/load.h"
@@ -13,11 +14,24 @@
 namespace fovea::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct ExportOptions {
   std::string scene, folder, format = "gltf", size = "512x512", materials = "diffuse";
   double time = 0;
   uint32_t frame = 0, samples = 64, depth = 4;
 };
+
+// An exporter makes many files, whose names are often those of the model's own.
+void checkFolder(const fs::path& folder) {
+  for (const fs::path& file : filesRead())
+    for (const char* part : {"", "textures", "meshes"})
+      if (sameFile(fs::absolute(file).parent_path(), folder / part))
+        throw Error(ExitCode::Usage,
+                    "the output folder `" + folder.string() + "` holds the file `" + file.string() +
+                        "`, which is an input of this command and could be replaced",
+                    "choose another folder");
+}
 
 ExitCode exportScene(const ExportOptions& o) {
   scene::MitsubaOptions mitsuba;
@@ -28,9 +42,9 @@ ExitCode exportScene(const ExportOptions& o) {
   mitsuba.time = o.frame > 0 ? o.frame / 42.0 : o.time;  // `render` shows frame N at that time
   Diagnostics messages;
   const scene::Scene s = scene::load(o.scene, messages);
-  const std::filesystem::path file = o.format == "mitsuba"
-                                         ? scene::exportMitsuba(s, o.folder, mitsuba, messages)
-                                         : scene::exportGltf(s, o.folder, messages);
+  checkFolder(o.folder);
+  const fs::path file = o.format == "mitsuba" ? scene::exportMitsuba(s, o.folder, mitsuba, messages)
+                                              : scene::exportGltf(s, o.folder, messages);
   printWarnings(messages);
   fmt::print("{}\n", file.string());
   return ExitCode::Ok;

@@ -64,7 +64,7 @@ class Usage(CliTest):
     def test_output_names(self):
         self.fails(USAGE, *DIRECT, "-o", "picture", says=["picture", "png"])
         self.fails(USAGE, *DIRECT, "-o", "picture.txt", says=["exr"])
-        self.fails(USAGE, *DIRECT, "-o", "a.png", "-o", "a.png", says=["twice"])
+        self.fails(USAGE, *DIRECT, "-o", "a.png", "-o", "a.png", says=["`a.png`", "two outputs"])
         for name in ("a_%s.png", "a_%.png", "%d_%d.png", "a_%4d.png", "a_%0999d.png"):
             with self.subTest(name=name):
                 self.fails(USAGE, *DIRECT, "-o", name, says=["%04d"])
@@ -176,6 +176,53 @@ class Inputs(CliTest):
 
     def test_data_folder(self):
         self.fails(BAD_INPUT, "check", "direct", env={"FOVEA_DATA": "/nowhere"}, says=["FOVEA_DATA", "/nowhere"])
+
+
+    def test_content_of_other_files_is_not_shown(self):
+        self.write("secret", "root:S3CRET:20228:0:99999:7:::\n")
+        box = [{"builtin": "cornellbox"}]
+        for scene in ({"models": box, "gaze": "secret"}, {"models": box, "environment": {"file": "secret"}},
+                      {"models": [{"file": "secret"}]}):
+            self.write("scene.json", scene)
+            self.assertNotIn("S3CRET", self.fails(BAD_INPUT, "scene", "info", "scene.json", says=["secret"]).stderr)
+        self.write("graph.json", {"extends": "secret"})
+        self.assertNotIn("S3CRET", self.fails(BAD_INPUT, "check", "graph.json").stderr)
+
+    def test_long_values_and_control_characters(self):
+        long = "x" * 100_000
+        self.graph(passes={"tonemap": {"params": {"exposure": long}}, "tone\0map\33": {"type": long}})
+        run = self.fails(BAD_INPUT, "check", "graph.json", says=["(100000 bytes)", "tone\\x00map\\x1b"])
+        self.assertLess(len(run.stderr), 2000)
+        for arguments in ([*DIRECT, "--frames", long], [*DIRECT, "--set", f"shadow_map_size={long}"], ["check", long],
+                          [*DIRECT, "--gaze", long], ["compare", long, long]):
+            run = self.call(*arguments)
+            self.assertIn(run.returncode, (USAGE, BAD_INPUT))
+            self.assertLess(len(run.stderr), 2000, run.stderr[:300])
+
+    def test_what_is_too_much(self):
+        """Refused by sizes in headers, before it is read."""
+        self.write("many.json", {"models": [{"file": "none.gltf"}] * 10_001})
+        self.fails(BAD_INPUT, "scene", "info", "many.json", says=["10001 models", "10000"])
+        self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap", "comment": "x" * 800} for i in range(10_001)}})
+        self.fails(BAD_INPUT, "check", "many.json", says=["8388608"])
+        self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap"} for i in range(10_002)}})
+        self.fails(BAD_INPUT, "check", "many.json", says=["more than 10000 passes"])
+        for value in ("", "x", "0", "-1"):
+            run = self.call("scene", "info", "cornellbox", env={"FOVEA_MEMORY_LIMIT": value})
+            self.assertEqual(run.returncode, BAD_INPUT if value else 0, run.stderr)
+
+    def test_memory_of_images(self):
+        self.model([0, 0, 0, 1, 0, 0, 0, 1, 0])
+        model = json.loads((self.folder / "model.gltf").read_text())
+        header = struct.pack(">II", 16384, 16384) + b"\x08\x02\0\0\0"
+        (self.folder / "large.png").write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + header)
+        model["images"] = [{"uri": "large.png"}] * 40
+        model["textures"] = [{"source": i} for i in range(40)]
+        model["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}} for i in range(40)]
+        self.write("model.gltf", model)
+        run = self.fails(OUT_OF_MEMORY, "scene", "info", "model.gltf", env={"FOVEA_MEMORY_LIMIT": "2000"},
+                         says=["1 images of 269 million pixels", "2048 MiB", "2000 MiB", "FOVEA_MEMORY_LIMIT"])
+        self.assertNotIn("bad_alloc", run.stderr)
 
 
 class Devices(CliTest):

@@ -15,6 +15,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 GazeSample at(float t, float x, float y, bool valid = true) { return {t, {x, y}, valid, {}, {}}; }
 
@@ -75,6 +76,7 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
   EXPECT_THAT(error("time,x,y\n"), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(std::string("\x00\xff\x13 garbage", 11)), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(""), HasSubstr("no header line"));
+  EXPECT_THAT(error("root:secret:20228:0:99999:7:::\n"), AllOf(HasSubstr("t,x,y,valid"), Not(HasSubstr("secret"))));
 }
 
 // The pixel at the rim of the disc is seen at the given angle.

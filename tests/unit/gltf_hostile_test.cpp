@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "fovea/image.h"
 #include "framework/scene/scene.h"
 #include "scene_support.h"
 
@@ -72,6 +73,58 @@ TEST(GltfHostile, NothingOutsideTheFolderIsRead) {
   folder.write("in/model.gltf", d.json());
   Diagnostics warnings;
   EXPECT_THAT(errorOf([&] { loadGltf(folder.path() / "in/model.gltf", warnings); }), HasSubstr("leads out"));
+}
+
+TEST(GltfHostile, LinksThatLeadOut) {
+  TemporaryFolder folder;
+  TriangleDocument d;
+  d.bufferUri = "data.bin";
+  folder.write("secret.bin", d.bytes);
+  folder.write("in/model.gltf", d.json());
+  std::filesystem::create_symlink("../secret.bin", folder.path() / "in/data.bin");
+  Diagnostics warnings;
+  EXPECT_THAT(errorOf([&] { loadGltf(folder.path() / "in/model.gltf", warnings); }),
+              AllOf(HasSubstr("buffers[0].uri"), HasSubstr("link that leads out")));
+  // Links to a model and to its parts, which lie together elsewhere.
+  folder.write("real/model.gltf", d.json());
+  folder.write("real/data.bin", d.bytes);
+  std::filesystem::create_directory(folder.path() / "links");
+  for (const char* name : {"model.gltf", "data.bin"})
+    std::filesystem::create_symlink(folder.path() / "real" / name, folder.path() / "links" / name);
+  EXPECT_EQ(loadGltf(folder.path() / "links/model.gltf", warnings).meshes.size(), 1u);
+}
+
+TEST(GltfHostile, DataUriWithoutData) {
+  TriangleDocument d;
+  for (const char* uri :
+       {"data:", "data:application/octet-stream,AAAA", "data:application/octet-stream;base64"}) {
+    d.bufferUri = uri;
+    EXPECT_THAT(errorOfText(d.json()),
+                AllOf(HasSubstr("buffers[0].uri"), HasSubstr("no data that can be read")))
+        << uri;
+  }
+}
+
+TEST(GltfHostile, ImagesOfOneFileAreDecodedOnce) {
+  TemporaryFolder folder;
+  image::write(folder.path() / "a.png", {{"", {2, 2, 3, std::vector<float>(12, 0.5f)}}});
+  TriangleDocument d;
+  d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+  std::string images, textures, materials;
+  for (int i = 0; i < 40; ++i) {
+    const std::string comma = i > 0 ? "," : "", number = std::to_string(i);
+    images += comma + R"({"uri":")" + (i % 2 ? "a.png" : "./a.png") + R"("})";
+    textures += comma + R"({"source":)" + number + "}";
+    materials += comma + R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + number +
+                 R"(}},"normalTexture":{"index":)" + number + "}}";
+  }
+  d.extra =
+      R"(,"images":[)" + images + R"(],"textures":[)" + textures + R"(],"materials":[)" + materials + "]";
+  Diagnostics warnings;
+  const Scene scene = loadGltf(folder.write("model.gltf", d.json()), warnings);
+  EXPECT_EQ(scene.textures.size(), 2u);  // as colours and as data
+  EXPECT_EQ(scene.textures[0].rgba, scene.textures[1].rgba);
+  EXPECT_NE(scene.textures[0].srgb, scene.textures[1].srgb);
 }
 
 TEST(GltfHostile, BufferOfTheWorkingFolderIsNotTaken) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
 
 namespace fovea::gpu {
 namespace {
@@ -14,13 +15,9 @@ constexpr size_t kMissing = ~size_t(0);
 std::string readText(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  noteRead(path);
   if (!in) throw Error(ExitCode::BadInput, "cannot read shader file `" + path.string() + "`");
   return text;
-}
-
-bool isFile(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error);
 }
 
 // Relative to the current folder if the file lies below it, so that messages stay readable.

@@ -10,6 +10,7 @@
 #include "framework/base/hash.h"
 #include "framework/graph/compile/alias.h"
 #include "framework/graph/compile/barriers.h"
+#include "framework/graph/compile/expand.h"
 #include "framework/graph/compile/schedule.h"
 
 namespace fovea::graph {
@@ -65,7 +66,7 @@ uint64_t bytesKept(const BoundGraph& graph, const std::vector<MemoryNeed>& needs
 
 Description load(const std::string& nameOrPath, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
-  return resolve(std::make_shared<const json::Value>(json::parseFile(file)), file, options, diagnostics);
+  return resolve(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options, diagnostics);
 }
 
 Description loadText(std::string_view text, const std::filesystem::path& file, const LoadOptions& options,

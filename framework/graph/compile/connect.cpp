@@ -50,7 +50,8 @@ namespace {
 template <class Resource>
 std::string describeResource(const Resource& r) {
   if (r.kind == ResourceKind::Buffer)
-    return fmt::format("a buffer of {} ({} bytes each)", r.element, r.stride);
+    return r.element.empty() ? fmt::format("a buffer of elements of {} bytes", r.stride)
+                             : fmt::format("a buffer of {} ({} bytes each)", r.element, r.stride);
   const char* shape = r.volume ? "a 3D image" : r.array ? "an image array" : "an image";
   if (r.format == VK_FORMAT_UNDEFINED) return fmt::format("{} of floating-point texels", shape);
   return fmt::format("{} of {}", shape, gpu::formatInfo(r.format).name);

@@ -42,6 +42,10 @@ struct Scope {
   Input* findInput(std::string_view name);
 };
 
+// Reads a graph file of at most kMaxGraphBytes. Throws Error(BadInput).
+inline constexpr uint64_t kMaxGraphBytes = uint64_t(8) << 20;  // kMaxPasses of 800 bytes each
+json::Value readGraphFile(const std::filesystem::path& file);
+
 struct Expansion {
   struct PendingOverride {
     std::string target, name;  // "left/blur", "radius"; target is "" for a parameter of the graph

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "framework/graph/compile/compile.h"
+#include "framework/graph/compile/expand.h"
 
 namespace fovea::graph {
 namespace {
@@ -98,7 +99,7 @@ Document mergeChain(Document document, const std::filesystem::path& file, const 
                    "a base must not extend what extends it");
   Document extended;
   try {
-    extended = std::make_shared<const json::Value>(json::parseFile(base));
+    extended = std::make_shared<const json::Value>(detail::readGraphFile(base));
   } catch (const Error& error) {
     for (const Diagnostic& d : error.diagnostics()) diagnostics.add(d);
     return document;
@@ -171,11 +172,22 @@ std::filesystem::path findGraph(const std::string& nameOrPath,
                                : fmt::format("it is no file, and not in {}", fmt::join(looked, ", ")));
 }
 
+json::Value detail::readGraphFile(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const uintmax_t bytes = std::filesystem::file_size(file, unknown);
+  if (!unknown && bytes > kMaxGraphBytes)
+    throw Error(
+        ExitCode::BadInput,
+        fmt::format("{} has {} bytes; a graph file may have {}", file.string(), bytes, kMaxGraphBytes),
+        "make sub-graphs of parts that repeat");
+  return json::parseFile(file);
+}
+
 json::Value loadMerged(const std::string& nameOrPath, const LoadOptions& options) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
   Diagnostics diagnostics;
   json::Value merged =
-      *mergeExtends(std::make_shared<const json::Value>(json::parseFile(file)), file, options, diagnostics);
+      *mergeExtends(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options, diagnostics);
   diagnostics.throwIfErrors();
   std::erase_if(merged.members, [](const json::Member& member) { return member.key == "extends"; });
   return merged;

@@ -260,7 +260,7 @@ std::shared_ptr<const json::Value> instanceDocument(Expansion& all, const Scope&
     return nullptr;
   }
   try {
-    auto document = std::make_shared<const json::Value>(json::parseFile(file));
+    auto document = std::make_shared<const json::Value>(detail::readGraphFile(file));
     return mergeExtends(std::move(document), file, all.options, all.diagnostics);
   } catch (const Error& e) {
     for (const Diagnostic& d : e.diagnostics()) all.diagnostics.add(d);

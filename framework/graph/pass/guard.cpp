@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fovea/error.h"
+#include "framework/base/threads.h"
 
 namespace fovea::graph {
 namespace {
@@ -51,6 +52,11 @@ void rethrowWithOrigin(const PassOrigin& origin, std::string_view function) {
     throw Error(ExitCode::OutOfMemory,
                 fmt::format("the computer's memory is exhausted, in {} of {}", function, describe(origin)),
                 "render a smaller --size, or a smaller scene");
+  } catch (const std::system_error& e) {
+    if (isNoThread(e)) throw noThread(e);
+    throw Error(ExitCode::Internal,
+                fmt::format("{} threw {} in {}: {}", describe(origin), exceptionType(), function, e.what()),
+                remedy);
   } catch (const std::exception& e) {
     throw Error(ExitCode::Internal,
                 fmt::format("{} threw {} in {}: {}", describe(origin), exceptionType(), function, e.what()),

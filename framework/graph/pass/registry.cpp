@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fovea/error.h"
+#include "framework/base/files.h"
 #include "framework/base/hash.h"
 #include "framework/base/paths.h"
 #include "framework/graph/pass/guard.h"
@@ -190,6 +191,7 @@ void Registry::throwIfRegistrationsFailed() {
 
 void Registry::loadPlugin(const std::filesystem::path& file) {
   checkPluginMarks(file, readPluginFile(file));
+  noteRead(file);
   const auto refuse = [&](std::string message, std::string remedy) {
     throw Error(ExitCode::BadInput,
                 std::vector<Diagnostic>{

@@ -164,6 +164,35 @@ void checkBindings(const BoundPass& pass, const StepSpec& step, const gpu::Compi
   }
 }
 
+// A pass that is declared in a file has no code that could set a push constant.
+void checkConstants(const BoundPass& pass, const StepSpec& step, const gpu::CompiledShader& shader) {
+  if (!pass.declaration->places) return;
+  std::vector<std::string> given = {"frameIndex", "seed"}, found;
+  for (const ParameterSpec& parameter : pass.declaration->parameters)
+    if (parameter.type != ParameterSpec::Type::Text) given.push_back(shaderName(parameter.name));
+  for (const auto& [name, value] : step.constants) given.push_back(name);
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto wrong = [&](const std::string& name, const char* what, const std::vector<std::string>& names,
+                         const char* remedy) {
+    const std::string nearest = nearestName(name, names);
+    wrongStep(pass, "steps." + step.name,
+              fmt::format("step `{}`: the shader {} {}", step.name, shader.file,
+                          fmt::format(fmt::runtime(what), name)),
+              nearest.empty() ? remedy : fmt::format("did you mean `{}`?", nearest));
+  };
+  for (const gpu::ReflectedMember& constant : shader.reflection.constants) {
+    found.push_back(constant.name);
+    if (!has(given, constant.name))
+      wrong(constant.name, "has the push constant `{}`, which nothing sets", given,
+            "name it after a parameter, set it in \"constant\" of the step, or remove it");
+  }
+  for (const auto& [name, value] : step.constants)
+    if (!has(found, name))
+      wrong(name, "reads no push constant `{}`, which the step sets", found, "remove it from \"constant\"");
+}
+
 bool mentions(const SizeExpr& expression, const PortSpec& port) {
   return std::any_of(expression.terms().begin(), expression.terms().end(), [&](const SizeExpr::Term& term) {
     return term.op >= SizeExpr::Op::PortWidth && term.op <= SizeExpr::Op::PortCount &&
@@ -214,6 +243,7 @@ std::vector<StepAccess> accessesOf(const BoundPass& pass, const StepSpec& step, 
   const PassKind stages = step.action == Action::Dispatch ? PassKind::Compute : PassKind::Graphics;
   const auto shader = shaders(step.shader, stepDefines(step, context));
   checkBindings(pass, step, *shader);
+  checkConstants(pass, step, *shader);
   std::vector<StepAccess> accesses = shaderAccesses(pass, shader->reflection.bindings, stages);
   for (const std::string& target : step.targets) accesses.push_back(attachment(pass, target));
   if (step.sizing == StepSpec::Size::Indirect)

@@ -1,11 +1,6 @@
 #include "framework/scene/export/files.h"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 
 #include "fovea/error.h"
 
@@ -45,25 +40,6 @@ void makeFolder(const fs::path& folder) {
         ExitCode::CannotWrite,
         "cannot make the folder `" + folder.string() + "`: " + (error ? error.message() : "it is a file"),
         "choose another place");
-}
-
-void writeWholeFile(const fs::path& file, const std::string& bytes) {
-  const fs::path temporary = file.string() + ".partial" + std::to_string(::getpid());
-  const auto fail = [&](int reason) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw Error(ExitCode::CannotWrite,
-                "cannot write `" + file.string() + "`: " + std::strerror(reason ? reason : EIO),
-                "choose another place, or make room and permission there");
-  };
-  errno = 0;
-  std::ofstream stream(temporary, std::ios::binary);
-  stream.write(bytes.data(), std::streamsize(bytes.size()));
-  stream.close();  // a full disk may show only here
-  if (!stream) fail(errno);
-  std::error_code error;
-  fs::rename(temporary, file, error);
-  if (error) fail(error.value());
 }
 
 image::Image texelImage(const Texture& texture, uint32_t channels) {

@@ -1,4 +1,4 @@
-// Helpers that both exporters share: names that any file system accepts, files written as a whole, and textures.
+// Helpers that both exporters share: names that any file system accepts, folders and textures.
 // Private to framework/scene.
 #pragma once
 
@@ -32,9 +32,6 @@ double shortest(float value);
 
 // Creates the folder if it is missing. Throws Error(CannotWrite).
 void makeFolder(const std::filesystem::path& folder);
-
-// Writes under a temporary name and renames. Throws Error(CannotWrite) naming the file and the reason.
-void writeWholeFile(const std::filesystem::path& file, const std::string& bytes);
 
 // Converts 8-bit texels to an image of 3 or 4 channels; a PNG of it gives them back bit for bit.
 image::Image texelImage(const Texture& texture, uint32_t channels);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "framework/base/text_file.h"
 #include "framework/scene/export/files.h"
 #include "framework/scene/export/scene_file.h"
 #include "framework/scene/file/scene_file.h"
@@ -52,7 +53,7 @@ class GltfWriter {
     finish();
     const SceneFileNames names{name_ + ".gltf", nodeNames_, lightNames_, animationNames_};
     const fs::path file = folder_ / (name_ + ".json");
-    writeWholeFile(file, sceneFileText(scene_, names, warnings_));
+    writeText(file, sceneFileText(scene_, names, warnings_));
     return file;
   }
 
@@ -426,10 +427,9 @@ class GltfWriter {
     for (const std::string& e : extensions_) root_["extensionsUsed"].push_back(e);
     if (!bin_.empty()) {
       root_["buffers"].push_back({{"uri", name_ + ".bin"}, {"byteLength", bin_.size()}});
-      writeWholeFile(folder_ / (name_ + ".bin"), bin_);
+      writeText(folder_ / (name_ + ".bin"), bin_);
     }
-    writeWholeFile(folder_ / (name_ + ".gltf"),
-                   root_.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    writeText(folder_ / (name_ + ".gltf"), root_.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
 
   const Scene& scene_;

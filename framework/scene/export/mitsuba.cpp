@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "fovea/image.h"
+#include "framework/base/text_file.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/export/files.h"
 #include "framework/scene/export/mitsuba_materials.h"
@@ -126,7 +127,7 @@ class MitsubaWriter {
     shapes();
     xml_ += "</scene>\n";
     const fs::path file = folder_ / (name + ".xml");
-    writeWholeFile(file, xml_);
+    writeText(file, xml_);
     return file;
   }
 
@@ -283,7 +284,7 @@ class MitsubaWriter {
         "meshes/" +
         names_.add(safeFileName(geometry_.objects[object].name + "_" + scene_.materials[material].name)) +
         ".ply";
-    writeWholeFile(folder_ / file, mesh.text());
+    writeText(folder_ / file, mesh.text());
     line(
         fmt::format("<shape type=\"ply\"><string name=\"filename\" value=\"{}\"/><ref id=\"m{}\"/>{}</shape>",
                     file, material, emitter));

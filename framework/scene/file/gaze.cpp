@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "framework/base/files.h"
 #include "framework/scene/file/reader.h"
 #include "framework/scene/motion/motion.h"
 
@@ -43,11 +44,13 @@ class CsvReader {
   explicit CsvReader(const std::filesystem::path& file) : file_(file.string()) {}
 
   std::vector<GazeSample> read() {
+    if (const std::string reason = whyUnreadable(file_); !reason.empty())
+      throw Error(ExitCode::BadInput, file_ + ": cannot be read: " + reason);
     std::error_code ec;
-    if (std::filesystem::file_size(file_, ec) > kMaxBytes || ec)
-      throw Error(ExitCode::BadInput, file_ + ": cannot be read, or has more than 64 MiB");
+    if (std::filesystem::file_size(file_, ec) > kMaxBytes)
+      throw Error(ExitCode::BadInput, file_ + ": has more than 64 MiB");
+    noteRead(file_);
     std::ifstream stream(file_);
-    if (!stream) throw Error(ExitCode::BadInput, file_ + ": cannot be read");
     for (std::string text; std::getline(stream, text);) {
       ++line_;
       text = trimmed(text);
@@ -70,6 +73,12 @@ class CsvReader {
 
   void header(const std::string& text) {
     columns_ = cells(text);
+    // Text of a file that is something else is nobody's business.
+    if (std::find(columns_.begin(), columns_.end(), "t") == columns_.end()) {
+      mistakeAt(1, "the file does not begin as a table of gazes, with a column `t`",
+                "begin it with t,x,y,valid");
+      errors_.throwIfErrors();
+    }
     std::map<std::string, int> seen;
     for (const std::string& name : columns_) {
       if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end()) {

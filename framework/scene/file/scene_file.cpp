@@ -19,6 +19,8 @@ namespace {
 using json::ObjectReader;
 using json::Value;
 
+constexpr size_t kMaxModels = 10000;  // each is loaded by itself
+
 struct ModelEntry {
   std::string file, builtin, get;
   SourceLocation where;
@@ -46,6 +48,8 @@ class Parser {
     r.text("$schema");
     r.text("description");
     scene_.name = r.text("name", scene_.name);
+    if (const Value* list = root_.find("models"); list && list->items.size() > kMaxModels)
+      return tooManyModels(r, list->items.size());
     eachItem(r, "models", [&](const Value& v, const std::string& path) { model(v, path); });
     if (root_.isObject() && !r.has("models"))
       mistake(r, "models", "the scene has no `models`",
@@ -93,6 +97,13 @@ class Parser {
   }
 
  private:
+  void tooManyModels(ObjectReader& r, size_t count) {
+    mistake(r, "models",
+            std::to_string(count) + " models; a scene file may have " + std::to_string(kMaxModels),
+            "put parts that belong together into one glTF model, whose nodes share meshes");
+    errors_.throwIfErrors();
+  }
+
   void model(const Value& v, const std::string& path) {
     ObjectReader r(v, path, errors_);
     ModelEntry m;

@@ -8,6 +8,8 @@
 namespace fovea::scene::gltf {
 namespace {
 
+constexpr size_t kMostOfMediaType = 100;  // characters before the data of a data uri
+
 int componentBytes(int64_t type) {
   switch (type) {
     case 5120:
@@ -58,8 +60,13 @@ class DataChecker : DocumentReader {
     if (!uri) return;
     const std::string place = path + ".uri";
     if (!uri->isString()) return error(*uri, place, "expected a text, found " + uri->describe());
-    if (isDataUri(uri->string)) return;
-    const ResolvedUri r = resolveUri(source_.folder, uri->string);
+    if (isDataUri(uri->string)) {
+      if (uri->string.substr(0, kMostOfMediaType).find(";base64,") == std::string::npos)
+        error(*uri, place, "the data uri has no data that can be read",
+              "write data:application/octet-stream;base64, and the data");
+      return;
+    }
+    const ResolvedUri r = resolveUri(source_, uri->string);
     if (!r.problem.empty())
       return error(*uri, place, "uri \"" + uri->string.substr(0, 200) + "\": " + r.problem,
                    "put the file into the model's folder and name it relative to that");

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "framework/base/files.h"
 #include "framework/scene/gltf/internal.h"
 
 namespace fovea::scene::gltf {
@@ -95,6 +96,7 @@ std::vector<uint8_t> readFile(const fs::path& file) {
                     std::to_string(kMaxFileBytes) + " each",
                 "split the model's buffer");
   std::ifstream in(file, std::ios::binary);
+  noteRead(file);
   std::vector<uint8_t> bytes(size);
   if (!in || (size > 0 && !in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size))))
     throw Error(ExitCode::BadInput, file.string() + ": cannot be read", "check its permissions");
@@ -119,7 +121,19 @@ Source readSource(const fs::path& file) {
 
 bool isDataUri(std::string_view uri) { return uri.substr(0, 5) == "data:"; }
 
-ResolvedUri resolveUri(const fs::path& folder, std::string_view uri) {
+// Links could lead out of the folder, too. The place of the model itself counts as well: collections of links to models
+// and their parts are common.
+static bool staysInside(const Source& source, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path real = fs::weakly_canonical(file, ignored);
+  for (const fs::path& root : {source.folder, fs::weakly_canonical(source.file, ignored).parent_path()}) {
+    const fs::path inside = real.lexically_relative(fs::weakly_canonical(root, ignored));
+    if (!inside.empty() && *inside.begin() != "..") return true;
+  }
+  return false;
+}
+
+ResolvedUri resolveUri(const Source& source, std::string_view uri) {
   ResolvedUri r;
   r.decoded = percentDecode(uri);
   const std::string& text = r.decoded;
@@ -137,7 +151,9 @@ ResolvedUri resolveUri(const fs::path& folder, std::string_view uri) {
   } else if (!relative.has_filename() || relative == ".") {
     r.problem = "it names a folder, not a file";
   } else {
-    r.file = folder / relative;
+    r.file = source.folder / relative;
+    if (!staysInside(source, r.file))
+      r.problem = "it is a link that leads out of the model's folder, which is refused";
   }
   return r;
 }

@@ -45,7 +45,7 @@ inline constexpr uint32_t kMaxTextureSize = 16384;
 
 struct Source {
   std::filesystem::path file;
-  std::filesystem::path folder;  // absolute; nothing outside it is read
+  std::filesystem::path folder;  // absolute; nothing outside it and the real folder of `file` is read
   std::string name;              // as given by the user, for messages
   std::vector<uint8_t> bytes;
   bool binary = false;             // GLB
@@ -59,13 +59,13 @@ Source readSource(const std::filesystem::path& file);
 std::vector<uint8_t> readFile(const std::filesystem::path& file);
 
 bool isDataUri(std::string_view uri);
-// The file below `folder` that a relative URI names, or the problem with the URI. Percent-encoding is decoded.
+// The file in the folder of the model that a relative URI names, or the problem with the URI. Percent-encoding is decoded.
 struct ResolvedUri {
   std::filesystem::path file;
   std::string decoded;
   std::string problem;  // empty if there is none
 };
-ResolvedUri resolveUri(const std::filesystem::path& folder, std::string_view uri);
+ResolvedUri resolveUri(const Source& source, std::string_view uri);
 
 // ---- check ----
 

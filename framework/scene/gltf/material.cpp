@@ -1,4 +1,5 @@
 // Builds materials and textures, and decodes the images that they use.
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <set>
 
 #include "fovea/image.h"
+#include "framework/base/budget.h"
+#include "framework/image/header.h"
 #include "framework/scene/gltf/internal.h"
 
 namespace fovea::scene::gltf {
@@ -72,7 +75,10 @@ class TexCoords {
 
 class MaterialBuilder {
  public:
-  explicit MaterialBuilder(Context& c) : c_(c) {}
+  explicit MaterialBuilder(Context& c) : c_(c) {
+    findAlike();
+    claimMemory();
+  }
 
   Material build(size_t index) {
     const tinygltf::Material& from = c_.model.materials[index];
@@ -235,15 +241,20 @@ class MaterialBuilder {
 
   // An image that is used both as colours and as data gives two textures.
   uint32_t textureOf(size_t image, bool color) {
+    image = firstAlike_[image];
     const auto known = textures_.find({image, color});
     if (known != textures_.end()) return known->second;
-    image::Image8 pixels = decode(image);
     Texture t;
+    if (const auto other = textures_.find({image, !color}); other != textures_.end()) {
+      t = c_.scene.textures[other->second];
+    } else {
+      image::Image8 pixels = decode(image);
+      t.width = pixels.width;
+      t.height = pixels.height;
+      t.rgba = std::move(pixels.rgba);
+    }
     t.name = imageName(image);
-    t.width = pixels.width;
-    t.height = pixels.height;
     t.srgb = color;
-    t.rgba = std::move(pixels.rgba);
     c_.scene.textures.push_back(std::move(t));
     return textures_[{image, color}] = uint32_t(c_.scene.textures.size() - 1);
   }
@@ -254,22 +265,56 @@ class MaterialBuilder {
     return image.name.empty() ? "images[" + std::to_string(index) + "]" : image.name;
   }
 
-  image::Image8 decode(size_t index) {
-    const tinygltf::Image& image = c_.model.images[index];
-    const std::string name = c_.source.name + ": " + nameOf("images", index, imageName(index));
-    std::vector<uint8_t> file;
-    const std::vector<uint8_t>* bytes = &image.image;
-    if (image.image.empty()) {
-      const ResolvedUri r = resolveUri(c_.source.folder, image.uri);
-      if (!r.problem.empty()) c_.fail(name, r.problem);
-      std::error_code ec;
-      if (!std::filesystem::exists(r.file, ec))
-        throw Error(ExitCode::BadInput, name + ": the texture " + r.file.string() + " is missing",
-                    "copy it beside the model, or remove it from the material");
-      file = readFile(r.file);
-      bytes = &file;
+  std::string messageName(size_t index) const {
+    return c_.source.name + ": " + nameOf("images", index, imageName(index));
+  }
+
+  // Images that name the same file or the same part of a buffer are decoded once.
+  void findAlike() {
+    std::map<std::pair<std::string, int>, size_t> first;
+    for (size_t i = 0; i < c_.model.images.size(); ++i) {
+      const tinygltf::Image& image = c_.model.images[i];
+      std::string file = image.uri;
+      if (image.image.empty()) file = resolveUri(c_.source, image.uri).file.string();
+      const bool named = !file.empty() || image.bufferView >= 0;
+      firstAlike_.push_back(named ? first.emplace(std::pair(file, image.bufferView), i).first->second : i);
     }
-    image::Image8 pixels = image::decode8(bytes->data(), bytes->size(), name);
+  }
+
+  // Before anything is decoded, because a few bytes can claim to be a large picture.
+  void claimMemory() {
+    constexpr uint64_t kBytes = 8;  // a pixel, in the scene and on the device
+    std::set<size_t> used;
+    for (const tinygltf::Texture& texture : c_.model.textures)
+      if (texture.source >= 0) used.insert(firstAlike_[size_t(texture.source)]);
+    uint64_t pixels = 0;
+    for (const size_t i : used) try {
+        pixels += image::headerSize(encoded(i)).value_or(image::HeaderSize{}).pixels();
+      } catch (const Error&) {  // a missing file matters only if a material needs it
+      }
+    if (pixels > 0)
+      claimContent(pixels * kBytes, fmt::format("{}: {} images of {} million pixels", c_.source.name,
+                                                used.size(), (pixels + 999'999) / 1'000'000));
+  }
+
+  // The bytes of the file; they are valid until the next call.
+  std::span<const uint8_t> encoded(size_t index) {
+    const tinygltf::Image& image = c_.model.images[index];
+    if (!image.image.empty()) return image.image;
+    const ResolvedUri r = resolveUri(c_.source, image.uri);
+    if (!r.problem.empty()) c_.fail(messageName(index), r.problem);
+    std::error_code ec;
+    if (!std::filesystem::exists(r.file, ec))
+      throw Error(ExitCode::BadInput, messageName(index) + ": the texture " + r.file.string() + " is missing",
+                  "copy it beside the model, or remove it from the material");
+    file_ = readFile(r.file);
+    return file_;
+  }
+
+  image::Image8 decode(size_t index) {
+    const std::string name = messageName(index);
+    const std::span<const uint8_t> bytes = encoded(index);
+    image::Image8 pixels = image::decode8(bytes.data(), bytes.size(), name);
     if (pixels.width == 0 || pixels.height == 0 || pixels.width > kMaxTextureSize ||
         pixels.height > kMaxTextureSize)
       c_.fail(name, "the texture has " + std::to_string(pixels.width) + " x " +
@@ -279,6 +324,8 @@ class MaterialBuilder {
   }
 
   Context& c_;
+  std::vector<size_t> firstAlike_;  // for each image, the first one with the same content
+  std::vector<uint8_t> file_;       // what encoded() has read
   std::map<std::pair<size_t, bool>, uint32_t> textures_;  // by image and whether it holds colours
   std::set<std::string> leftOut_;
   std::string place_;

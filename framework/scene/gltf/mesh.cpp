@@ -7,10 +7,13 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
 
+#include "framework/base/budget.h"
 #include "framework/scene/gltf/internal.h"
 
 namespace fovea::scene::gltf {
 namespace {
+
+constexpr uint64_t kBytesOfVertex = 64;  // position, normal, texture coordinates, and as much for indices
 
 bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -123,6 +126,7 @@ class MeshBuilder {
     c_.vertices += countOf(accessor);
     checkSize(place);
     c_.vertices -= countOf(accessor);
+    claimContent(countOf(accessor) * kBytesOfVertex, c_.source.name + ": " + place);
     const std::vector<float> v = readFloats(c_, accessor, 3, path);
     out.positions.resize(v.size() / 3);
     for (size_t i = 0; i < out.positions.size(); ++i) {

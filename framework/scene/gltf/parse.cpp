@@ -63,7 +63,7 @@ Allowed allowedFiles(const Source& source, const json::Value& root) {
     const json::Value* uri = b.find("uri");
     if (!uri || isDataUri(uri->string) || isPlaceholder(b)) continue;
     // Two buffers may use different lengths of one file. As tinygltf requires exact sizes, this is refused.
-    const std::string name = source.folder.string() + "/" + resolveUri(source.folder, uri->string).decoded;
+    const std::string name = source.folder.string() + "/" + resolveUri(source, uri->string).decoded;
     const uint64_t size = uint64_t(b.find("byteLength")->integer);
     const auto [at, added] = allowed.files.emplace(name, size);
     if (!added && at->second != size)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fovea/error.h"
+#include "framework/base/threads.h"
 #include "framework/scene/rays/ray_tracer.h"
 
 namespace fovea::scene {
@@ -20,6 +21,7 @@ struct SceneDeleter {
 };
 
 [[noreturn]] void fail(RTCError error, const std::string& what) {
+  throwIfNoThreads();
   const bool memory = error == RTC_ERROR_OUT_OF_MEMORY;
   throw Error(memory ? ExitCode::OutOfMemory : ExitCode::Internal,
               "ray tracing (Embree): " + what + " failed with error " + std::to_string(int(error)),
