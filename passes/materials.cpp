@@ -1,6 +1,7 @@
 #include "passes/materials.h"
 
 #include "fovea/error.h"
+#include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::passes {
 
@@ -12,6 +13,10 @@ void declareMaterials(PassDeclaration& d, const std::string& what) {
 }
 
 bool fullMaterials(const Parameters& parameters) { return parameters.text("materials") == "full"; }
+
+scene::Passing passingOf(const Parameters& parameters) {
+  return fullMaterials(parameters) ? scene::Passing::Random : scene::Passing::Never;
+}
 
 SizeExpr fullMaterials() { return parameter("materials"); }
 

@@ -1,15 +1,22 @@
 // The parameter `materials` of passes that know more of surfaces than that they are diffuse.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "fovea/pass.h"
+
+namespace fovea::scene {
+enum class Passing : uint8_t;  // framework/scene/rays/ray_scene.h
+}
 
 namespace fovea::passes {
 
 // what: what the pass does with full materials.
 void declareMaterials(graph::PassDeclaration& d, const std::string& what);
 bool fullMaterials(const graph::Parameters& parameters);
+// The rays of passes on the host. Full materials let them through at random.
+scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();
 // Throws Error(BadInput) if the pass asks for full materials, but the one that made its input `gbuffer` did not.

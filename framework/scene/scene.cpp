@@ -24,7 +24,8 @@ void hash(Hasher& h, const Material& m) {
   h.add(&m.emission[0], 3);
   h.add(&m.specularColor[0], 3);
   for (const auto use : kMaterialTextures) hash(h, m.*use);
-  h.add(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1 | uint32_t(m.unlit) << 2);
+  h.add(uint32_t(m.masked) | uint32_t(m.doubleSided) << 1 | uint32_t(m.unlit) << 2 |
+        uint32_t(m.blended) << 3);
   const float scalars[] = {m.metallic, m.metallicMean, m.alphaCutoff,  m.roughness, m.normalScale,
                            m.ior,      m.specular,     m.transmission, m.clearcoat, m.clearcoatRoughness};
   h.add(scalars, std::size(scalars));

@@ -17,6 +17,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/octahedral.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 #include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
@@ -24,7 +25,7 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kContactStream = 0x636f6e74u;
+constexpr uint32_t kContactStream = 0x636f6e74u, kPassStream = 0x636f6e70u;
 constexpr size_t kSubsets = 4;        // a pixel looks at one of so many subsets of the VPLs in a frame
 constexpr size_t kBlock = 16;         // VPLs whose light is summed before one of them is chosen
 constexpr float kLeastChance = 0.1f;  // of a VPL that no ray has reached, relative to one that all reach
@@ -140,7 +141,9 @@ class Sampler {
       const size_t i = block + pick(std::span(unhidden_).subspan(block, kBlock), place);
       Tally& tally = tallies[lights.slots[i]];
       ++tally.rays;
-      if (rays_.occluded({origin, lights.position(i) - origin, 0, kRayEnd})) continue;
+      const uint32_t key =
+          hashCombine(randomStream(seed_, pixel.x, kPassStream, pixel.y), turn_ * count_ + k);
+      if (rays_.occluded({origin, lights.position(i) - origin, 0, kRayEnd, key})) continue;
       ++tally.reached;
       light += lights.colors[i];
     }
@@ -178,6 +181,7 @@ class ContactRays : public Pass {
     d.parameter("longer", real(4, 1, 1000),
                 "length of a running mean of `light`, in lengths of that elsewhere, for pass "
                 "temporal-accumulation");
+    declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
     return d;
@@ -200,7 +204,7 @@ class ContactRays : public Pass {
                       std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
                       std::to_string(size.y),
                   "wire contacts of the view that the pass looks through");
-    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(ctx.parameters()));
     for (size_t s = 0; s < kSubsets; ++s) {
       subsets_[s].clear();
       for (size_t i = s; i < vpls.size(); i += kSubsets)

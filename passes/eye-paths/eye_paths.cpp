@@ -86,7 +86,8 @@ class EyePaths : public Pass {
     ends_.resize(ctx.count("paths.ends"));
     EyePathStatistics statistics;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty())
-      statistics = traceEyePaths(frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry),
+      statistics = traceEyePaths(frame, ctx.view(),
+                                 *scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p)),
                                  settings, {starts_, ends_});
     else
       std::ranges::fill(starts_, EyePathStart{}), std::ranges::fill(ends_, EyePathEnd{});

@@ -1,5 +1,8 @@
 // G-buffer: the nearest surface through the centre of every pixel.
 #include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
@@ -24,6 +27,11 @@ bool hasSurfaceTextures(const scene::Material& m) {
   });
 }
 
+bool isTintedGlass(const scene::Material& m) {
+  const glm::vec4& c = m.baseColor;
+  return m.transmission > 0 && (m.baseColorTexture || c.r != c.g || c.g != c.b);
+}
+
 class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -37,12 +45,17 @@ class GBuffer : public Pass {
     d.output("gbuffer", "gbuffer", gbufferOutput(), "one surface per pixel");
     d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
               "triangle visible at each pixel, 0xffffffff if none");
+    const ResourceSpec tint =
+        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1));
+    d.scratch("tint", tint, Usage::ColorAttachment | Usage::Sampled,
+              "rgb: with full materials, logarithms of the relative colours of the glass before each pixel");
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
-    declareMaterials(d,
-                     "`full` takes everything that glTF says of them, with normal maps and what they reflect "
-                     "beside their diffuse layer");
+    declareMaterials(
+        d,
+        "`full` takes everything that glTF says of them, with normal maps, what they reflect beside "
+        "their diffuse layer, and what stands behind glass and alphaMode BLEND, at random pixels");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
     std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
                                        "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};
@@ -54,26 +67,40 @@ class GBuffer : public Pass {
           .define("FULL", 0);
     images.push_back("gbuffer.specular");
     for (const bool textured : {false, true})
-      d.fullscreen("gbuffer/resolve.frag", images)
-          .called(textured ? "resolve full materials with textures" : "resolve full materials")
-          .when(full)
-          .define("SURFACE_TEXTURES", textured)
-          .define("FULL", 1);
+      for (const bool tinted : {false, true})
+        d.fullscreen("gbuffer/resolve.frag", images)
+            .called(fullResolve(textured, tinted))
+            .when(full)
+            .define("SURFACE_TEXTURES", textured)
+            .define("TINT", tinted)
+            .define("FULL", 1);
     return d;
   }
 
   void prepare(PrepareContext& ctx) override {
+    full_ = fullMaterials(ctx.parameters());
     const bool cull = ctx.parameters().text("cull") == "auto";
     for (const auto kind :
          {scene::DrawKind::DoubleSided, scene::DrawKind::SingleSided, scene::DrawKind::Tested})
-      draw_[size_t(kind)] = ctx.graphics(
-          {.vertex = "gbuffer/visibility.vert",
-           .fragment = "gbuffer/visibility.frag",
-           .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"}, {"CULL", cull ? "1" : "0"}},
-           .colors = {"seen"},
-           .depth = "gbuffer.depth",
-           .cull =
-               cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
+      draw_[size_t(kind)] = ctx.graphics({.vertex = "gbuffer/visibility.vert",
+                                          .fragment = "gbuffer/visibility.frag",
+                                          .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"},
+                                                      {"CULL", cull ? "1" : "0"},
+                                                      {"PASSAGE", full_ ? "1" : "0"}},
+                                          .colors = {"seen"},
+                                          .depth = "gbuffer.depth",
+                                          .cull = cull && kind == scene::DrawKind::SingleSided
+                                                      ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
+                                                      : 0u});
+    if (full_)
+      tint_ = ctx.graphics({.vertex = "gbuffer/visibility.vert",
+                            .fragment = "gbuffer/tint.frag",
+                            .defines = {{"TESTED", "1"}, {"CULL", cull ? "1" : "0"}, {"PASSAGE", "0"}},
+                            .colors = {"tint"},
+                            .depth = "gbuffer.depth",
+                            .depthCompare = VK_COMPARE_OP_LESS,
+                            .depthWrite = false,
+                            .additiveBlend = true});
   }
 
   void record(RecordContext& ctx) override {
@@ -85,6 +112,7 @@ class GBuffer : public Pass {
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
       surfaceTextures_ = std::any_of(materials.begin(), materials.end(), hasSurfaceTextures);
+      tinted_ = full_ && std::any_of(materials.begin(), materials.end(), isTintedGlass);
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -99,13 +127,30 @@ class GBuffer : public Pass {
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
+    if (tinted_) drawTint(ctx);
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
-    ctx.run(surfaceTextures_ ? "resolve full materials with textures" : "resolve full materials");
+    ctx.run(fullResolve(surfaceTextures_, tinted_));
   }
 
  private:
-  Kernel draw_[3];
-  bool emissionTextures_ = false, surfaceTextures_ = false;
+  static std::string fullResolve(bool textured, bool tinted) {
+    return std::string("resolve full materials") + (textured ? " with textures" : "") +
+           (tinted ? " behind coloured glass" : "");
+  }
+
+  void drawTint(RecordContext& ctx) const {
+    const Attachment depth{"gbuffer.depth", Attachment::Load::Keep};
+    ctx.render({{"tint", Attachment::Load::Clear}}, &depth, std::span(&tint_, 1), [&] {
+      for (const scene::DrawRun& run : visible_)
+        if (run.kind == scene::DrawKind::Tested)
+          ctx.use(tint_)
+              .constant("firstTriangle", run.firstTriangle)
+              .drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
+    });
+  }
+
+  Kernel draw_[3], tint_;
+  bool full_ = false, emissionTextures_ = false, surfaceTextures_ = false, tinted_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -61,7 +61,7 @@ class NearFieldPixels : public Pass {
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.fullMaterials = fullMaterials(p);
     settings.seed = frame.seed;  // the turn stays 0: without a mean over frames, new rays would flicker
-    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
     const NearFieldStatistics statistics =
         traceNearFieldPixels(frame, ctx.view(), *rays, settings, pixels_, light_);
     if (settings.samples == 1) limitBrightest(ctx.view().size);

@@ -82,7 +82,7 @@ class NearField : public Pass {
     NearFieldStatistics statistics;
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
-      const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+      const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
       settings.cache = &cache_;
       const auto trace = [&] {
         area = p.real("share") * length_ * length_ / double(p.integer("vpls"));

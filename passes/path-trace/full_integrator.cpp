@@ -16,7 +16,7 @@ namespace {
 using namespace scene;
 
 constexpr float kShadowEnd = 0.9999f;  // shadow rays end just short of the point they are aimed at
-constexpr uint32_t kMaxPanes = 16;     // of glass that light passes on one edge
+constexpr uint32_t kMaxPanes = 64;     // surfaces that light passes on one edge
 
 float mean(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
 
@@ -70,12 +70,17 @@ FullIntegrator::EyePoint FullIntegrator::look(glm::vec2 pixel, uint64_t& rays) c
     ray = beyond(ray, hit);
     const SurfacePoint s = materials_.at(hit);
     if (glm::dot(s.face, direction) >= 0 && !s.doubleSided) continue;
-    point.direct += weight * s.emission;
-    if (s.unlit) break;
+    if (s.coverage == 0) continue;
+    const glm::vec3 covered = weight * s.coverage;
+    point.direct += covered * s.emission;
+    if (s.unlit) {
+      weight *= 1 - s.coverage;
+      continue;
+    }
     const Vertex v = vertexAt(s, direction);
-    if (depth_ >= 2) point.direct += weight * allLights(v, rays);
-    const glm::vec3 through = v.bsdf.transmittance();
-    point.vertex.push_back({v, weight, mean(weight) * (1 - mean(through))});
+    if (depth_ >= 2) point.direct += covered * allLights(v, rays);
+    const glm::vec3 through = passing(s, v);
+    point.vertex.push_back({v, covered, mean(weight) * (1 - mean(through))});
     sum += point.vertex.back().probability;
     weight *= through;
   }
@@ -95,7 +100,8 @@ glm::vec3 FullIntegrator::visibility(Ray ray, uint64_t& rays) const {
     const RayHit hit = intersect(ray, rays);
     if (!hit) return share;
     if (!materials_.transmits(hit.triangle)) break;
-    share *= vertexAt(materials_.at(hit), direction).bsdf.transmittance();
+    const SurfacePoint s = materials_.at(hit);
+    share *= passing(s, vertexAt(s, direction));
     if (share == glm::vec3(0)) break;
     ray = beyond(ray, hit);
   }
@@ -173,7 +179,7 @@ glm::vec3 FullIntegrator::emitted(const Vertex& from, glm::vec3 direction, const
   const float perArea = surfaceShare_ * emitters_.density(hit.triangle, {from.origin, from.frame[2]});
   if (!(perArea > 0) || at.unlit) return glm::vec3(0);
   const float cosine = std::max(std::abs(glm::dot(at.face, direction)), 1e-12f);
-  return at.emission * (density / (density + perArea * hit.distance * hit.distance / cosine));
+  return at.emission * at.coverage * (density / (density + perArea * hit.distance * hit.distance / cosine));
 }
 
 // Random numbers of a vertex: two for the direction, one for the light, one for the part of the BSDF, two for the
@@ -199,20 +205,23 @@ bool FullIntegrator::bounce(Path& path, uint32_t edges, const PathSampler& rando
       return false;
     }
     const SurfacePoint s = materials_.at(hit);
-    const bool glass = materials_.transmits(hit.triangle);
-    if (!glass && glm::dot(s.face, direction) >= 0 && !s.doubleSided) return false;
-    path.light += path.throughput * emitted(path.vertex, direction, hit, s, sample->density);
-    if (s.unlit) return false;
+    const bool black =
+        s.unlit || (!materials_.isGlass(hit.triangle) && glm::dot(s.face, direction) >= 0 && !s.doubleSided);
+    if (!black) path.light += path.throughput * emitted(path.vertex, direction, hit, s, sample->density);
     const Vertex next = vertexAt(s, direction);
-    const glm::vec3 through = next.bsdf.transmittance();
-    const float probability = through == glm::vec3(0) ? 0.0f : std::clamp(mean(through), 0.1f, 0.9f);
+    const glm::vec3 through = black ? glm::vec3(1 - s.coverage) : passing(s, next);
+    if (black && through == glm::vec3(0)) return false;
+    const float probability = through == glm::vec3(0) ? 0.0f
+                              : s.coverage == 0       ? 1.0f
+                                                      : std::clamp(mean(through), 0.1f, 0.9f);
     if (pass < probability) {
       pass /= probability;
       path.throughput *= through / probability;
       ray = beyond(ray, hit);
       continue;
     }
-    path.throughput /= 1 - probability;
+    if (black) return false;
+    path.throughput *= s.coverage / (1 - probability);
     path.vertex = next;
     return path.throughput != glm::vec3(0);
   }

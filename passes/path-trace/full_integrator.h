@@ -18,8 +18,9 @@ namespace fovea::passes {
 //
 // - Directions are chosen by the BSDF, and light from emissive triangles and the environment map by the balance
 //   heuristic between that and points on them.
-// - Light goes straight through thin glass, which is no edge of a path. Glass has the same faces on both sides for
-//   light, but the eye looks through the back of a single-sided one.
+// - Light goes straight through thin glass, and through a surface with alphaMode BLEND where that does not cover what
+//   is behind it. Neither is an edge of a path. Glass has the same faces on both sides for light, but the eye looks
+//   through the back of a single-sided one.
 // - What is unlit is only seen by the eye, directly or through glass.
 class FullIntegrator {
  public:
@@ -33,7 +34,7 @@ class FullIntegrator {
     glm::mat3 frame{1};     // local to world
     scene::Bsdf bsdf;
   };
-  // A surface that the eye sees, through the panes of glass before it in the list.
+  // A surface that the eye sees, through those before it in the list.
   struct Seen {
     Vertex vertex;
     glm::vec3 weight{1};    // share of its light that reaches the eye
@@ -59,6 +60,10 @@ class FullIntegrator {
   Vertex vertexAt(const scene::SurfacePoint& point, glm::vec3 direction) const;
   // The BSDF times the cosine, per sr.
   static glm::vec3 reflected(const Vertex& v, glm::vec3 direction);
+  // The share of light that passes the surface, in the same way in both directions.
+  static glm::vec3 passing(const scene::SurfacePoint& s, const Vertex& v) {
+    return glm::vec3(1 - s.coverage) + s.coverage * v.bsdf.transmittance();
+  }
   // The share of light that passes along the ray.
   glm::vec3 visibility(scene::Ray ray, uint64_t& rays) const;
   // Radiance from one light that v reflects, ignoring occlusion.

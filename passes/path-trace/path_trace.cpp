@@ -67,8 +67,11 @@ class PathTrace : public Pass {
     const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),
                                  ctx.outputAs<glm::vec4>("indirect"), ctx.outputAs<glm::vec4>("variance"),
                                  ctx.outputAs<glm::vec4>("half_a"),   ctx.outputAs<glm::vec4>("half_b")};
-    const PathTraceStatistics statistics = tracePaths(
-        frame, ctx.view(), *scene::RayScene::cached(*frame.scene, *frame.geometry), settings, images);
+    const PathTraceStatistics statistics =
+        tracePaths(frame, ctx.view(),
+                   *scene::RayScene::cached(*frame.scene, *frame.geometry,
+                                            settings.full ? scene::Passing::Met : scene::Passing::Never),
+                   settings, images);
     ctx.counter("paths", double(statistics.paths));
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("samples", statistics.samples);

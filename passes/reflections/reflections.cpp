@@ -186,7 +186,7 @@ class Reflections : public Pass {
     if (count == 0) return sum;
     cache_.setCellWidth(kCellWidth * float(distance / count));
     const scene::Frame& frame = ctx.frame();
-    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, scene::Passing::Random);
     const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, true);
     const Tracer tracer(surfaces, rays->epsilon(), uint32_t(ctx.parameters().integer("bounces")), cache_);
     const uint32_t samples = ctx.firstFrame() ? uint32_t(ctx.parameters().integer("first_samples")) : 1;

@@ -43,7 +43,7 @@ class ShadowRays : public Pass {
     const scene::Frame& frame = ctx.frame();
     const auto direct = ctx.outputAs<uint64_t>("direct");
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
-    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry);
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(ctx.parameters()));
     const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, fullMaterials(ctx.parameters()));
     const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))

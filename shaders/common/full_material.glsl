@@ -2,13 +2,8 @@
 #ifndef FOVEA_FULL_MATERIAL_GLSL
 #define FOVEA_FULL_MATERIAL_GLSL
 
-#include "common/gloss.glsl"
+#include "common/passage.glsl"
 #include "common/scene.glsl"
-
-// Texels of a SurfaceRecord and of its textures in it.
-const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
-          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
-          kClearcoatRoughnessTexture = 22;
 
 struct TextureCoordinates {
   vec2 first, second;
@@ -93,6 +88,17 @@ struct FullSurface {
   Gloss gloss;
   vec3 emission;
 };
+
+// Scales all light that leaves the surface.
+FullSurface brighter(FullSurface s, vec3 factor) {
+  float mean = dot(factor, vec3(1.0 / 3.0));
+  s.albedo *= factor;
+  s.gloss.f0 *= factor;
+  s.gloss.f90 *= mean;
+  s.gloss.dielectricF0 *= mean;
+  s.emission *= factor;
+  return s;
+}
 
 FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;

@@ -109,13 +109,12 @@ struct Material {
   vec3 baseColor;        // times (1 - metallic): diffuse reflectance where the texture is white
   float alpha;
   vec3 emission;         // W/(sr m^2)
-  float alphaCutoff;     // 0: opaque
+  float alphaCutoff;     // 0: opaque; below 0: lets light through whatever its alpha
   bool doubleSided;
 };
 
 struct SurfacePoint {    // a material looked up at a point
   vec3 reflectance;
-  float alpha;
   vec3 emission;
 };
 
@@ -191,16 +190,7 @@ vec3 materialEmission(uint material, vec2 uv) {
 }
 
 SurfacePoint surfaceAt(uint material, vec2 uv) {
-  vec4 color = materialReflectance(material, uv);
-  return SurfacePoint(color.rgb, color.a, materialEmission(material, uv));
-}
-
-// Whether the surface is present at uv (alpha MASK).
-bool alphaTest(uint material, vec2 uv) {
-  int first = int(material) * kMaterialTexels;
-  float cutoff = texelFetch(sceneMaterials, first + 1).a;
-  if (cutoff <= 0.0) return true;
-  return texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a >= cutoff;
+  return SurfacePoint(materialReflectance(material, uv).rgb, materialEmission(material, uv));
 }
 
 // ---- Environment -------------------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 // The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
 // the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
 // buffer, Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of
-// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl).
+// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl); TINT 0/1, 1 where coloured glass
+// may stand before the surface (tint.frag).
 #if FULL
 #include "common/full_material.glsl"
 #endif
@@ -9,6 +10,9 @@
 #include "common/scene.glsl"
 
 uniform utexture2D seen;
+#if TINT
+uniform texture2D tint;
+#endif
 layout(location = 0) out vec4 gbufferPosition;
 layout(location = 1) out vec4 gbufferNormal;
 layout(location = 2) out vec2 gbufferFace;
@@ -52,6 +56,7 @@ void main() {
   vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
   normal = dot(normal, normal) > 1e-12 ? normalize(normal) : face;
   if (dot(normal, face) < 0.0) normal = -normal;
+  vec3 interpolated = normal;
   vec2 uv = mat3x2(sceneUv(triangle.x), sceneUv(triangle.y), sceneUv(triangle.z)) * weights;
   uint material = materialOf(triangle);
 #if FULL
@@ -63,6 +68,15 @@ void main() {
   float cosine = dot(normal, toEye);
   if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
+  // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
+  bool glass = (uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w) &
+                kMaterialTransmits) != 0u;
+  for (int turns = glass ? 1 : 0; turns > 0; --turns)
+    surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
+#if TINT
+  vec3 seenThrough = exp(texelFetch(tint, p, 0).rgb);
+  surface = brighter(surface, seenThrough);
+#endif
   vec3 albedo = surface.albedo, emission = surface.emission;
   // Of normal, albedo and emission.
   vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
@@ -80,6 +94,9 @@ void main() {
   for (int turns = background && hasEnvironmentMap() ? 1 : 0; turns > 0; --turns)
     emission = environmentRadiance(normalize(pixelRay(p)));
 
+#if TINT
+  if (background) emission *= seenThrough;
+#endif
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
   gbufferNormal = background ? vec4(0.0) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);

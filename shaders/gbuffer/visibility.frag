@@ -1,8 +1,15 @@
-// The visible triangle; everything else is computed once per pixel in resolve.frag.
+// The visible triangle; everything else is computed once per pixel in resolve.frag. Defines: TESTED 0/1, 1 for
+// materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 for full materials, of which alphaMode BLEND and thin
+// glass let some of the eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
+#include "common/passage.glsl"
 #include "common/scene.glsl"
 
 #if TESTED
 layout(location = 0) in vec2 uv;
+#if PASSAGE
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 toEye;
+#endif
 #endif
 
 layout(location = 0) out uint seen;
@@ -16,7 +23,16 @@ void main() {
 #if CULL
   if (!gl_FrontFacing && !loadMaterial(material).doubleSided) discard;
 #endif
-  if (!alphaTest(material, uv)) discard;
+#if PASSAGE
+  // The same as in scene::SurfaceTracer::look().
+  uvec2 pixel = uvec2(gl_FragCoord.xy);
+  uint key = randomStream(frame.seed, frame.index, kPassageStream, pixel.x << 16 | pixel.y);
+  float chance = uniformFloat(hashCombine(key, triangle));
+  float cosine = abs(dot(normalize(normal), normalize(toEye)));
+#else
+  const float chance = kEitherWay, cosine = 1.0;
+#endif
+  if (!stops(material, uv, cosine, chance)) discard;
 #endif
   seen = triangle;
 }

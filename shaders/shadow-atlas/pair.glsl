@@ -4,6 +4,7 @@
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 
 #include "common/paraboloid.glsl"
+#include "common/passage.glsl"
 #include "shadow-atlas/project.glsl"
 #include "shadow-atlas/step.glsl"
 #include "shadow-atlas/triangles.glsl"
@@ -29,7 +30,7 @@ struct Pair {
   TexelBox box;
   RayTest test;
   ivec3 origin;  // origin of the VPL's map in the atlas
-  uint material;
+  uint material, triangle;
   vec2 uvA, uvB, uvC;
 #ifdef MOVER_SLACK
   float slack;  // m
@@ -62,6 +63,7 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
   pair.test = rayTest(view, triangle, planeEpsilon);
   pair.origin = atlasTexel(view.slot, ivec2(0), atlasLayout(imageSize(atlas)));
   pair.material = triangle.material;
+  pair.triangle = word & kTriangleMask;
 #ifdef MOVER_SLACK
   pair.slack = moverSlack * max(max(wayOf(triangle.vertices.x, triangle.a), wayOf(triangle.vertices.y, triangle.b)),
                                 wayOf(triangle.vertices.z, triangle.c));
@@ -80,7 +82,11 @@ void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
   bool hit = inside && distance_ > 0.0;
 #ifdef MASKED
   weights /= weights.x + weights.y + weights.z;
-  hit = hit && alphaTest(pair.material, weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB);
+  // What lets a part of the light through does so at random texels, the same ones whenever the map is drawn.
+  uvec3 place = uvec3(pair.origin) + uvec3(texel, 0u);
+  uint key = hashCombine(hashCombine(place.x << 16 | place.y, place.z), pair.triangle);
+  vec2 uv = weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB;
+  hit = hit && stops(pair.material, uv, kMeanCosine, uniformFloat(key));
 #endif
 #ifdef MOVER_SLACK
   distance_ += min(pair.slack, kMostSlack * distance_);

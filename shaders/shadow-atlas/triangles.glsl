@@ -34,7 +34,7 @@ Triangle loadTriangle(uint index) {
 }
 #else
 bool isMasked(uint index) {
-  return loadMaterial(texelFetch(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff > 0.0;
+  return loadMaterial(texelFetch(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff != 0.0;
 }
 
 Triangle loadTriangle(uint index) { return wholeTriangle(index); }

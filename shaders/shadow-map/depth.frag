@@ -1,4 +1,6 @@
-// Holes of alpha-masked materials let light through. All other surfaces block it on both sides.
+// Holes of alpha-masked materials let light through, and with full materials so do alphaMode BLEND and thin glass: at
+// random texels, the same ones whenever the map is drawn. All other surfaces block it on both sides.
+#include "common/passage.glsl"
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;
@@ -6,5 +8,8 @@ layout(location = 0) in vec2 uv;
 layout(push_constant) uniform Constants { uint firstTriangle; };
 
 void main() {
-  if (!alphaTest(materialOf(sceneTriangle(firstTriangle + uint(gl_PrimitiveID))), uv)) discard;
+  uint triangle = firstTriangle + uint(gl_PrimitiveID);
+  uvec2 texel = uvec2(gl_FragCoord.xy);
+  float chance = uniformFloat(hashCombine(texel.x << 16 | texel.y, triangle));
+  if (!stops(materialOf(sceneTriangle(triangle)), uv, kMeanCosine, chance)) discard;
 }

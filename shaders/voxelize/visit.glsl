@@ -1,5 +1,6 @@
 // Handles a cell that a triangle overlaps: without ACCUMULATE it is marked, with it the piece of the triangle is
 // added to the voxel's sums.
+#include "common/passage.glsl"
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/state.glsl"
@@ -87,16 +88,20 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   Piece piece;
   if (!crossesCell(t, a, b, c, piece)) piece = clipToCell(t, a, b, c);
   if (fixedPoint(piece.area) < 1.0) return;
+  vec2 uv = cellUv(t, indices, a, piece.centre);
+  bool present = true;
+  // A CPU device skips a loop of zero turns, but not a branch.
+  for (int turns = material.alphaCutoff != 0.0 ? 1 : 0; turns > 0; --turns)
+    present = stops(materialOf(indices), uv, kMeanCosine, kEitherWay);
+  if (!present) return;
 #if ACCUMULATE
-  SurfacePoint surface = surfaceAt(materialOf(indices), cellUv(t, indices, a, piece.centre));
-  if (material.alphaCutoff > 0.0 && surface.alpha < material.alphaCutoff) return;
+  SurfacePoint surface = surfaceAt(materialOf(indices), uv);
   piece.centre = turnBack(piece.centre, t.axis);
   uint side = 2u * voxel + voxelSideOf(t.normal);
   uint moving = objectDeforms(objectOf(indices)) ? triangle - frame.firstMovingTriangle : ~0u;
   addPiece(side, piece, t.normal, surface, objectOf(indices), moving);
   if (material.doubleSided) addPiece(side ^ 1u, piece, -t.normal, surface, objectOf(indices), moving);
 #else
-  if (material.alphaCutoff > 0.0 && !alphaTest(materialOf(indices), cellUv(t, indices, a, piece.centre))) return;
   atomicOr(marks.words[linear / 32u], bit);
 #endif
 }

@@ -12,6 +12,7 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
+#include "framework/scene/materials/passage.h"
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
 
@@ -26,6 +27,7 @@ std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::
   gpu::Device& device = testDevice();
   const std::string source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
+#include "common/passage.glsl"
 #include "common/scene.glsl"
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Queries { vec4 queries[]; };
@@ -136,8 +138,8 @@ TEST(SceneGlsl, MaterialsAndTextures) {
     uint m = uint(q.x);
     SurfacePoint s = surfaceAt(m, q.yz);
     Material material = loadMaterial(m);
-    r[0] = vec4(s.reflectance, s.alpha);
-    r[1] = vec4(s.emission, alphaTest(m, q.yz) ? 1.0 : 0.0);
+    r[0] = vec4(s.reflectance, materialReflectance(m, q.yz).a);
+    r[1] = vec4(s.emission, stops(m, q.yz, 1.0, kEitherWay) ? 1.0 : 0.0);
     r[2] = vec4(material.doubleSided ? 1.0 : 0.0, material.alphaCutoff, material.alpha, material.baseColor.g);
   )");
   for (size_t i = 0; i + 1 < queries.size(); ++i) {
@@ -358,6 +360,54 @@ TEST(SceneGlsl, AnEmptySceneWorks) {
   )");
   EXPECT_EQ(results[0], glm::vec4(0));
   EXPECT_EQ(results[1], glm::vec4(0));
+}
+
+TEST(SceneGlsl, LightPassesBlendAndGlassAsOnTheCpu) {
+  Scene scene = texturedScene();
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    Material& m = scene.materials[i];
+    if (i % 4 == 1) m.masked = m.blended = true, m.alphaCutoff = 0.5f;
+    if (i % 3 != 0) m.transmission = random(30, i);
+    m.roughness = random(31, i);
+    m.ior = 1 + random(32, i);
+    if (i % 7 == 0) m.transmissionTexture = {(i / 9 + 3) % 16, Wrap::Repeat, Wrap::Repeat};
+    if (i % 7 == 1) m.metallicRoughnessTexture = {(i / 9 + 2) % 16, Wrap::Repeat, Wrap::Repeat};
+    // Steep textures would turn the precision of coordinates into differences.
+    m.baseColorTexture.transform = {0.01f, 0, 0, 0.01f, random(33, i), random(34, i)};
+  }
+  GpuScene gpu(testDevice(), scene, {}, 2, true), diffuse(testDevice(), scene, {}, 2);
+  std::vector<glm::vec4> queries;
+  for (uint32_t k = 0; k < scene.materials.size() * 32; ++k)
+    queries.emplace_back(float(k / 32), random(35, k), random(36, k), random(37, k));
+  const char* body = R"(
+    uint m = uint(q.x);
+    r[0] = vec4(passage(m, q.yz, q.w), stops(m, q.yz, q.w, 0.3) ? 1.0 : 0.0, stops(m, q.yz, q.w, 0.7) ? 1.0 : 0.0, 0.0);
+  )";
+  const auto results = evaluate(gpu, Frame{}, queries, "passage", body),
+             solid = evaluate(diffuse, Frame{}, queries, "passage", body);
+  uint32_t stopped = 0, passed = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Material& m = scene.materials[size_t(queries[i].x)];
+    const glm::vec2 uv(queries[i].y, queries[i].z);
+    const float passes = passage(scene, m, uv, queries[i].w), covers = coverage(scene, m, uv);
+    if (m.transmission > 0) {
+      EXPECT_NEAR(results[3 * i].x, passes, 3e-3) << i;  // the table's resolution
+    }
+    const float stops = covers * (1 - passes);
+    for (int k = 0; k < 2; ++k) {
+      const float chance = k == 0 ? 0.3f : 0.7f;
+      if (std::abs(stops - chance) > 5e-3f) {
+        EXPECT_EQ(results[3 * i][1 + k], float(stops > chance)) << i;
+      }
+      const float alpha = reflectance(scene, m, uv).a;
+      if (std::abs(alpha - m.alphaCutoff) > 1e-3f) {
+        EXPECT_EQ(solid[3 * i][1 + k], float(!m.masked || alpha >= m.alphaCutoff)) << i;
+      }
+    }
+    stopped += stops > 0.7f;
+    passed += stops < 0.3f;
+  }
+  EXPECT_GT(std::min(stopped, passed), 200u);
 }
 
 TEST(SceneGlsl, ManyLargeTexturesTakeSeveralPages) {

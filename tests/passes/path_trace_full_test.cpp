@@ -236,6 +236,60 @@ TEST(PathTraceFull, GlassInAWhiteFurnaceVanishes) {
   EXPECT_NEAR(meanOf(t.radiance).g, 1, 0.005);
 }
 
+// ---- alphaMode BLEND ------------------------------------------------------------------------------------------
+
+scene::Material veil(glm::vec3 color, float alpha) {
+  scene::Material m;
+  m.baseColor = glm::vec4(color, alpha);
+  m.ior = 1;
+  m.masked = m.blended = m.doubleSided = true;
+  return m;
+}
+
+// Of light that falls through a veil on a floor, 1 - alpha arrives, and of that as much reaches the eye. The veil
+// shows alpha of its own light.
+TEST(PathTraceFull, VeilsCoverTheShareOfTheirAlpha) {
+  for (const float alpha : {0.0f, 0.3f, 0.8f, 1.0f}) {
+    scene::Scene s = plane({0.6f, 0.5f, 0.4f});
+    s.materials[0].ior = 1;
+    const scene::Scene open = [&] {
+      scene::Scene o = s;
+      o.lights = {sun({0.2f, -1, 0.1f}, {3, 2, 1})};
+      return o;
+    }();
+    const glm::vec3 color(0.1f, 0.8f, 0.3f);
+    s.materials.push_back(veil(color, alpha));
+    addQuad(s, 1, {-10, 1, 10}, {20, 0, 0}, {0, 0, -20});
+    s.lights = open.lights;
+    const Traced a = trace(s, 8, full(2, 2)), b = trace(open, 8, full(2, 2));
+    const glm::vec3 floor{0.6f, 0.5f, 0.4f};
+    for (size_t i = 0; i < a.direct.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float whole = b.direct[i][c];
+        ASSERT_NEAR(a.direct[i][c], alpha * whole * color[c] / floor[c] + (1 - alpha) * (1 - alpha) * whole,
+                    1e-4f)
+            << alpha;
+      }
+  }
+}
+
+// Veils that reflect all light vanish in the furnace whatever their alpha: paths pass them without bias.
+TEST(PathTraceFull, VeilsInAWhiteFurnaceVanish) {
+  scene::Scene s;
+  addMaterial(s, glm::vec3(0));
+  s.materials[0].ior = 1;
+  s.materials[0].emission = glm::vec3(1);
+  s.materials.push_back(veil(glm::vec3(1), 0.4f));
+  s.materials.push_back(veil(glm::vec3(1), 0.9f));
+  const uint32_t walls[6] = {};
+  addRoom(s, walls, 2);
+  addQuad(s, 1, {-0.5f, -0.5f, 0.3f}, {1, 0, 0}, {0, 1, 0});
+  addQuad(s, 2, {-0.5f, -0.5f, -0.3f}, {1, 0, 0.2f}, {0, 1, 0});
+  lookAlong(s, {0.3f, 0, 1.9f}, {-0.2f, 0, -1}, 0.6f);
+  const Traced t = trace(s, 16, full(6, 256));
+  EXPECT_NEAR(meanOf(t.radiance).g, 1, 0.01);
+}
+
 TEST(PathTraceFull, UnlitSurfacesShowTheirColourAndLightNothing) {
   scene::Scene s = plane(glm::vec3(0.5f));
   scene::Material sign;

@@ -54,7 +54,8 @@ Estimate trace(const scene::Scene& scene, glm::uvec2 size, uint32_t samples, boo
   passes::PathTraceImages images;
   images.radiance = radiance;
   images.variance = variance;
-  passes::tracePaths(frame, frame.views[0], scene::RayScene(scene, geometry), settings, images);
+  const scene::RayScene rays(scene, geometry, full ? scene::Passing::Met : scene::Passing::Never);
+  passes::tracePaths(frame, frame.views[0], rays, settings, images);
   Estimate e;
   for (size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < 3; ++c) {
@@ -133,7 +134,7 @@ TEST_P(PathTraceMitsubaMaterials, LookAlike) {
 
 INSTANTIATE_TEST_SUITE_P(All, PathTraceMitsubaMaterials,
                          testing::Values("base_color", "metal", "rough", "half_metal", "normal", "emissive",
-                                         "alpha"),
+                                         "alpha", "blend"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(PathTraceMitsuba, Sponza) {

@@ -26,7 +26,7 @@ struct Traced {
 inline Traced trace(const scene::Scene& s, uint32_t side, const PathTraceSettings& settings) {
   const scene::Geometry g = flatten(s);
   const scene::Frame frame = makeFrame(s, g, {side, side}, 0, 1);
-  const scene::RayScene rays(s, g);
+  const scene::RayScene rays(s, g, settings.full ? scene::Passing::Met : scene::Passing::Never);
   Traced t;
   t.size = {side, side};
   for (auto* image : {&t.radiance, &t.direct, &t.indirect, &t.variance, &t.halfA, &t.halfB})

@@ -34,6 +34,15 @@ TEST(DrawRuns, NeighboursOfOneKindShareADraw) {
   expectRun(runs[3], DrawKind::SingleSided, 6, 1);
 }
 
+TEST(DrawRuns, GlassIsTransparentWithFullMaterialsOnly) {
+  Scene s = threeMaterials();
+  s.materials[0].transmission = 0.5f;
+  const Geometry g = triangles({0, 1});
+  expectRun(drawRuns(s, g)[0], DrawKind::SingleSided, 0, 1);
+  expectRun(drawRuns(s, g, true)[0], DrawKind::Tested, 0, 1);
+  expectRun(drawRuns(s, g, true)[1], DrawKind::DoubleSided, 1, 1);
+}
+
 TEST(DrawRuns, NothingToDraw) { EXPECT_TRUE(drawRuns(threeMaterials(), {}).empty()); }
 
 TEST(DrawRuns, AMixtureIsTestedAsAWhole) {

@@ -51,6 +51,7 @@ void expectSameMaterials(const Scene& a, const Scene& b) {
     EXPECT_FLOAT_EQ(x.metallic, y.metallic);
     EXPECT_LE(distance(x.emission, y.emission), 1e-6f * glm::length(x.emission));
     EXPECT_EQ(x.masked, y.masked);
+    EXPECT_EQ(x.blended, y.blended);
     if (x.masked) {
       EXPECT_FLOAT_EQ(x.alphaCutoff, y.alphaCutoff);
     }

@@ -64,6 +64,7 @@ TEST(Gltf, ReadsMaterialsWithStrengthTransformAndMask) {
   ASSERT_EQ(s.materials.size(), 1u);
   const Material& m = s.materials[0];
   EXPECT_TRUE(m.masked);
+  EXPECT_FALSE(m.blended);
   EXPECT_TRUE(m.doubleSided);
   EXPECT_EQ(m.alphaCutoff, 0.25f);
   EXPECT_EQ(m.emission, glm::vec3(8, 4, 0));
@@ -78,6 +79,7 @@ TEST(Gltf, BlendBecomesMaskWithAWarning) {
   Diagnostics warnings;
   const Scene s = loadText(folder, d.json(), warnings);
   EXPECT_TRUE(s.materials[0].masked);
+  EXPECT_TRUE(s.materials[0].blended);
   EXPECT_EQ(s.materials[0].alphaCutoff, 0.5f);
   EXPECT_THAT(warnings.format(), AllOf(HasSubstr("BLEND"), HasSubstr("glass")));
 }

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "framework/base/random.h"
+#include "framework/scene/materials/passage.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
@@ -114,6 +116,66 @@ TEST(RayScene, MaskedHolesLetRaysThrough) {
     }
     EXPECT_EQ(rays.occluded({down.origin, down.direction, 0, 1.5f}), hit.distance < 1.5f);
   }
+}
+
+// Two layers of a material.
+Scene layers(const Material& material) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  s.materials.push_back(material);
+  for (const float y : {1.0f, 1.5f}) addQuad(s, 1, {0, y, 0}, {1, 0, 0}, {0, 0, -1});
+  return s;
+}
+
+// The shares of rays at 45 degrees that meet the upper layer and the lower one.
+std::array<double, 2> met(const RayScene& rays) {
+  constexpr uint32_t kRays = 20000;
+  std::array<double, 2> share{};
+  for (uint32_t i = 0; i < kRays; ++i) {
+    const glm::vec2 p = 0.25f + 0.2f * glm::vec2(randomVector(i, 0));
+    const Ray ray{{p.x - 0.5f, 2, -p.y}, glm::vec3(1, -1, 0), 0, 3, hashPcg(i)};
+    const RayHit hit = rays.intersect(ray);
+    EXPECT_EQ(rays.intersect(ray).triangle, hit.triangle);
+    EXPECT_EQ(rays.occluded({ray.origin, ray.direction, 0, 1.5f, ray.key}), hit && hit.distance < 1.5f);
+    if (!hit) continue;
+    share[hit.distance < 0.75f ? 0 : 1] += 1.0 / kRays;
+  }
+  return share;
+}
+
+// Each layer stops its share of the rays whatever the other does. The tolerance is four standard deviations.
+TEST(RayScene, RaysPassWhatLetsLightThroughAtRandom) {
+  Material veil;
+  veil.masked = veil.blended = true;
+  veil.baseColor.a = 0.3f;
+  const Scene s = layers(veil);
+  const Geometry g = flatten(s);
+  const auto random = met(RayScene(s, g, Passing::Random));
+  EXPECT_NEAR(random[0], 0.3, 0.013);
+  EXPECT_NEAR(random[1], 0.7 * 0.3, 0.012);
+  EXPECT_DOUBLE_EQ(met(RayScene(s, g))[1] + met(RayScene(s, g))[0], 0);  // 0.3 is below the cutoff
+  EXPECT_NEAR(met(RayScene(s, g, Passing::Met))[0], 1, 1e-9);
+
+  Material glass;
+  glass.transmission = 0.8f;
+  glass.roughness = 0.2f;
+  glass.baseColor = {0.9f, 0.6f, 0.3f, 1};
+  const Scene t = layers(glass);
+  const float passes = passage(t, glass, {0, 0}, std::sqrt(0.5f));
+  EXPECT_NEAR(passes, 0.8f * 0.6f * 0.95f, 0.01f);
+  const auto panes = met(RayScene(t, g, Passing::Random));
+  EXPECT_NEAR(panes[0], 1 - passes, 0.014);
+  EXPECT_NEAR(panes[1], passes * (1 - passes), 0.014);
+  EXPECT_NEAR(met(RayScene(t, g))[0], 1, 1e-9);
+}
+
+TEST(RayScene, CacheKnowsWaysOfPassing) {
+  Scene s = layers({});
+  const Geometry g = flatten(s);
+  EXPECT_EQ(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Random));  // nothing lets light through
+  s.materials[1].masked = s.materials[1].blended = true;
+  EXPECT_NE(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Random));
+  EXPECT_NE(RayScene::cached(s, g, Passing::Met), RayScene::cached(s, g, Passing::Random));
 }
 
 TEST(RayScene, EmptySceneIsHitByNothing) {

@@ -51,7 +51,8 @@ struct Material {
   float metallicMean = 1;
   glm::vec3 emission{0};  // radiance, W/(sr m^2): factor times KHR_materials_emissive_strength
   TextureUse emissionTexture;
-  bool masked = false;  // alphaMode MASK; BLEND is treated as MASK with cutoff 0.5
+  bool masked = false;   // alphaMode MASK or BLEND, which diffuse materials take for MASK with cutoff 0.5
+  bool blended = false;  // alphaMode BLEND: alpha is the share of light that the surface stops
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
 

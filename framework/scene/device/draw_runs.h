@@ -12,7 +12,7 @@ namespace fovea::scene {
 enum class DrawKind : uint8_t {
   DoubleSided,  // opaque, both sides
   SingleSided,  // opaque, the front only
-  Tested,       // alpha-masked, or mixed: the material is looked up for every fragment
+  Tested,       // alpha-masked, transparent or mixed: the material is looked up for every fragment
 };
 
 struct DrawRun {
@@ -24,7 +24,7 @@ struct DrawRun {
 inline constexpr size_t kMaxDrawRuns = 256;
 
 // Runs in the order of the triangles, covering all of them; a single `Tested` run if there would be
-// more than kMaxDrawRuns.
-std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry);
+// more than kMaxDrawRuns. fullMaterials: glass is transparent.
+std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry, bool fullMaterials = false);
 
 }  // namespace fovea::scene

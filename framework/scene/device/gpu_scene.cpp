@@ -169,7 +169,7 @@ struct GpuScene::Impl {
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
-        runs(fovea::scene::drawRuns(scene, g)) {
+        runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
     checkCount("lights", scene.lights.size(), kMaxLights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
     indices = makeBuffer(device, "scene indices", indexList(g),
@@ -228,10 +228,13 @@ MaterialRecord GpuScene::Impl::materialEntry(const Scene& scene, const Material&
   record.baseColor = bouncedColor(m, fullMaterials);
   record.alpha = m.baseColor.a;
   record.emission = fullMaterials && m.unlit ? glm::vec3(0) : m.emission;
-  record.alphaCutoff = m.masked ? m.alphaCutoff : 0.0f;
+  const bool transmits = fullMaterials && m.transmission > 0;
+  record.alphaCutoff = m.masked ? m.alphaCutoff : transmits ? -1.0f : 0.0f;
   record.colorTexture = textureEntry(scene, m.baseColorTexture);
   record.emissionTexture = textureEntry(scene, m.emissionTexture);
   if (m.doubleSided) record.colorTexture.flags += float(kMaterialDoubleSided);
+  if (fullMaterials && m.blended) record.colorTexture.flags += float(kMaterialBlended);
+  if (transmits) record.colorTexture.flags += float(kMaterialTransmits);
   return record;
 }
 

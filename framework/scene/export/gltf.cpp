@@ -181,7 +181,9 @@ class GltfWriter {
         if (strength > 1) extension(out, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
       }
       extensions(m, out);
-      if (m.masked) {
+      if (m.blended) {
+        out["alphaMode"] = "BLEND";
+      } else if (m.masked) {
         out["alphaMode"] = "MASK";
         out["alphaCutoff"] = shortest(m.alphaCutoff);
       }

@@ -132,11 +132,15 @@ std::string MitsubaMaterials::channel(const char* name, const TextureUse& use, u
   return bitmap(name, file, true, "bilinear", from.wrap, toUv(use, from.scale));
 }
 
-// Whether bilinear alpha reaches the cutoff, at the middles of at least kMaskTexels^2 parts of each texel.
+// Whether bilinear alpha reaches the cutoff, or with alphaMode BLEND that alpha itself, at the middles of at least
+// kMaskTexels^2 parts of each texel.
 std::string MitsubaMaterials::opacity(const Material& m) {
   const TextureUse& use = m.baseColorTexture;
-  if (!textured(use))
-    return fmt::format("<float name=\"opacity\" value=\"{}\"/>", m.baseColor.a >= m.alphaCutoff ? 1 : 0);
+  const auto opacityOf = [&](float alpha) {
+    if (full_ && m.blended) return std::clamp(alpha, 0.0f, 1.0f);
+    return alpha >= m.alphaCutoff ? 1.0f : 0.0f;
+  };
+  if (!textured(use)) return number("opacity", opacityOf(m.baseColor.a));
   const Texture& t = scene_.textures[use.texture];
   uint32_t parts = std::max(kMaskTexels, kMaskSide / std::max(t.width, t.height));
   while (parts > 1 && std::max(t.width, t.height) * parts > kMaxMaskSide) parts /= 2;
@@ -147,7 +151,7 @@ std::string MitsubaMaterials::opacity(const Material& m) {
   for (uint32_t y = 0; y < size.y; ++y)
     for (uint32_t x = 0; x < size.x; ++x) {
       const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / glm::vec2(size) / from.scale;
-      mask.at(x, y, 0) = reflectance(scene_, m, straightUv(uv, use)).a >= m.alphaCutoff ? 1.0f : 0.0f;
+      mask.at(x, y, 0) = opacityOf(reflectance(scene_, m, straightUv(uv, use)).a);
     }
   const std::string file = textureFile(use, "_mask.png");
   image::write(folder_ / file, {{"", std::move(mask)}});

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/scene/environment/environment_map.h"
+#include "framework/scene/environment/sky.h"
 #include "framework/scene/file/reader.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/floor.h"
@@ -92,6 +93,7 @@ class Parser {
     if (environment_)
       out.environmentMap =
           loadEnvironment(findFile(environment_->file, folder), environment_->intensity, environment_->turn);
+    if (sky_) addSky(out);
     motion_.apply(out, folder, warnings);
     return out;
   }
@@ -102,6 +104,17 @@ class Parser {
             std::to_string(count) + " models; a scene file may have " + std::to_string(kMaxModels),
             "put parts that belong together into one glTF model, whose nodes share meshes");
     errors_.throwIfErrors();
+  }
+
+  void addSky(Scene& scene) const {
+    const Daylight light = daylight(*sky_);
+    scene.environmentMap = light.map;
+    if (!hasSun_) return;
+    Light sun;
+    sun.name = "sun";
+    sun.color = light.sun;
+    sun.direction = -towardsSun(*sky_);
+    scene.lights.push_back(sun);
   }
 
   void model(const Value& v, const std::string& path) {
@@ -211,6 +224,12 @@ class Parser {
 
   void environment(const Value& v) {
     ObjectReader r(v, "environment", errors_);
+    if (r.has("sky")) {
+      if (r.has("file")) mistake(r, "file", "an environment is named either by `file` or by `sky`");
+      r.text("file");
+      if (const Value* s = r.object("sky")) sky(*s);
+      return r.finish();
+    }
     r.require("file");
     EnvironmentEntry e;
     e.file = {"environment", r.text("file"), "", v.where.location(), "environment.file"};
@@ -218,6 +237,19 @@ class Parser {
     e.turn = float(glm::radians(r.number("turn_deg", 0, -360, 360)));
     r.finish();
     environment_ = e;
+  }
+
+  void sky(const Value& v) {
+    ObjectReader r(v, "environment.sky", errors_);
+    Sky s;
+    s.turbidity = float(r.number("turbidity", double(s.turbidity), kLeastTurbidity, kMostTurbidity));
+    s.sunElevation = float(glm::radians(r.number("sun_elevation_deg", 40, 0, 90)));
+    s.sunAzimuth = float(glm::radians(r.number("sun_azimuth_deg", 0, -360, 360)));
+    s.illuminance = float(r.number("illuminance", double(s.illuminance), 1e-6, 1e12));
+    s.ground = readReflectance(r, "ground", s.ground);
+    hasSun_ = r.boolean("sun", true);
+    r.finish();
+    sky_ = s;
   }
 
   void floor(const Value& v) {
@@ -259,6 +291,8 @@ class Parser {
   MotionReader motion_{errors_};
   std::optional<NamedFile> gazeFile_;
   std::optional<EnvironmentEntry> environment_;
+  std::optional<Sky> sky_;
+  bool hasSun_ = true;
   std::optional<Floor> floor_;
   bool hasExposure_ = false, hasEnvironment_ = false;
 };

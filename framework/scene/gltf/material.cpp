@@ -136,8 +136,8 @@ class MaterialBuilder {
     m.alphaCutoff = float(from.alphaCutoff);
     m.masked = from.alphaMode == "MASK";
     if (from.alphaMode != "BLEND") return;
-    c_.warn(place_, "alphaMode BLEND is drawn as MASK with a cutoff of 0.5");
-    m.masked = true;
+    c_.warn(place_, "alphaMode BLEND is drawn as MASK with a cutoff of 0.5, unless materials are full");
+    m.masked = m.blended = true;
     m.alphaCutoff = 0.5f;
   }
 

@@ -28,7 +28,7 @@ SurfaceMaterials::SurfaceMaterials(const Scene& scene, const Geometry& geometry)
     : scene_(scene), geometry_(geometry) {
   for (const Material& m : scene.materials) {
     dielectricAlbedos_.push_back(&AlbedoTable::dielectric(m.ior));
-    anyTransmits_ = anyTransmits_ || m.transmission > 0;
+    anyTransmits_ = anyTransmits_ || letsLightThrough(m);
   }
 }
 
@@ -75,6 +75,7 @@ SurfacePoint SurfaceMaterials::at(const RayHit& hit) const {
   p.normal = mappedNormal(m, hit, c, s.shadingNormal);
   p.doubleSided = m.doubleSided;
   p.unlit = m.unlit;
+  if (m.blended) p.coverage = coverage(scene_, m, c.uv[0]);
   BsdfParameters& b = p.bsdf;
   b.baseColor = glm::vec3(m.baseColor) * glm::vec3(texel(m.baseColorTexture, c));
   if (!geometry_.colors.empty())
@@ -105,7 +106,9 @@ glm::vec3 SurfaceMaterials::emission(uint32_t triangle, float u, float v) const 
   const Triangle& t = geometry_.triangles[triangle];
   const Material& m = scene_.materials[t.material()];
   if (m.unlit) return glm::vec3(0);
-  return m.emission * glm::vec3(texel(m.emissionTexture, coordinates(t, u, v)));
+  const Coordinates c = coordinates(t, u, v);
+  return m.emission * glm::vec3(texel(m.emissionTexture, c)) *
+         (m.blended ? coverage(scene_, m, c.uv[0]) : 1.0f);
 }
 
 }  // namespace fovea::scene

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/scene/materials/bsdf.h"
+#include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
 
@@ -19,6 +20,8 @@ struct SurfacePoint {
   BsdfParameters bsdf;
   glm::vec3 emission{0};  // radiance, W/(sr m^2); of an unlit material, its base colour
   bool unlit = false, doubleSided = false;
+  float coverage =
+      1;  // the share of light that it stops with alphaMode BLEND; the rest goes straight through
 };
 
 // The shading normal on the side of a viewer in the direction `out`, who sees the surface. A normal map, or
@@ -31,19 +34,21 @@ class SurfaceMaterials {
   SurfaceMaterials(const Scene& scene, const Geometry& geometry);
 
   SurfacePoint at(const RayHit& hit) const;
-  // Radiance of the triangle at the barycentric weights u, v of its second and third vertex; 0 for unlit materials,
-  // which are only seen.
+  // Radiance of the triangle at the barycentric weights u, v of its second and third vertex, times its coverage; 0 for
+  // unlit materials, which are only seen.
   glm::vec3 emission(uint32_t triangle, float u, float v) const;
   // Whether light goes through any of them.
   bool anyTransmits() const { return anyTransmits_; }
-  bool transmits(uint32_t triangle) const {
-    return scene_.materials[geometry_.triangles[triangle].material()].transmission > 0;
-  }
+  bool transmits(uint32_t triangle) const { return letsLightThrough(materialOf(triangle)); }
+  bool isGlass(uint32_t triangle) const { return materialOf(triangle).transmission > 0; }
 
  private:
   struct Coordinates {  // texture coordinates at a point
     glm::vec2 uv[2];
   };
+  const Material& materialOf(uint32_t triangle) const {
+    return scene_.materials[geometry_.triangles[triangle].material()];
+  }
   Coordinates coordinates(const Triangle& triangle, float u, float v) const;
   glm::vec4 texel(const TextureUse& use, const Coordinates& at) const;
   glm::vec3 mappedNormal(const Material& m, const RayHit& hit, const Coordinates& at, glm::vec3 normal) const;

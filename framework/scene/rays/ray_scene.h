@@ -1,5 +1,5 @@
-// Traces rays on the CPU against the world-space triangles of one moment and respects alpha MASK. Uses Embree 3 or,
-// in portable bundles, a small tracer of the project.
+// Traces rays on the CPU against the world-space triangles of one moment and respects holes in materials. Uses Embree 3
+// or, in portable bundles, a small tracer of the project.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,22 @@
 
 namespace fovea::scene {
 
+// The key of a ray that meets all surfaces as with Passing::Met.
+inline constexpr uint32_t kMeetsAll = ~0u;
+
 struct Ray {
   glm::vec3 origin{0};     // world space, m
   glm::vec3 direction{0};  // need not be unit; distances are multiples of its length
   float near = 0, far = std::numeric_limits<float>::infinity();
+  uint32_t key = 0;  // of the random numbers of Passing::Random
+};
+
+// What rays do at surfaces that let a part of the light through, with alphaMode BLEND or thin glass. Holes of alpha
+// masks are open in any case.
+enum class Passing : uint8_t {
+  Never,   // diffuse materials: BLEND is a mask, and glass is solid
+  Random,  // they pass with the probability of the light that does; hashes of Ray::key and the triangle decide
+  Met,     // such surfaces are met everywhere: who traces decides
 };
 
 struct RayHit {
@@ -33,11 +45,11 @@ struct SurfaceHit {
   uint32_t material = 0, object = 0;
 };
 
-// Immutable after construction, so many threads may trace at once. Copies what it needs of the masked materials:
+// Immutable after construction, so many threads may trace at once. Copies what it needs of materials with holes:
 // neither scene nor geometry has to outlive it.
 class RayScene {
  public:
-  RayScene(const Scene& scene, const Geometry& geometry);
+  RayScene(const Scene& scene, const Geometry& geometry, Passing passing = Passing::Never);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
@@ -45,14 +57,17 @@ class RayScene {
   RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
   bool occluded(const Ray& ray) const;
 
+  // Whether Ray::key matters.
+  bool choosesAtRandom() const;
   // Smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
   float epsilon() const;
   double surfaceArea() const;  // of all triangles, one side, m^2
 
-  // The acceleration structure of `geometry`, rebuilt if its content (or the masks of `scene`) differs from the
+  // The acceleration structure of `geometry`, rebuilt if its content (or the holes of `scene`) differs from the
   // last requests; the two most recent structures are kept. If only dynamic objects have moved, only their part
   // is rebuilt. Thread-safe.
-  static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry);
+  static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry,
+                                                Passing passing = Passing::Never);
 
  private:
   struct Still;

@@ -1,5 +1,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -7,13 +9,15 @@
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
+#include "framework/scene/materials/passage.h"
 #include "framework/shader_twins/paraboloid.h"
+#include "shaders/common/records/scene.h"
 
 namespace fovea::scene {
 
 namespace {
 constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
-constexpr uint32_t kEmitterStream = 0x656d6974u;
+constexpr uint32_t kEmitterStream = 0x656d6974u, kRayStream = 0x72617973u;
 }  // namespace
 
 glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u) {
@@ -53,18 +57,50 @@ TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) c
   v.origin = s.position + (v.face - direction) * rays_.epsilon();
   v.uv = s.uv;
   v.material = &material;
+  if (rays_.choosesAtRandom() && material.transmission > 0)
+    v.brighter /=
+        1 - passage(*frame_.scene, material, v.uv, std::abs(glm::dot(v.normal, glm::normalize(direction))));
   return v;
+}
+
+bool SurfaceTracer::passes(const TracedSurface& v, glm::vec3 direction, float chance) const {
+  if (!rays_.choosesAtRandom() || !letsLightThrough(*v.material)) return false;
+  const float cosine = std::abs(glm::dot(v.normal, direction));
+  const float stopped =
+      coverage(*frame_.scene, *v.material, v.uv) * (1 - passage(*frame_.scene, *v.material, v.uv, cosine));
+  return stopped <= chance;
+}
+
+uint32_t SurfaceTracer::keyOf(glm::vec3 origin, glm::vec3 direction) const {
+  if (!rays_.choosesAtRandom()) return 0;
+  uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kRayStream, 0);
+  for (const float x : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
+    key = hashCombine(key, std::bit_cast<uint32_t>(x));
+  return key;
 }
 
 TracedSurface SurfaceTracer::look(glm::vec2 pixel, uint64_t& rays) const {
   Ray ray;
   ray.origin = view_.eye;
   ray.direction = glm::normalize(view_.rayDirection(pixel));
+  // The same as in gbuffer/visibility.frag.
+  const uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kPassageStream,
+                                    uint32_t(pixel.x) << 16 | uint32_t(pixel.y));
+  if (rays_.choosesAtRandom()) ray.key = kMeetsAll;
+  glm::vec3 tint(1);
   for (;;) {
     ++rays;
     const RayHit hit = rays_.intersect(ray);
     if (!hit) return {};
-    if (const TracedSurface v = surfaceOf(hit, ray.direction); v.there) return v;
+    TracedSurface v = surfaceOf(hit, ray.direction);
+    if (v.there && !passes(v, ray.direction, uniformFloat(hashCombine(key, hit.triangle)))) {
+      v.brighter *= tint;
+      return v;
+    }
+    if (v.there && v.material->transmission > 0) {
+      const glm::vec3 color = glassColor(*frame_.scene, *v.material, v.uv);
+      tint *= color / std::max((color.r + color.g + color.b) / 3.0f, 1e-4f);
+    }
     ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
   }
 }
@@ -72,12 +108,12 @@ TracedSurface SurfaceTracer::look(glm::vec2 pixel, uint64_t& rays) const {
 TracedSurface SurfaceTracer::arrive(glm::vec3 origin, glm::vec3 direction, float reach,
                                     uint64_t& rays) const {
   ++rays;
-  const RayHit hit = rays_.intersect({origin, direction, 0, reach});
+  const RayHit hit = rays_.intersect({origin, direction, 0, reach, keyOf(origin, direction)});
   return hit ? surfaceOf(hit, direction) : TracedSurface{};
 }
 
 glm::vec3 SurfaceTracer::reflectance(const TracedSurface& v) const {
-  return bouncedReflectance(*frame_.scene, *v.material, v.uv, materials_.has_value());
+  return v.brighter * bouncedReflectance(*frame_.scene, *v.material, v.uv, materials_.has_value());
 }
 
 template <class Function>
@@ -92,6 +128,7 @@ glm::vec3 SurfaceTracer::fromLights(const TracedSurface& v, uint64_t& rays, cons
     ray.origin = v.origin;
     ray.direction = l.direction;
     if (l.distance < kFarAway) ray.far = l.distance * kShadowEnd;
+    ray.key = keyOf(ray.origin, ray.direction);
     ++rays;
     if (!rays_.occluded(ray)) sum += response;
   }
@@ -110,13 +147,14 @@ glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& r
   if (point.unlit) return point.emission;
   const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));
-  return point.emission + fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
-           return irradiance * bsdf.evaluate(toLocal(frame, direction));
-         });
+  const glm::vec3 light = fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
+    return irradiance * bsdf.evaluate(toLocal(frame, direction));
+  });
+  return v.brighter * (point.emission + light);
 }
 
 glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {
-  return emitters_.empty() ? glm::vec3(0) : emission(*frame_.scene, *v.material, v.uv);
+  return emitters_.empty() ? glm::vec3(0) : v.brighter * emission(*frame_.scene, *v.material, v.uv);
 }
 
 glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const {
@@ -156,7 +194,8 @@ SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, 
 
 bool SurfaceTracer::sees(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const {
   ++rays;
-  return !rays_.occluded({v.origin, to.direction, 0, to.distance * kShadowEnd});
+  return !rays_.occluded(
+      {v.origin, to.direction, 0, to.distance * kShadowEnd, keyOf(v.origin, to.direction)});
 }
 
 float SurfaceTracer::emitterDensity(const TracedSurface& v, const TracedSurface& hit) const {

@@ -22,6 +22,9 @@ struct TracedSurface {
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side reached
   glm::vec2 uv{0};
   const Material* material = nullptr;
+  // The factor on its light that makes up for the rays that glass has let through, and what glass before it has made
+  // of the light on its way to the eye.
+  glm::vec3 brighter{1};
 };
 
 // Point `turn` of the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), whose
@@ -37,7 +40,8 @@ class SurfaceTracer {
   // what is seen of them, seen(), is then all that the surface reflects.
   SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays, bool fullMaterials = false);
 
-  // The surface that the eye sees at `pixel` (pixels, centres at +0.5).
+  // The surface that the eye sees at `pixel` (pixels, centres at +0.5). Where surfaces let a part of the light through,
+  // it is the one that pass gbuffer shows in this frame.
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
   // The surface met within `reach` metres. direction: unit.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
@@ -83,6 +87,10 @@ class SurfaceTracer {
 
  private:
   TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
+  // Whether the eye's ray passes a surface that it meets. direction: unit; chance: uniform in [0, 1).
+  bool passes(const TracedSurface& v, glm::vec3 direction, float chance) const;
+  // Different for every ray and frame; 0 where nothing is left to chance.
+  uint32_t keyOf(glm::vec3 origin, glm::vec3 direction) const;
   // The sum over the lights that reach v of what `respond` makes of their irradiance and direction.
   template <class Function>
   glm::vec3 fromLights(const TracedSurface& v, uint64_t& rays, const Function& respond) const;

@@ -99,6 +99,9 @@ SHARED_CONSTANT uint kWrapMirror = 2u;
 SHARED_CONSTANT uint kTextureLinear = 16u;        // not sRGB-encoded
 SHARED_CONSTANT uint kMaterialDoubleSided = 32u;  // only in the flags of a material's base colour texture
 SHARED_CONSTANT uint kTextureSecondSet = 64u;     // full materials take the second texture coordinates
+// Also there, and only if materials are full (common/passage.glsl).
+SHARED_CONSTANT uint kMaterialBlended = 128u;    // alpha is the share of light that the surface stops
+SHARED_CONSTANT uint kMaterialTransmits = 256u;  // thin glass
 
 // Where a texture lies in `sceneTextures`, and how it is laid over the uv of a surface. Three texels of floats.
 struct TextureRecord {
@@ -118,7 +121,7 @@ struct MaterialRecord {
   vec3 baseColor SHARED_ZERO;  // times (1 - metallic): diffuse reflectance where the texture is white
   float alpha SHARED_ZERO;
   vec3 emission SHARED_ZERO;      // W/(sr m^2)
-  float alphaCutoff SHARED_ZERO;  // 0: opaque
+  float alphaCutoff SHARED_ZERO;  // 0: opaque; below 0: lets light through whatever its alpha
   TextureRecord colorTexture;
   TextureRecord emissionTexture;
 };
@@ -126,6 +129,13 @@ SHARED_SIZE(MaterialRecord, 128)
 SHARED_OFFSET(MaterialRecord, colorTexture, 32)
 
 // ---- Full materials ----
+
+// Keeps the random numbers with which the eye's rays pass surfaces apart from others.
+SHARED_CONSTANT uint kPassageStream = 0x70617373u;
+// The greatest share of light that passes glass, that of clear glass. What does not pass meets its reflection, which is
+// divided by the rest.
+SHARED_CONSTANT float kMostPassed = 0.96f;
+
 // What only they need follows the MaterialRecords in `sceneMaterials`, if any pass asks for it.
 
 // The rest of scene::Material; factors of the textures. Base colour and emission have the textures of MaterialRecord.

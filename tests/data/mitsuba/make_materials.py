@@ -16,6 +16,7 @@ PARTS = {
     "emissive": dict(color=(0.3, 0.3, 0.3), roughness=0.2, emissiveFactor=[0.5, 0.3, 0.1], emissiveTexture=use(0),
                      ball=1),
     "alpha": dict(color=(0.9, 0.5, 0.4), texture=use(3), roughness=0.2, doubleSided=True, alphaMode="MASK"),
+    "blend": dict(color=(0.9, 0.5, 0.4), texture=use(3), roughness=0.2, doubleSided=True, alphaMode="BLEND"),
 }
 
 

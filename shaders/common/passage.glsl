@@ -1,0 +1,52 @@
+// Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass. The
+// same as framework/scene/materials/passage.h.
+#ifndef FOVEA_PASSAGE_GLSL
+#define FOVEA_PASSAGE_GLSL
+
+#include "common/gloss.glsl"
+#include "common/random.glsl"
+
+// Texels of a SurfaceRecord and of its textures in it.
+const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
+          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
+          kClearcoatRoughnessTexture = 22;
+
+// What glass makes of the light that goes through it.
+vec3 glassColor(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  return min(texelFetch(sceneMaterials, surface).rgb * sampleSceneTexture(first + kColorTexture, uv).rgb, 1.0);
+}
+
+// The share of light that goes straight through thin glass; materials are full. cosine: between light and normal.
+float passage(uint material, vec2 uv, float cosine) {
+  int surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  vec4 color = texelFetch(sceneMaterials, surface), specular = texelFetch(sceneMaterials, surface + 1),
+       factors = texelFetch(sceneMaterials, surface + 2),
+       metalAndRoughness = sampleSceneTexture(surface + kMetallicRoughnessTexture, uv);
+  float enters = factors.z * sampleSceneTexture(surface + kTransmissionTexture, uv).r *
+                 (1.0 - color.a * metalAndRoughness.b);
+  MirrorAlbedo a = mirrorAlbedo(cosine, factors.x * metalAndRoughness.g);
+  float f0 = dot(min(specular.rgb, 1.0), vec3(1.0 / 3.0));
+  float reflects = specular.a * (f0 * (a.all - a.dielectricF90) + a.dielectricF90);
+  return clamp(dot(glassColor(material, uv), vec3(1.0 / 3.0)) * enters * (1.0 - reflects), 0.0, kMostPassed);
+}
+
+// Whether a surface stops a ray at uv. chance: uniform in [0, 1); rays that pass with half the probability or more do
+// at one half.
+bool stops(uint material, vec2 uv, float cosine, float chance) {
+  int first = int(material) * kMaterialTexels;
+  float cutoff = texelFetch(sceneMaterials, first + 1).a;
+  if (cutoff == 0.0) return true;
+  uint flags = uint(texelFetch(sceneMaterials, first + kColorTexture).w);
+  float alpha = texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
+  float stopped = (flags & kMaterialBlended) != 0u ? alpha : float(alpha >= cutoff);
+  // A CPU device skips a loop of zero turns, but not a branch. Few materials are glass.
+  for (int turns = (flags & kMaterialTransmits) != 0u ? 1 : 0; turns > 0; --turns)
+    stopped *= 1.0 - passage(material, uv, cosine);
+  return stopped > chance;
+}
+
+// For what is looked up once and has no direction, such as a voxel.
+const float kEitherWay = 0.5, kMeanCosine = 0.67;
+
+#endif
