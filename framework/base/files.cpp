@@ -152,6 +152,8 @@ void checkOutputs(const std::vector<fs::path>& outputs) {
 
 OutputFile::OutputFile(const fs::path& file)
     : target_(isStream(file) ? file : followed(file)), stream_(isStream(file)) {
+  std::error_code ignored;
+  if (!stream_ && fs::is_symlink(target_, ignored)) fail(ELOOP);
   temporary_ = temporaryName(target_, stream_);
 }
 

@@ -5,6 +5,7 @@ Usage: FOVEA_TEST_FAULTS=LIBRARY faults_test.py PROGRAM SOURCE_DIR [CLASS...]
 
 import os
 import pathlib
+import subprocess
 import sys
 import unittest
 
@@ -40,20 +41,32 @@ class Faults(CliTest):
         run = self.fails(NO_DEVICE, *DIRECT, "-o", "a.png", env={"VK_DRIVER_FILES": icd, "VK_ICD_FILENAMES": icd})
         self.assertNotIn("VPLs", run.stderr)
 
+    def renders(self, threads):
+        """Whether so many threads suffice for what needs none of fovea's own."""
+        try:
+            return subprocess.run(self.command(*DIRECT, "-o", "a.pfm"), cwd=self.folder, stdin=subprocess.DEVNULL,
+                                  env={**os.environ, **self.faults(f"pthread_create={NO_THREADS}@{threads}")},
+                                  capture_output=True, timeout=10).returncode == 0
+        except subprocess.TimeoutExpired:
+            return False
+
     def test_threads(self):
         """Wherever threads cannot be made, it is the fault of the system and not of a file or of the program."""
-        first = 0  # some libraries make threads when they are loaded
-        while self.call("--version", env=self.faults(f"pthread_create={NO_THREADS}@{first}")).returncode != 0:
+        # Libraries make threads when they are loaded, and the driver for the device. Lavapipe waits for ever for one of
+        # its own that could not be made.
+        first = 0
+        while not self.renders(first):
             first += 1
+            self.assertLess(first, 50)
         reference = ["render", "reference", "--scene", "cornellbox", *SMALL, "--set", "spp=2", "-o", "a.png"]
         for command in (reference, [*DIRECT, "-o", "a.exr"]):
             codes = []
-            for count in range(first, first + 12):
+            for count in range(first, first + 6):
                 run = self.call(*command, env=self.faults(f"pthread_create={NO_THREADS}@{count}"))
                 codes.append(run.returncode)
                 if run.returncode == OUT_OF_MEMORY:
                     self.assertIn("threads", run.stderr)
-            self.assertLessEqual(set(codes), {0, NO_DEVICE, OUT_OF_MEMORY}, codes)
+            self.assertLessEqual(set(codes), {0, OUT_OF_MEMORY}, codes)
             self.assertIn(OUT_OF_MEMORY, codes)
 
 

@@ -76,7 +76,8 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
   EXPECT_THAT(error("time,x,y\n"), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(std::string("\x00\xff\x13 garbage", 11)), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(""), HasSubstr("no header line"));
-  EXPECT_THAT(error("root:secret:20228:0:99999:7:::\n"), AllOf(HasSubstr("t,x,y,valid"), Not(HasSubstr("secret"))));
+  EXPECT_THAT(error("root:secret:20228:0:99999:7:::\n"),
+              AllOf(HasSubstr("t,x,y,valid"), Not(HasSubstr("secret"))));
 }
 
 // The pixel at the rim of the disc is seen at the given angle.

@@ -66,7 +66,8 @@ uint64_t bytesKept(const BoundGraph& graph, const std::vector<MemoryNeed>& needs
 
 Description load(const std::string& nameOrPath, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
-  return resolve(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options, diagnostics);
+  return resolve(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options,
+                 diagnostics);
 }
 
 Description loadText(std::string_view text, const std::filesystem::path& file, const LoadOptions& options,

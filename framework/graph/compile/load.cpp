@@ -186,8 +186,8 @@ json::Value detail::readGraphFile(const std::filesystem::path& file) {
 json::Value loadMerged(const std::string& nameOrPath, const LoadOptions& options) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
   Diagnostics diagnostics;
-  json::Value merged =
-      *mergeExtends(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options, diagnostics);
+  json::Value merged = *mergeExtends(std::make_shared<const json::Value>(detail::readGraphFile(file)), file,
+                                     options, diagnostics);
   diagnostics.throwIfErrors();
   std::erase_if(merged.members, [](const json::Member& member) { return member.key == "extends"; });
   return merged;

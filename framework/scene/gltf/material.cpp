@@ -289,8 +289,10 @@ class MaterialBuilder {
       if (texture.source >= 0) used.insert(firstAlike_[size_t(texture.source)]);
     uint64_t pixels = 0;
     for (const size_t i : used) try {
-        pixels += image::headerSize(encoded(i)).value_or(image::HeaderSize{}).pixels();
-      } catch (const Error&) {  // a missing file matters only if a material needs it
+        const image::HeaderSize size = image::headerSize(encoded(i)).value_or(image::HeaderSize{});
+        if (std::max(size.width, size.height) <= kMaxTextureSize)
+          pixels += size.pixels();  // others are refused
+      } catch (const Error&) {      // a missing file matters only if a material needs it
       }
     if (pixels > 0)
       claimContent(pixels * kBytes, fmt::format("{}: {} images of {} million pixels", c_.source.name,
