@@ -59,7 +59,7 @@ Source readSource(const std::filesystem::path& file);
 std::vector<uint8_t> readFile(const std::filesystem::path& file);
 
 bool isDataUri(std::string_view uri);
-// The file in the folder of the model that a relative URI names, or the problem with the URI. Percent-encoding is decoded.
+// The file in the folder of the model that a relative URI names, or the problem with it. Percent-encoding is decoded.
 struct ResolvedUri {
   std::filesystem::path file;
   std::string decoded;

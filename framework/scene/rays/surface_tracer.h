@@ -45,8 +45,8 @@ class SurfaceTracer {
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
   // The surface met within `reach` metres. direction: unit.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
-  // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights that is
-  // reflected once.
+  // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights after
+  // one reflection.
   glm::vec3 seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
