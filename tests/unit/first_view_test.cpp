@@ -121,6 +121,36 @@ TEST(FirstView, ThingsAreSeenAsAWhole) {
 }
 
 // A pole, a needle of two millimetres and a wall as long as a town.
+// What moves stays in the picture in the course of its animation.
+TEST(FirstView, ThingsAreSeenWhereverTheyMove) {
+  scene::Scene s = box(glm::vec3(0.5f));
+  for (scene::Node& node : s.nodes) node.dynamic = true;
+  scene::Animation swing;
+  swing.plays = true;
+  for (uint32_t node = 0; node < s.nodes.size(); ++node)
+    swing.channels.push_back({node,
+                              scene::AnimationChannel::Path::Translation,
+                              scene::AnimationChannel::Interpolation::Linear,
+                              {0, 1, 2},
+                              {0, 0, 0, 2, 3, 0, 0, 0, 0}});
+  s.animations.push_back(swing);
+  scene::addFirstView(s);
+  scene::Geometry g = scene::flatten(s);
+  for (const double time : {0.0, 0.5, 1.0, 1.5}) {
+    scene::Moment moment;
+    moment.time = moment.before = time;
+    moment.camera = moment.previousCamera = s.cameras[0];
+    const scene::Frame frame = scene::makeFrame(s, g, glm::uvec2(64), moment, 1);
+    scene::moveObjects(frame, g);
+    for (const scene::Triangle& triangle : g.triangles)
+      for (const uint32_t v : triangle.v) {
+        if (triangle.material() != 0) continue;  // of the floor
+        const glm::vec4 clip = frame.views[0].worldToClip * glm::vec4(g.positions[v], 1);
+        EXPECT_LE(std::max(std::abs(clip.x), std::abs(clip.y)), clip.w) << time;
+      }
+  }
+}
+
 TEST(FirstView, AFloorFillsThePictureOfThinThings) {
   for (const glm::vec3 half :
        {glm::vec3(0.02f, 1, 0.02f), glm::vec3(2e-5f, 1e-3f, 2e-5f), glm::vec3(900, 2, 30)}) {

@@ -6,12 +6,14 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "framework/base/low_discrepancy.h"
 #include "framework/scene/file/scene_file.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/motion/animation.h"
 #include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::scene {
@@ -22,6 +24,7 @@ constexpr int kRays = 24;                                // of a view, along eac
 constexpr uint32_t kSpots = 256;                         // where an eye might stand
 constexpr uint32_t kDirections = 16;                     // around such a spot
 constexpr uint32_t kBestSpots = 12;                      // of which views are compared
+constexpr int kMoments = 12;                             // of an animation that are looked at
 constexpr float kEyeHeight = 1.6f;                       // m
 constexpr float kEnclosed = 0.75f;                       // share of the rays around a spot that meet walls
 constexpr float kInsideFov = 1.05f, kOutsideFov = 0.7f;  // radians, vertical
@@ -30,6 +33,7 @@ struct Looker {
   const Scene& scene;
   const Geometry& geometry;
   const RayScene& rays;
+  std::span<const glm::vec3> places;  // of vertices, over time
   glm::vec3 size, centre;
   float diagonal;
 
@@ -115,15 +119,36 @@ void finish(Camera& camera, const Looker& in, float nearest) {
 
 // ---- Outside ---------------------------------------------------------------------------------------------------
 
-// Places a camera where the vertices, of which some are looked at, just fill its picture.
+// Where vertices, of which some are looked at, are in the course of the animations that play.
+std::vector<glm::vec3> placesOverTime(const Scene& scene, const Geometry& geometry) {
+  std::vector<glm::vec3> places;
+  const size_t step = std::max<size_t>(geometry.positions.size() / 20000, 1);
+  const auto add = [&](const Geometry& at) {
+    for (size_t i = 0; i < at.positions.size(); i += step) places.push_back(at.positions[i]);
+  };
+  add(geometry);
+  double length = 0;
+  for (const Animation& a : scene.animations)
+    if (a.plays) length = std::max(length, double(duration(a) / std::max(a.speed, 1e-6f)));
+  if (!(length > 0)) return places;
+  Geometry moving = geometry;
+  for (int i = 1; i < kMoments; ++i) {
+    Moment moment;
+    moment.time = moment.before = length * i / kMoments;
+    moveObjects(makeFrame(scene, geometry, glm::uvec2(1), moment, 0), moving);
+    add(moving);
+  }
+  return places;
+}
+
+// Places a camera where everything just fills its picture.
 void fit(Camera& camera, const Looker& in) {
   const float slope = std::tan(0.5f * camera.verticalFov) * 0.94f;  // leaves a narrow border
   const glm::quat toView = glm::inverse(camera.orientation);
-  const size_t count = in.geometry.positions.size(), step = std::max<size_t>(count / 20000, 1);
   // A camera at c, in its own axes, sees p if |p.x - c.x| <= slope (c.z - p.z), and so for y.
   glm::vec2 low(-std::numeric_limits<float>::max()), high = low;
-  for (size_t i = 0; i < count; i += step) {
-    const glm::vec3 p = toView * (in.geometry.positions[i] - in.centre);
+  for (const glm::vec3& place : in.places) {
+    const glm::vec3 p = toView * (place - in.centre);
     low = glm::max(low, slope * p.z - glm::vec2(p));
     high = glm::max(high, slope * p.z + glm::vec2(p));
   }
@@ -232,9 +257,11 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry) {
   }
   const auto rays = RayScene::cached(scene, geometry);
   const glm::vec3 size = geometry.boundsMax - geometry.boundsMin;
+  const std::vector<glm::vec3> places = placesOverTime(scene, geometry);
   const Looker in{scene,
                   geometry,
                   *rays,
+                  places,
                   size,
                   0.5f * (geometry.boundsMin + geometry.boundsMax),
                   std::max(glm::length(size), 1e-6f)};
