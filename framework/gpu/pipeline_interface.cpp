@@ -1,4 +1,4 @@
-// Merges what reflection tells of the stages of a pipeline; needs no device.
+// Merges the reflections of a pipeline's stages; needs no device.
 #include <algorithm>
 #include <map>
 #include <set>
