@@ -28,15 +28,15 @@ constexpr float kCellWidth = 0.02f;  // of the cache's cells, in mean distances 
 constexpr float kSharp = 0.04f;      // GGX's alpha from which neighbours share all of their light
 constexpr float kSameSlope = 0.1f;   // most of a line between two points of one surface, against its plane
 
-// A texel of pass mirrors, and the light that was found for it.
+// A texel of pass mirrors, and the light that was found for it. If it reflects nothing, only its code is known.
 struct Mirror {
   Mirror(glm::uvec4 texel, glm::uvec2 block, const scene::View& view)
-      : there(texel.x != 0),
-        code(texel.w & 0xffffu),
-        roughness(glm::unpackUnorm2x16(texel.w).y),
-        alpha(scene::ggxAlpha(roughness)),
-        normal(scene::octDecode(glm::unpackSnorm2x16(texel.y))),
-        face(scene::octDecode(glm::unpackSnorm2x16(texel.z))) {
+      : there(texel.x != 0), code(texel.w & 0xffffu) {
+    if (!there) return;
+    roughness = glm::unpackUnorm2x16(texel.w).y;
+    alpha = scene::ggxAlpha(roughness);
+    normal = scene::octDecode(glm::unpackSnorm2x16(texel.y));
+    face = scene::octDecode(glm::unpackSnorm2x16(texel.z));
     const glm::uvec2 pixel = 2u * block + glm::uvec2(code >> 4 & 7u, code >> 7 & 7u);
     away = glm::normalize(view.rayDirection(glm::vec2(pixel) + 0.5f));
     position = view.eye + std::bit_cast<float>(texel.x) * away;
@@ -44,9 +44,9 @@ struct Mirror {
 
   bool there;
   uint32_t code;
-  float roughness, alpha;
-  glm::vec3 normal, face, away{0}, position{0};  // away: from the eye
-  glm::vec3 light{0};                            // mean under the lobe, W/(sr m^2)
+  float roughness = 0, alpha = 0;
+  glm::vec3 normal{0}, face{0}, away{0}, position{0};  // away: from the eye
+  glm::vec3 light{0};                                  // mean under the lobe, W/(sr m^2)
 };
 
 // The light that mirrors reflect, for one thread or more.
@@ -94,8 +94,9 @@ class Tracer {
 
 // The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap.
 float overlap(const Mirror& m, const Mirror& neighbour) {
+  if (!neighbour.there) return 0;
   const glm::vec3 to = neighbour.position - m.position;
-  if (!neighbour.there || std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
+  if (std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
   const glm::vec3 turned =
       2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
   const float blurred = std::min(m.alpha / kSharp, 1.0f);
