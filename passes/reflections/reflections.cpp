@@ -212,11 +212,11 @@ class Reflections : public Pass {
 
   // The mean over 3 x 3 texels: single rays are poor estimates of what wide lobes reflect.
   glm::vec3 meanAround(glm::ivec2 at, glm::ivec2 size) const {
-    const Mirror& m = mirrors_[size_t(at.y * size.x + at.x)];
+    const Mirror& m = mirrors_[size_t(at.y) * size.x + at.x];
     glm::vec4 sum(m.light, 1);
     for (int y = std::max(at.y - 1, 0); m.there && y <= std::min(at.y + 1, size.y - 1); ++y)
       for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
-        const Mirror& other = mirrors_[size_t(y * size.x + x)];
+        const Mirror& other = mirrors_[size_t(y) * size.x + x];
         if (&other != &m) sum += overlap(m, other) * glm::vec4(other.light, 1);
       }
     return glm::vec3(sum) / sum.w;
