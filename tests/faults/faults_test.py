@@ -1,8 +1,12 @@
-"""Tests what the program makes of functions of the system that fail: exit codes and messages.
+"""Tests what the program makes of functions of the system and of Vulkan that fail: exit codes and messages.
 
-Usage: FOVEA_TEST_FAULTS=LIBRARY faults_test.py PROGRAM SOURCE_DIR [CLASS...]
+Usage: FOVEA_TEST_FAULTS=FOLDER faults_test.py PROGRAM SOURCE_DIR [CLASS...]
+
+The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=1 makes every single call of
+Vulkan fail in turn, for four graphs, instead of the last call of each function: thousands of runs.
 """
 
+import collections
 import os
 import pathlib
 import subprocess
@@ -13,27 +17,66 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 from program import BAD_INPUT, DIRECT, NO_DEVICE, OUT_OF_MEMORY, SMALL, CliTest  # noqa: E402
 
 DEVICE_LOST = 6
-LIBRARY = os.environ.get("FOVEA_TEST_FAULTS", "")
+LIBRARIES = os.environ.get("FOVEA_TEST_FAULTS", "")
 NO_THREADS = 11  # EAGAIN
+
+# What functions of Vulkan fail with, the exit code of the program then and a part of its message.
+OTHERS = (-2, OUT_OF_MEMORY, "VK_ERROR_OUT_OF_DEVICE_MEMORY")
+NOT_INITIALIZED = (-3, NO_DEVICE, "VK_ERROR_INITIALIZATION_FAILED")
+NO_HOST_MEMORY = (-1, OUT_OF_MEMORY, "VK_ERROR_OUT_OF_HOST_MEMORY")
+LOST = (-4, DEVICE_LOST, "VK_ERROR_DEVICE_LOST")
+HARMLESS = (-4, 0, "")
+RESULTS = {"vkAllocateMemory": (-2, OUT_OF_MEMORY, "the driver has no more"),
+           "vkCreateInstance": NOT_INITIALIZED, "vkCreateDevice": NOT_INITIALIZED,
+           "vkEnumeratePhysicalDevices": NO_HOST_MEMORY, "vkEnumerateDeviceExtensionProperties": NO_HOST_MEMORY,
+           "vkGetPhysicalDeviceImageFormatProperties": NO_HOST_MEMORY,
+           "vkGetFenceStatus": LOST, "vkGetQueryPoolResults": LOST, "vkQueueSubmit2": LOST, "vkWaitForFences": LOST,
+           "vkCreatePipelineCache": HARMLESS,  # called again without the content of the stored one
+           "vkDeviceWaitIdle": HARMLESS, "vkGetPipelineCacheData": HARMLESS}  # after the last picture was written
+
+
+class VulkanFaults(CliTest):
+    def faults(self, faults, **more):
+        return {"VK_LAYER_PATH": LIBRARIES, "VK_INSTANCE_LAYERS": "VK_LAYER_FOVEA_faults", "FOVEA_FAULTS": faults, **more}
+
+    def calls(self, *command):
+        """How often a command calls each function of Vulkan."""
+        self.succeeds(*command, env=self.faults("", FOVEA_CALLS="calls.txt"))
+        counts = collections.Counter((self.folder / "calls.txt").read_text().split())
+        for file in self.folder.iterdir():
+            file.unlink()
+        return counts
+
+    def test_results(self):
+        for fault, code, says in (("vkCreateInstance=-9", NO_DEVICE, "no Vulkan device"),
+                                  ("vkEnumeratePhysicalDevices=-3", NO_DEVICE, "no Vulkan device"),
+                                  ("vkMapMemory=-5", OUT_OF_MEMORY, "VK_ERROR_MEMORY_MAP_FAILED"),
+                                  ("vkAllocateDescriptorSets=-1000069000", OUT_OF_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY")):
+            with self.subTest(fault=fault):
+                self.fails(code, *DIRECT, "-o", "a.png", env=self.faults(fault), says=[says])
+
+    def test_every_function(self):
+        """No call that fails is passed over in silence, crashes or leaves half a picture."""
+        every = os.environ.get("FOVEA_FAULTS_ALL")
+        small = ["--size", "32x32", "--frames", "2", "--set", "shadow_map_size=64", "--set", "vpl_count=32", "--set",
+                 "map_size=16", "-q", "-o", "a.exr"]
+        for graph in ("ours", "foveal", "stereo", "ir_1000") if every else ("foveal",):
+            command = ["render", graph, "--scene", "cornellbox_moving", *small]
+            for function, count in self.calls(*command).items():
+                result, code, says = RESULTS.get(function, OTHERS)
+                for call in range(count) if every else [count - 1]:
+                    fault = f"{function}={result}@{call}"
+                    with self.subTest(graph=graph, fault=fault, of=count):
+                        if code:
+                            self.fails(code, *command, env=self.faults(fault), says=[says])
+                        else:
+                            self.succeeds(*command, env=self.faults(fault))
+                            (self.folder / "a.exr").unlink()
 
 
 class Faults(CliTest):
     def faults(self, faults):
-        return {"LD_PRELOAD": LIBRARY, "FOVEA_FAULTS": faults}
-
-    def test_without_a_fault(self):
-        self.succeeds(*DIRECT, "-q", "-o", "a.png", env=self.faults(""))
-
-    def test_results_of_vulkan(self):
-        for fault, code, says in (("vkCreateInstance=-3", NO_DEVICE, "VK_ERROR_INITIALIZATION_FAILED"),
-                                  ("vkCreateInstance=-9", NO_DEVICE, "no Vulkan device"),
-                                  ("vkEnumeratePhysicalDevices=-3", NO_DEVICE, "no Vulkan device"),
-                                  ("vkEnumeratePhysicalDevices=-1", OUT_OF_MEMORY, "VK_ERROR_OUT_OF_HOST_MEMORY"),
-                                  ("vkMapMemory=-5", OUT_OF_MEMORY, "VK_ERROR_MEMORY_MAP_FAILED"),
-                                  ("vkAllocateDescriptorSets=-1000069000", OUT_OF_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY"),
-                                  ("vkQueueSubmit2=-4@1", DEVICE_LOST, "VK_ERROR_DEVICE_LOST")):
-            with self.subTest(fault=fault):
-                self.fails(code, *DIRECT, "-o", "a.png", env=self.faults(fault), says=[says])
+        return {"LD_PRELOAD": os.path.join(LIBRARIES, "faults.so"), "FOVEA_FAULTS": faults}
 
     def test_damaged_description_of_a_driver(self):
         self.write("icd.json", "\x01\x02 rubbish {")
@@ -45,7 +88,7 @@ class Faults(CliTest):
         """Whether so many threads suffice for what needs none of fovea's own."""
         try:
             return subprocess.run(self.command(*DIRECT, "-o", "a.pfm"), cwd=self.folder, stdin=subprocess.DEVNULL,
-                                  env={**os.environ, **self.faults(f"pthread_create={NO_THREADS}@{threads}")},
+                                  env={**os.environ, **self.faults(f"pthread_create={NO_THREADS}@{threads}+")},
                                   capture_output=True, timeout=10).returncode == 0
         except subprocess.TimeoutExpired:
             return False
@@ -62,7 +105,7 @@ class Faults(CliTest):
         for command in (reference, [*DIRECT, "-o", "a.exr"]):
             codes = []
             for count in range(first, first + 6):
-                run = self.call(*command, env=self.faults(f"pthread_create={NO_THREADS}@{count}"))
+                run = self.call(*command, env=self.faults(f"pthread_create={NO_THREADS}@{count}+"))
                 codes.append(run.returncode)
                 if run.returncode == OUT_OF_MEMORY:
                     self.assertIn("threads", run.stderr)

@@ -1,0 +1,30 @@
+# fovea_discover_suites(PROGRAM LABEL): one CTest case for each suite of a GoogleTest program.
+#
+# gtest_discover_tests makes a case, and so a process, of each test. Where tests are short, most of their time would go
+# into loading the 270 libraries behind OpenImageIO and into opening a device. The program lists its suites after it is
+# linked, by this same file run as a script with PROGRAM, LABEL and CASES, the file that CTest includes.
+
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+  function(fovea_discover_suites program label)
+    set(cases ${CMAKE_CURRENT_BINARY_DIR}/${program}_suites.cmake)
+    add_custom_command(TARGET ${program} POST_BUILD BYPRODUCTS ${cases} VERBATIM
+      COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${program}> -D LABEL=${label} -D CASES=${cases}
+        -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE})
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${cases})
+  endfunction()
+  return()
+endif()
+
+# A suite counts as skipped if no test passed and the report ends with the list of those that were skipped, as that of
+# failures would follow it.
+set(skipped "PASSED  \\] 0 tests\\..*SKIPPED \\] [^\n]*\n*$")
+
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "(^|\n)[^ \n]+\\.( |\n)" suites "${list}")
+set(text "")
+foreach(suite IN LISTS suites)
+  string(REGEX REPLACE "[\n ]|\\.[\n ]" "" suite "${suite}")
+  string(APPEND text "add_test([==[${suite}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==])\n"
+    "set_tests_properties([==[${suite}]==] PROPERTIES LABELS ${LABEL} SKIP_REGULAR_EXPRESSION [==[${skipped}]==])\n")
+endforeach()
+file(WRITE ${CASES} "${text}")

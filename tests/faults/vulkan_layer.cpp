@@ -1,0 +1,134 @@
+// VK_LAYER_FOVEA_faults: a Vulkan layer that makes functions fail (fault.h). The functions that it is between are those
+// that have a result and that the framework calls. Their calls are listed in the file that FOVEA_CALLS names, a line
+// each. It serves one instance and one device at a time, from one thread.
+#include <vulkan/vk_layer.h>
+#include <vulkan/vulkan.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "fault.h"
+
+namespace {
+
+#define FOVEA_INSTANCE_FUNCTIONS(F)                                                                         \
+  F(vkCreateDebugUtilsMessengerEXT) F(vkEnumerateDeviceExtensionProperties) F(vkEnumeratePhysicalDevices)   \
+  F(vkGetPhysicalDeviceImageFormatProperties)
+
+#define FOVEA_DEVICE_FUNCTIONS(F)                                                                           \
+  F(vkAllocateCommandBuffers) F(vkAllocateDescriptorSets) F(vkAllocateMemory) F(vkBeginCommandBuffer)       \
+  F(vkBindBufferMemory) F(vkBindImageMemory) F(vkCreateBuffer) F(vkCreateBufferView) F(vkCreateCommandPool) \
+  F(vkCreateComputePipelines) F(vkCreateDescriptorPool) F(vkCreateDescriptorSetLayout) F(vkCreateFence)     \
+  F(vkCreateGraphicsPipelines) F(vkCreateImage) F(vkCreateImageView) F(vkCreatePipelineCache)               \
+  F(vkCreatePipelineLayout) F(vkCreateQueryPool) F(vkCreateSampler) F(vkCreateShaderModule)                 \
+  F(vkDeviceWaitIdle) F(vkEndCommandBuffer) F(vkGetFenceStatus) F(vkGetPipelineCacheData)                   \
+  F(vkGetQueryPoolResults) F(vkMapMemory) F(vkQueueSubmit2) F(vkResetCommandPool) F(vkResetFences)          \
+  F(vkSetDebugUtilsObjectNameEXT) F(vkWaitForFences)
+
+// The result of a call that fails; notes the call.
+std::optional<VkResult> fault(Fault& fault, const char* function) {
+  static std::FILE* const calls = [] {
+    const char* name = std::getenv("FOVEA_CALLS");
+    return name ? std::fopen(name, "w") : nullptr;
+  }();
+  if (calls) std::fprintf(calls, "%s\n", function);
+  const auto result = fault.next();
+  return result ? std::optional(static_cast<VkResult>(*result)) : std::nullopt;
+}
+
+// One function: that of the next layer, and the one that stands before it.
+template <class Pfn>
+struct Function;
+
+template <class... Arguments>
+struct Function<VkResult(VKAPI_PTR*)(Arguments...)> {
+  using Pfn = VkResult(VKAPI_PTR*)(Arguments...);
+
+  template <Function& self>
+  static VKAPI_ATTR VkResult VKAPI_CALL call(Arguments... arguments) {
+    if (const auto result = fault(self.faults, self.name)) return *result;
+    return self.next(arguments...);
+  }
+
+  const char* name;
+  Fault faults{name};
+  Pfn next = nullptr;
+};
+
+#define FOVEA_DEFINE(function) Function<PFN_##function> function##_{#function};
+FOVEA_INSTANCE_FUNCTIONS(FOVEA_DEFINE)
+FOVEA_DEVICE_FUNCTIONS(FOVEA_DEFINE)
+FOVEA_DEFINE(vkCreateInstance)
+FOVEA_DEFINE(vkCreateDevice)
+
+PFN_vkGetInstanceProcAddr nextOfInstance = nullptr;
+PFN_vkGetDeviceProcAddr nextOfDevice = nullptr;
+
+// The link to the next layer that the loader puts into the chain of a create info.
+template <class Link>
+Link* linkIn(const void* chain, VkStructureType type) {
+  auto* link = const_cast<Link*>(static_cast<const Link*>(chain));
+  while (link && (link->sType != type || link->function != VK_LAYER_LINK_INFO))
+    link = const_cast<Link*>(static_cast<const Link*>(link->pNext));
+  return link;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info,
+                                              const VkAllocationCallbacks* callbacks, VkInstance* instance) {
+  if (const auto result = fault(vkCreateInstance_.faults, "vkCreateInstance")) return *result;
+  auto* link = linkIn<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
+  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
+  nextOfInstance = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  const auto create = reinterpret_cast<PFN_vkCreateInstance>(nextOfInstance(nullptr, "vkCreateInstance"));
+  return create(info, callbacks, instance);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
+                                            const VkAllocationCallbacks* callbacks, VkDevice* device) {
+  if (const auto result = fault(vkCreateDevice_.faults, "vkCreateDevice")) return *result;
+  auto* link = linkIn<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
+  if (!link) return VK_ERROR_INITIALIZATION_FAILED;
+  const auto functions = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+  nextOfDevice = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
+  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+  return reinterpret_cast<PFN_vkCreateDevice>(functions(nullptr, "vkCreateDevice"))(physical, info, callbacks,
+                                                                                    device);
+}
+
+template <auto& function>
+PFN_vkVoidFunction between(PFN_vkVoidFunction next) {
+  using Type = std::remove_reference_t<decltype(function)>;
+  function.next = reinterpret_cast<typename Type::Pfn>(next);
+  return next ? reinterpret_cast<PFN_vkVoidFunction>(&Type::template call<function>) : nullptr;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofDevice(VkDevice device, const char* name) {
+  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
+  const PFN_vkVoidFunction next = nextOfDevice(device, name);
+#define FOVEA_BETWEEN(function) \
+  if (!std::strcmp(name, #function)) return between<function##_>(next);
+  FOVEA_DEVICE_FUNCTIONS(FOVEA_BETWEEN)
+  return next;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL ofInstance(VkInstance instance, const char* name) {
+  if (!std::strcmp(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofInstance);
+  if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(&ofDevice);
+  if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(&createInstance);
+  if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(&createDevice);
+  const PFN_vkVoidFunction next = nextOfInstance ? nextOfInstance(instance, name) : nullptr;
+  FOVEA_INSTANCE_FUNCTIONS(FOVEA_BETWEEN)
+  return next;
+}
+
+}  // namespace
+
+extern "C" VK_LAYER_EXPORT VkResult
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* layer) {
+  layer->loaderLayerInterfaceVersion = CURRENT_LOADER_LAYER_INTERFACE_VERSION;
+  layer->pfnGetInstanceProcAddr = ofInstance;
+  layer->pfnGetDeviceProcAddr = ofDevice;
+  layer->pfnGetPhysicalDeviceProcAddr = nullptr;
+  return VK_SUCCESS;
+}
