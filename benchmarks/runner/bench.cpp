@@ -85,6 +85,8 @@ class Bench {
   void chooseJobs();
   void identify();
   void refuseOrRemove(const Job& job, const std::string& key, const Fingerprint& now) const;
+  void openDevice();
+  std::optional<nlohmann::ordered_json> tryTwice(const Job& job, const Fingerprint& fingerprint);
   void measure();
   void makeReferences();
   void finish();
@@ -113,7 +115,13 @@ class Bench {
   std::vector<Task> tasks_;                     // of this shard, not yet done
   std::map<std::string, std::string> missing_;  // scene -> why
   size_t done_ = 0;
+  size_t lost_ = 0;  // jobs without a result, as the device was lost twice
 };
+
+void Bench::openDevice() {
+  runner_.reset();
+  runner_ = std::make_unique<BenchRunner>(folder_, session::openDevice(options_.device), progress_);
+}
 
 void Bench::chooseJobs() {
   SuiteOverrides overrides;
@@ -171,6 +179,22 @@ void Bench::identify() {
   }
 }
 
+// A device that is lost costs a job its first try, and if that is repeated on a new device, the job, but not the suite.
+std::optional<nlohmann::ordered_json> Bench::tryTwice(const Job& job, const Fingerprint& fingerprint) {
+  for (const char* next : {"it is measured again on a new device", "the suite goes on without it"}) {
+    try {
+      return runner_->measure(job, fingerprint);
+    } catch (const Error& e) {
+      if (e.code() != ExitCode::DeviceLost) throw;
+      progress_.clear();
+      std::fprintf(stderr, "fovea: warning: job `%s`: %s; %s\n", job.name().c_str(),
+                   e.diagnostics().front().message.c_str(), next);
+      openDevice();
+    }
+  }
+  return std::nullopt;
+}
+
 void Bench::measure() {
   const Clock::time_point start = Clock::now();
   const auto since = [](Clock::time_point t) {
@@ -183,9 +207,13 @@ void Bench::measure() {
     progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left));
     const Clock::time_point jobStart = Clock::now();
     try {
-      nlohmann::ordered_json result = runner_->measure(*task.job, task.fingerprint);
-      result["seconds"] = since(jobStart);
-      folder_.write(*task.job, task.fingerprint.key(*task.job), result);
+      if (auto result = tryTwice(*task.job, task.fingerprint)) {
+        (*result)["seconds"] = since(jobStart);
+        folder_.write(*task.job, task.fingerprint.key(*task.job), *result);
+      } else {
+        ++lost_;
+        continue;
+      }
     } catch (const Error& e) {
       if (e.code() != ExitCode::Interrupted) throw;
       throw Error(ExitCode::Interrupted, fmt::format("interrupted; {} of {} jobs are done", i, tasks_.size()),
@@ -316,7 +344,7 @@ ExitCode Bench::run() {
   folder_.prepare(options_.referencesOnly ? 0 : room.results, room.references);
   catchInterrupts();
   loadPlugins(options_.plugins);
-  runner_ = std::make_unique<BenchRunner>(folder_, session::openDevice(options_.device), progress_);
+  openDevice();
   if (options_.referencesOnly) {
     makeReferences();
     return ExitCode::Ok;
@@ -324,7 +352,11 @@ ExitCode Bench::run() {
   identify();
   if (done_ > 0) say("{} of {} jobs are done already\n", done_, wanted_.size());
   measure();
-  finish();
+  if (done_ + tasks_.size() > lost_) finish();
+  if (lost_ > 0)
+    throw Error(ExitCode::DeviceLost,
+                fmt::format("{} of {} jobs have no result: they lost the device twice", lost_, tasks_.size()),
+                "the same command tries them again; see the warnings above");
   return ExitCode::Ok;
 }
 

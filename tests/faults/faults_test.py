@@ -9,6 +9,7 @@ Vulkan fail in turn, for four graphs, instead of the last call of each function:
 import collections
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
@@ -72,6 +73,35 @@ class VulkanFaults(CliTest):
                         else:
                             self.succeeds(*command, env=self.faults(fault))
                             (self.folder / "a.exr").unlink()
+
+
+    def test_frames_before_the_device_is_lost(self):
+        """They are kept; nothing of the others is there."""
+        command = ["render", "direct", "--scene", "cornellbox_moving", *SMALL, "--frames", "4", "-o", "a_%d.exr"]
+        submissions = self.calls(*command)["vkQueueSubmit2"]
+        run = self.call(*command, env=self.faults(f"vkQueueSubmit2=-4@{submissions - 2}"))
+        self.assertEqual(run.returncode, DEVICE_LOST, run.stderr)
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["a_0.exr", "a_1.exr"])
+
+    def test_device_is_lost_during_a_suite(self):
+        """The job is measured again; if that is of no use, the others still are."""
+        self.write("suite.json", {"scenes": ["cornellbox", "cornellbox_moving"], "graphs": ["direct"], "size": "32x32",
+                                  "set": {"shadow_map_size": 64}, "frames": 3, "measures": ["pictures"],
+                                  "sweeps": [{"name": "all"}]})
+        command = ["bench", "suite.json", "-o", "out"]
+        self.succeeds(*command, env=self.faults("", FOVEA_CALLS="calls.txt"))
+        submissions = (self.folder / "calls.txt").read_text().split().count("vkQueueSubmit2")
+        whole = {p.name for p in (self.folder / "out/results").iterdir()}
+        self.assertEqual(len(whole), 2)
+        for fault, code, says, left in ((f"@{submissions - 1}", 0, "measured again on a new device", 2),
+                                        (f"@{submissions - 1}+", DEVICE_LOST, "the suite goes on without it", 1)):
+            shutil.rmtree(self.folder / "out")
+            run = self.call(*command, env=self.faults(f"vkQueueSubmit2=-4{fault}"))
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(says, run.stderr)
+            self.assertEqual(len(list((self.folder / "out/results").iterdir())), left)
+        self.succeeds(*command)
+        self.assertEqual({p.name for p in (self.folder / "out/results").iterdir()}, whole)
 
 
 class Faults(CliTest):
