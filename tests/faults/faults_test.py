@@ -3,7 +3,8 @@
 Usage: FOVEA_TEST_FAULTS=FOLDER faults_test.py PROGRAM SOURCE_DIR [CLASS...]
 
 The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=1 makes every single call of
-Vulkan fail in turn, for four graphs, instead of the last call of each function: thousands of runs.
+Vulkan fail in turn, for four graphs, instead of the last call of each function, and hundreds of allocations of memory
+instead of ten: thousands of runs.
 """
 
 import collections
@@ -15,7 +16,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
-from program import BAD_INPUT, DIRECT, NO_DEVICE, OUT_OF_MEMORY, SMALL, CliTest  # noqa: E402
+from program import BAD_INPUT, CANNOT_WRITE, DIRECT, NO_DEVICE, OUT_OF_MEMORY, SMALL, CliTest  # noqa: E402
 
 DEVICE_LOST = 6
 LIBRARIES = os.environ.get("FOVEA_TEST_FAULTS", "")
@@ -113,6 +114,21 @@ class Faults(CliTest):
         icd = str(self.folder / "icd.json")
         run = self.fails(NO_DEVICE, *DIRECT, "-o", "a.png", env={"VK_DRIVER_FILES": icd, "VK_ICD_FILENAMES": icd})
         self.assertNotIn("VPLs", run.stderr)
+
+    def test_memory(self):
+        """Wherever the program cannot have memory, it ends with that message and without a picture."""
+        command = ["render", "ours", "--scene", "cornellbox_moving", "--size", "32x32", "--frames", "2", "--set",
+                   "shadow_map_size=64", "--set", "vpl_count=32", "--set", "map_size=16", "-q", "-o", "a.exr"]
+        call, growth, codes = 0, 1.01 if os.environ.get("FOVEA_FAULTS_ALL") else 3, []
+        while not codes or codes[-1] != 0:
+            run = self.call(*command, env=self.faults(f"new=0@{call}"))
+            codes.append(run.returncode)
+            if run.returncode:
+                self.assertIn(run.returncode, (OUT_OF_MEMORY, CANNOT_WRITE), f"allocation {call}: {run.stderr}")
+                self.assertRegex(run.stderr, "fovea: error: .*(memory|bad_alloc)")
+                self.assertEqual(list(self.folder.iterdir()), [])
+            call = int(call * growth) + 1
+        self.assertGreater(len(codes), 8)
 
     def renders(self, threads):
         """Whether so many threads suffice for what needs none of fovea's own."""
