@@ -8,11 +8,14 @@ instead of ten: thousands of runs.
 """
 
 import collections
+import json
 import os
 import pathlib
+import random
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
@@ -157,6 +160,61 @@ class Faults(CliTest):
                     self.assertIn("threads", run.stderr)
             self.assertLessEqual(set(codes), {0, OUT_OF_MEMORY}, codes)
             self.assertIn(OUT_OF_MEMORY, codes)
+
+
+class Kills(CliTest):
+    """SIGKILL at random moments. FOVEA_KILLS is how many each test sends; 200 by request, few in the suite."""
+
+    KILLS = int(os.environ.get("FOVEA_KILLS", "4"))
+
+    def killed(self, command, seconds):
+        process = subprocess.Popen(self.command(*command), cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+    def moments(self, command):
+        """Random ones over the time that the command takes, with the file cache that the kills leave behind."""
+        started = time.monotonic()
+        self.succeeds(*command)
+        whole = time.monotonic() - started
+        randomness = random.Random(1)
+        return [randomness.uniform(0, whole) for _ in range(self.KILLS)]
+
+    def test_render(self):
+        """What has a picture's name is the whole picture."""
+        command = ["render", "direct", "--scene", "cornellbox_moving", *SMALL, "--frames", "8", "-q", "-o", "a_%d.exr"]
+        moments = self.moments(command)
+        whole = {p.name: p.read_bytes() for p in self.folder.glob("a_*.exr")}
+        self.assertEqual(len(whole), 8)
+        for moment in moments:
+            for file in self.folder.glob("a_*.exr"):
+                file.unlink()
+            self.killed(command, moment)
+            for file in self.folder.glob("a_*.exr"):
+                self.assertEqual(file.read_bytes(), whole[file.name], f"killed after {moment:.3f} s")
+
+    def test_bench(self):
+        """A suite that is started again and again ends with the results of one that ran through."""
+        self.write("suite.json", {"scenes": ["cornellbox", "cornellbox_moving"], "graphs": ["direct"], "size": "32x32",
+                                  "set": {"shadow_map_size": 64}, "reference": {"spp": 64, "depth": 3},
+                                  "measures": ["error"], "sweeps": [{"name": "all"}]})
+        moments = self.moments(["bench", "suite.json", "-o", "whole"])
+
+        def errors(folder):
+            return {p.name: json.loads(p.read_text())["error"] for p in (self.folder / folder / "results").glob("*.json")}
+
+        for moment in moments:
+            self.killed(["bench", "suite.json", "-o", "out"], moment)
+            for name, error in errors("out").items():
+                self.assertEqual(error, errors("whole")[name], f"killed after {moment:.3f} s")
+            if len(errors("out")) == 2:
+                shutil.rmtree(self.folder / "out")
+        self.succeeds("bench", "suite.json", "-o", "out")
+        self.assertEqual(errors("out"), errors("whole"))
 
 
 class Inputs(CliTest):
