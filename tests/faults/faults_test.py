@@ -13,6 +13,7 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -169,11 +170,12 @@ class Kills(CliTest):
 
     def killed(self, command, seconds):
         process = subprocess.Popen(self.command(*command), cwd=self.folder, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.DEVNULL, env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+                                   stderr=subprocess.DEVNULL, start_new_session=True,
+                                   env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
         try:
             process.wait(seconds)
         except subprocess.TimeoutExpired:
-            process.kill()
+            os.killpg(process.pid, signal.SIGKILL)  # with the script that makes the report
             process.wait()
 
     def moments(self, command):
