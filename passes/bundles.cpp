@@ -53,7 +53,9 @@ std::vector<MemberSpec> gbufferOutput() {
              "xyz: world space, m; w: distance from the eye, m, 0 in the background"),
       member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
              "xyz: unit shading normal, on the side of the face towards the eye; a: with full materials, the "
-             "reflectance of the surface at grazing incidence"),
+             "reflectance of the surface at grazing incidence, negative where the pixel may show another "
+             "surface "
+             "in the next frame, as one of them lets light through"),
       member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
              "geometric normal on the side towards the eye, octahedral encoding"),
       member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,

@@ -15,7 +15,7 @@ void declareMaterials(PassDeclaration& d, const std::string& what) {
 bool fullMaterials(const Parameters& parameters) { return parameters.text("materials") == "full"; }
 
 scene::Passing passingOf(const Parameters& parameters) {
-  return fullMaterials(parameters) ? scene::Passing::Random : scene::Passing::Never;
+  return fullMaterials(parameters) ? scene::Passing::Met : scene::Passing::Never;
 }
 
 SizeExpr fullMaterials() { return parameter("materials"); }

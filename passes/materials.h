@@ -15,7 +15,7 @@ namespace fovea::passes {
 // what: what the pass does with full materials.
 void declareMaterials(graph::PassDeclaration& d, const std::string& what);
 bool fullMaterials(const graph::Parameters& parameters);
-// The rays of passes on the host. Full materials let them through at random.
+// How rays on the host meet surfaces.
 scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();

@@ -2,13 +2,19 @@
 // mean over frames is one over the area of a pixel. It follows the surfaces; whatever has changed otherwise shows where
 // the mean lies outside the colours around the pixel, to which it is clipped (Salvi, "An Excursion in Temporal
 // Supersampling", GDC 2016).
+//
+// Where surfaces let light through, a pixel shows now this one and now that (shaders/common/passage.glsl). The mean of all
+// is what the eye should see, so it is one of light as it is; the box is that of more pixels, which show each surface by
+// its share; and the mean follows the surface that the pixel shows, as there is no telling which is the nearest.
 #include "common/finite.glsl"
+#include "common/gloss.glsl"
 #include "common/motion.glsl"
 #include "common/pixel_ray.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba16f) uniform readonly image2D radiance;
 layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
 layout(rgba32f) uniform readonly image2D previousPosition;
 layout(r32ui) uniform readonly uimage2D previousId;
@@ -26,13 +32,19 @@ const uint kNone = 0xffffffffu;
 const float kSamePlace = 1e-3;  // pixels: does not move
 const float kNear = 3.5;        // pixels: as far as surfaces in the 3x3 pixels of two frames may be apart
 const float kMaxHalf = 65504.0;
+const float kVeiledFrames = 2.0;  // by how much the mean is longer where surfaces let light through
 
 float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
 // Means are formed of compressed light, as Karis does: a pixel half covered by something far brighter than the display
-// would otherwise be as white as that, and its edge as jagged as before.
-vec3 compress(vec3 light) { return light * frame.exposure / (1.0 + luminanceOf(light) * frame.exposure); }
-vec3 expand(vec3 light) { return light / (max(1.0 - luminanceOf(light), 1e-6) * frame.exposure); }
+// would otherwise be as white as that, and its edge as jagged as before. strength: 1, or 0 for light as it is.
+vec3 compress(vec3 light, float strength) {
+  light *= frame.exposure;
+  return light / (1.0 + strength * luminanceOf(light));
+}
+vec3 expand(vec3 light, float strength) {
+  return light / (max(1.0 - strength * luminanceOf(light), 1e-6) * frame.exposure);
+}
 
 // Y, Co and Cg, in which the colours around a pixel fill a box better than in red, green and blue.
 vec3 toYCoCg(vec3 c) {
@@ -45,20 +57,27 @@ vec3 finiteLight(ivec2 p) {
   return finite(vec4(light, 0.0)) ? light : vec3(0.0);
 }
 
-// What the 3x3 pixels around a pixel show.
+// What the 3x3 pixels around a pixel show, or the 5x5 where surfaces let light through.
 struct Around {
+  int count;             // number of those pixels
   vec3 mean, deviation;  // of the compressed light, YCoCg
   ivec2 nearest;         // the pixel with the surface nearest to the eye
   vec4 position;         // of that surface; w: 0 if there is only background
   bool seenBefore;       // whether the previous frame showed any of it
-  uint id[9];            // of the G-buffer
+  uint id[25];           // of the G-buffer
 };
 
-Around around(ivec2 p, ivec2 size) {
-  Around a = Around(vec3(0.0), vec3(0.0), p, vec4(0.0), false, uint[9](0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
-  for (int i = 0; i < 9; ++i) {
-    ivec2 q = clamp(p + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
-    vec3 colour = toYCoCg(compress(finiteLight(q)));
+Around around(ivec2 p, ivec2 size, bool veiled) {
+  Around a;
+  int side = veiled ? 5 : 3;
+  a.count = side * side;
+  a.mean = a.deviation = vec3(0.0);
+  a.nearest = p;
+  a.position = vec4(0.0);
+  a.seenBefore = false;
+  for (int i = 0; i < a.count; ++i) {
+    ivec2 q = clamp(p + ivec2(i % side, i / side) - side / 2, ivec2(0), size - 1);
+    vec3 colour = toYCoCg(compress(finiteLight(q), veiled ? 0.0 : 1.0));
     a.mean += colour;
     a.deviation += colour * colour;
     vec4 position = imageLoad(gbufferPosition, q);
@@ -68,8 +87,12 @@ Around around(ivec2 p, ivec2 size) {
     a.id[i] = imageLoad(gbufferId, q).r;
     a.seenBefore = a.seenBefore || !surface || imageLoad(origin, q).r != kNone;
   }
-  a.mean /= 9.0;
-  a.deviation = sqrt(max(a.deviation / 9.0 - a.mean * a.mean, 0.0));
+  a.mean /= float(a.count);
+  a.deviation = sqrt(max(a.deviation / float(a.count) - a.mean * a.mean, 0.0));
+  if (veiled) {
+    a.nearest = p;
+    a.position = imageLoad(gbufferPosition, p);
+  }
   return a;
 }
 
@@ -106,7 +129,7 @@ bool hasLeft(ivec2 p, ivec2 from, Around a, ivec2 size) {
     ivec2 q = clamp(from + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1);
     uint id = imageLoad(previousId, q).r;
     bool here = false;
-    for (int k = 0; k < 9; ++k) here = here || a.id[k] == id;
+    for (int k = 0; k < a.count; ++k) here = here || a.id[k] == id;
     for (int turn_ = 0; turn_ < int(!here); ++turn_)  // a loop, as a CPU device runs unused branches
       left = left || !canBeHere(id, imageLoad(previousPosition, q), p, vec2(size));
   }
@@ -121,14 +144,14 @@ vec4 catmullRom(float t) {
 
 // rgb: compressed light of the history, a: number of frames in it. Bilinear filtering would blur more in each frame;
 // Catmull and Rom's cubic keeps what moves sharp (Jimenez, "Filmic SMAA", SIGGRAPH 2016).
-vec4 historyAt(vec2 at, ivec2 p, ivec2 size) {
+vec4 historyAt(vec2 at, ivec2 p, ivec2 size, float strength) {
   vec2 corner = floor(at);
   vec4 x = catmullRom(at.x - corner.x), y = catmullRom(at.y - corner.y);
   int moved = int(at != vec2(p));  // only then is more than the texel itself needed, which is number 5
   vec3 sum = vec3(0.0);
   for (int i = 5 - 5 * moved; i < 6 + 10 * moved; ++i) {
     ivec2 q = clamp(ivec2(corner) + ivec2(i & 3, i >> 2) - 1, ivec2(0), size - 1);
-    sum += x[i & 3] * y[i >> 2] * compress(imageLoad(history, q).rgb);
+    sum += x[i & 3] * y[i >> 2] * compress(imageLoad(history, q).rgb, strength);
   }
   return vec4(sum, imageLoad(history, clamp(ivec2(round(at)), ivec2(0), size - 1)).a);
 }
@@ -143,13 +166,15 @@ void main() {
   ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(radiance);
   if (!finite(vec4(imageLoad(radiance, p).rgb, 0.0))) atomicAdd(counters.value[0], 1u);
   vec3 light = finiteLight(p);
-  Around a = around(p, size);
+  bool veiled = isVeiled(imageLoad(gbufferNormal, p).a);
+  float strength = veiled ? 0.0 : 1.0;
+  Around a = around(p, size, veiled);
   vec3 at = placeBefore(p, a, vec2(size));
   bool inside = at.z > 0.0 && all(greaterThanEqual(at.xy, vec2(-0.5))) && all(lessThan(at.xy, vec2(size) - 0.5));
-  vec4 old = historyAt(inside ? at.xy : vec2(p), p, size);
+  vec4 old = historyAt(inside ? at.xy : vec2(p), p, size, strength);
   bool known = inside && a.seenBefore && !hasLeft(p, ivec2(round(at.xy)), a, size);
-  float count = known ? min(old.a, frames - 1.0) : 0.0;
+  float count = known ? min(old.a, frames * (veiled ? kVeiledFrames : 1.0) - 1.0) : 0.0;
   vec3 kept = fromYCoCg(clipped(toYCoCg(old.rgb), a.mean, deviations * a.deviation));
-  vec3 mean = expand(mix(kept, compress(light), 1.0 / (count + 1.0)));
+  vec3 mean = expand(mix(kept, compress(light, strength), 1.0 / (count + 1.0)), strength);
   smoothed = vec4(count > 0.0 ? clamp(mean, 0.0, kMaxHalf) : light, count + 1.0);
 }

@@ -15,6 +15,7 @@
 #include "framework/base/threads.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
+#include "framework/scene/rays/visibility.h"
 #include "framework/shader_twins/octahedral.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
@@ -25,7 +26,7 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kContactStream = 0x636f6e74u, kPassStream = 0x636f6e70u;
+constexpr uint32_t kContactStream = 0x636f6e74u;
 constexpr size_t kSubsets = 4;        // a pixel looks at one of so many subsets of the VPLs in a frame
 constexpr size_t kBlock = 16;         // VPLs whose light is summed before one of them is chosen
 constexpr float kLeastChance = 0.1f;  // of a VPL that no ray has reached, relative to one that all reach
@@ -106,14 +107,14 @@ size_t pick(std::span<const float> values, float& place) {
 // Light of VPLs at single pixels, for one thread.
 class Sampler {
  public:
-  Sampler(const scene::RayScene& rays, const scene::View& view, std::span<const Lights> subsets,
-          uint32_t count, uint32_t seed, uint32_t turn, size_t slots)
+  Sampler(const scene::RayScene& rays, const scene::Frame& frame, const scene::View& view,
+          std::span<const Lights> subsets, uint32_t count, uint32_t turn, size_t slots)
       : tallies(slots),
         rays_(rays),
+        frame_(frame),
         view_(view),
         subsets_(subsets),
         count_(count),
-        seed_(seed),
         turn_(turn) {}
 
   std::vector<Tally> tallies;
@@ -126,7 +127,8 @@ class Sampler {
     const glm::vec3 position = view_.eye + std::bit_cast<float>(contact.x) * away;
     const glm::vec3 normal = scene::octDecode(glm::unpackSnorm2x16(contact.y));
     const glm::vec3 origin = position + (normal - away) * rays_.epsilon();
-    const glm::vec2 u = scene::streamSequence(randomStream(seed_, pixel.x, kContactStream, pixel.y), turn_);
+    const glm::vec2 u =
+        scene::streamSequence(randomStream(frame_.seed, pixel.x, kContactStream, pixel.y), turn_);
     const Lights& lights = subsets_[std::min(size_t(u.y * float(kSubsets)), kSubsets - 1)];
     lightOfEach(lights, position, normal, unhidden_);
     blocks_.clear();
@@ -141,20 +143,22 @@ class Sampler {
       const size_t i = block + pick(std::span(unhidden_).subspan(block, kBlock), place);
       Tally& tally = tallies[lights.slots[i]];
       ++tally.rays;
-      const uint32_t key =
-          hashCombine(randomStream(seed_, pixel.x, kPassStream, pixel.y), turn_ * count_ + k);
-      if (rays_.occluded({origin, lights.position(i) - origin, 0, kRayEnd, key})) continue;
+      uint64_t surfaces = 0;
+      const glm::vec3 visibility =
+          scene::visibility(frame_, rays_, {origin, lights.position(i) - origin, 0, kRayEnd}, surfaces);
+      if (visibility == glm::vec3(0)) continue;
       ++tally.reached;
-      light += lights.colors[i];
+      light += visibility * lights.colors[i];
     }
     return light * (sum * float(kSubsets) / float(count_) * glm::one_over_pi<float>());
   }
 
  private:
   const scene::RayScene& rays_;
+  const scene::Frame& frame_;
   const scene::View& view_;
   std::span<const Lights> subsets_;
-  uint32_t count_, seed_, turn_;
+  uint32_t count_, turn_;
   std::vector<float> unhidden_, blocks_;  // light of each VPL if nothing hides it, and sums of kBlock of them
 };
 
@@ -218,8 +222,7 @@ class ContactRays : public Pass {
     std::mutex adding;
     uint64_t pixels = 0;
     onThreads(std::min(threadCount(0), height), [&] {
-      Sampler sampler(*rays, ctx.view(), subsets_, count, frame.seed, uint32_t(ctx.frameNumber()),
-                      vpls.size());
+      Sampler sampler(*rays, frame, ctx.view(), subsets_, count, uint32_t(ctx.frameNumber()), vpls.size());
       uint64_t found = 0;
       for (uint32_t y = next++; y < height; y = next++)
         for (uint32_t x = 0; x < width; ++x) {

@@ -9,6 +9,7 @@
 #include "framework/scene/device/draw_clusters.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
+#include "framework/scene/materials/passage.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 
@@ -27,11 +28,6 @@ bool hasSurfaceTextures(const scene::Material& m) {
   });
 }
 
-bool isTintedGlass(const scene::Material& m) {
-  const glm::vec4& c = m.baseColor;
-  return m.transmission > 0 && (m.baseColorTexture || c.r != c.g || c.g != c.b);
-}
-
 class GBuffer : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -48,7 +44,9 @@ class GBuffer : public Pass {
     const ResourceSpec tint =
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1));
     d.scratch("tint", tint, Usage::ColorAttachment | Usage::Sampled,
-              "rgb: with full materials, logarithms of the relative colours of the glass before each pixel");
+              "with full materials, of what lets light through before each surface, rgb: logarithms of the "
+              "relative "
+              "colours of glass, a: the number of surfaces");
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
@@ -67,12 +65,12 @@ class GBuffer : public Pass {
           .define("FULL", 0);
     images.push_back("gbuffer.specular");
     for (const bool textured : {false, true})
-      for (const bool tinted : {false, true})
+      for (const bool veiled : {false, true})
         d.fullscreen("gbuffer/resolve.frag", images)
-            .called(fullResolve(textured, tinted))
+            .called(fullResolve(textured, veiled))
             .when(full)
             .define("SURFACE_TEXTURES", textured)
-            .define("TINT", tinted)
+            .define("TINT", veiled)
             .define("FULL", 1);
     return d;
   }
@@ -112,7 +110,7 @@ class GBuffer : public Pass {
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
       surfaceTextures_ = std::any_of(materials.begin(), materials.end(), hasSurfaceTextures);
-      tinted_ = full_ && std::any_of(materials.begin(), materials.end(), isTintedGlass);
+      veiled_ = full_ && std::any_of(materials.begin(), materials.end(), scene::letsLightThrough);
       gpu_ = &gpu;
     }
     scene::visibleRuns(clusters_, gpu.drawRuns(), geometry.staticTriangles, ctx.view().worldToClip, visible_);
@@ -127,15 +125,15 @@ class GBuffer : public Pass {
             .constant("firstTriangle", run.firstTriangle)
             .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
     });
-    if (tinted_) drawTint(ctx);
+    if (veiled_) drawTint(ctx);
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
-    ctx.run(fullResolve(surfaceTextures_, tinted_));
+    ctx.run(fullResolve(surfaceTextures_, veiled_));
   }
 
  private:
-  static std::string fullResolve(bool textured, bool tinted) {
+  static std::string fullResolve(bool textured, bool veiled) {
     return std::string("resolve full materials") + (textured ? " with textures" : "") +
-           (tinted ? " behind coloured glass" : "");
+           (veiled ? " behind what lets light through" : "");
   }
 
   void drawTint(RecordContext& ctx) const {
@@ -150,7 +148,7 @@ class GBuffer : public Pass {
   }
 
   Kernel draw_[3], tint_;
-  bool full_ = false, emissionTextures_ = false, surfaceTextures_ = false, tinted_ = false;
+  bool full_ = false, emissionTextures_ = false, surfaceTextures_ = false, veiled_ = false;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -177,7 +177,7 @@ class Tracer {
     if (glm::dot(direction, v.face) <= 0) return light;
     const TracedSurface hit =
         surfaces_.arrive(v.origin, direction, seesOutside ? kFarAway : reach, statistics.rays);
-    if (!hit.there) return light + (seesOutside ? fromOutside(v, direction) : glm::vec3(0));
+    if (!hit.there) return light + (seesOutside ? hit.brighter * fromOutside(v, direction) : glm::vec3(0));
     const float distance = glm::distance(hit.position, v.position);
     if (seesOutside && distance > reach) return light;
     const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
@@ -221,8 +221,8 @@ class Tracer {
       chosen = to;
       light = its;
     }
-    if (!choice.any() || !surfaces_.sees(v, chosen, statistics.rays)) return glm::vec3(0);
-    return light * choice.inverseProbability();
+    if (!choice.any()) return glm::vec3(0);
+    return light * surfaces_.visibility(v, chosen, statistics.rays) * choice.inverseProbability();
   }
 
   // The part of a cosine-weighted ray that meets nothing but the environment, beside those aimed at it.

@@ -26,6 +26,7 @@ using namespace graph;
 constexpr uint32_t kMirrorStream = 0x6d697272u, kLightStream = 0x6d696c69u;
 constexpr float kCellWidth = 0.02f;  // of the cache's cells, in mean distances of the mirrors from the eye
 constexpr float kSharp = 0.04f;      // GGX's alpha from which neighbours share all of their light
+constexpr float kOutside = 1e5f;     // m: stands for the distance of the environment
 constexpr float kSameSlope = 0.1f;   // most of a line between two points of one surface, against its plane
 
 // A texel of pass mirrors, and the light that was found for it. If it reflects nothing, only its code is known.
@@ -47,6 +48,7 @@ struct Mirror {
   float roughness = 0, alpha = 0;
   glm::vec3 normal{0}, face{0}, away{0}, position{0};  // away: from the eye
   glm::vec3 light{0};                                  // mean under the lobe, W/(sr m^2)
+  float distance = 0;                                  // mean of what it shows, m
 };
 
 // The light that mirrors reflect, for one thread or more.
@@ -55,35 +57,38 @@ class Tracer {
   Tracer(const scene::SurfaceTracer& surfaces, float epsilon, uint32_t bounces, const GatherCache& cache)
       : surfaces_(surfaces), epsilon_(epsilon), bounces_(bounces), cache_(cache) {}
 
-  // The mean over `count` rays, beginning with number `turn` of all that leave the block. stream: of the block.
-  glm::vec3 lightAt(const Mirror& m, uint32_t stream, uint32_t turn, uint32_t count,
-                    GatheredLight& sum) const {
+  // Sets the means over `count` rays, beginning with number `turn` of all that leave the block. stream: of the block.
+  void look(Mirror& m, uint32_t stream, uint32_t turn, uint32_t count, GatheredLight& sum) const {
     const glm::mat3 frame = scene::orthonormalFrame(m.normal);
     glm::vec3 out = scene::toLocal(frame, -m.away);
     out.z = std::max(out.z, 1e-3f);  // a bent normal may face away from the eye
     out = glm::normalize(out);
-    glm::vec3 light(0);
-    for (uint32_t i = turn; i < turn + count; ++i)
-      light += underLobe(m, frame, out, scene::streamSequence(stream, i),
-                         randomStream(stream, i, kLightStream, 0), sum);
+    for (uint32_t i = turn; i < turn + count; ++i) {
+      const glm::vec4 seen = underLobe(m, frame, out, scene::streamSequence(stream, i),
+                                       randomStream(stream, i, kLightStream, 0), sum);
+      m.light += glm::vec3(seen);
+      m.distance += seen.a / float(count);
+    }
     const float albedo = scene::AlbedoTable::schlick().at(out.z, m.roughness).total();
-    return light / (float(count) * std::max(albedo, 1e-3f));
+    m.light /= float(count) * std::max(albedo, 1e-3f);
   }
 
  private:
-  // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets.
-  glm::vec3 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
+  // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
+  // the distance of what sends it.
+  glm::vec4 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
                       GatheredLight& sum) const {
     const glm::vec3 h = scene::sampleVisibleNormal(out, m.alpha, u.x, u.y);
     const glm::vec3 in = 2 * glm::dot(out, h) * h - out, direction = scene::toWorld(frame, in);
-    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return glm::vec3(0);
+    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return glm::vec4(0);
     const float hidden = scene::smithLambda(out, m.alpha);
     const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
     const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;
     const scene::TracedSurface hit = surfaces_.arrive(origin, direction, scene::kFarAway, sum.rays);
-    if (!hit.there) return weight * surfaces_.outside(direction).radiance;
+    if (!hit.there) return {weight * hit.brighter * surfaces_.outside(direction).radiance, kOutside};
     const glm::vec3 gathered = gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, sum);
-    return weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered);
+    return {weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered),
+            glm::distance(hit.position, origin)};
   }
 
   const scene::SurfaceTracer& surfaces_;
@@ -119,6 +124,10 @@ class Reflections : public Pass {
              "rgb: mean indirect light under the lobe, W/(sr m^2), at one pixel of each block of 2 x 2; a: "
              "code of that pixel as in pass near-field, negative where it does not reflect, for pass "
              "temporal-accumulation");
+    d.output("distances", image2D(VK_FORMAT_R32_SFLOAT, widthOf("mirrors"), heightOf("mirrors")),
+             Usage::HostWrite,
+             "distance from the surface of each block to what it shows, m, 0 where it does not reflect, for "
+             "pass reflection-vectors");
     d.parameter(
         "bounces", integer(2, 1, 64),
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
@@ -134,6 +143,7 @@ class Reflections : public Pass {
     const scene::Frame& frame = ctx.frame();
     const auto texels = ctx.inputAs<glm::uvec4>("mirrors");
     const auto samples = ctx.outputAs<uint64_t>("samples");
+    const auto distances = ctx.outputAs<float>("distances");
     const uint32_t width = ctx.extent("mirrors").width, height = ctx.extent("mirrors").height;
     if (const glm::uvec2 size = (ctx.view().size + 1u) / 2u; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
@@ -154,6 +164,7 @@ class Reflections : public Pass {
         const Mirror& m = mirrors_[size_t(y) * width + x];
         const float code = m.there ? float(m.code) : -float(m.code);
         samples[size_t(y) * width + x] = glm::packHalf4x16(glm::vec4(light, code));
+        distances[size_t(y) * width + x] = m.distance;
       }
     });
     ctx.counter("mirrors", double(sum.mirrors));
@@ -187,7 +198,7 @@ class Reflections : public Pass {
     if (count == 0) return sum;
     cache_.setCellWidth(kCellWidth * float(distance / count));
     const scene::Frame& frame = ctx.frame();
-    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, scene::Passing::Random);
+    const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, scene::Passing::Met);
     const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, true);
     const Tracer tracer(surfaces, rays->epsilon(), uint32_t(ctx.parameters().integer("bounces")), cache_);
     const uint32_t samples = ctx.firstFrame() ? uint32_t(ctx.parameters().integer("first_samples")) : 1;
@@ -198,7 +209,7 @@ class Reflections : public Pass {
         Mirror& m = mirrors_[size_t(y) * size.x + x];
         if (!m.there) continue;
         ++rows[y].mirrors;
-        m.light = tracer.lightAt(m, randomStream(frame.seed, x, kMirrorStream, y), turn, samples, rows[y]);
+        tracer.look(m, randomStream(frame.seed, x, kMirrorStream, y), turn, samples, rows[y]);
       }
     });
     for (const Row& row : rows) {  // in a fixed order

@@ -9,6 +9,10 @@
 // index of refraction of 1.5, which stands for all dielectrics.
 const float kMetalCurve = 1.0 / 21.0, kDielectricCurve = 0.0539357;
 
+// Whether a pixel may show another surface in the next frame, as one of them lets light through. normalA: as gbuffer
+// stores it.
+bool isVeiled(float normalA) { return normalA < 0.0; }
+
 struct Gloss {
   vec3 f0;  // reflectance at normal incidence, and for each channel at grazing incidence
   float f90;
@@ -19,7 +23,7 @@ struct Gloss {
 
 // As gbuffer stores it in `specular` and in the alpha of `normal`, `albedo` and `emission`.
 Gloss glossOf(vec4 specular, float normalA, float albedoA, float emissionA) {
-  return Gloss(specular.rgb, normalA, specular.a, albedoA, emissionA);
+  return Gloss(specular.rgb, abs(normalA), specular.a, albedoA, emissionA);
 }
 
 float dielectricF90(Gloss g) { return clamp((g.f90 - g.metallic) / max(1.0 - g.metallic, 1e-3), 0.0, 1.0); }

@@ -46,6 +46,14 @@ bool stops(uint material, vec2 uv, float cosine, float chance) {
   return stopped > chance;
 }
 
+// Whether a ray passes, see framework/scene/materials/passage.h.
+float passageChance(uint key, uvec2 pixel, uint turn_) {
+  uvec2 at = (key & 8u) != 0u ? pixel.yx : pixel;
+  uint along = (key & 16u) != 0u ? 0u - at.y : at.y;
+  return uniformFloat(key + at.x * kPassageAcross + along * kPassageAlong +
+                      turn_ * (kPassageTurn + (key & 7u) * kPassageTurns));
+}
+
 // For what is looked up once and has no direction, such as a voxel.
 const float kEitherWay = 0.5, kMeanCosine = 0.67;
 

@@ -1,8 +1,8 @@
 // The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
 // the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
 // buffer, Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of
-// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl); TINT 0/1, 1 where coloured glass
-// may stand before the surface (tint.frag).
+// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl); TINT 0/1, 1 where something that
+// lets light through may stand before the surface (tint.frag).
 #if FULL
 #include "common/full_material.glsl"
 #endif
@@ -25,6 +25,7 @@ layout(location = 6) out vec4 gbufferSpecular;
 // Least cosine between the normal of shading and the direction to the eye. A normal map, or interpolation on a coarse
 // mesh, may turn the normal away from an eye that sees the surface; the normal is then bent back.
 const float kLeastCosine = 0.01;
+const float kLeastGrazing = 1e-4;  // so that its sign is kept
 #endif
 
 const uint kNothing = 0xffffffffu;
@@ -69,17 +70,22 @@ void main() {
   if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
   // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
-  bool glass = (uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w) &
-                kMaterialTransmits) != 0u;
+  uint flags = uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
+  bool glass = (flags & kMaterialTransmits) != 0u;
   for (int turns = glass ? 1 : 0; turns > 0; --turns)
     surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
 #if TINT
-  vec3 seenThrough = exp(texelFetch(tint, p, 0).rgb);
+  vec4 before = texelFetch(tint, p, 0);
+  vec3 seenThrough = exp(before.rgb);
   surface = brighter(surface, seenThrough);
 #endif
   vec3 albedo = surface.albedo, emission = surface.emission;
   // Of normal, albedo and emission.
   vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
+#if TINT
+  bool own = !background && (flags & (kMaterialTransmits | kMaterialBlended)) != 0u;
+  if (own || before.a > 0.0) alphas.x = -max(alphas.x, kLeastGrazing);
+#endif
 #else
   const vec3 alphas = vec3(0.0);
   vec3 albedo = materialReflectance(material, uv).rgb;
@@ -98,7 +104,7 @@ void main() {
   if (background) emission *= seenThrough;
 #endif
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
-  gbufferNormal = background ? vec4(0.0) : vec4(normal, alphas.x);
+  gbufferNormal = background ? vec4(vec3(0.0), min(alphas.x, 0.0)) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
   gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, alphas.y);
   gbufferEmission = vec4(min(emission, kMaxHalf), alphas.z);

@@ -1,5 +1,6 @@
-// Glass in front of what is visible: the logarithms of its colours relative to their means, which add up. The share of
-// light that goes through is in the number of rays that do (visibility.frag). Define: CULL 0/1.
+// What lets light through in front of what is visible, a: the number of its surfaces, rgb: the logarithms of the colours
+// of glass relative to their means, which add up. The share of light that goes through is in the number of rays that do
+// (visibility.frag). Define: CULL 0/1.
 #include "common/passage.glsl"
 #include "common/scene.glsl"
 
@@ -8,15 +9,14 @@ layout(location = 0) out vec4 tint;
 
 layout(push_constant) uniform Constants { uint firstTriangle; };
 
-const float kDarkest = 1e-4;
-
 void main() {
   uint material = materialOf(sceneTriangle(firstTriangle + uint(gl_PrimitiveID)));
   uint flags = uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
-  if ((flags & kMaterialTransmits) == 0u) discard;
+  if ((flags & (kMaterialTransmits | kMaterialBlended)) == 0u) discard;
 #if CULL
   if (!gl_FrontFacing && (flags & kMaterialDoubleSided) == 0u) discard;
 #endif
-  vec3 color = max(glassColor(material, uv), kDarkest);
-  tint = vec4(log(color / dot(color, vec3(1.0 / 3.0))), 0.0);
+  vec3 color = max(glassColor(material, uv), kDarkestGlass);
+  bool glass = (flags & kMaterialTransmits) != 0u;
+  tint = vec4(glass ? log(color / dot(color, vec3(1.0 / 3.0))) : vec3(0.0), 1.0);
 }

@@ -25,9 +25,8 @@ void main() {
 #endif
 #if PASSAGE
   // The same as in scene::SurfaceTracer::look().
-  uvec2 pixel = uvec2(gl_FragCoord.xy);
-  uint key = randomStream(frame.seed, frame.index, kPassageStream, pixel.x << 16 | pixel.y);
-  float chance = uniformFloat(hashCombine(key, triangle));
+  uint key = hashCombine(hashCombine(frame.seed, kPassageStream), triangle);
+  float chance = passageChance(key, uvec2(gl_FragCoord.xy), frame.index);
   float cosine = abs(dot(normalize(normal), normalize(toEye)));
 #else
   const float chance = kEitherWay, cosine = 1.0;

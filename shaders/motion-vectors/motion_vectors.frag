@@ -2,7 +2,8 @@
 //
 // One of the four texels around the previous position is chosen at random with bilinear probabilities, so that
 // sub-pixel motion is correct on average at the cost of one load.
-#include "common/random.glsl"
+#include "common/gloss.glsl"
+#include "common/history.glsl"
 #include "common/same_surface.glsl"
 #include "common/motion.glsl"
 
@@ -19,18 +20,18 @@ layout(push_constant) uniform Constants {
   float leastCos;
 };
 
-const uint kNone = 0xffffffffu;
 const uint kJitterStream = 0x74656d70u;
-const float kSamePlace = 1e-3;  // pixels: does not move
+const int kVeiledReach = 2;  // pixels around a place where surfaces let light through
 
-// A whole pixel for a place between pixels: each of the four around it with its bilinear probability.
-ivec2 oneOfFour(vec2 at, uint bits) {
-  vec2 still = round(at);
-  at = mix(at, still, lessThan(abs(at - still), vec2(kSamePlace)));
-  return ivec2(floor(at + vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)))));
+// Place number k of the ring of 8 * radius pixels around a pixel.
+ivec2 onRing(int k, int radius) {
+  int side = k / (2 * radius), along = k % (2 * radius) - radius;
+  ivec2 d = (side & 1) == 0 ? ivec2(along, -radius) : ivec2(radius, along);
+  return side < 2 ? d : -d;
 }
 
-uint originOf(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
+// veiled: whether the pixel may show another surface in each frame, as one of them lets light through.
+uint originOf(ivec2 p, vec4 position, vec3 normal, bool veiled, ivec2 size) {
   vec3 before = positionBefore(position.xyz, imageLoad(gbufferId, p).r);
   vec4 clip = view.previousWorldToClip * vec4(before, 1.0);
   if (!(clip.w > 0.0)) return kNone;
@@ -49,13 +50,23 @@ uint originOf(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
     ivec2 inside = clamp(q, ivec2(0), size - 1);
     if (q == inside && sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
                                    imageLoad(previousNormal, inside).xyz, tolerance, leastCos))
-      return uint(q.x) | uint(q.y) << 16;
+      return packPixel(q);
   }
+  // One of those around it showed the surface, as neighbours show all that is there by its share.
+  for (int radius = 1; radius <= (veiled ? kVeiledReach : 0); ++radius)
+    for (int i = 0; i < 8 * radius; ++i) {
+      ivec2 q = unjittered + onRing(int((uint(i) + (bits >> 8)) % uint(8 * radius)), radius);
+      ivec2 inside = clamp(q, ivec2(0), size - 1);
+      if (q == inside && sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
+                                     imageLoad(previousNormal, inside).xyz, tolerance, leastCos))
+        return packPixel(q);
+    }
   return kNone;
 }
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   vec4 position = imageLoad(gbufferPosition, p);
-  origin = position.w > 0.0 ? originOf(p, position, imageLoad(gbufferNormal, p).xyz, imageSize(gbufferPosition)) : kNone;
+  vec4 normal = imageLoad(gbufferNormal, p);
+  origin = position.w > 0.0 ? originOf(p, position, normal.xyz, isVeiled(normal.a), imageSize(gbufferPosition)) : kNone;
 }

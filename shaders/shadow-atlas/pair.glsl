@@ -82,11 +82,12 @@ void rasterise(Pair pair, vec2 texel, bool inside, float toMap) {
   bool hit = inside && distance_ > 0.0;
 #ifdef MASKED
   weights /= weights.x + weights.y + weights.z;
-  // What lets a part of the light through does so at random texels, the same ones whenever the map is drawn.
-  uvec3 place = uvec3(pair.origin) + uvec3(texel, 0u);
-  uint key = hashCombine(hashCombine(place.x << 16 | place.y, place.z), pair.triangle);
+  // What lets a part of the light through does so at some texels, the same ones whenever the map is drawn.
+  uvec3 origin = uvec3(pair.origin);
+  uint key = hashCombine(hashCombine(origin.x << 16 | origin.y, origin.z), pair.triangle);
+  float chance = passageChance(key, uvec2(texel), 0u);
   vec2 uv = weights.x * pair.uvC + weights.y * pair.uvA + weights.z * pair.uvB;
-  hit = hit && stops(pair.material, uv, kMeanCosine, uniformFloat(key));
+  hit = hit && stops(pair.material, uv, kMeanCosine, chance);
 #endif
 #ifdef MOVER_SLACK
   distance_ += min(pair.slack, kMostSlack * distance_);

@@ -1,5 +1,5 @@
 // Holes of alpha-masked materials let light through, and with full materials so do alphaMode BLEND and thin glass: at
-// random texels, the same ones whenever the map is drawn. All other surfaces block it on both sides.
+// some of the texels, the same ones whenever the map is drawn. All other surfaces block it on both sides.
 #include "common/passage.glsl"
 #include "common/scene.glsl"
 
@@ -9,7 +9,6 @@ layout(push_constant) uniform Constants { uint firstTriangle; };
 
 void main() {
   uint triangle = firstTriangle + uint(gl_PrimitiveID);
-  uvec2 texel = uvec2(gl_FragCoord.xy);
-  float chance = uniformFloat(hashCombine(texel.x << 16 | texel.y, triangle));
+  float chance = passageChance(hashPcg(triangle), uvec2(gl_FragCoord.xy), 0u);
   if (!stops(materialOf(sceneTriangle(triangle)), uv, kMeanCosine, chance)) discard;
 }

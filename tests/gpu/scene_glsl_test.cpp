@@ -410,6 +410,20 @@ TEST(SceneGlsl, LightPassesBlendAndGlassAsOnTheCpu) {
   EXPECT_GT(std::min(stopped, passed), 200u);
 }
 
+TEST(SceneGlsl, RaysPassWhereTheyDoOnTheCpu) {
+  std::vector<glm::vec4> queries;
+  for (uint32_t k = 0; k < 256; ++k)
+    queries.emplace_back(k, float(hashPcg(k) % 4096), float(hashPcg(k + 256) % 4096),
+                         float(hashPcg(k + 512) % 1000));
+  GpuScene gpu(testDevice(), Scene{}, {}, 2, true);
+  const auto results = evaluate(gpu, Frame{}, queries, "chance", R"(
+    r[0] = vec4(passageChance(hashPcg(uint(q.x)), uvec2(q.yz), uint(q.w)), 0.0, 0.0, 0.0);
+  )");
+  for (size_t i = 0; i < queries.size(); ++i)
+    EXPECT_EQ(results[3 * i].x, passageChance(hashPcg(uint32_t(i)), glm::uvec2(queries[i].y, queries[i].z),
+                                              uint32_t(queries[i].w)));
+}
+
 TEST(SceneGlsl, ManyLargeTexturesTakeSeveralPages) {
   Scene scene;
   for (uint32_t i = 0; i < 24; ++i) {

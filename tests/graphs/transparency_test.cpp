@@ -1,5 +1,5 @@
 // Tests what lets light through, with full materials: alphaMode BLEND and thin glass in whole graphs, whose means over
-// frames have to be those of the path tracer. Direct light alone, as that is exact.
+// frames have to be those of the path tracer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,9 +70,9 @@ TEST(Transparency, ShadowsAreAsLightAsWhatCastsThem) {
   EXPECT_NEAR(meanDirect(under(pane(glm::vec3(1))), "diffuse"), 0, 1e-6);
 }
 
-// A room without its front wall. Before its back wall hang a veil, a clear pane and a green one. The lamp is behind
-// them, as no light on its way to a surface is coloured by what it passes.
-scene::Scene panes() {
+// A room without its front wall. Before its back wall hang a veil, a clear pane and a green one. lamp: its distance before
+// the back wall; the panes are 2 m before it.
+scene::Scene panes(float lampAt = 1.1f) {
   scene::Scene s;
   s.materials.clear();
   uint32_t walls[6];
@@ -88,13 +88,16 @@ scene::Scene panes() {
     addQuad(s, first + i, {-1.6f + 1.1f * float(i), -1, 0}, {1, 0, 0}, {0, 2, 0});
   scene::Light lamp;
   lamp.type = scene::LightType::Point;
-  lamp.position = {0.3f, 1.2f, -0.9f};
+  lamp.position = {0.3f, 1.2f, lampAt - 2};
   lamp.intensity = 4;
   s.lights = {lamp};
   s.cameras.emplace_back();
   s.cameras[0].position = {0, 0, 5};
   return s;
 }
+
+// The shares of the picture's width at which the veil and the panes are seen.
+constexpr double kPlaces[3][2] = {{0.2, 0.33}, {0.43, 0.56}, {0.68, 0.8}};
 
 glm::dvec3 meanOver(const std::vector<float>& image, int side, double left, double right) {
   glm::dvec3 sum(0);
@@ -123,12 +126,45 @@ TEST(Transparency, MeansOverFramesAreThoseOfThePathTracer) {
     const auto image = toFloats(frame.outputs.at("direct"));
     for (size_t i = 0; i < got.size(); ++i) got[i] += image[i] / 32;
   }
-  // By the shares of the picture's width at which the veil and the panes are seen.
-  const double places[3][2] = {{0.2, 0.33}, {0.43, 0.56}, {0.68, 0.8}};
-  for (const auto& place : places) {
+  for (const auto& place : kPlaces) {
     const glm::dvec3 a = meanOver(got, kSide, place[0], place[1]),
                      b = meanOver(want, kSide, place[0], place[1]);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c] / b[c], 1, 0.05) << place[0] << " " << c;
+  }
+}
+
+// The smoothed picture of `foveal_view` is that mean, of direct and indirect light, and holds still. Light that comes
+// through the green pane is green, on its way to surfaces, too.
+TEST(Transparency, TheSmoothedPictureIsThatOfThePathTracer) {
+  constexpr int kSide = 96, kFrames = 8;  // after 40 others
+  for (const float lampAt : {1.1f, 3.5f}) {
+    const scene::Scene s = panes(lampAt);
+    GraphRunOptions o;
+    o.size = glm::uvec2(kSide);
+    o.outputs = {"radiance"};
+    o.set = {"materials=full", "spp=64"};
+    const auto want = toFloats(runGraph("reference", s, o).outputs.at("radiance"));
+    o.set = {"shadow_map_size=512"};
+    o.frames = 40 + kFrames;
+    o.everyFrame = true;
+    const GraphRun run = runGraph("foveal_view", s, o);
+    std::vector<std::vector<float>> frames;
+    for (const graph::FrameResult& frame : run.frames)
+      frames.push_back(toFloats(frame.outputs.at("radiance")));
+    std::vector<float> got(want.size());
+    for (const auto& frame : frames)
+      for (size_t i = 0; i < got.size(); ++i) got[i] += frame[i] / kFrames;
+    for (const auto& place : kPlaces) {
+      const glm::dvec3 a = meanOver(got, kSide, place[0], place[1]),
+                       b = meanOver(want, kSide, place[0], place[1]);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c] / b[c], 1, 0.05) << lampAt << " " << place[0] << " " << c;
+      std::vector<float> change(got.size());  // squares of the differences from one frame to the next
+      for (size_t i = 0; i < change.size(); ++i)
+        for (size_t k = 1; k < frames.size(); ++k)
+          change[i] += std::pow(frames[k][i] - frames[k - 1][i], 2.0f) / (kFrames - 1);
+      EXPECT_LT(std::sqrt(meanOver(change, kSide, place[0], place[1]).g), 0.02 * b.g)
+          << lampAt << " " << place[0];
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // Compares where surfaces were seen in the previous frame with projections in double precision.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
@@ -136,6 +137,29 @@ TEST(MotionVectors, JitterDoesNotMoveWhatStandsStill) {
   EXPECT_GT(still, 1700);
   EXPECT_GT(beside, 10);
   EXPECT_LT(lost, 3);
+}
+
+// A pixel behind what lets light through often shows another surface than before. It takes the history of the nearest
+// of the pixels around it that showed its surface; other pixels look at four only.
+TEST(MotionVectors, VeiledPixelsLookFurther) {
+  Eye now({0, 0, 0}), before({0, 0, 0});
+  const glm::ivec2 middle(kSize.x / 2, kSize.y / 2);
+  for (int reach = 1; reach <= 3; ++reach)
+    for (const bool veiled : {false, true}) {
+      before.seen = now.seen;
+      for (int y = -reach + 1; y < reach; ++y)  // the pixels around showed something else
+        for (int x = -reach + 1; x < reach; ++x)
+          before.seen.pixels[size_t((middle.y + y) * kSize.x + middle.x + x)].distance = 0;
+      for (SurfacePixel& p : now.seen.pixels) p.grazing = veiled ? -1.0f : 1.0f;
+      const auto got = originsOf(now, before);
+      const uint32_t origin = got[size_t(middle.y * kSize.x + middle.x)];
+      if (reach < (veiled ? 3 : 2)) {
+        const glm::ivec2 away = glm::abs(pixelOf(origin) - middle);
+        EXPECT_EQ(std::max(away.x, away.y), reach) << veiled;
+      } else {
+        EXPECT_EQ(origin, kNone) << reach << veiled;
+      }
+    }
 }
 
 }  // namespace

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "framework/base/random.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/materials/passage.h"
+#include "framework/scene/rays/visibility.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
@@ -127,55 +128,90 @@ Scene layers(const Material& material) {
   return s;
 }
 
-// The shares of rays at 45 degrees that meet the upper layer and the lower one.
-std::array<double, 2> met(const RayScene& rays) {
-  constexpr uint32_t kRays = 20000;
-  std::array<double, 2> share{};
-  for (uint32_t i = 0; i < kRays; ++i) {
-    const glm::vec2 p = 0.25f + 0.2f * glm::vec2(randomVector(i, 0));
-    const Ray ray{{p.x - 0.5f, 2, -p.y}, glm::vec3(1, -1, 0), 0, 3, hashPcg(i)};
-    const RayHit hit = rays.intersect(ray);
-    EXPECT_EQ(rays.intersect(ray).triangle, hit.triangle);
-    EXPECT_EQ(rays.occluded({ray.origin, ray.direction, 0, 1.5f, ray.key}), hit && hit.distance < 1.5f);
-    if (!hit) continue;
-    share[hit.distance < 0.75f ? 0 : 1] += 1.0 / kRays;
+// Who traces decides what lets a part of the light through; diffuse materials take it for a mask, or for solid.
+TEST(RayScene, RaysMeetWhatLetsLightThrough) {
+  Material veil, glass;
+  veil.masked = veil.blended = true;
+  veil.baseColor.a = 0.3f;  // below the cutoff
+  glass.transmission = 0.8f;
+  const Ray ray{{0.5f, 2, -0.5f}, {0, -1, 0}};
+  for (const Material& m : {veil, glass}) {
+    const Scene s = layers(m);
+    const Geometry g = flatten(s);
+    const RayScene met(s, g, Passing::Met), never(s, g);
+    EXPECT_TRUE(met.meetsTransparency());
+    EXPECT_FALSE(never.meetsTransparency());
+    EXPECT_TRUE(met.intersect(ray));
+    EXPECT_TRUE(met.occluded(ray));
+    EXPECT_EQ(bool(never.intersect(ray)), !m.blended);
   }
-  return share;
 }
 
-// Each layer stops its share of the rays whatever the other does. The tolerance is four standard deviations.
-TEST(RayScene, RaysPassWhatLetsLightThroughAtRandom) {
-  Material veil;
+// The share that passes a veil and a pane behind it, as one factor for each channel; something solid stops the rest.
+TEST(RayScene, LightThatPassesTakesOnTheColourOfGlass) {
+  Material veil, glass;
   veil.masked = veil.blended = true;
   veil.baseColor.a = 0.3f;
-  const Scene s = layers(veil);
-  const Geometry g = flatten(s);
-  const auto random = met(RayScene(s, g, Passing::Random));
-  EXPECT_NEAR(random[0], 0.3, 0.013);
-  EXPECT_NEAR(random[1], 0.7 * 0.3, 0.012);
-  EXPECT_DOUBLE_EQ(met(RayScene(s, g))[1] + met(RayScene(s, g))[0], 0);  // 0.3 is below the cutoff
-  EXPECT_NEAR(met(RayScene(s, g, Passing::Met))[0], 1, 1e-9);
-
-  Material glass;
   glass.transmission = 0.8f;
   glass.roughness = 0.2f;
   glass.baseColor = {0.9f, 0.6f, 0.3f, 1};
-  const Scene t = layers(glass);
-  const float passes = passage(t, glass, {0, 0}, std::sqrt(0.5f));
+  Frame frame;
+  Scene s = layers(veil);
+  s.materials.push_back(glass);
+  addQuad(s, 2, {0, 0.5f, 0}, {1, 0, 0}, {0, 0, -1});
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+  const Geometry g = flatten(s);
+  frame.scene = &s, frame.geometry = &g;
+  const RayScene rays(s, g, Passing::Met), solid(s, g);
+  uint64_t count = 0;
+  const auto along = [&](const RayScene& r, float far) {
+    return visibility(frame, r, {{0.5f, 2, -0.5f}, {0, -2, 0}, 0, far / 2}, count);
+  };
+  EXPECT_EQ(along(rays, 0.4f), glm::vec3(1));
+  EXPECT_EQ(count, 1u);
+  EXPECT_NEAR(along(rays, 0.9f).r, 0.7, 1e-5);
+  EXPECT_NEAR(along(rays, 1.4f).g, 0.49, 1e-5);
+  const glm::vec3 all = along(rays, 1.9f);
+  const float passes = passage(s, glass, {0, 0}, 1);
   EXPECT_NEAR(passes, 0.8f * 0.6f * 0.95f, 0.01f);
-  const auto panes = met(RayScene(t, g, Passing::Random));
-  EXPECT_NEAR(panes[0], 1 - passes, 0.014);
-  EXPECT_NEAR(panes[1], passes * (1 - passes), 0.014);
-  EXPECT_NEAR(met(RayScene(t, g))[0], 1, 1e-9);
+  EXPECT_NEAR((all.r + all.g + all.b) / 3, 0.49f * passes, 1e-4);
+  EXPECT_NEAR(all.r / all.b, 3, 1e-4);
+  EXPECT_NEAR(all.r / all.g, 1.5, 1e-4);
+  EXPECT_EQ(along(rays, 3), glm::vec3(0));
+  EXPECT_EQ(along(solid, 1.4f), glm::vec3(1));  // the mask of the veils is open
+  EXPECT_EQ(along(solid, 1.9f), glm::vec3(0));  // and glass is solid
+}
+
+// The shares of the pixels of a square, and of the turns of a pixel, that are stopped are close to what is stopped, and
+// surfaces behind each other let rays pass independently.
+TEST(RayScene, FewChancesTellTheShare) {
+  const float share = 0.4f;
+  double squares = 0, turns = 0, both = 0;
+  constexpr uint32_t kKeys = 64, kTurns = 4096;
+  for (uint32_t k = 0; k < kKeys; ++k) {
+    const uint32_t key = hashPcg(k), other = hashPcg(k + kKeys);
+    double square = 0, turn = 0;
+    for (uint32_t i = 0; i < 16; ++i) {
+      square += passageChance(key, {100 + i % 4, 50 + i / 4}, 7) < share;
+      turn += passageChance(key, {100, 50}, i + 7) < share;
+    }
+    squares += std::pow(square / 16 - share, 2) / kKeys;
+    turns += std::pow(turn / 16 - share, 2) / kKeys;
+    for (uint32_t i = 0; i < kTurns; ++i)
+      both += (passageChance(key, {i % 5, 3}, i) < share && passageChance(other, {i % 5, 3}, i) < share) /
+              double(kTurns * kKeys);
+  }
+  EXPECT_LT(std::sqrt(squares), 0.06);  // of random numbers 0.12
+  EXPECT_LT(std::sqrt(turns), 0.06);
+  EXPECT_NEAR(both, share * share, 0.01);
 }
 
 TEST(RayScene, CacheKnowsWaysOfPassing) {
   Scene s = layers({});
   const Geometry g = flatten(s);
-  EXPECT_EQ(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Random));  // nothing lets light through
+  EXPECT_EQ(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Met));  // nothing lets light through
   s.materials[1].masked = s.materials[1].blended = true;
-  EXPECT_NE(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Random));
-  EXPECT_NE(RayScene::cached(s, g, Passing::Met), RayScene::cached(s, g, Passing::Random));
+  EXPECT_NE(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Met));
 }
 
 TEST(RayScene, EmptySceneIsHitByNothing) {

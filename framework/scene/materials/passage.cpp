@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/base/random.h"
 #include "framework/scene/materials/albedo_table.h"
 #include "framework/scene/materials/microfacets.h"
 #include "shaders/common/records/scene.h"
@@ -10,6 +11,12 @@ namespace fovea::scene {
 namespace {
 
 float mean(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
+
+// What glass makes of the light that goes through it.
+glm::vec3 glassColor(const Scene& scene, const Material& material, glm::vec2 uv) {
+  const glm::vec3 texel(sampleTexture(scene, material.baseColorTexture, uv));
+  return glm::min(glm::vec3(material.baseColor) * texel, 1.0f);
+}
 
 }  // namespace
 
@@ -32,9 +39,24 @@ float passage(const Scene& scene, const Material& material, glm::vec2 uv, float 
   return std::clamp(mean(glassColor(scene, material, uv)) * enters * (1 - reflects), 0.0f, kMostPassed);
 }
 
-glm::vec3 glassColor(const Scene& scene, const Material& material, glm::vec2 uv) {
-  const glm::vec3 texel(sampleTexture(scene, material.baseColorTexture, uv));
-  return glm::min(glm::vec3(material.baseColor) * texel, 1.0f);
+glm::vec3 glassTint(const Scene& scene, const Material& material, glm::vec2 uv) {
+  const glm::vec3 color = glm::max(glassColor(scene, material, uv), kDarkestGlass);
+  return color / mean(color);
+}
+
+glm::vec3 transmittance(const Scene& scene, const Material& material, glm::vec2 uv, float cosine) {
+  const float covered = coverage(scene, material, uv);
+  glm::vec3 share(1 - covered);
+  if (material.transmission > 0)
+    share += covered * passage(scene, material, uv, cosine) * glassTint(scene, material, uv);
+  return share;
+}
+
+float passageChance(uint32_t key, glm::uvec2 pixel, uint32_t turn) {
+  const glm::uvec2 at = (key & 8u) != 0 ? glm::uvec2(pixel.y, pixel.x) : pixel;
+  const uint32_t along = (key & 16u) != 0 ? 0u - at.y : at.y;
+  return uniformFloat(key + at.x * kPassageAcross + along * kPassageAlong +
+                      turn * (kPassageTurn + (key & 7u) * kPassageTurns));
 }
 
 }  // namespace fovea::scene

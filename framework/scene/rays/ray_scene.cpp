@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "framework/base/hash.h"
-#include "framework/base/random.h"
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_tracer.h"
 
 namespace fovea::scene {
 namespace {
 
-// The textures that say where a material lets light through.
-constexpr TextureUse Material::*kPassingTextures[] = {
-    &Material::baseColorTexture, &Material::metallicRoughnessTexture, &Material::transmissionTexture};
-
-// What a look-up needs of one material with holes: a scene with this material and its textures alone.
+// What a look-up needs of one material with holes: a scene with this material and its base colour texture alone.
 struct Mask {
   Scene scene;
 };
@@ -27,42 +22,18 @@ struct Mask {
 Mask makeMask(const Scene& scene, const Material& material) {
   Mask mask;
   mask.scene.materials = {material};
-  for (const auto texture : kPassingTextures) {
-    TextureUse& use = mask.scene.materials[0].*texture;
-    const bool needed = texture == &Material::baseColorTexture || material.transmission > 0;
-    if (!needed || !use || use.texture >= scene.textures.size()) {
-      use = {};
-      continue;
-    }
-    mask.scene.textures.push_back(scene.textures[use.texture]);
-    use.texture = uint32_t(mask.scene.textures.size() - 1);
+  TextureUse& use = mask.scene.materials[0].baseColorTexture;
+  if (use && use.texture < scene.textures.size()) {
+    mask.scene.textures = {scene.textures[use.texture]};
+    use.texture = 0;
+  } else {
+    use = {};
   }
   return mask;
 }
 
 bool hasHoles(const Material& m, Passing passing) {
-  switch (passing) {
-    case Passing::Never:
-      return m.masked;
-    case Passing::Random:
-      return m.masked || letsLightThrough(m);
-    case Passing::Met:
-      return m.masked && !m.blended;
-  }
-  return false;
-}
-
-void addHoles(const Scene& scene, const Material& m, Hasher& hash) {
-  hash.add(std::array<float, 10>{m.alphaCutoff, m.transmission, m.metallic, m.roughness, m.ior, m.specular,
-                                 m.specularColor.r, m.specularColor.g, m.specularColor.b, float(m.blended)});
-  hash.add(std::array<float, 4>{m.baseColor.r, m.baseColor.g, m.baseColor.b, m.baseColor.a});
-  for (const auto texture : kPassingTextures) {
-    const TextureUse& use = m.*texture;
-    hash.add(std::array<float, 6>{use.transform[0].x, use.transform[0].y, use.transform[1].x,
-                                  use.transform[1].y, use.transform[2].x, use.transform[2].y});
-    hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
-    if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
-  }
+  return m.masked && (passing == Passing::Never || !m.blended);
 }
 
 // Hash of everything but the positions of vertices that move.
@@ -76,11 +47,16 @@ uint64_t stillKey(const Scene& scene, const Geometry& geometry, Passing passing)
   const bool passes = std::ranges::any_of(scene.materials, letsLightThrough);
   const uint32_t way = passes ? uint32_t(passing) : 0;
   hash.add(&way, 1);
-  for (uint32_t i = 0; i < scene.materials.size(); ++i)
-    if (hasHoles(scene.materials[i], passing)) {
-      hash.add(&i, 1);
-      addHoles(scene, scene.materials[i], hash);
-    }
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    if (!hasHoles(m, passing)) continue;
+    const TextureUse& use = m.baseColorTexture;
+    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x,
+                                  use.transform[0].y, use.transform[1].x, use.transform[1].y,
+                                  use.transform[2].x, use.transform[2].y});
+    hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
+    if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
+  }
   return hash.value();
 }
 
@@ -116,18 +92,17 @@ double areaOf(const Geometry& geometry, uint32_t first, uint32_t end) {
 // The parts that stay the same while dynamic objects move: the tracer of all static triangles, and all masks.
 struct RayScene::Still {
   std::unique_ptr<RayTracer> tracer;
-  Passing passing;
   // Triangles with holes only: three uvs each, found through the triangle's index.
   std::vector<uint32_t>
       maskOfTriangle;  // index into masks, kNoIndex for opaque; empty when nothing has holes
   std::vector<std::array<glm::vec2, 3>> uvs;
   std::vector<Mask> masks;
-  bool choosesAtRandom = false;
+  bool meetsTransparency = false;
   double area = 0;
 
-  Still(const Scene& scene, const Geometry& geometry, Passing passing_) : passing(passing_) {
-    choosesAtRandom = passing == Passing::Random && std::ranges::any_of(scene.materials, letsLightThrough);
-    addMasks(scene, geometry);
+  Still(const Scene& scene, const Geometry& geometry, Passing passing) {
+    meetsTransparency = passing == Passing::Met && std::ranges::any_of(scene.materials, letsLightThrough);
+    addMasks(scene, geometry, passing);
     const uint32_t end = std::min(geometry.staticTriangles, uint32_t(geometry.triangles.size()));
     tracer = makeTracer(geometry, accepts(), {0, end});
     area = areaOf(geometry, 0, end);
@@ -135,24 +110,20 @@ struct RayScene::Still {
 
   RayTracer::Accepts accepts() const {
     if (masks.empty()) return {};
-    return [this](const RayTracer::Meeting& at) { return stops(at); };
+    return [this](uint32_t t, float u, float v) { return opaqueAt(t, u, v); };
   }
 
-  bool stops(const RayTracer::Meeting& at) const {
-    const uint32_t m = maskOfTriangle[at.triangle];
+  bool opaqueAt(uint32_t triangle, float u, float v) const {
+    const uint32_t m = maskOfTriangle[triangle];
     if (m == kNoIndex) return true;
     const Scene& s = masks[m].scene;
-    const auto& t = uvs[at.triangle];
-    const glm::vec2 uv = t[0] * (1.0f - at.u - at.v) + t[1] * at.u + t[2] * at.v;
+    const auto& t = uvs[triangle];
+    const glm::vec2 uv = t[0] * (1.0f - u - v) + t[1] * u + t[2] * v;
     const Material& material = s.materials[0];
-    if (passing != Passing::Random || !letsLightThrough(material))
-      return reflectance(s, material, uv).a >= material.alphaCutoff;
-    if (at.key == kMeetsAll) return material.blended || coverage(s, material, uv) > 0;
-    const float stopped = coverage(s, material, uv) * (1 - passage(s, material, uv, at.cosine));
-    return stopped > uniformFloat(hashCombine(at.key, at.triangle));
+    return reflectance(s, material, uv).a >= material.alphaCutoff;
   }
 
-  void addMasks(const Scene& from, const Geometry& geometry) {
+  void addMasks(const Scene& from, const Geometry& geometry, Passing passing) {
     std::vector<uint32_t> maskOfMaterial(from.materials.size(), kNoIndex);
     for (size_t i = 0; i < from.materials.size(); ++i) {
       if (!hasHoles(from.materials[i], passing)) continue;
@@ -210,7 +181,7 @@ bool RayScene::occluded(const Ray& ray) const {
   return impl_->still->tracer->occluded(ray) || (impl_->moving && impl_->moving->occluded(ray));
 }
 
-bool RayScene::choosesAtRandom() const { return impl_->still->choosesAtRandom; }
+bool RayScene::meetsTransparency() const { return impl_->still->meetsTransparency; }
 float RayScene::epsilon() const { return impl_->epsilon; }
 double RayScene::surfaceArea() const { return impl_->area; }
 

@@ -11,22 +11,17 @@
 
 namespace fovea::scene {
 
-// The key of a ray that meets all surfaces as with Passing::Met.
-inline constexpr uint32_t kMeetsAll = ~0u;
-
 struct Ray {
   glm::vec3 origin{0};     // world space, m
   glm::vec3 direction{0};  // need not be unit; distances are multiples of its length
   float near = 0, far = std::numeric_limits<float>::infinity();
-  uint32_t key = 0;  // of the random numbers of Passing::Random
 };
 
 // What rays do at surfaces that let a part of the light through, with alphaMode BLEND or thin glass. Holes of alpha
 // masks are open in any case.
 enum class Passing : uint8_t {
-  Never,   // diffuse materials: BLEND is a mask, and glass is solid
-  Random,  // they pass with the probability of the light that does; hashes of Ray::key and the triangle decide
-  Met,     // such surfaces are met everywhere: who traces decides
+  Never,  // diffuse materials: BLEND is a mask, and glass is solid
+  Met,    // such surfaces are met everywhere: who traces decides
 };
 
 struct RayHit {
@@ -57,8 +52,8 @@ class RayScene {
   RayHit intersect(const Ray& ray) const;  // nearest hit in (near, far)
   bool occluded(const Ray& ray) const;
 
-  // Whether Ray::key matters.
-  bool choosesAtRandom() const;
+  // Whether rays may meet surfaces that let a part of the light through.
+  bool meetsTransparency() const;
   // Smallest distance that keeps a ray that leaves a surface from hitting it again: 1e-5 of the scene's diagonal.
   float epsilon() const;
   double surfaceArea() const;  // of all triangles, one side, m^2

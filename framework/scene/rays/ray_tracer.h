@@ -13,14 +13,9 @@ namespace fovea::scene {
 // a shared edge.
 class RayTracer {
  public:
-  struct Meeting {
-    uint32_t triangle = kNoIndex;
-    float u = 0, v = 0;  // barycentric weights of its second and third vertex
-    float cosine = 1;    // between the ray and its geometric normal, positive
-    uint32_t key = 0;    // of the ray
-  };
-  // Whether a triangle stops a ray. If empty, it always does.
-  using Accepts = std::function<bool(const Meeting& at)>;
+  // Whether triangle `t` is present at the barycentric weights u, v of its second and third vertex. If empty,
+  // it always is.
+  using Accepts = std::function<bool(uint32_t t, float u, float v)>;
   virtual ~RayTracer() = default;
   virtual RayHit intersect(const Ray& ray) const = 0;
   virtual bool occluded(const Ray& ray) const = 0;

@@ -120,18 +120,12 @@ class Builder {
 
 // A ray prepared for both tests.
 struct PreparedRay {
-  glm::vec3 origin, direction, inverse;
+  glm::vec3 origin, inverse;
   float near, far;
   int kx, ky, kz;    // kz: the axis along which the ray is longest
   float sx, sy, sz;  // shear that maps the direction to +z
-  uint32_t key;
   explicit PreparedRay(const Ray& r)
-      : origin(r.origin),
-        direction(r.direction),
-        inverse(1.0f / r.direction),
-        near(r.near),
-        far(r.far),
-        key(r.key) {
+      : origin(r.origin), inverse(1.0f / r.direction), near(r.near), far(r.far) {
     const glm::vec3 a = glm::abs(r.direction);
     kz = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     kx = (kz + 1) % 3;
@@ -140,11 +134,6 @@ struct PreparedRay {
     sx = r.direction[kx] / r.direction[kz];
     sy = r.direction[ky] / r.direction[kz];
     sz = 1.0f / r.direction[kz];
-  }
-
-  float cosine(const std::array<glm::vec3, 3>& t) const {
-    return std::abs(
-        glm::dot(glm::normalize(direction), glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]))));
   }
 
   // Entry distance, or infinity. Comparisons are written so that NaN (a ray within a face of the box) counts
@@ -241,7 +230,7 @@ class BvhTracer : public RayTracer {
       RayHit hit = hitTriangle(r, triangles_[i]);
       if (!hit) continue;
       hit.triangle = order_[i];
-      if (accepts_ && !accepts_({hit.triangle, hit.u, hit.v, r.cosine(triangles_[i]), r.key})) continue;
+      if (accepts_ && !accepts_(hit.triangle, hit.u, hit.v)) continue;
       best = hit;
       r.far = hit.distance;
       found = true;

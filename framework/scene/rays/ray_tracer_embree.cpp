@@ -2,7 +2,6 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -35,7 +34,6 @@ RTCRay embreeRay(const Ray& ray) {
   r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
   r.tnear = ray.near, r.tfar = ray.far;
   r.mask = ~0u;
-  r.id = ray.key;
   return r;
 }
 
@@ -79,17 +77,9 @@ class EmbreeTracer : public RayTracer {
     const auto& self = *static_cast<const EmbreeTracer*>(args->geometryUserPtr);
     for (unsigned i = 0; i < args->N; ++i) {
       if (args->valid[i] != -1) continue;
-      Meeting at;
-      at.triangle = self.first_ + RTCHitN_primID(args->hit, args->N, i);
-      at.u = RTCHitN_u(args->hit, args->N, i);
-      at.v = RTCHitN_v(args->hit, args->N, i);
-      const glm::vec3 direction(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
-                                RTCRayN_dir_z(args->ray, args->N, i)),
-          normal(RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
-                 RTCHitN_Ng_z(args->hit, args->N, i));
-      at.cosine = std::abs(glm::dot(glm::normalize(direction), glm::normalize(normal)));
-      at.key = RTCRayN_id(args->ray, args->N, i);
-      if (!self.accepts_(at)) args->valid[i] = 0;
+      const unsigned triangle = self.first_ + RTCHitN_primID(args->hit, args->N, i);
+      const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
+      if (!self.accepts_(triangle, u, v)) args->valid[i] = 0;
     }
   }
 

@@ -10,6 +10,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
 #include "framework/scene/materials/passage.h"
+#include "framework/scene/rays/visibility.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "shaders/common/records/scene.h"
 
@@ -44,10 +45,9 @@ TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) c
   const SurfaceHit s = surfaceAt(*frame_.geometry, hit);
   const Material& material = frame_.scene->materials[s.material];
   const bool front = glm::dot(s.geometricNormal, direction) < 0;
-  TracedSurface v;
-  if (!front && !material.doubleSided) return v;
   const float side = front ? 1.0f : -1.0f;
-  v.there = true;
+  TracedSurface v;
+  v.there = front || material.doubleSided;
   v.triangle = hit.triangle;
   v.u = hit.u;
   v.v = hit.v;
@@ -57,14 +57,14 @@ TracedSurface SurfaceTracer::surfaceOf(const RayHit& hit, glm::vec3 direction) c
   v.origin = s.position + (v.face - direction) * rays_.epsilon();
   v.uv = s.uv;
   v.material = &material;
-  if (rays_.choosesAtRandom() && material.transmission > 0)
+  if (rays_.meetsTransparency() && material.transmission > 0)
     v.brighter /=
         1 - passage(*frame_.scene, material, v.uv, std::abs(glm::dot(v.normal, glm::normalize(direction))));
   return v;
 }
 
 bool SurfaceTracer::passes(const TracedSurface& v, glm::vec3 direction, float chance) const {
-  if (!rays_.choosesAtRandom() || !letsLightThrough(*v.material)) return false;
+  if (!rays_.meetsTransparency() || !letsLightThrough(*v.material)) return false;
   const float cosine = std::abs(glm::dot(v.normal, direction));
   const float stopped =
       coverage(*frame_.scene, *v.material, v.uv) * (1 - passage(*frame_.scene, *v.material, v.uv, cosine));
@@ -72,11 +72,30 @@ bool SurfaceTracer::passes(const TracedSurface& v, glm::vec3 direction, float ch
 }
 
 uint32_t SurfaceTracer::keyOf(glm::vec3 origin, glm::vec3 direction) const {
-  if (!rays_.choosesAtRandom()) return 0;
+  if (!rays_.meetsTransparency()) return 0;
   uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kRayStream, 0);
   for (const float x : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
     key = hashCombine(key, std::bit_cast<uint32_t>(x));
   return key;
+}
+
+template <class Function>
+TracedSurface SurfaceTracer::follow(Ray ray, bool meetsBacks, const Function& chanceAt,
+                                    uint64_t& rays) const {
+  TracedSurface v;
+  glm::vec3 tint(1);
+  for (;;) {
+    ++rays;
+    const RayHit hit = rays_.intersect(ray);
+    v = hit ? surfaceOf(hit, ray.direction) : TracedSurface{};
+    const bool passed =
+        hit && ((!v.there && !meetsBacks) || passes(v, ray.direction, chanceAt(hit.triangle)));
+    if (!passed) break;
+    if (v.there && v.material->transmission > 0) tint *= glassTint(*frame_.scene, *v.material, v.uv);
+    ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
+  }
+  v.brighter *= tint;
+  return v;
 }
 
 TracedSurface SurfaceTracer::look(glm::vec2 pixel, uint64_t& rays) const {
@@ -84,32 +103,18 @@ TracedSurface SurfaceTracer::look(glm::vec2 pixel, uint64_t& rays) const {
   ray.origin = view_.eye;
   ray.direction = glm::normalize(view_.rayDirection(pixel));
   // The same as in gbuffer/visibility.frag.
-  const uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kPassageStream,
-                                    uint32_t(pixel.x) << 16 | uint32_t(pixel.y));
-  if (rays_.choosesAtRandom()) ray.key = kMeetsAll;
-  glm::vec3 tint(1);
-  for (;;) {
-    ++rays;
-    const RayHit hit = rays_.intersect(ray);
-    if (!hit) return {};
-    TracedSurface v = surfaceOf(hit, ray.direction);
-    if (v.there && !passes(v, ray.direction, uniformFloat(hashCombine(key, hit.triangle)))) {
-      v.brighter *= tint;
-      return v;
-    }
-    if (v.there && v.material->transmission > 0) {
-      const glm::vec3 color = glassColor(*frame_.scene, *v.material, v.uv);
-      tint *= color / std::max((color.r + color.g + color.b) / 3.0f, 1e-4f);
-    }
-    ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
-  }
+  const uint32_t key = hashCombine(frame_.seed, kPassageStream);
+  const auto chanceAt = [&](uint32_t triangle) {
+    return passageChance(hashCombine(key, triangle), glm::uvec2(pixel), uint32_t(frame_.index));
+  };
+  return follow(ray, false, chanceAt, rays);
 }
 
 TracedSurface SurfaceTracer::arrive(glm::vec3 origin, glm::vec3 direction, float reach,
                                     uint64_t& rays) const {
-  ++rays;
-  const RayHit hit = rays_.intersect({origin, direction, 0, reach, keyOf(origin, direction)});
-  return hit ? surfaceOf(hit, direction) : TracedSurface{};
+  const uint32_t key = keyOf(origin, direction);
+  const auto chanceAt = [&](uint32_t triangle) { return uniformFloat(hashCombine(key, triangle)); };
+  return follow({origin, direction, 0, reach}, true, chanceAt, rays);
 }
 
 glm::vec3 SurfaceTracer::reflectance(const TracedSurface& v) const {
@@ -128,9 +133,7 @@ glm::vec3 SurfaceTracer::fromLights(const TracedSurface& v, uint64_t& rays, cons
     ray.origin = v.origin;
     ray.direction = l.direction;
     if (l.distance < kFarAway) ray.far = l.distance * kShadowEnd;
-    ray.key = keyOf(ray.origin, ray.direction);
-    ++rays;
-    if (!rays_.occluded(ray)) sum += response;
+    sum += response * scene::visibility(frame_, rays_, ray, rays);
   }
   return sum;
 }
@@ -192,10 +195,8 @@ SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, 
   return ray;
 }
 
-bool SurfaceTracer::sees(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const {
-  ++rays;
-  return !rays_.occluded(
-      {v.origin, to.direction, 0, to.distance * kShadowEnd, keyOf(v.origin, to.direction)});
+glm::vec3 SurfaceTracer::visibility(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const {
+  return scene::visibility(frame_, rays_, {v.origin, to.direction, 0, to.distance * kShadowEnd}, rays);
 }
 
 float SurfaceTracer::emitterDensity(const TracedSurface& v, const TracedSurface& hit) const {
@@ -218,9 +219,9 @@ glm::vec3 SurfaceTracer::fromEmitters(const TracedSurface& v, uint32_t count, ui
                                       uint64_t& rays) const {
   if (!hasEmitters()) return glm::vec3(0);
   const EmitterRay to = towardsEmitter(v, stream);
-  if (!to.there || !sees(v, to, rays)) return glm::vec3(0);
+  if (!to.there) return glm::vec3(0);
   const float cosine = glm::dot(v.normal, to.direction) * glm::one_over_pi<float>();
-  return to.radiance * (cosine / (to.density + float(count) * cosine));
+  return to.radiance * visibility(v, to, rays) * (cosine / (to.density + float(count) * cosine));
 }
 
 glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
@@ -238,7 +239,7 @@ glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32
     const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
     if (!next.there) {
       if (const Outside light = outside(direction); light.density > 0)
-        sum += light.radiance * balance(light.density, direction);
+        sum += next.brighter * light.radiance * balance(light.density, direction);
       continue;
     }
     const glm::vec3 rho = reflectance(next);

@@ -22,8 +22,8 @@ struct TracedSurface {
   glm::vec3 normal{0}, face{0};  // shading and geometric, unit, on the side reached
   glm::vec2 uv{0};
   const Material* material = nullptr;
-  // The factor on its light that makes up for the rays that glass has let through, and what glass before it has made
-  // of the light on its way to the eye.
+  // The factor on its light that makes up for the rays that glass has let through, and what glass before it makes of
+  // the light on its way along the ray; the latter alone if the ray met nothing.
   glm::vec3 brighter{1};
 };
 
@@ -43,7 +43,8 @@ class SurfaceTracer {
   // The surface that the eye sees at `pixel` (pixels, centres at +0.5). Where surfaces let a part of the light through,
   // it is the one that pass gbuffer shows in this frame.
   TracedSurface look(glm::vec2 pixel, uint64_t& rays) const;
-  // The surface met within `reach` metres. direction: unit.
+  // The surface met within `reach` metres. direction: unit. Where surfaces let a part of the light through, the ray
+  // passes with the probability of the light that does.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
   // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights after
   // one reflection.
@@ -73,7 +74,8 @@ class SurfaceTracer {
   EmitterRay towardsEmitter(const TracedSurface& v, uint32_t stream) const;
   // u: uniform in [0, 1); x chooses the emitter.
   EmitterRay towardsEmitter(const TracedSurface& v, glm::vec3 u) const;
-  bool sees(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const;
+  // The share of its light that reaches v.
+  glm::vec3 visibility(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const;
   // Density with which towardsEmitter() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not
   // emit.
   float emitterDensity(const TracedSurface& v, const TracedSurface& hit) const;
@@ -87,7 +89,11 @@ class SurfaceTracer {
 
  private:
   TracedSurface surfaceOf(const RayHit& hit, glm::vec3 direction) const;
-  // Whether the eye's ray passes a surface that it meets. direction: unit; chance: uniform in [0, 1).
+  // Follows a ray to the surface that stops it. meetsBacks: whether it is stopped by the backs of single-sided
+  // materials, which are black. chanceAt(triangle): uniform in [0, 1).
+  template <class Function>
+  TracedSurface follow(Ray ray, bool meetsBacks, const Function& chanceAt, uint64_t& rays) const;
+  // Whether a ray passes a surface that it meets. direction: unit; chance: uniform in [0, 1).
   bool passes(const TracedSurface& v, glm::vec3 direction, float chance) const;
   // Different for every ray and frame; 0 where nothing is left to chance.
   uint32_t keyOf(glm::vec3 origin, glm::vec3 direction) const;

@@ -135,6 +135,11 @@ SHARED_CONSTANT uint kPassageStream = 0x70617373u;
 // The greatest share of light that passes glass, that of clear glass. What does not pass meets its reflection, which is
 // divided by the rest.
 SHARED_CONSTANT float kMostPassed = 0.96f;
+SHARED_CONSTANT float kDarkestGlass = 1e-4f;  // least channel of its colour
+// Steps of passageChance(), in 2^-32: from pixel to pixel, with which each square of 3 x 3 or 5 x 5 pixels has values
+// that are spread out evenly, and from turn to turn, the golden ratio and what one sequence differs from the next by.
+SHARED_CONSTANT uint kPassageAcross = 1357209665u, kPassageAlong = 1803886265u;
+SHARED_CONSTANT uint kPassageTurn = 2654435769u, kPassageTurns = 149464861u;
 
 // What only they need follows the MaterialRecords in `sceneMaterials`, if any pass asks for it.
 
