@@ -316,7 +316,8 @@ ExitCode Bench::run() {
   folder_.prepare(options_.referencesOnly ? 0 : room.results, room.references);
   catchInterrupts();
   loadPlugins(options_.plugins);
-  runner_ = std::make_unique<BenchRunner>(folder_, session::openDevice(options_.device), progress_);
+  runner_ = std::make_unique<BenchRunner>(
+      folder_, session::openDevice({.device = options_.device, .without = options_.without}), progress_);
   if (options_.referencesOnly) {
     makeReferences();
     return ExitCode::Ok;

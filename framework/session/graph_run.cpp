@@ -11,10 +11,7 @@
 
 namespace fovea::session {
 
-std::unique_ptr<gpu::Device> openDevice(const std::string& name, bool validation) {
-  gpu::DeviceOptions options;
-  options.device = name;
-  if (validation) options.validation = gpu::Validation::On;
+std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
   auto device = std::make_unique<gpu::Device>(options);
   for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
   return device;

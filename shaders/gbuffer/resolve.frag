@@ -69,7 +69,7 @@ void main() {
   if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
   // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
-  bool glass = (uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w) &
+  bool glass = (uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w) &
                 kMaterialTransmits) != 0u;
   for (int turns = glass ? 1 : 0; turns > 0; --turns)
     surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));

@@ -28,7 +28,7 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
       for (const graph::BoundOutput& output : bound.outputs) names.push_back(output.name);
     return names;
   };
-  session::GraphRun graph(testDevice(), graph::load(nameOrPath, load, messages), scene, rest, runOptions,
+  session::GraphRun graph(options.device ? *options.device : testDevice(), graph::load(nameOrPath, load, messages), scene, rest, runOptions,
                           messages);
   graph.prepare();
   GraphRun run;
