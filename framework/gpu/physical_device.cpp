@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 constexpr const char* kTexelLimit = "maxTexelBufferElements";
 constexpr uint32_t kTexels = 1 << 24;  // less are too few for lists of voxels and for large scenes
+constexpr const char* kSnormAttachments = "VK_FORMAT_R16G16_SNORM";  // as colour attachments
 constexpr const char* kDispensableExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
 
 std::string versionText(uint32_t v) {
@@ -139,6 +140,10 @@ std::vector<std::string> missingDispensables(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(device, &properties);
   if (properties.limits.maxTexelBufferElements < kTexels) missing.emplace_back(kTexelLimit);
+  VkFormatProperties snorm;
+  vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_R16G16_SNORM, &snorm);
+  if (!(snorm.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT))
+    missing.emplace_back(kSnormAttachments);
   return missing;
 }
 
@@ -245,6 +250,7 @@ std::vector<std::string> dispensableFeatures() {
   for (const auto& [name, value] : features.dispensable()) names.push_back(name);
   names.insert(names.end(), std::begin(kDispensableExtensions), std::end(kDispensableExtensions));
   names.emplace_back(kTexelLimit);
+  names.emplace_back(kSnormAttachments);
   return names;
 }
 

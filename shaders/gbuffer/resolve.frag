@@ -100,6 +100,9 @@ void main() {
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
   gbufferNormal = background ? vec4(0.0) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
+#ifdef WITHOUT_VK_FORMAT_R16G16_SNORM
+  gbufferFace = unpackSnorm2x16(packSnorm2x16(gbufferFace));
+#endif
   gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, alphas.y);
   gbufferEmission = vec4(min(emission, kMaxHalf), alphas.z);
   gbufferId = background ? kNothing : triangle.w;
