@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 LARGE_TEXELS(vec4, radiance);
 uniform samplerBuffer sites;
-uniform usamplerBuffer masks;
+LARGE_TEXELS(uint, masks);
 layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer SumsBlock { uvec2 list[]; } sums;
@@ -34,7 +34,7 @@ void main() {
   float best = 1e38;
   uint owner = kNoSide;
   for (uint word = 0u; word < words; ++word)
-    for (uint bits = texelFetch(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
+    for (uint bits = texelOf(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
       uint i = 32u * word + uint(findLSB(bits));
       VplSite site = loadSite(sites, i);
       vec3 d = site.position - side.position;
