@@ -263,7 +263,8 @@ void Device::Impl::createCaches(const DeviceOptions& options) {
     directory = options.cacheDirectory.empty() ? defaultCacheDirectory() : options.cacheDirectory;
   Defines always;
   for (const std::string& feature : info.without) always["WITHOUT_" + feature] = "1";
-  if (lacks("VK_FORMAT_R16G16_SNORM")) always["rg16_snorm"] = "rg32f";  // storage images, see replaceFormats()
+  if (lacks("VK_FORMAT_R16G16_SNORM"))
+    always["rg16_snorm"] = "rg32f";  // storage images, see replaceFormats()
   shaders = std::make_unique<ShaderCompiler>(directory, always);
   std::vector<std::byte> initial;
   if (!directory.empty()) {

@@ -177,8 +177,7 @@ TEST(Without, ShadersThatUseTheFeatureAreRefused) {
   gpu::GraphicsPipelineDesc desc;
   desc.vertex = device.shaders().compileSource("plain.vert", "void main() { gl_Position = vec4(0); }\n");
   desc.fragment = device.shaders().compileSource(
-      "user.frag",
-      "layout(location = 0) out vec4 target;\nvoid main() { target = vec4(gl_PrimitiveID); }\n");
+      "user.frag", "layout(location = 0) out vec4 target;\nvoid main() { target = vec4(gl_PrimitiveID); }\n");
   desc.colorFormats = {VK_FORMAT_R32G32B32A32_SFLOAT};
   EXPECT_THAT(noDevice([&] { gpu::Pipeline pipeline(device, desc); }), HasSubstr("geometryShader"));
 }
@@ -203,7 +202,8 @@ TEST(Without, DescriptorSetsHoldWhatTheirCommandWasGiven) {
   options.without = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
   gpu::Device device(options);
   const gpu::Buffer results(device, {"results", 4 * 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  const gpu::Pipeline pipeline(device, gpu::ComputePipelineDesc{device.shaders().compileSource("fill.comp", R"(
+  const gpu::Pipeline pipeline(device,
+                               gpu::ComputePipelineDesc{device.shaders().compileSource("fill.comp", R"(
 layout(local_size_x = 1) in;
 layout(std430) buffer Data { uint data[]; };
 layout(push_constant) uniform C { uint value; };
