@@ -242,7 +242,7 @@ class Devices(CliTest):
 
     def test_without(self):
         features = ["geometryShader", "shaderInt64", "shaderDrawParameters", "shaderOutputLayer",
-                    "VK_KHR_push_descriptor", "maxTexelBufferElements"]
+                    "VK_KHR_push_descriptor", "maxTexelBufferElements", "VK_FORMAT_R16G16_SNORM"]
         for command in ("render", "view", "bench"):
             for feature in features:
                 self.assertIn(feature, self.succeeds(command, "--help").stdout)
