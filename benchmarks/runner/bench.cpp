@@ -120,7 +120,8 @@ class Bench {
 
 void Bench::openDevice() {
   runner_.reset();
-  runner_ = std::make_unique<BenchRunner>(folder_, session::openDevice(options_.device), progress_);
+  runner_ = std::make_unique<BenchRunner>(
+      folder_, session::openDevice({.device = options_.device, .without = options_.without}), progress_);
 }
 
 void Bench::chooseJobs() {

@@ -13,7 +13,7 @@ namespace fovea::bench {
 struct SuiteOptions {
   std::string suite, folder, cache, only, shard, size, device;
   std::optional<uint32_t> seeds;
-  std::vector<std::string> plugins;
+  std::vector<std::string> plugins, without;
   bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
 };
 

@@ -76,7 +76,7 @@ void Bench::open() {
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages);
   geometry_ = scene::flatten(scene_);
-  device_ = session::openDevice(options_.device);
+  device_ = session::openDevice({.device = options_.device, .without = options_.without});
   progress_.clear();
   printWarnings(messages);
 }
@@ -151,6 +151,7 @@ Json Bench::fromProgram() const {
       fmt::format(" --frames {} --warmup {} --first {}", options_.frames, options_.warmup, options_.first);
   for (const std::string& text : options_.set) command += " --set " + quoted(text);
   if (!options_.device.empty()) command += " --device " + quoted(options_.device);
+  for (const std::string& feature : options_.without) command += " --without " + quoted(feature);
   std::string text;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe) {

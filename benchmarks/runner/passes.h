@@ -15,7 +15,7 @@ struct PassBenchOptions {
   double threshold = 2;  // percent
   bool json = false;
   std::string output, size, device;  // as the suite's options of the same names
-  std::vector<std::string> plugins;
+  std::vector<std::string> plugins, without;
   bool quiet = false;
 };
 

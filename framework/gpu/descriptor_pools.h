@@ -1,15 +1,19 @@
-// Ordinary descriptor sets in place of push descriptors, for GPU-assisted validation only.
+// Ordinary descriptor sets in place of push descriptors, for devices without them and for GPU-assisted validation.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 namespace fovea::gpu {
 
-// Validation layer 1.3.239 takes push descriptors for uninitialised ones in its instrumented shaders and reports
-// every access. In that mode a "push" allocates, writes and binds a set; the sets live as long as the device.
+// A "push" takes a set, writes and binds it. The sets belong to the command buffer into which they are bound, and serve
+// again when it begins anew, so that a command buffer that repeats what it did before allocates nothing.
+//
+// In its instrumented shaders, validation layer 1.3.239 takes push descriptors for uninitialised ones and reports every
+// access.
 class DescriptorPools {
  public:
   explicit DescriptorPools(VkDevice device) : device_(device) {}
@@ -19,14 +23,29 @@ class DescriptorPools {
 
   // Registers the layout of set 0 of a pipeline layout.
   void remember(VkPipelineLayout layout, VkDescriptorSetLayout set) { layouts_[layout] = set; }
+  // The sets of a layout or a command buffer, which must not be in use, go back to their pools.
+  void forget(VkPipelineLayout layout);
+  void forget(VkCommandBuffer cmd);
+  void begin(VkCommandBuffer cmd);
   void bind(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t set,
-            std::vector<VkWriteDescriptorSet> writes);
+            std::span<const VkWriteDescriptorSet> writes);
 
  private:
-  VkDescriptorSet allocate(VkDescriptorSetLayout layout);
+  struct Set {
+    VkDescriptorSet handle = VK_NULL_HANDLE;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+  };
+  struct Ring {
+    std::vector<Set> sets;
+    size_t used = 0;  // since the command buffer began
+  };
+  Set allocate(VkDescriptorSetLayout layout);
+  void free(const Ring& ring);
   VkDevice device_;
   std::vector<VkDescriptorPool> pools_;
   std::unordered_map<VkPipelineLayout, VkDescriptorSetLayout> layouts_;
+  std::unordered_map<VkCommandBuffer, std::unordered_map<VkPipelineLayout, Ring>> rings_;
+  std::vector<VkWriteDescriptorSet> writes_;  // of one set
 };
 
 }  // namespace fovea::gpu

@@ -87,7 +87,8 @@ std::vector<DeviceInfo> listDevices() {
 struct Device::Impl {
   ~Impl();
   void createInstanceAndMessenger(const DeviceOptions& options);
-  void createDevice(const PhysicalDevice& chosen);
+  void createDevice(const PhysicalDevice& chosen, const std::vector<std::string>& without);
+  bool lacks(std::string_view feature) const;
   void queryFeatures(FeatureChain& enabled);
   void createCaches(const DeviceOptions& options);
   void savePipelineCache();
@@ -96,7 +97,8 @@ struct Device::Impl {
   MessageLog log;
   VkInstance instance = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
-  DeviceInfo info;
+  DeviceInfo info;  // `without` includes what the options say
+  std::string name;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkPhysicalDeviceType type{};
   VkPhysicalDeviceProperties properties{};
@@ -113,7 +115,7 @@ struct Device::Impl {
   uint64_t pipelineCacheHash = 0;           // hash of the loaded data
   std::unique_ptr<ShaderCompiler> shaders;
   std::map<std::pair<VkFilter, VkSamplerAddressMode>, VkSampler> samplers;
-  std::unique_ptr<DescriptorPools> plainSets;  // GPU-assisted validation only
+  std::unique_ptr<DescriptorPools> plainSets;  // where descriptors are not pushed
 
   std::mutex memoryMutex;
   uint64_t limit = 0;  // 0 for the size of each heap
@@ -171,10 +173,14 @@ void Device::Impl::queryFeatures(FeatureChain& enabled) {
   FeatureChain available;
   vkGetPhysicalDeviceFeatures2(physical, &available.core);
   for (const auto& [name, value] : enabled.required()) *value = VK_TRUE;
+  for (const auto& [name, value] : enabled.dispensable()) *value = !lacks(name);
   const FeatureChain::List from = available.optional(), to = enabled.optional();
   for (size_t i = 0; i < from.size(); ++i) *to[i].second = *from[i].second;
 
   const VkPhysicalDeviceFeatures& f = enabled.core.features;
+  features.geometryShader = f.geometryShader;
+  features.shaderDrawParameters = enabled.v11.shaderDrawParameters;
+  features.shaderOutputLayer = enabled.v12.shaderOutputLayer;
   features.shaderInt64 = f.shaderInt64;
   features.bufferInt64Atomics = enabled.v12.shaderBufferInt64Atomics;
   features.sharedInt64Atomics = enabled.v12.shaderSharedInt64Atomics;
@@ -194,16 +200,27 @@ void Device::Impl::queryFeatures(FeatureChain& enabled) {
   properties = all.properties;
   maxAllocation = v11.maxMemoryAllocationSize;
   maxBuffer = v13.maxBufferSize;
-  maxPushDescriptors = push.maxPushDescriptors;
+  constexpr uint32_t kLeast = 32;  // that devices with push descriptors support
+  maxPushDescriptors = std::max(push.maxPushDescriptors, kLeast);
   features.subgroupSize = v11.subgroupSize;
   if (v11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT)
     features.subgroupOperations = v11.subgroupSupportedOperations;
 }
 
-void Device::Impl::createDevice(const PhysicalDevice& chosen) {
+bool Device::Impl::lacks(std::string_view feature) const {
+  return std::find(info.without.begin(), info.without.end(), feature) != info.without.end();
+}
+
+void Device::Impl::createDevice(const PhysicalDevice& chosen, const std::vector<std::string>& without) {
   physical = chosen.handle;
   type = chosen.type;
   info = chosen.info;
+  name = info.name + ", " + info.driver;
+  for (const std::string& feature : without) {
+    requireDispensable(feature);
+    name += ", without " + feature;
+    info.without.push_back(feature);
+  }
   queueFamily = chosen.queueFamily;
   FeatureChain enabled;
   queryFeatures(enabled);
@@ -214,12 +231,14 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen) {
   queueInfo.queueFamilyIndex = queueFamily;
   queueInfo.queueCount = 1;
   queueInfo.pQueuePriorities = &priority;
-  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  std::vector<const char*> extensions;
+  const bool pushes = !lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  if (pushes) extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
   VkDeviceCreateInfo deviceInfo{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &enabled.core};
   deviceInfo.queueCreateInfoCount = 1;
   deviceInfo.pQueueCreateInfos = &queueInfo;
-  deviceInfo.enabledExtensionCount = 1;
-  deviceInfo.ppEnabledExtensionNames = extensions;
+  deviceInfo.enabledExtensionCount = uint32_t(extensions.size());
+  deviceInfo.ppEnabledExtensionNames = extensions.data();
   const VkResult result = vkCreateDevice(physical, &deviceInfo, nullptr, &device);
   if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_FEATURE_NOT_PRESENT ||
       result == VK_ERROR_UNKNOWN)
@@ -227,8 +246,11 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen) {
                 "choose another device or update its driver");
   check(result, "creating the device `" + info.name + "`");
   vkGetDeviceQueue(device, queueFamily, 0, &queue);
-  pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
-      vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));
+  if (pushes && log.validation != Validation::GpuAssisted)
+    pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
+        vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));
+  else
+    plainSets = std::make_unique<DescriptorPools>(device);
   VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   poolInfo.queueFamilyIndex = queueFamily;
@@ -239,7 +261,11 @@ void Device::Impl::createCaches(const DeviceOptions& options) {
   std::filesystem::path directory;
   if (options.useCache)
     directory = options.cacheDirectory.empty() ? defaultCacheDirectory() : options.cacheDirectory;
-  shaders = std::make_unique<ShaderCompiler>(directory);
+  Defines always;
+  for (const std::string& feature : info.without) always["WITHOUT_" + feature] = "1";
+  if (lacks("VK_FORMAT_R16G16_SNORM"))
+    always["rg16_snorm"] = "rg32f";  // storage images, see replaceFormats()
+  shaders = std::make_unique<ShaderCompiler>(directory, always);
   std::vector<std::byte> initial;
   if (!directory.empty()) {
     // The UUID changes with driver and device; the driver checks it again in the header of the blob.
@@ -282,11 +308,9 @@ uint32_t Device::Impl::memoryType(uint32_t bits, VkMemoryPropertyFlags flags) co
 Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->createInstanceAndMessenger(options);
   const std::vector<PhysicalDevice> devices = physicalDevices(impl_->instance);
-  impl_->createDevice(choose(devices, options.device));
+  impl_->createDevice(choose(devices, options.device), options.without);
   impl_->limit = options.memoryLimit;
   impl_->createCaches(options);
-  if (options.validation == Validation::GpuAssisted)
-    impl_->plainSets = std::make_unique<DescriptorPools>(handle());
 }
 
 Device::~Device() = default;
@@ -297,9 +321,10 @@ VkDevice Device::handle() const { return impl_->device; }
 VkQueue Device::queue() const { return impl_->queue; }
 uint32_t Device::queueFamily() const { return impl_->queueFamily; }
 const VkPhysicalDeviceProperties& Device::properties() const { return impl_->properties; }
-std::string Device::name() const { return impl_->info.name + ", " + impl_->info.driver; }
+std::string Device::name() const { return impl_->name; }
 bool Device::isCpu() const { return impl_->type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 const Features& Device::features() const { return impl_->features; }
+bool Device::lacks(std::string_view feature) const { return impl_->lacks(feature); }
 float Device::timestampPeriodNs() const { return impl_->properties.limits.timestampPeriod; }
 uint32_t Device::maxPushDescriptors() const { return impl_->maxPushDescriptors; }
 uint64_t Device::maxBufferBytes() const { return impl_->maxBuffer; }
@@ -381,14 +406,17 @@ VkSampler Device::sampler(VkFilter filter, VkSamplerAddressMode mode) {
 void Device::runOnce(const std::function<void(VkCommandBuffer)>& record) {
   // Both are released in any case; a command buffer that never ran may be freed.
   struct Scope {
+    Device& device;
     Impl& d;
     VkCommandBuffer cmd = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
     ~Scope() {
       vkDestroyFence(d.device, fence, nullptr);
-      if (cmd) vkFreeCommandBuffers(d.device, d.pool, 1, &cmd);
+      if (!cmd) return;
+      device.forget(cmd);
+      vkFreeCommandBuffers(d.device, d.pool, 1, &cmd);
     }
-  } scope{*impl_};
+  } scope{*this, *impl_};
   VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   allocate.commandPool = impl_->pool;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
@@ -396,9 +424,7 @@ void Device::runOnce(const std::function<void(VkCommandBuffer)>& record) {
   check(vkAllocateCommandBuffers(impl_->device, &allocate, &scope.cmd), "allocating a command buffer");
   const VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
   check(vkCreateFence(impl_->device, &fenceInfo, nullptr, &scope.fence), "creating a fence");
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(scope.cmd, &begin), "beginning a command buffer");
+  begin(scope.cmd);
   record(scope.cmd);
   check(vkEndCommandBuffer(scope.cmd), "ending a command buffer");
   VkCommandBufferSubmitInfo cmdInfo{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
@@ -432,11 +458,21 @@ void Device::endLabel(VkCommandBuffer cmd) const {
   if (impl_->endLabel) impl_->endLabel(cmd);
 }
 
+void Device::begin(VkCommandBuffer cmd) const {
+  VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(cmd, &info), "beginning a command buffer");
+  if (impl_->plainSets) impl_->plainSets->begin(cmd);
+}
+
+void Device::forget(VkCommandBuffer cmd) const {
+  if (impl_->plainSets) impl_->plainSets->forget(cmd);
+}
+
 void Device::pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
                                uint32_t set, std::span<const VkWriteDescriptorSet> writes) const {
   if (writes.empty()) return;
-  if (impl_->plainSets)
-    return impl_->plainSets->bind(cmd, point, layout, set, {writes.begin(), writes.end()});
+  if (impl_->plainSets) return impl_->plainSets->bind(cmd, point, layout, set, writes);
   impl_->pushDescriptorSet(cmd, point, layout, set, uint32_t(writes.size()), writes.data());
 }
 
@@ -444,6 +480,10 @@ bool Device::pushesDescriptors() const { return !impl_->plainSets; }
 
 void Device::announceLayout(VkPipelineLayout layout, VkDescriptorSetLayout set0) const {
   if (impl_->plainSets) impl_->plainSets->remember(layout, set0);
+}
+
+void Device::forgetLayout(VkPipelineLayout layout) const {
+  if (impl_->plainSets) impl_->plainSets->forget(layout);
 }
 
 std::vector<std::string> Device::validationMessages() const {

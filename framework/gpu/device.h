@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fovea::gpu {
@@ -19,6 +20,8 @@ enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
 
 struct DeviceOptions {
   std::string device;  // index or part of the name; "" selects the best one (discrete, integrated, CPU)
+  // Features among dispensableFeatures() to do without although the device may have them, as if it lacked them.
+  std::vector<std::string> without;
   Validation validation = Validation::Off;
   uint64_t memoryLimit = 0;  // bytes of device memory that fovea may use; 0 for what the device reports
   std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
@@ -34,13 +37,21 @@ struct DeviceInfo {
   std::string name, type, driver, apiVersion;
   uint64_t memoryBytes = 0;
   std::vector<std::string> missing;  // required features that it lacks; empty if usable
+  std::vector<std::string> without;  // dispensable features that it lacks
 };
 
 // All physical devices, usable or not; empty if there is no Vulkan driver.
 std::vector<DeviceInfo> listDevices();
 
+// Features, extensions and limits that are used where a device has them and replaced where it does not, by Vulkan's
+// names. Where one is lacking, all shaders are compiled with WITHOUT_ and its name defined.
+std::vector<std::string> dispensableFeatures();
+
 // Features beyond the required ones, which are enabled where present.
 struct Features {
+  bool geometryShader = false;        // gl_PrimitiveID in fragment shaders
+  bool shaderDrawParameters = false;  // gl_BaseInstance, gl_DrawID
+  bool shaderOutputLayer = false;     // gl_Layer from the vertex shader
   bool shaderInt64 = false;
   bool bufferInt64Atomics = false, sharedInt64Atomics = false;
   bool drawIndirectCount = false;
@@ -70,11 +81,13 @@ class Device {
   uint32_t queueFamily() const;
   const VkPhysicalDeviceProperties& properties() const;
   const VkPhysicalDeviceLimits& limits() const { return properties().limits; }
-  std::string name() const;  // e.g. "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6"; part of every report
-  bool isCpu() const;        // lavapipe and similar devices
+  // E.g. "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6", then what it was told to do without; part of every report.
+  std::string name() const;
+  bool isCpu() const;  // lavapipe and similar devices
   const Features& features() const;
+  bool lacks(std::string_view feature) const;  // one of dispensableFeatures()
   float timestampPeriodNs() const;
-  uint32_t maxPushDescriptors() const;
+  uint32_t maxPushDescriptors() const;  // in set 0
   uint64_t maxBufferBytes() const;
   VkPipelineCache pipelineCache() const;
   ShaderCompiler& shaders() const;
@@ -99,12 +112,18 @@ class Device {
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
   void beginLabel(VkCommandBuffer cmd, const char* name) const;
   void endLabel(VkCommandBuffer cmd) const;
+  // Begins a command buffer that is recorded anew for each submission. pushDescriptorSet needs it.
+  void begin(VkCommandBuffer cmd) const;
+  // To be called before a command buffer that was begun so is freed.
+  void forget(VkCommandBuffer cmd) const;
   void pushDescriptorSet(VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout,
                          uint32_t set, std::span<const VkWriteDescriptorSet> writes) const;
-  // False under GPU-assisted validation, where pushDescriptorSet binds ordinary sets instead. Set layouts must then be
-  // created without the push flag and be passed to announceLayout().
+  // False without VK_KHR_push_descriptor and under GPU-assisted validation, where pushDescriptorSet binds ordinary sets
+  // instead. Set layouts must then be created without the push flag.
   bool pushesDescriptors() const;
+  // To be called with the layout of set 0 once a pipeline layout exists, and before it is destroyed.
   void announceLayout(VkPipelineLayout layout, VkDescriptorSetLayout set0) const;
+  void forgetLayout(VkPipelineLayout layout) const;
 
   // Validation warnings and errors so far; tests fail if there are any.
   std::vector<std::string> validationMessages() const;

@@ -11,6 +11,10 @@ namespace fovea::gpu {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kTexelLimit = "maxTexelBufferElements";
+constexpr uint32_t kTexels = 1 << 24;  // less are too few for lists of voxels and for large scenes
+constexpr const char* kSnormAttachments = "VK_FORMAT_R16G16_SNORM";  // as colour attachments
+constexpr const char* kDispensableExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
 
 std::string versionText(uint32_t v) {
   return std::to_string(VK_API_VERSION_MAJOR(v)) + "." + std::to_string(VK_API_VERSION_MINOR(v)) + "." +
@@ -115,13 +119,31 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device,
   for (const auto& [name, value] : features.required()) {
     if (!*value) missing.push_back(name);
   }
+  if (findQueueFamily(device) < 0) missing.push_back("a queue with graphics, compute and timestamps");
+  return missing;
+}
+
+std::vector<std::string> missingDispensables(VkPhysicalDevice device) {
+  std::vector<std::string> missing;
+  FeatureChain features;
+  vkGetPhysicalDeviceFeatures2(device, &features.core);
+  for (const auto& [name, value] : features.dispensable()) {
+    if (!*value) missing.push_back(name);
+  }
   uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> extensions(count);
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  if (!hasExtension(extensions, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
-    missing.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-  if (findQueueFamily(device) < 0) missing.push_back("a queue with graphics, compute and timestamps");
+  for (const char* name : kDispensableExtensions) {
+    if (!hasExtension(extensions, name)) missing.push_back(name);
+  }
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  if (properties.limits.maxTexelBufferElements < kTexels) missing.emplace_back(kTexelLimit);
+  VkFormatProperties snorm;
+  vkGetPhysicalDeviceFormatProperties(device, VK_FORMAT_R16G16_SNORM, &snorm);
+  if (!(snorm.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT))
+    missing.emplace_back(kSnormAttachments);
   return missing;
 }
 
@@ -148,6 +170,7 @@ PhysicalDevice describe(VkPhysicalDevice handle, uint32_t index) {
       d.info.memoryBytes = std::max<uint64_t>(d.info.memoryBytes, memory.memoryHeaps[i].size);
   }
   d.info.missing = missingFeatures(handle, base);
+  if (d.info.missing.empty()) d.info.without = missingDispensables(handle);
   d.queueFamily = uint32_t(std::max(0, findQueueFamily(handle)));
   return d;
 }
@@ -195,7 +218,6 @@ FeatureChain::FeatureChain() {
 FeatureChain::List FeatureChain::required() {
   VkPhysicalDeviceFeatures& f = core.features;
   return {
-      {"geometryShader", &f.geometryShader},  // gl_PrimitiveID in fragment shaders
       {"shaderClipDistance", &f.shaderClipDistance},
       {"multiDrawIndirect", &f.multiDrawIndirect},
       {"drawIndirectFirstInstance", &f.drawIndirectFirstInstance},
@@ -204,10 +226,8 @@ FeatureChain::List FeatureChain::required() {
       {"independentBlend", &f.independentBlend},
       {"imageCubeArray", &f.imageCubeArray},
       {"shaderStorageImageExtendedFormats", &f.shaderStorageImageExtendedFormats},
-      {"shaderDrawParameters", &v11.shaderDrawParameters},  // gl_BaseInstance, gl_DrawID
       {"hostQueryReset", &v12.hostQueryReset},
       {"timelineSemaphore", &v12.timelineSemaphore},
-      {"shaderOutputLayer", &v12.shaderOutputLayer},  // gl_Layer from the vertex shader
       {"scalarBlockLayout", &v12.scalarBlockLayout},
       {"dynamicRendering", &v13.dynamicRendering},
       {"synchronization2", &v13.synchronization2},
@@ -217,10 +237,34 @@ FeatureChain::List FeatureChain::required() {
   };
 }
 
+FeatureChain::List FeatureChain::dispensable() {
+  return {{"geometryShader", &core.features.geometryShader},
+          {"shaderInt64", &core.features.shaderInt64},
+          {"shaderDrawParameters", &v11.shaderDrawParameters},
+          {"shaderOutputLayer", &v12.shaderOutputLayer}};
+}
+
+std::vector<std::string> dispensableFeatures() {
+  std::vector<std::string> names;
+  FeatureChain features;
+  for (const auto& [name, value] : features.dispensable()) names.push_back(name);
+  names.insert(names.end(), std::begin(kDispensableExtensions), std::end(kDispensableExtensions));
+  names.emplace_back(kTexelLimit);
+  names.emplace_back(kSnormAttachments);
+  return names;
+}
+
+void requireDispensable(const std::string& feature) {
+  const std::vector<std::string> names = dispensableFeatures();
+  if (std::find(names.begin(), names.end(), feature) != names.end()) return;
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  throw Error(ExitCode::Usage, "fovea cannot do without `" + feature + "`", "it can do without " + list);
+}
+
 FeatureChain::List FeatureChain::optional() {
   VkPhysicalDeviceFeatures& f = core.features;
   return {
-      {"shaderInt64", &f.shaderInt64},
       {"shaderFloat64", &f.shaderFloat64},
       {"shaderInt16", &f.shaderInt16},
       {"samplerAnisotropy", &f.samplerAnisotropy},

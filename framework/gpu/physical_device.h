@@ -23,8 +23,12 @@ struct FeatureChain {
 
   using List = std::vector<std::pair<const char*, VkBool32*>>;
   List required();
+  List dispensable();  // those of dispensableFeatures() that are features in the strict sense
   List optional();
 };
+
+// Throws Error(Usage) listing dispensableFeatures() if it is none of them.
+void requireDispensable(const std::string& feature);
 
 struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;

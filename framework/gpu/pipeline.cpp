@@ -52,6 +52,15 @@ void checkWorkGroup(const Device& device, const CompiledShader& shader) {
               "choose a smaller local_size");
 }
 
+void checkFeatures(const Device& device, const CompiledShader& shader) {
+  for (const std::string& feature : shader.reflection.features) {
+    if (!device.lacks(feature)) continue;
+    throw Error(ExitCode::NoDevice,
+                "shader `" + shader.file + "` uses " + feature + ", which `" + device.name() + "` lacks",
+                "replace it where WITHOUT_" + feature + " is defined, as common/device/vertex.glsl does");
+  }
+}
+
 // The fixed-function state. It points into itself.
 struct GraphicsState {
   explicit GraphicsState(const GraphicsPipelineDesc& desc);
@@ -132,6 +141,7 @@ VkDescriptorType descriptorType(BindingKind kind) {
 Pipeline::Pipeline(Device& device, const ComputePipelineDesc& desc)
     : device_(&device), name_(desc.shader->file) {
   checkWorkGroup(device, *desc.shader);
+  checkFeatures(device, *desc.shader);
   MergedStages merged = mergeStages({desc.shader});
   interface_ = std::move(merged.interface);
   try {
@@ -156,6 +166,7 @@ Pipeline::Pipeline(Device& device, const GraphicsPipelineDesc& desc)
     shaders.push_back(desc.fragment);
     name_ += " + " + desc.fragment->file;
   }
+  for (const auto& shader : shaders) checkFeatures(device, *shader);
   MergedStages merged = mergeStages(shaders);
   interface_ = std::move(merged.interface);
   try {
@@ -255,6 +266,7 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
 
 void Pipeline::destroy() {
   if (!device_) return;
+  device_->forgetLayout(layout_);
   vkDestroyPipeline(device_->handle(), handle_, nullptr);
   vkDestroyPipelineLayout(device_->handle(), layout_, nullptr);
   vkDestroyDescriptorSetLayout(device_->handle(), setLayout_, nullptr);

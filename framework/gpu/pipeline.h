@@ -1,6 +1,6 @@
-// Compute and graphics pipelines whose layout comes from reflection. Set 0 belongs to the pass and is pushed
-// (VK_KHR_push_descriptor); set 1 is shared by all passes of a frame. Layouts differ in set 0, so set 1 must be bound
-// again after each change of pipeline.
+// Compute and graphics pipelines whose layout comes from reflection. Set 0 belongs to the pass and is written for each
+// command (Device::pushDescriptorSet); set 1 is shared by all passes of a frame. Layouts differ in set 0, so set 1 must
+// be bound again after each change of pipeline.
 #pragma once
 
 #include <vulkan/vulkan.h>

@@ -11,10 +11,7 @@
 
 namespace fovea::session {
 
-std::unique_ptr<gpu::Device> openDevice(const std::string& name, bool validation) {
-  gpu::DeviceOptions options;
-  options.device = name;
-  if (validation) options.validation = gpu::Validation::On;
+std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
   auto device = std::make_unique<gpu::Device>(options);
   for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
   return device;
@@ -87,6 +84,7 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
                 "render a smaller picture");
   graph::BoundGraph made =
       graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages);
+  graph::replaceFormats(device_, made);
   for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
   auto bound = std::make_shared<const graph::BoundGraph>(std::move(made));
   if (options_.readback) readback_ = options_.readback(*bound);

@@ -16,9 +16,8 @@
 
 namespace fovea::session {
 
-// Opens a device and lets it look for shaders in the data folders. `name` is a number or part of the name; "" selects
-// the best device.
-std::unique_ptr<gpu::Device> openDevice(const std::string& name, bool validation = false);
+// Opens a device and lets it look for shaders in the data folders.
+std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options);
 
 // The environment to which a graph is bound: the views of every frame, the device's limits (unknown if `device` is
 // nullptr) and the scene's quantities.

@@ -27,7 +27,10 @@ Session::Session(const std::string& graph, const scene::Scene& scene, const Sess
   Registry::global().addFoldersFromEnvironment();
   Registry::global().addFolderBeside(findGraph(graph, load.searchPaths));
   const Description description = graph::load(graph, load, impl_->warnings);
-  impl_->device = session::openDevice(options.device, options.validation);
+  impl_->device =
+      session::openDevice({.device = options.device,
+                           .without = options.without,
+                           .validation = options.validation ? gpu::Validation::On : gpu::Validation::Off});
   impl_->geometry = scene::flatten(scene);
   session::GraphRun::Options run;
   run.size = options.size;

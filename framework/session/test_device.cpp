@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 #include "fovea/error.h"
@@ -37,6 +38,10 @@ gpu::DeviceOptions testDeviceOptions() {
   gpu::DeviceOptions options;
   options.validation = validationFromEnvironment();
   if (const char* name = std::getenv("FOVEA_TEST_DEVICE")) options.device = name;
+  if (const char* features = std::getenv("FOVEA_TEST_WITHOUT")) {
+    std::istringstream list(features);
+    for (std::string feature; std::getline(list, feature, ',');) options.without.push_back(feature);
+  }
   // Under CTest each test is a process of its own, and a warm shader cache saves most of its time.
   options.cacheDirectory =
       std::filesystem::temp_directory_path() / ("fovea-tests-" + std::to_string(getuid()));

@@ -9,7 +9,7 @@
 namespace fovea::test {
 
 // Created on first use with the validation that FOVEA_TEST_VALIDATION selects: off, on, sync (the default), gpu or
-// best. FOVEA_TEST_DEVICE selects a device other than the best one.
+// best. FOVEA_TEST_DEVICE selects a device other than the best one, FOVEA_TEST_WITHOUT lists what to do without.
 gpu::Device& testDevice();
 
 // The options that testDevice() is created with, for tests that need a device of their own.

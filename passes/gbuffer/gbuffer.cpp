@@ -122,8 +122,7 @@ class GBuffer : public Pass {
     ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, draw_, [&] {
       for (const scene::DrawRun& run : visible_)
         ctx.use(draw_[size_t(run.kind)])
-            .constant("firstTriangle", run.firstTriangle)
-            .drawIndexed(gpu.indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
+            .drawTriangles(gpu.indices().handle(), run.firstTriangle, run.triangleCount);
     });
     if (veiled_) drawTint(ctx);
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
@@ -141,9 +140,8 @@ class GBuffer : public Pass {
     ctx.render({{"tint", Attachment::Load::Clear}}, &depth, std::span(&tint_, 1), [&] {
       for (const scene::DrawRun& run : visible_)
         if (run.kind == scene::DrawKind::Tested)
-          ctx.use(tint_)
-              .constant("firstTriangle", run.firstTriangle)
-              .drawIndexed(ctx.frame().gpu->indices().handle(), 3 * run.triangleCount, 3 * run.firstTriangle);
+          ctx.use(tint_).drawTriangles(ctx.frame().gpu->indices().handle(), run.firstTriangle,
+                                       run.triangleCount);
     });
   }
 

@@ -7,7 +7,6 @@
 
 #include "fovea/error.h"
 #include "fovea/pass.h"
-#include "framework/gpu/device.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "shaders/manage/records.h"
@@ -167,9 +166,6 @@ void Manage::prepare(PrepareContext& ctx) {
   require(ctx, "vpls", ctx.count("list"), "set `count` to the slots of the list that comes in");
   require(ctx, "vpl_importance", ctx.count("list"), "wire the importances of `vpls`");
   require(ctx, "candidate_importance", candidates, "wire the importances of `candidates`");
-  if (!ctx.device().features().shaderInt64)
-    throw Error(ExitCode::NoDevice,
-                "pass manage needs 64-bit integers in shaders (shaderInt64), which the device lacks");
 }
 
 FOVEA_PASS(Manage);

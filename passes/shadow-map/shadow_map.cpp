@@ -91,10 +91,8 @@ class ShadowMap : public Pass {
     first = std::max(first, run.firstTriangle);
     end = std::min(end, run.firstTriangle + run.triangleCount);
     if (first >= end) return;
-    const bool tested = run.kind == scene::DrawKind::Tested;
-    Commands commands = ctx.use(draw_[tested]);
-    if (tested) commands.constant("firstTriangle", first);
-    commands.drawIndexed(ctx.frame().gpu->indices().handle(), 3 * (end - first), 3 * first, layers);
+    ctx.use(draw_[run.kind == scene::DrawKind::Tested])
+        .drawTriangles(ctx.frame().gpu->indices().handle(), first, end - first, layers);
   }
 
   std::vector<scene::Light> lights_;      // lights for which `still` is drawn

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/gpu/device.h"
+
 namespace fovea::cli {
 
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
@@ -28,6 +30,16 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
       ->type_name("NAME=VALUE");
   addPluginOption(command, options.plugins);
   addPassesOption(command, options.passes);
+}
+
+void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without) {
+  command.add_option("--device", device, "Vulkan device by number or part of its name; see `fovea devices`")
+      ->type_name("D");
+  std::string names;
+  for (const std::string& name : gpu::dispensableFeatures()) names += (names.empty() ? "" : ", ") + name;
+  addList(command, "--without", without,
+          "Work as on a device without this feature; may be repeated:\n" + names)
+      ->type_name("FEATURE");
 }
 
 void addEnvironmentOption(CLI::App& command, std::string& file) {

@@ -16,6 +16,8 @@ void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
 // GRAPH, --set, --plugin, --passes
 void addGraphOptions(CLI::App& command, GraphOptions& options);
+// --device, --without
+void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without);
 // --environment
 void addEnvironmentOption(CLI::App& command, std::string& file);
 // --gaze, --radius, --layer, --exposure, --json

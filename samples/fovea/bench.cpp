@@ -46,10 +46,7 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
   command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")
       ->type_name("N")
       ->check(CLI::Range(1u, 1000u).description(""));
-  command
-      .add_option("--device", options.device,
-                  "Vulkan device by number or part of its name; see `fovea devices`")
-      ->type_name("D");
+  addDeviceOptions(command, options.device, options.without);
   addPluginOption(command, options.plugins);
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
@@ -106,6 +103,7 @@ void addBench(CLI::App& program, Action& action) {
         throw Error(ExitCode::Usage,
                     "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
       passes->output = options->folder, passes->size = options->size, passes->device = options->device;
+      passes->without = options->without;
       passes->plugins = options->plugins, passes->quiet = options->quiet;
       return benchPasses(*passes);
     };

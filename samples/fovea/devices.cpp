@@ -27,6 +27,7 @@ ExitCode listAll() {
     fmt::print("{:>2}  {:<{}}  {:<{}}  {:<8}  {:>9}  {}\n", d.index, d.name, name, d.type, type, d.apiVersion,
                graph::printBytes(d.memoryBytes), d.driver);
     if (!d.missing.empty()) fmt::print("    unusable, it lacks {}\n", quoteList(d.missing));
+    if (!d.without.empty()) fmt::print("    works without {}\n", quoteList(d.without));
   }
   return ExitCode::Ok;
 }

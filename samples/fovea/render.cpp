@@ -35,7 +35,7 @@ struct RenderOptions {
   GraphOptions graph;
   std::string scene, environment, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
   double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0;
-  std::vector<std::string> outputs;
+  std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
   bool quiet = false, validation = false, showFovea = false;
 };
@@ -181,7 +181,10 @@ void Render::useFoveaAngle(const graph::BoundGraph& bound) {
 }
 
 void Render::buildPlan() {
-  device_ = session::openDevice(options_.device, options_.validation);
+  device_ =
+      session::openDevice({.device = options_.device,
+                           .without = options_.without,
+                           .validation = options_.validation ? gpu::Validation::On : gpu::Validation::Off});
   session::GraphRun::Options run;
   run.size = size_;
   run.seed = options_.seed;
@@ -420,10 +423,7 @@ void addRender(CLI::App& program, Action& action) {
       ->type_name("O,I,U,D");
   command->add_flag("--show-fovea", options->showFovea,
                     "Draw the foveal circle and a cross where the eye looks onto .png pictures");
-  command
-      ->add_option("--device", options->device,
-                   "Vulkan device by number or part of its name; see `fovea devices`")
-      ->type_name("D");
+  addDeviceOptions(*command, options->device, options->without);
   command->add_flag("--validation", options->validation, "Run under the Vulkan validation layers (slow)");
   command->callback([options, &action] { action = [options] { return Render(*options).run(); }; });
 }

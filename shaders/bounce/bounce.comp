@@ -1,4 +1,5 @@
 // One more bounce on every voxel side: L' = L_direct + rho E_cones / pi.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #define CONE_GATHER
@@ -8,7 +9,7 @@ layout(local_size_x = 64) in;
 
 uniform usamplerBuffer voxelsInfo;
 #if HAS_DIRECT
-uniform samplerBuffer direct;
+LARGE_TEXELS(vec4, direct);
 #else
 #define direct radiance
 #endif
@@ -29,7 +30,7 @@ void main() {
     uvec3 cell = uvec3(max(worldToVoxel(grid, side.position), vec3(0.0)));
     uint bits = randomStream(kBounce, cell.x, cell.y, 2u * cell.z + (number & 1u));
     vec3 irradiance = gatherHemisphere(grid, side.position, side.normal, 2.0 * kPi * uniformFloat(bits));
-    result = texelFetch(direct, int(number)).rgb + side.reflectance * irradiance / kPi;
+    result = texelOf(direct, int(number)).rgb + side.reflectance * irradiance / kPi;
   }
   bounced[number] = vec4(result, dot(result, vec3(0.2126, 0.7152, 0.0722)));
 }

@@ -2,6 +2,7 @@
 // voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
 // first takes an eye path at random, and if that ends on a surface that shines or is lit mostly by such, the
 // candidate lies there. Such surfaces are often smaller than voxels, whose averages would all be the same few places.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/diffuse_bounce.glsl"
@@ -20,7 +21,7 @@ uniform texture2D gbuffer2Normal;
 uniform texture2D gbuffer2Face;
 #endif
 #if HAS_RADIANCE
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 #endif
 #if TRACED
 #include "common/eye_paths.glsl"
@@ -82,7 +83,7 @@ Candidate candidateOn(uint number, vec3 place) {
   candidate.object = side.object;
   candidate.reflectance = side.reflectance;
 #if HAS_RADIANCE
-  candidate.luminance = texelFetch(radiance, int(number)).w;
+  candidate.luminance = texelOf(radiance, int(number)).w;
 #endif
   uint object = uint(side.object);
   if (objectDeforms(object)) {  // its place on the surface does not change

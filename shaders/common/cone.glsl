@@ -5,6 +5,7 @@
 #ifndef FOVEA_CONE_GLSL
 #define FOVEA_CONE_GLSL
 
+#include "common/device/texels.glsl"
 #include "common/voxel.glsl"
 
 uniform texture3D mipsColor;
@@ -110,7 +111,7 @@ const float kHeightPerCell = 3.0;
 #include "common/paraboloid.glsl"
 #include "common/voxel_trace.glsl"
 
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 
 // Irradiance on a surface from its surroundings (Eq. 3 of the paper; passes/README.md, radiance), with six
 // cones over the hemisphere:
@@ -129,7 +130,7 @@ vec3 gatherHemisphere(VoxelGrid grid, vec3 position, vec3 normal, float turn) {
     vec3 direction = normalize(frame_ * vec3(c * local.x - s * local.y, s * local.x + c * local.y, local.z));
     float start = kOwnReach / local.z;
     VoxelHit hit = traceVoxels(grid, position, direction, normal, (start + 2.0 * kOwnReach) * mips.cell);
-    sum += local.z * (hit.side != kNoSide ? texelFetch(radiance, int(hit.side)).rgb
+    sum += local.z * (hit.side != kNoSide ? texelOf(radiance, int(hit.side)).rgb
                                           : coneTrace(mips, origin, direction, start, local.z / kHeightPerCell).color.rgb);
   }
   return kPi * sum / kHemisphereCosines;

@@ -13,7 +13,7 @@ struct TextureCoordinates {
 // is 0, no material has any but those of base colour and emission, with the first coordinates.
 #if SURFACE_TEXTURES
 vec4 surfaceTexture(int texel, TextureCoordinates at) {
-  vec4 place = texelFetch(sceneMaterials, texel), result = vec4(1.0);
+  vec4 place = texelOf(sceneMaterials, texel), result = vec4(1.0);
   bool second = (uint(place.w) & kTextureSecondSet) != 0u;
   // A CPU device skips a loop of zero turns, but not a branch. Few materials have most of the textures.
   for (int turns = place.x < 0.0 ? 0 : 1; turns > 0; --turns)
@@ -31,8 +31,8 @@ TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
   for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz) + 1;
-    second = mat3x2(texelFetch(sceneMaterials, texel.x).xy, texelFetch(sceneMaterials, texel.y).xy,
-                    texelFetch(sceneMaterials, texel.z).xy) * weights;
+    second = mat3x2(texelOf(sceneMaterials, texel.x).xy, texelOf(sceneMaterials, texel.y).xy,
+                    texelOf(sceneMaterials, texel.z).xy) * weights;
   }
   return TextureCoordinates(uv, second);
 }
@@ -41,8 +41,8 @@ vec3 vertexColor(uvec4 triangle, vec3 weights) {
   vec3 color = vec3(1.0);
   for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz);
-    color = mat3(texelFetch(sceneMaterials, texel.x).rgb, texelFetch(sceneMaterials, texel.y).rgb,
-                 texelFetch(sceneMaterials, texel.z).rgb) * weights;
+    color = mat3(texelOf(sceneMaterials, texel.x).rgb, texelOf(sceneMaterials, texel.y).rgb,
+                 texelOf(sceneMaterials, texel.z).rgb) * weights;
   }
   return color;
 }
@@ -60,11 +60,11 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
                   TextureCoordinates at) {
   vec3 bent = normal;
   bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u &&
-                texelFetch(sceneMaterials, surface + kNormalTexture).x >= 0.0;
+                texelOf(sceneMaterials, surface + kNormalTexture).x >= 0.0;
   for (int turns = mapped ? 1 : 0; turns > 0; --turns) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
-    vec4 a = texelFetch(sceneMaterials, first);
-    vec3 b = texelFetch(sceneMaterials, first + 1).xyz, c = texelFetch(sceneMaterials, first + 2).xyz;
+    vec4 a = texelOf(sceneMaterials, first);
+    vec3 b = texelOf(sceneMaterials, first + 1).xyz, c = texelOf(sceneMaterials, first + 2).xyz;
     vec3 across = cross(edgeB, edgeC);
     float area = length(across);
     across *= area > 0.0 ? inversesqrt(area) : 0.0;
@@ -74,7 +74,7 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
     float d = length(t);
     vec3 tangent = t / max(d, 1e-6), bitangent = a.w * cross(normal, tangent);
     vec3 m = 2.0 * surfaceTexture(surface + kNormalTexture, at).rgb - 1.0;
-    m.xy *= texelFetch(sceneMaterials, surface + 2).y;
+    m.xy *= texelOf(sceneMaterials, surface + 2).y;
     vec3 n = side * m.x * tangent + m.y * bitangent + m.z * normal;
     float size = length(n);
     bent = d > 1e-6 && size > 1e-6 ? n / size : normal;
@@ -102,8 +102,8 @@ FullSurface brighter(FullSurface s, vec3 factor) {
 
 FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
-  vec4 base = texelFetch(sceneMaterials, surface), specular = texelFetch(sceneMaterials, surface + 1);
-  vec4 factors = texelFetch(sceneMaterials, surface + 2), coat = texelFetch(sceneMaterials, surface + 3);
+  vec4 base = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1);
+  vec4 factors = texelOf(sceneMaterials, surface + 2), coat = texelOf(sceneMaterials, surface + 3);
   vec3 color = base.rgb * colorTexture(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
   color = min(color, 1.0);
   vec4 metallicRoughness = surfaceTexture(surface + kMetallicRoughnessTexture, at);
@@ -133,7 +133,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
     g.roughness = mix(roughness, coatRoughness, reflects / max(reflects + below, 1e-6));
   }
 
-  vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
+  vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
   for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
     emission *= colorTexture(first + kEmissionTexture, at).rgb;
   if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);

@@ -54,7 +54,7 @@ MirrorAlbedo mirrorAlbedoOf(vec4 texel) { return MirrorAlbedo(texel.x, texel.y, 
 vec4 albedoRow(int row, float column) {
   float x = clamp(column, 0.0, 1.0) * float(kAlbedoSide - 1u), first = min(floor(x), float(kAlbedoSide - 2u));
   int i = int(frame.firstAlbedo) + row * int(kAlbedoSide) + int(first);
-  return mix(texelFetch(sceneMaterials, i), texelFetch(sceneMaterials, i + 1), x - first);
+  return mix(texelOf(sceneMaterials, i), texelOf(sceneMaterials, i + 1), x - first);
 }
 
 MirrorAlbedo mirrorAlbedo(float cosine, float roughness) {

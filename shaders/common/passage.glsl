@@ -14,14 +14,14 @@ const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7
 // What glass makes of the light that goes through it.
 vec3 glassColor(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
-  return min(texelFetch(sceneMaterials, surface).rgb * sampleSceneTexture(first + kColorTexture, uv).rgb, 1.0);
+  return min(texelOf(sceneMaterials, surface).rgb * sampleSceneTexture(first + kColorTexture, uv).rgb, 1.0);
 }
 
 // The share of light that goes straight through thin glass; materials are full. cosine: between light and normal.
 float passage(uint material, vec2 uv, float cosine) {
   int surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
-  vec4 color = texelFetch(sceneMaterials, surface), specular = texelFetch(sceneMaterials, surface + 1),
-       factors = texelFetch(sceneMaterials, surface + 2),
+  vec4 color = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1),
+       factors = texelOf(sceneMaterials, surface + 2),
        metalAndRoughness = sampleSceneTexture(surface + kMetallicRoughnessTexture, uv);
   float enters = factors.z * sampleSceneTexture(surface + kTransmissionTexture, uv).r *
                  (1.0 - color.a * metalAndRoughness.b);
@@ -35,10 +35,10 @@ float passage(uint material, vec2 uv, float cosine) {
 // at one half.
 bool stops(uint material, vec2 uv, float cosine, float chance) {
   int first = int(material) * kMaterialTexels;
-  float cutoff = texelFetch(sceneMaterials, first + 1).a;
+  float cutoff = texelOf(sceneMaterials, first + 1).a;
   if (cutoff == 0.0) return true;
-  uint flags = uint(texelFetch(sceneMaterials, first + kColorTexture).w);
-  float alpha = texelFetch(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  float alpha = texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
   float stopped = (flags & kMaterialBlended) != 0u ? alpha : float(alpha >= cutoff);
   // A CPU device skips a loop of zero turns, but not a branch. Few materials are glass.
   for (int turns = (flags & kMaterialTransmits) != 0u ? 1 : 0; turns > 0; --turns)

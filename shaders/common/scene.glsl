@@ -2,6 +2,7 @@
 #ifndef FOVEA_SCENE_GLSL
 #define FOVEA_SCENE_GLSL
 
+#include "common/device/texels.glsl"
 #include "common/octahedral.glsl"
 #include "common/records/scene.h"
 
@@ -11,27 +12,27 @@ layout(set = 1, binding = 0) uniform FrameUniform { FrameBlock frame; };
 layout(set = 1, binding = 1) uniform ViewUniform { ViewBlock view; };
 layout(set = 1, binding = 2) uniform LightUniform { LightRecord lights[kMaxLights]; };
 
-layout(set = 1, binding = 3) uniform usamplerBuffer sceneTriangles;     // xyz: vertices, w: material | object << 16
-layout(set = 1, binding = 4) uniform samplerBuffer scenePositions;      // xyz world
-layout(set = 1, binding = 5) uniform samplerBuffer sceneAttributes;     // xy: octahedral normal, zw: uv
-layout(set = 1, binding = 6) uniform samplerBuffer sceneMaterials;      // MaterialRecord
+layout(set = 1, binding = 3) LARGE_TEXELS(uvec4, sceneTriangles);     // xyz: vertices, w: material | object << 16
+layout(set = 1, binding = 4) LARGE_TEXELS(vec4, scenePositions);      // xyz world
+layout(set = 1, binding = 5) LARGE_TEXELS(vec4, sceneAttributes);     // xy: octahedral normal, zw: uv
+layout(set = 1, binding = 6) LARGE_TEXELS(vec4, sceneMaterials);      // MaterialRecord
 layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
 
-layout(set = 1, binding = 8) uniform samplerBuffer sceneObjects;        // ObjectRecord
+layout(set = 1, binding = 8) LARGE_TEXELS(vec4, sceneObjects);        // ObjectRecord
 
-layout(set = 1, binding = 9) uniform samplerBuffer scenePrevious;       // xyz world, last frame, vertices that may move
+layout(set = 1, binding = 9) LARGE_TEXELS(vec4, scenePrevious);       // xyz world, last frame, vertices that may move
 layout(set = 1, binding = 10) uniform sampler2D sceneEnvironment;       // equirectangular map, one texel if there is none
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------
 
-uvec4 sceneTriangle(uint triangle) { return texelFetch(sceneTriangles, int(triangle)); }
-vec3 scenePosition(uint vertex) { return texelFetch(scenePositions, int(vertex)).xyz; }
+uvec4 sceneTriangle(uint triangle) { return texelOf(sceneTriangles, int(triangle)); }
+vec3 scenePosition(uint vertex) { return texelOf(scenePositions, int(vertex)).xyz; }
 vec3 scenePreviousPosition(uint vertex) {  // in the previous frame
   if (vertex < frame.firstMovingVertex) return scenePosition(vertex);
-  return texelFetch(scenePrevious, int(vertex - frame.firstMovingVertex)).xyz;
+  return texelOf(scenePrevious, int(vertex - frame.firstMovingVertex)).xyz;
 }
-vec3 sceneNormal(uint vertex) { return octDecode(texelFetch(sceneAttributes, int(vertex)).xy); }
-vec2 sceneUv(uint vertex) { return texelFetch(sceneAttributes, int(vertex)).zw; }
+vec3 sceneNormal(uint vertex) { return octDecode(texelOf(sceneAttributes, int(vertex)).xy); }
+vec2 sceneUv(uint vertex) { return texelOf(sceneAttributes, int(vertex)).zw; }
 uint materialOf(uvec4 triangle) { return triangle.w & 0xffffu; }
 uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 
@@ -42,17 +43,17 @@ const int kObjectTexels = 10;
 
 mat4x3 objectRows(uint object, int row) {
   int i = int(object) * kObjectTexels + row;
-  return transpose(mat3x4(texelFetch(sceneObjects, i), texelFetch(sceneObjects, i + 1), texelFetch(sceneObjects, i + 2)));
+  return transpose(mat3x4(texelOf(sceneObjects, i), texelOf(sceneObjects, i + 1), texelOf(sceneObjects, i + 2)));
 }
 mat4x3 objectTransform(uint object) { return objectRows(object, 0); }
 mat4x3 previousObjectTransform(uint object) { return objectRows(object, 3); }
 mat4x3 inverseObjectTransform(uint object) { return objectRows(object, 6); }
-bool objectVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
-bool objectWasVisible(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
+bool objectVisible(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).x > 0.5; }
+bool objectWasVisible(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).y > 0.5; }
 
 // The vertices of the object move individually (morph targets, joints), so a point keeps its place
 // in a triangle instead.
-bool objectDeforms(uint object) { return texelFetch(sceneObjects, int(object) * kObjectTexels + 9).z > 0.5; }
+bool objectDeforms(uint object) { return texelOf(sceneObjects, int(object) * kObjectTexels + 9).z > 0.5; }
 
 vec3 fromObject(uint object, vec3 position) { return objectTransform(object) * vec4(position, 1.0); }
 vec3 toObject(uint object, vec3 position) { return inverseObjectTransform(object) * vec4(position, 1.0); }
@@ -120,9 +121,9 @@ struct SurfacePoint {    // a material looked up at a point
 
 Material loadMaterial(uint material) {
   int first = int(material) * kMaterialTexels;
-  vec4 color = texelFetch(sceneMaterials, first);
-  vec4 emission = texelFetch(sceneMaterials, first + 1);
-  uint flags = uint(texelFetch(sceneMaterials, first + kColorTexture).w);
+  vec4 color = texelOf(sceneMaterials, first);
+  vec4 emission = texelOf(sceneMaterials, first + 1);
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
   return Material(color.rgb, color.a, emission.rgb, emission.a, (flags & kMaterialDoubleSided) != 0u);
 }
 
@@ -155,10 +156,10 @@ vec4 sceneTexel(ivec3 p, bool linear) {
 // Bilinear filtering at LOD 0, with texels decoded before they are filtered; the same as scene::sampleTexture.
 // `texel` is the first of the three texels that describe the texture.
 vec4 sampleSceneTexture(int texel, vec2 uv) {
-  vec4 place = texelFetch(sceneMaterials, texel);
+  vec4 place = texelOf(sceneMaterials, texel);
   if (place.x < 0.0) return vec4(1.0);
-  vec4 extent = texelFetch(sceneMaterials, texel + 1);
-  vec4 axes = texelFetch(sceneMaterials, texel + 2);
+  vec4 extent = texelOf(sceneMaterials, texel + 1);
+  vec4 axes = texelOf(sceneMaterials, texel + 2);
   vec2 p = (axes.xy * uv.x + axes.zw * uv.y + extent.zw) * extent.xy - 0.5;
   p = mix(clamp(p, vec2(-1e9), vec2(1e9)), vec2(0.0), isnan(p));
   vec2 base = floor(p);
@@ -177,12 +178,12 @@ vec4 sampleSceneTexture(int texel, vec2 uv) {
 // rgb: diffuse reflectance, a: alpha.
 vec4 materialReflectance(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
-  return texelFetch(sceneMaterials, first) * sampleSceneTexture(first + kColorTexture, uv);
+  return texelOf(sceneMaterials, first) * sampleSceneTexture(first + kColorTexture, uv);
 }
 
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
-  vec3 emission = texelFetch(sceneMaterials, first + 1).rgb;
+  vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
   // A CPU device skips a loop of zero turns, but not a branch. Few surfaces emit.
   for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
     emission *= sampleSceneTexture(first + kEmissionTexture, uv).rgb;

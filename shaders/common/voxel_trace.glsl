@@ -4,13 +4,14 @@
 #ifndef FOVEA_VOXEL_TRACE_GLSL
 #define FOVEA_VOXEL_TRACE_GLSL
 
+#include "common/device/texels.glsl"
 #include "common/voxel.glsl"
 #include "common/vpl.glsl"
 
 // An image rather than a texture, because on lavapipe a load from a texture costs several times as much.
 layout(r32ui) uniform readonly uimage3D voxelsIndex;
 layout(r32ui) uniform readonly uimage3D voxelsOccupied;
-uniform samplerBuffer voxelsSurface;
+LARGE_TEXELS(vec4, voxelsSurface);
 
 // The grid of the connected bundle.
 VoxelGrid voxelsGrid() { return voxelGrid(uint(imageSize(voxelsIndex).x)); }
@@ -20,8 +21,8 @@ uint voxelAt(VoxelGrid grid, ivec3 cell) { return insideGrid(grid, cell) ? image
 
 VoxelSide loadSide(uint side) {
   int first = 4 * int(side);
-  vec4 a = texelFetch(voxelsSurface, first), b = texelFetch(voxelsSurface, first + 1),
-       c = texelFetch(voxelsSurface, first + 2), d = texelFetch(voxelsSurface, first + 3);
+  vec4 a = texelOf(voxelsSurface, first), b = texelOf(voxelsSurface, first + 1),
+       c = texelOf(voxelsSurface, first + 2), d = texelOf(voxelsSurface, first + 3);
   return VoxelSide(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
 }
 

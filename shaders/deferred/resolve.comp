@@ -27,6 +27,7 @@
 // missing in the window are taken from the pixel's block, or from the base if missing there too), the pixels outside
 // by their base. Towards its border a shaded patch thus blends into its surroundings, without the noise of an
 // incomplete set of subsets.
+#include "common/device/texels.glsl"
 #include "common/same_surface.glsl"
 #include "deferred/records.h"
 #if MASKED
@@ -60,7 +61,7 @@ layout(std430) buffer Counters { uint counters[]; };  // incomplete, -, shaded
 #if MASKED
 #elif EDGES
 uniform usamplerBuffer edges;       // groups x 1 x 1; w: 1 + pixels listed
-uniform usamplerBuffer edgePixels;  // x | y << 16
+LARGE_TEXELS(uint, edgePixels);  // x | y << 16
 #else
 layout(std430) buffer Edges { uint x, y, z, end; } edges;
 layout(std430) writeonly buffer EdgePixels { uint list[]; } edgePixels;
@@ -403,7 +404,7 @@ const int kItems = 1;
 ivec2 itemAt(int k, ivec2 size) {
   uint item = gl_GlobalInvocationID.x;
   if (item + 1u >= texelFetch(edges, 0).w) return size;
-  uint where = texelFetch(edgePixels, int(item)).x;
+  uint where = texelOf(edgePixels, int(item)).x;
   return ivec2(where & 0xffffu, where >> 16u);
 }
 #endif

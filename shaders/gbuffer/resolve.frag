@@ -70,7 +70,7 @@ void main() {
   if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
   // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
-  uint flags = uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
+  uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
   bool glass = (flags & kMaterialTransmits) != 0u;
   for (int turns = glass ? 1 : 0; turns > 0; --turns)
     surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
@@ -106,6 +106,9 @@ void main() {
   gbufferPosition = background ? vec4(0.0) : vec4(position, distance(position, view.eye));
   gbufferNormal = background ? vec4(vec3(0.0), min(alphas.x, 0.0)) : vec4(normal, alphas.x);
   gbufferFace = background ? vec2(0.0) : octEncode(face);
+#ifdef WITHOUT_VK_FORMAT_R16G16_SNORM
+  gbufferFace = unpackSnorm2x16(packSnorm2x16(gbufferFace));
+#endif
   gbufferAlbedo = background ? vec4(0.0) : vec4(albedo, alphas.y);
   gbufferEmission = vec4(min(emission, kMaxHalf), alphas.z);
   gbufferId = background ? kNothing : triangle.w;

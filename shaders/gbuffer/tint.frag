@@ -1,17 +1,16 @@
 // What lets light through in front of what is visible, a: the number of its surfaces, rgb: the logarithms of the colours
 // of glass relative to their means, which add up. The share of light that goes through is in the number of rays that do
 // (visibility.frag). Define: CULL 0/1.
+#include "common/device/fragment.glsl"
 #include "common/passage.glsl"
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 tint;
 
-layout(push_constant) uniform Constants { uint firstTriangle; };
-
 void main() {
-  uint material = materialOf(sceneTriangle(firstTriangle + uint(gl_PrimitiveID)));
-  uint flags = uint(texelFetch(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
+  uint material = materialOf(sceneTriangle(drawnTriangle()));
+  uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
   if ((flags & (kMaterialTransmits | kMaterialBlended)) == 0u) discard;
 #if CULL
   if (!gl_FrontFacing && (flags & kMaterialDoubleSided) == 0u) discard;

@@ -1,6 +1,7 @@
 // The visible triangle; everything else is computed once per pixel in resolve.frag. Defines: TESTED 0/1, 1 for
 // materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 for full materials, of which alphaMode BLEND and thin
 // glass let some of the eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
+#include "common/device/fragment.glsl"
 #include "common/passage.glsl"
 #include "common/scene.glsl"
 
@@ -14,10 +15,8 @@ layout(location = 2) in vec3 toEye;
 
 layout(location = 0) out uint seen;
 
-layout(push_constant) uniform Constants { uint firstTriangle; };
-
 void main() {
-  uint triangle = firstTriangle + uint(gl_PrimitiveID);
+  uint triangle = drawnTriangle();
 #if TESTED
   uint material = materialOf(sceneTriangle(triangle));
 #if CULL

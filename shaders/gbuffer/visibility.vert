@@ -1,3 +1,4 @@
+#include "common/device/vertex.glsl"
 #include "common/scene.glsl"
 
 #if TESTED
@@ -9,12 +10,13 @@ layout(location = 2) out vec3 toEye;
 #endif
 
 void main() {
-  vec3 position = scenePosition(gl_VertexIndex);
+  uint vertex = drawnVertex();
+  vec3 position = scenePosition(vertex);
   gl_Position = view.worldToClip * vec4(position, 1.0);
 #if TESTED
-  uv = sceneUv(gl_VertexIndex);
+  uv = sceneUv(vertex);
 #if PASSAGE
-  normal = sceneNormal(gl_VertexIndex);
+  normal = sceneNormal(vertex);
   toEye = view.eye - position;
 #endif
 #endif

@@ -5,6 +5,7 @@
 // so that I is stable from frame to frame: Eq. 1 compares it with the I of the previous frame, and noise would delete
 // VPLs in a still image. Defines: CANDIDATES 1: the list `candidates`, 0: `vpls`; CONES 0/1; LUMINANCE 0/1;
 // VPLS: VPLs per work group.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/records/hemisphere_rays.h"
@@ -25,9 +26,9 @@ layout(std430) writeonly buffer CandidateImportance { float importance[]; };
 uniform usamplerBuffer vpls;
 layout(std430) writeonly buffer VplImportance { float importance[]; };
 #endif
-uniform samplerBuffer weights;
+LARGE_TEXELS(float, weights);
 #if LUMINANCE
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 #endif
 layout(std430) buffer Counters { uint counters[]; };  // rays
 
@@ -51,7 +52,7 @@ Source loadSource(uint i) {
 #endif
 }
 
-float sideWeight(uint side) { return side == kNoSide ? 0.0 : texelFetch(weights, int(side)).r; }
+float sideWeight(uint side) { return side == kNoSide ? 0.0 : texelOf(weights, int(side)).r; }
 
 #if CONES
 // The mean weight of the surfaces in a cone of 60 degrees; where the cone leaves the scene, the
@@ -88,7 +89,7 @@ void main() {
   for (int k = 0; k < kHemisphereRays; ++k) sum += seen[vpl][k];
   float result = clamp(sum / kHemisphereCosines, 0.0, 1.0);
 #if LUMINANCE
-  if (live) result *= clamp(frame.exposure * texelFetch(radiance, int(source.side)).w, 0.0, 1.0);
+  if (live) result *= clamp(frame.exposure * texelOf(radiance, int(source.side)).w, 0.0, 1.0);
 #endif
   importance[i] = result;
   if (live) atomicAdd(counters[0], uint(kHemisphereRays));

@@ -1,5 +1,6 @@
 // Direct light on the voxels: L = rho E / pi + emission for every listed side, with E averaged over several points of
 // its surface. Defines: SHADOWED 0/1; SHADOW_FILTER; ONE_LIGHT 0/1/2 as in direct.frag.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/voxel_trace.glsl"
@@ -18,7 +19,7 @@ layout(std430) buffer Radiance { vec4 sides[]; } radiance;
 layout(std430) writeonly buffer Changed { uint sides[]; } changed;
 layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 uniform usamplerBuffer work;    // see select.comp
-uniform usamplerBuffer listed;
+LARGE_TEXELS(uint, listed);
 
 layout(push_constant) uniform Constants {
   int taps;
@@ -68,7 +69,7 @@ vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
 void main() {
   uint place = gl_GlobalInvocationID.x;
   if (place >= texelFetch(work, 0).w) return;
-  uint number = texelFetch(listed, int(place)).x;
+  uint number = texelOf(listed, int(place)).x;
   VoxelSide side = loadSide(number);
   VoxelGrid grid = voxelsGrid();
   vec4 now = side.area > 0.0 ? radianceOf(grid, side, patchOf(grid, side), number & 1u) : vec4(0.0);

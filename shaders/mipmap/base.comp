@@ -1,4 +1,5 @@
 // Level 0 of the mips: the 2x2x2 voxels of each cell, seen from six sides or from all directions at once.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "mipmap/combine.glsl"
@@ -6,13 +7,13 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 4) in;
 
 layout(rgba16f) uniform image3D mipsColor;
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 #if WEIGHTED
 layout(r16f) uniform writeonly image3D mipsWeight;
-uniform samplerBuffer weights;
+LARGE_TEXELS(float, weights);
 #endif
 #if KEEPS
-uniform usamplerBuffer changed;
+LARGE_TEXELS(uint, changed);
 #include "common/movers.glsl"
 #include "mipmap/dirty.glsl"
 
@@ -35,9 +36,9 @@ Cell voxelTowards(uint voxel, int face, float faceArea) {
     coverage *= max((face & 1) == 0 ? along : -along, 0.0);
 #endif
     if (coverage <= 0.0) continue;
-    sum.color += coverage * vec4(texelFetch(radiance, side).rgb, 1.0);
+    sum.color += coverage * vec4(texelOf(radiance, side).rgb, 1.0);
 #if WEIGHTED
-    sum.weight += coverage * texelFetch(weights, side).r;
+    sum.weight += coverage * texelOf(weights, side).r;
 #endif
   }
   return sum;
@@ -66,7 +67,7 @@ void main() {
     anew = anew || (all(lessThanEqual(low, movers[2u * i + 1u].xyz)) && all(greaterThanEqual(high, movers[2u * i].xyz)));
   for (int i = 0; i < (any_ != 0u ? 8 : 0); ++i) {
     int side = 2 * int(max(voxels[i], 1u) - 1u);
-    uint new_ = texelFetch(changed, side).x | texelFetch(changed, side + 1).x;
+    uint new_ = texelOf(changed, side).x | texelOf(changed, side + 1).x;
     anew = anew || (voxels[i] != 0u && new_ != 0u);
   }
   if (anew) markDirty(0u, size / 2, cell / 2);

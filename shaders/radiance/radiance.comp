@@ -1,4 +1,5 @@
 // Radiosity of every VPL (Eq. 3): B_l = rho_l (E_direct + E_cones). Define: CONES, 0: only the direct term.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/vpl.glsl"
 #if CONES
@@ -6,7 +7,7 @@
 #define CONE_GATHER
 #include "common/cone.glsl"
 #else
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 #endif
 
 layout(local_size_x = 8) in;
@@ -29,7 +30,7 @@ void main() {
   if (vpl.life > 0.0) {
     int side = int(vpl.side);
     // Reflected direct light and emission of the voxel are known from light-inject: rho E_direct = pi L.
-    if (terms != 2 && side >= 0 && side < textureSize(radiance)) result += kPi * texelFetch(radiance, side).rgb;
+    if (terms != 2 && side >= 0 && side < texelsIn(radiance)) result += kPi * texelOf(radiance, side).rgb;
 #if CONES
     if (terms != 1) {
       // A slot keeps its cones as long as its VPL lives.

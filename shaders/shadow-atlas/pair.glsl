@@ -69,9 +69,9 @@ Pair loadPair(uint word, int size, float planeEpsilon, bool clipped
                                 wayOf(triangle.vertices.z, triangle.c));
 #endif
 #ifdef MASKED
-  pair.uvA = texelFetch(sceneAttributes, int(triangle.vertices.x)).zw;
-  pair.uvB = texelFetch(sceneAttributes, int(triangle.vertices.y)).zw;
-  pair.uvC = texelFetch(sceneAttributes, int(triangle.vertices.z)).zw;
+  pair.uvA = texelOf(sceneAttributes, int(triangle.vertices.x)).zw;
+  pair.uvB = texelOf(sceneAttributes, int(triangle.vertices.y)).zw;
+  pair.uvC = texelOf(sceneAttributes, int(triangle.vertices.z)).zw;
 #endif
   return pair;
 }

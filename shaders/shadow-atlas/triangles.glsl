@@ -2,10 +2,11 @@
 #ifndef FOVEA_SHADOW_ATLAS_TRIANGLES_GLSL
 #define FOVEA_SHADOW_ATLAS_TRIANGLES_GLSL
 
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 
 #ifdef SIMPLIFIED
-uniform samplerBuffer simplified;  // SimplifiedMesh::corners of framework/scene/device/simplify.h
+LARGE_TEXELS(vec4, simplified);  // SimplifiedMesh::corners of framework/scene/device/simplify.h
 #endif
 
 struct Triangle {
@@ -15,26 +16,26 @@ struct Triangle {
 };
 
 Triangle wholeTriangle(uint index) {
-  uvec4 t = texelFetch(sceneTriangles, int(index));
-  return Triangle(texelFetch(scenePositions, int(t.x)).xyz, texelFetch(scenePositions, int(t.y)).xyz,
-                  texelFetch(scenePositions, int(t.z)).xyz, t.xyz, t.w & 0xffffu);
+  uvec4 t = texelOf(sceneTriangles, int(index));
+  return Triangle(texelOf(scenePositions, int(t.x)).xyz, texelOf(scenePositions, int(t.y)).xyz,
+                  texelOf(scenePositions, int(t.z)).xyz, t.xyz, t.w & 0xffffu);
 }
 
 #ifdef SIMPLIFIED
-bool isMasked(uint index) { return texelFetch(simplified, 3 * int(index)).w > 0.0; }
+bool isMasked(uint index) { return texelOf(simplified, 3 * int(index)).w > 0.0; }
 
 Triangle loadTriangle(uint index) {
 #ifdef MASKED
-  return wholeTriangle(uint(texelFetch(simplified, 3 * int(index)).w) - 1u);
+  return wholeTriangle(uint(texelOf(simplified, 3 * int(index)).w) - 1u);
 #else
   int i = 3 * int(index);
-  return Triangle(texelFetch(simplified, i).xyz, texelFetch(simplified, i + 1).xyz, texelFetch(simplified, i + 2).xyz,
+  return Triangle(texelOf(simplified, i).xyz, texelOf(simplified, i + 1).xyz, texelOf(simplified, i + 2).xyz,
                   uvec3(0u), 0u);
 #endif
 }
 #else
 bool isMasked(uint index) {
-  return loadMaterial(texelFetch(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff != 0.0;
+  return loadMaterial(texelOf(sceneTriangles, int(index)).w & 0xffffu).alphaCutoff != 0.0;
 }
 
 Triangle loadTriangle(uint index) { return wholeTriangle(index); }

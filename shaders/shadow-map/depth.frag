@@ -1,14 +1,13 @@
 // Holes of alpha-masked materials let light through, and with full materials so do alphaMode BLEND and thin glass: at
 // some of the texels, the same ones whenever the map is drawn. All other surfaces block it on both sides.
+#include "common/device/fragment.glsl"
 #include "common/passage.glsl"
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;
 
-layout(push_constant) uniform Constants { uint firstTriangle; };
-
 void main() {
-  uint triangle = firstTriangle + uint(gl_PrimitiveID);
+  uint triangle = drawnTriangle();
   float chance = passageChance(hashPcg(triangle), uvec2(gl_FragCoord.xy), 0u);
   if (!stops(materialOf(sceneTriangle(triangle)), uv, kMeanCosine, chance)) discard;
 }

@@ -1,5 +1,5 @@
-#extension GL_ARB_shader_viewport_layer_array : require
 // One instance per layer.
+#include "common/device/vertex.glsl"
 #include "common/scene.glsl"
 #include "common/shadow.glsl"
 
@@ -10,9 +10,9 @@ layout(location = 0) out vec2 uv;
 #endif
 
 void main() {
-  gl_Layer = gl_InstanceIndex;
-  gl_Position = mapsViews.view[gl_InstanceIndex].worldToClip * vec4(scenePosition(gl_VertexIndex), 1.0);
+  uint vertex = drawnVertex();
+  gl_Position = mapsViews.view[drawnLayer()].worldToClip * vec4(scenePosition(vertex), 1.0);
 #if TESTED
-  uv = sceneUv(gl_VertexIndex);
+  uv = sceneUv(vertex);
 #endif
 }

@@ -1,4 +1,5 @@
 // The first voxel side along each of the eye's rays.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/voxel_trace.glsl"
 #include "common/colour_map.glsl"
@@ -7,17 +8,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(rgba16f) uniform writeonly image2D image;
 #if RADIANCE
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 #endif
 #if WEIGHT
-uniform samplerBuffer weights;
+LARGE_TEXELS(float, weights);
 #endif
 
 vec3 colourOf(uint side) {
 #if RADIANCE
-  return texelFetch(radiance, int(side)).rgb;
+  return texelOf(radiance, int(side)).rgb;
 #elif WEIGHT
-  return displayColour(colourMap(texelFetch(weights, int(side)).r));
+  return displayColour(colourMap(texelOf(weights, int(side)).r));
 #elif NORMAL
   return displayColour(0.5 + 0.5 * loadSide(side).normal);
 #else

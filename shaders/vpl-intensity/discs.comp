@@ -2,6 +2,7 @@
 // light to nearby points of the region than the disc of a voxel would. Finds how much brighter the VPL must be to
 // make up for that. One work group per VPL. NEAR 1: no disc is smaller than `spread`, for which pass near-field
 // compensates; the paths were assigned without that light.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 #include "vpl-intensity/landing.glsl"
@@ -10,7 +11,7 @@ layout(local_size_x = 64) in;
 
 uniform samplerBuffer placed;
 uniform samplerBuffer densities;
-uniform usamplerBuffer seen;
+LARGE_TEXELS(uint, seen);
 layout(std430) readonly buffer AreasBlock { float list[]; } areas;
 layout(std430) writeonly buffer GainsBlock { float list[]; } gains;
 #if NEAR
@@ -37,7 +38,7 @@ void main() {
 #endif
     uint word = (slot * 64u + lane) * laneWords(points), bits = 0u, turn = 0u;
     for (uint i = lane; i < points; i += 64u, ++turn) {
-      if ((turn & 31u) == 0u) bits = texelFetch(seen, int(word + turn / 32u)).r;
+      if ((turn & 31u) == 0u) bits = texelOf(seen, int(word + turn / 32u)).r;
       float p = landing(i, vpl.position, vpl.normal, area, 0.0);
       sum += (bits >> (turn & 31u) & 1u) != 0u ? p : 0.0;
     }

@@ -1,6 +1,7 @@
 // VPLs as the shading passes read them, for every strategy: intensity B_l A_l / pi at the VPL's position. Defines:
 // SHARED 0/1: strategy `importance-area`; TRACED 0/1: with the light of pass eye-paths; GAINS 0/1: with the factors
 // from discs.comp; NEAR 0/1: no disc is smaller than pass near-field specifies.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 #include "common/finite.glsl"
@@ -35,14 +36,14 @@ vec3 intensityOf(uint slot, vec3 own, float area) {
 #elif SHARED
 uniform usamplerBuffer vpls;
 uniform samplerBuffer radiosity;
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 layout(std430) readonly buffer SumsBlock { PathSum list[]; } sums;
 
 // Mean light of the paths assigned to a VPL relative to its own, or all of its own if there are none. Direct light is
 // that at the ends of the paths; for light from further bounces the VPL stands for all of them.
 float meanLight(uint slot, int side, float radiosity) {
   PathSum sum = sums.list[slot];
-  float own = side >= 0 && side < textureSize(radiance) ? kPi * texelFetch(radiance, side).w : 0.0;
+  float own = side >= 0 && side < texelsIn(radiance) ? kPi * texelOf(radiance, side).w : 0.0;
   if (sum.paths == 0u || !(own > 0.0) || !(radiosity > 0.0)) return 1.0;
   float direct = min(own / radiosity, 1.0);
   return 1.0 + direct * (float(sum.lightX) / float(sum.paths) - 1.0);

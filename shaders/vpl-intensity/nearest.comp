@@ -1,13 +1,14 @@
 // Strategy `area`, second step: every side gives its area to the nearest VPL, by d^2 + lambda (1 - n.n')
 // (passes/README.md, vpl-intensity); the lowest slot wins a tie. One invocation per side.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
 layout(local_size_x = 64) in;
 
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 uniform samplerBuffer sites;
-uniform usamplerBuffer masks;
+LARGE_TEXELS(uint, masks);
 layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(std430) readonly buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer SumsBlock { uvec2 list[]; } sums;
@@ -25,7 +26,7 @@ void main() {
   VoxelSide side = loadSide(number);
   if (!(side.area > 0.0)) return;
 #if LIT_ONLY
-  if (!(texelFetch(radiance, int(number)).w > 0.0)) return;
+  if (!(texelOf(radiance, int(number)).w > 0.0)) return;
 #endif
   VoxelGrid grid = voxelsGrid();
   float lambda = normalWeight(grid, normalShare, totals.value.areaLow, totals.value.areaHigh);
@@ -33,7 +34,7 @@ void main() {
   float best = 1e38;
   uint owner = kNoSide;
   for (uint word = 0u; word < words; ++word)
-    for (uint bits = texelFetch(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
+    for (uint bits = texelOf(masks, int(first + word)).r; bits != 0u; bits &= bits - 1u) {
       uint i = 32u * word + uint(findLSB(bits));
       VplSite site = loadSite(sites, i);
       vec3 d = site.position - side.position;

@@ -1,5 +1,6 @@
 // Strategy `importance-area`: eye paths from the fixed screen points, one diffuse bounce each, the same ones as long
 // as nothing moves. The paths of a point follow the R2 sequence (see points.comp) from a start of its own.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/fovea.glsl"
 #include "common/paraboloid.glsl"
@@ -9,7 +10,7 @@
 layout(local_size_x = 64) in;
 
 uniform samplerBuffer screen;
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 layout(std430) writeonly buffer EndsBlock { PathEnd list[]; } ends;
 
 layout(push_constant) uniform Constants {
@@ -33,7 +34,7 @@ void main() {
     uint side = traceVoxels(voxelsGrid(), from.position, direction, from.face).side;
     if (side != kNoSide) {
       VoxelSide surface = loadSide(side);
-      float light = texelFetch(radiance, int(side)).w;
+      float light = texelOf(radiance, int(side)).w;
       light = light > 0.0 ? light : 0.0;  // excludes NaN
       end = PathEnd(surface.position, siteKind(light, luminanceOf(surface.emission)), surface.normal, light);
     }

@@ -5,6 +5,7 @@
 // disc of a cell by that of the VPL's own area. V is the visibility that pass deferred uses, a look-up in the VPL's
 // own shadow map: with any other visibility (such as rays through voxels), VPLs would be compensated for light that
 // they do not lose, or not for light that they do. Points that show the background count as dark.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
 #include "common/vpl_shadow.glsl"
@@ -18,7 +19,7 @@ uniform samplerBuffer placed;
 layout(r32ui) uniform readonly uimage2DArray atlas;
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 layout(std430) writeonly buffer SitesBlock { VplSite list[]; } sites;
 layout(std430) writeonly buffer SeenBlock { uint words[]; } seen;   // see landing.glsl
 layout(std430) writeonly buffer SeenFromBlock { float list[]; } seenFrom;
@@ -87,7 +88,7 @@ void main() {
   densities.list[slot] = sum / float(points);
   seenFrom.list[slot] = sums[0].y > 0.0 ? sum * sum / sums[0].y : 0.0;
   int side = int(vpl.side);
-  float light = side >= 0 && side < textureSize(radiance) ? texelFetch(radiance, side).w : 0.0;
+  float light = side >= 0 && side < texelsIn(radiance) ? texelOf(radiance, side).w : 0.0;
   if (light > 0.0 && siteKind(light, luminanceOf(loadSide(uint(side)).emission)) == kShining) light = -light;
   // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - vpl.life / float(fadeFrames + 1u), 0.0) : 0.0;

@@ -18,6 +18,7 @@
 // no VPL yet where the new paths end, that would be a flash on a far wall.
 //
 // PATHS: paths per invocation.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -31,7 +32,7 @@ uniform samplerBuffer ends;
 #endif
 uniform samplerBuffer densities;
 uniform samplerBuffer seenFrom;
-uniform usamplerBuffer seen;
+LARGE_TEXELS(uint, seen);
 layout(std430) buffer TotalsBlock { Totals value; } totals;
 layout(std430) buffer SumsBlock { PathSum list[]; } sums;
 layout(std430) readonly buffer KeptBlock { Kept value; } kept;
@@ -118,7 +119,7 @@ void offer(inout Path p, uint vpl, VplSite site, float lambda, int words) {
   float kind = site.light < 0.0 ? kShining : siteKind(site.light, 0.0);
   uint its = kind != p.kind ? 0u : kind == kShining ? kShines + kSameKind : kSameKind;
 #if TRACED
-  its += (texelFetch(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
+  its += (texelOf(seen, int(vpl) * words + p.word).r & p.bit) != 0u ? kSeen : 0u;
 #endif
   bool takes = handicap >= 0.0;
   bool nearer = takes && (its > p.rank || (its == p.rank && cost < p.best));

@@ -1,6 +1,7 @@
 // Computes the totals on which the areas depend, VPLs alive and surface of the voxels; marks the bricks that contain
 // sides (for `area`: sides to assign); and for `area` lists the VPLs that compete for them. Defines: AREA 0/1: the
 // strategy is `area`; LIT_ONLY 0/1: only lit sides count.
+#include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
 
@@ -11,7 +12,7 @@ layout(std140) uniform VoxelsInfoBlock { VoxelInfo value; } voxelsInfo;
 layout(std430) buffer BricksBlock { uint list[]; } bricks;
 layout(std430) buffer TotalsBlock { Totals value; } totals;
 #if AREA
-uniform samplerBuffer radiance;
+LARGE_TEXELS(vec4, radiance);
 layout(std430) writeonly buffer SitesBlock { VplSite list[]; } sites;
 #endif
 
@@ -21,7 +22,7 @@ layout(push_constant) uniform Constants {
 };
 
 #if AREA
-bool litSide(uint side) { return side < sideCapacity && texelFetch(radiance, int(side)).w > 0.0; }
+bool litSide(uint side) { return side < sideCapacity && texelOf(radiance, int(side)).w > 0.0; }
 #endif
 
 void tallyVpls(uint first, uint stride) {

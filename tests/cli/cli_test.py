@@ -240,6 +240,18 @@ class Devices(CliTest):
         self.fails(NO_DEVICE, *DIRECT, "-o", "a.png", "--device", "Voodoo 2", says=["Voodoo 2"])
         self.fails(NO_DEVICE, *DIRECT, "-o", "a.png", "--device", "99", says=["99"])
 
+    def test_without(self):
+        features = ["geometryShader", "shaderInt64", "shaderDrawParameters", "shaderOutputLayer",
+                    "VK_KHR_push_descriptor", "maxTexelBufferElements", "VK_FORMAT_R16G16_SNORM"]
+        for command in ("render", "view", "bench"):
+            for feature in features:
+                self.assertIn(feature, self.succeeds(command, "--help").stdout)
+        self.fails(USAGE, *DIRECT, "-o", "a.png", "--without", "geometryShaders", says=["`geometryShaders`", *features])
+        self.succeeds(*DIRECT, "-o", "a.exr")
+        self.succeeds(*DIRECT, "-o", "b.exr", *(word for feature in features for word in ("--without", feature)))
+        same = json.loads(self.succeeds("compare", "a.exr", "b.exr", "--json").stdout)
+        self.assertEqual(same["whole"]["relmse"], 0)
+
     def test_memory(self):
         if "llvmpipe" not in self.succeeds("devices").stdout:
             self.skipTest("other devices may have the memory")

@@ -135,6 +135,99 @@ TEST(NoDeviceDeathTest, MissingValidationLayer) {
               "VK_LAYER_KHRONOS_validation is not installed");
 }
 
+// ---- Features to do without -------------------------------------------------------------------------------
+
+TEST(Without, LeavesTheFeatureOutAndTellsShaders) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.useCache = false;
+  options.without = gpu::dispensableFeatures();
+  gpu::Device device(options);
+  EXPECT_FALSE(device.features().geometryShader);
+  EXPECT_FALSE(device.features().shaderDrawParameters);
+  EXPECT_FALSE(device.features().shaderOutputLayer);
+  EXPECT_FALSE(device.features().shaderInt64);
+  EXPECT_FALSE(device.pushesDescriptors());
+  EXPECT_THAT(device.name(), HasSubstr("without geometryShader"));
+  std::string source = "layout(local_size_x = 1) in;\n";
+  for (const std::string& feature : options.without)
+    source += "#ifndef WITHOUT_" + feature + "\n#error not defined\n#endif\n";
+  device.shaders().compileSource("told.comp", source + "void main() {}\n");
+}
+
+// A shader that uses a feature all the same is refused, not handed to a driver that may do anything.
+TEST(Without, ShadersThatUseTheFeatureAreRefused) {
+  const struct {
+    const char *feature, *body;
+  } uses[] = {{"shaderDrawParameters", "gl_Position = vec4(gl_DrawID);"},
+              {"shaderDrawParameters", "gl_Position = vec4(gl_BaseInstance);"},
+              {"shaderOutputLayer", "gl_Layer = 1; gl_Position = vec4(0);"}};
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.without = gpu::dispensableFeatures();
+  gpu::Device device(options);
+  for (const auto& [feature, body] : uses) {
+    gpu::GraphicsPipelineDesc desc;
+    desc.vertex = device.shaders().compileSource(
+        "user.vert", std::string("#version 460\n#extension GL_ARB_shader_viewport_layer_array : enable\n") +
+                         "void main() { " + body + " }\n");
+    desc.depthFormat = VK_FORMAT_D32_SFLOAT;
+    const std::string text = noDevice([&] { gpu::Pipeline pipeline(device, desc); });
+    EXPECT_THAT(text, HasSubstr("user.vert"));
+    EXPECT_THAT(text, HasSubstr(feature));
+  }
+  gpu::GraphicsPipelineDesc desc;
+  desc.vertex = device.shaders().compileSource("plain.vert", "void main() { gl_Position = vec4(0); }\n");
+  desc.fragment = device.shaders().compileSource(
+      "user.frag", "layout(location = 0) out vec4 target;\nvoid main() { target = vec4(gl_PrimitiveID); }\n");
+  desc.colorFormats = {VK_FORMAT_R32G32B32A32_SFLOAT};
+  EXPECT_THAT(noDevice([&] { gpu::Pipeline pipeline(device, desc); }), HasSubstr("geometryShader"));
+}
+
+TEST(Without, UnknownFeaturesAreRefused) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.without = {"geometryShaders"};
+  try {
+    gpu::Device device(options);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(int(e.code()), int(ExitCode::Usage));
+    EXPECT_THAT(e.what(), HasSubstr("`geometryShaders`"));
+    for (const std::string& feature : gpu::dispensableFeatures()) EXPECT_THAT(e.what(), HasSubstr(feature));
+  }
+}
+
+// Sets that stand in for pushed descriptors serve again when a command buffer begins anew, and each command has its
+// own.
+TEST(Without, DescriptorSetsHoldWhatTheirCommandWasGiven) {
+  gpu::DeviceOptions options = testDeviceOptions();
+  options.without = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  gpu::Device device(options);
+  const gpu::Buffer results(device, {"results", 4 * 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  const gpu::Pipeline pipeline(device,
+                               gpu::ComputePipelineDesc{device.shaders().compileSource("fill.comp", R"(
+layout(local_size_x = 1) in;
+layout(std430) buffer Data { uint data[]; };
+layout(push_constant) uniform C { uint value; };
+void main() { data[0] = value; }
+)")});
+  for (uint32_t round = 0; round < 3; ++round) {
+    device.runOnce([&](VkCommandBuffer cmd) {
+      for (uint32_t i = 0; i < 4; ++i) {
+        vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+        const VkDescriptorBufferInfo info{results.handle(), 256 * i, 256};
+        std::vector<VkWriteDescriptorSet> writes{write(pipeline, "Data")};
+        writes[0].pBufferInfo = &info;
+        device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+        const uint32_t value = 10 * round + i;
+        vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, 4, &value);
+        vkCmdDispatch(cmd, 1, 1, 1);
+      }
+    });
+    const std::vector<uint32_t> values = as<uint32_t>(gpu::download(device, results));
+    for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(values.at(64 * i), 10 * round + i);
+  }
+  EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+}
+
 TEST(Check, ResultsMapToExitCodes) {
   const auto code = [](VkResult result) {
     try {

@@ -28,8 +28,8 @@ GraphRun runGraph(const std::string& nameOrPath, const scene::Scene& scene, cons
       for (const graph::BoundOutput& output : bound.outputs) names.push_back(output.name);
     return names;
   };
-  session::GraphRun graph(testDevice(), graph::load(nameOrPath, load, messages), scene, rest, runOptions,
-                          messages);
+  session::GraphRun graph(options.device ? *options.device : testDevice(),
+                          graph::load(nameOrPath, load, messages), scene, rest, runOptions, messages);
   graph.prepare();
   GraphRun run;
   const auto collect = [&] {

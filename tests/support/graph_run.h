@@ -19,6 +19,7 @@ struct GraphRunOptions {
   uint32_t frames = 1, seed = 1;
   std::vector<std::string> set;      // "vpl_count=100"
   std::vector<std::string> outputs;  // names to read back; if empty, all images
+  gpu::Device* device = nullptr;     // instead of testDevice()
   bool everyFrame = false;           // read back after every frame: GraphRun::frames[i].outputs
   std::function<void(scene::Frame&)> beforeFrame;
 };

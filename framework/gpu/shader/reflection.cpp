@@ -124,6 +124,13 @@ class Reflector {
       addOpaque(i, isBuffer(i) ? BindingKind::StorageTexelBuffer : BindingKind::StorageImage);
     for (const auto& s : r.separate_samplers) addOpaque(s, BindingKind::Sampler);
     for (const auto& p : r.push_constant_buffers) addConstants(p);
+    for (const spv::Capability c : compiler_.get_declared_capabilities()) {
+      if (c == spv::CapabilityGeometry) out_.features.emplace_back("geometryShader");
+      if (c == spv::CapabilityInt64) out_.features.emplace_back("shaderInt64");
+      if (c == spv::CapabilityDrawParameters) out_.features.emplace_back("shaderDrawParameters");
+      if (c == spv::CapabilityShaderLayer || c == spv::CapabilityShaderViewportIndexLayerEXT)
+        out_.features.emplace_back("shaderOutputLayer");
+    }
     std::sort(out_.bindings.begin(), out_.bindings.end(),
               [](const ReflectedBinding& a, const ReflectedBinding& b) {
                 return std::tie(a.set, a.binding, a.name) < std::tie(b.set, b.binding, b.name);

@@ -252,6 +252,7 @@ struct ShaderCompiler::Impl {
   std::vector<std::filesystem::path> searchPaths;
   std::map<std::string, std::shared_ptr<const CompiledShader>> kept;
   Statistics statistics;
+  Defines always;
   mutable std::mutex mutex;
 
   std::shared_ptr<const CompiledShader> make(const std::string& name, const ShaderSource& source,
@@ -286,7 +287,9 @@ std::shared_ptr<const CompiledShader> ShaderCompiler::Impl::make(const std::stri
                                                                  const ShaderSource& source,
                                                                  const Defines& defines) {
   const EShLanguage stage = stageOf(name);
-  const std::string preambleText = preamble(name, defines);
+  Defines all = always;
+  all.insert(defines.begin(), defines.end());
+  const std::string preambleText = preamble(name, all);
   const glslang::Version version = glslang::GetVersion();
   std::string content = std::string(kCacheVersion) + "/" + std::to_string(version.major) + "." +
                         std::to_string(version.minor) + "." + std::to_string(version.patch) + version.flavor +
@@ -303,8 +306,10 @@ std::shared_ptr<const CompiledShader> ShaderCompiler::Impl::make(const std::stri
   return shader;
 }
 
-ShaderCompiler::ShaderCompiler(std::filesystem::path cacheDirectory) : impl_(std::make_unique<Impl>()) {
+ShaderCompiler::ShaderCompiler(std::filesystem::path cacheDirectory, Defines always)
+    : impl_(std::make_unique<Impl>()) {
   impl_->cacheDirectory = std::move(cacheDirectory);
+  impl_->always = std::move(always);
 }
 
 ShaderCompiler::~ShaderCompiler() = default;

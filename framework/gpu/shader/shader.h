@@ -54,6 +54,7 @@ struct Reflection {
   std::vector<ReflectedMember> constants;  // members of the push constant block
   uint32_t pushConstantBytes = 0;
   uint32_t localSize[3] = {1, 1, 1};
+  std::vector<std::string> features;  // what it uses of gpu::dispensableFeatures()
 };
 
 struct CompiledShader {
@@ -70,8 +71,8 @@ struct CompiledShader {
 // to call from several threads.
 class ShaderCompiler {
  public:
-  // Without a cacheDirectory there is no disk cache.
-  explicit ShaderCompiler(std::filesystem::path cacheDirectory);
+  // Without a cacheDirectory there is no disk cache. `always` is defined in every shader.
+  explicit ShaderCompiler(std::filesystem::path cacheDirectory, Defines always = {});
   ~ShaderCompiler();
   // Adds a folder that is searched for shader files and #include; the first match wins. The including file's own
   // folder is searched before these.

@@ -49,7 +49,8 @@ AccessScope accessScope(PassKind kind, Usage usage, bool reads, bool writes) {
   add(Usage::StorageRead, shaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
   add(Usage::StorageWrite, shaders, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   add(Usage::Uniform, shaders, VK_ACCESS_2_UNIFORM_READ_BIT);
-  add(Usage::TexelRead, shaders, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
+  // Storage buffers take the place of texel buffers on some devices.
+  add(Usage::TexelRead, shaders, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
   add(Usage::Indirect, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
   add(Usage::ColorAttachment, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT);  // blending reads

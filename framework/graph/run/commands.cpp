@@ -250,19 +250,43 @@ void Commands::drawFullscreen() {
   context_.render(kernel_.covers, nullptr, {&kernel, 1}, [&] { draw(3); });
 }
 
-void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t firstInstance) {
-  flush();
-  vkCmdDraw(context_.cmd_, vertices, instances, 0, firstInstance);
+namespace {
+
+struct Instances {
+  uint32_t count = 0, first = 0;
+};
+
+// The instances of a draw that go into the layer being rendered: all of them, unless layers take turns.
+Instances inLayer(uint32_t layer, Instances all) {
+  if (layer == kNone) return all;
+  return {layer >= all.first && layer - all.first < all.count ? 1u : 0u, layer};
 }
 
-void Commands::drawIndexed(VkBuffer indices32, uint32_t count, uint32_t first, uint32_t instances,
-                           uint32_t firstInstance) {
+}  // namespace
+
+void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t firstInstance) {
   flush();
-  vkCmdBindIndexBuffer(context_.cmd_, indices32, 0, VK_INDEX_TYPE_UINT32);
-  vkCmdDrawIndexed(context_.cmd_, count, instances, first, 0, firstInstance);
+  const Instances drawn = inLayer(context_.pass_.layer, {instances, firstInstance});
+  vkCmdDraw(context_.cmd_, vertices, drawn.count, 0, drawn.first);
+}
+
+void Commands::drawTriangles(VkBuffer indices, uint32_t first, uint32_t count, uint32_t instances) {
+  const std::string_view constant = "firstTriangle";
+  for (const KernelConstant& c : kernel_.constants)
+    if (c.reflected.name == constant) this->constant(constant, first);
+  flush();
+  const Instances drawn = inLayer(context_.pass_.layer, {instances, 0});
+  if (!context_.device().features().geometryShader)
+    return vkCmdDraw(context_.cmd_, 3 * count, drawn.count, 3 * first, drawn.first);
+  vkCmdBindIndexBuffer(context_.cmd_, indices, 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexed(context_.cmd_, 3 * count, drawn.count, 3 * first, 0, drawn.first);
 }
 
 void Commands::drawIndirect(std::string_view bufferPort, uint64_t offset, uint32_t count, uint32_t stride) {
+  if (context_.pass_.layer != kNone)
+    throw Error(ExitCode::NoDevice, "pass `" + context_.pass_.bound->name +
+                                        "` draws indirectly into layers, for which the device lacks "
+                                        "shaderOutputLayer");
   const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
   flush(&access);
   vkCmdDrawIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset, count, stride);

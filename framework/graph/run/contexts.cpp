@@ -182,6 +182,36 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   render(colors, depth, kernels, VkRect2D{{0, 0}, {e.width, e.height}}, body, layers);
 }
 
+static VkRenderingAttachmentInfo attachmentInfo(const PassInstance& pass, const Attachment& a) {
+  const Access& access = pass.access(a.port);
+  gpu::Image& image = pass.state->image(access);
+  VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  info.imageView = pass.layer == kNone ? image.view() : image.layerView(0, pass.layer);
+  info.imageLayout = access.layout;
+  info.loadOp = a.load == Attachment::Load::Clear  ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                : a.load == Attachment::Load::Keep ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                   : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  info.clearValue = a.clear;
+  return info;
+}
+
+static void beginRendering(const PassInstance& pass, VkCommandBuffer cmd,
+                           const std::vector<Attachment>& colors, const Attachment* depth, VkRect2D area,
+                           uint32_t layers) {
+  std::vector<VkRenderingAttachmentInfo> colorInfos;
+  for (const Attachment& a : colors) colorInfos.push_back(attachmentInfo(pass, a));
+  VkRenderingAttachmentInfo depthInfo{};
+  if (depth) depthInfo = attachmentInfo(pass, *depth);
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = area;
+  info.layerCount = layers;
+  info.colorAttachmentCount = static_cast<uint32_t>(colorInfos.size());
+  info.pColorAttachments = colorInfos.data();
+  info.pDepthAttachment = depth ? &depthInfo : nullptr;
+  vkCmdBeginRendering(cmd, &info);
+}
+
 void RecordContext::render(const std::vector<Attachment>& colors, const Attachment* depth,
                            std::span<const Kernel> kernels, VkRect2D area, const std::function<void()>& body,
                            uint32_t layers) {
@@ -195,29 +225,6 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   for (const Kernel& kernel : kernels)
     touched.insert(touched.end(), kernel.state_->accesses.begin(), kernel.state_->accesses.end());
   pass_.beginCommand(cmd_, kernels.empty() ? pass_.label("clear") : kernels.front().state_->label, touched);
-  auto describe = [&](const Attachment& a) {
-    const Access& access = pass_.access(a.port);
-    VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    info.imageView = pass_.state->image(access).view();
-    info.imageLayout = access.layout;
-    info.loadOp = a.load == Attachment::Load::Clear  ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                  : a.load == Attachment::Load::Keep ? VK_ATTACHMENT_LOAD_OP_LOAD
-                                                     : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    info.clearValue = a.clear;
-    return info;
-  };
-  std::vector<VkRenderingAttachmentInfo> colorInfos;
-  for (const Attachment& a : colors) colorInfos.push_back(describe(a));
-  VkRenderingAttachmentInfo depthInfo{};
-  if (depth) depthInfo = describe(*depth);
-  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  info.renderArea = area;
-  info.layerCount = layers;
-  info.colorAttachmentCount = static_cast<uint32_t>(colorInfos.size());
-  info.pColorAttachments = colorInfos.data();
-  info.pDepthAttachment = depth ? &depthInfo : nullptr;
-  vkCmdBeginRendering(cmd_, &info);
   const VkViewport viewport{float(area.offset.x),
                             float(area.offset.y),
                             float(area.extent.width),
@@ -228,9 +235,15 @@ void RecordContext::render(const std::vector<Attachment>& colors, const Attachme
   vkCmdSetScissor(cmd_, 0, 1, &area);
   pass_.rendering = true;
   pass_.renderKernels = kernels;
-  body();
+  const bool turns = layers > 1 && !device().features().shaderOutputLayer;
+  for (uint32_t layer = 0; layer < (turns ? layers : 1); ++layer) {
+    pass_.layer = turns ? layer : kNone;
+    beginRendering(pass_, cmd_, colors, depth, area, turns ? 1 : layers);
+    body();
+    vkCmdEndRendering(cmd_);
+  }
+  pass_.layer = kNone;
   pass_.rendering = false;
-  vkCmdEndRendering(cmd_);
 }
 
 // `act()` is what the pass does; the text is only put together for a message.

@@ -153,9 +153,7 @@ void Executor::Impl::bindViews(const scene::Frame& frame) {
 
 void Executor::Impl::beginSegment(FrameSlot& slot) {
   cmd = slot.commands[segment];
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  gpu::check(vkBeginCommandBuffer(cmd, &begin), "beginning a command buffer");
+  device.begin(cmd);
 }
 
 void Executor::Impl::submitSegment(FrameSlot& slot, bool last) {

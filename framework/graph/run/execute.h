@@ -66,6 +66,10 @@ void addShaderFolders(gpu::ShaderCompiler& compiler, const Registry& registry);
 // Options of compile() for a device, with resource sizes as its driver reports them.
 CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const BoundGraph> graph);
 
+// Replaces formats of images that a device cannot have by wider ones (VK_FORMAT_R16G16_SNORM of
+// gpu::dispensableFeatures()).
+void replaceFormats(const gpu::Device& device, BoundGraph& graph);
+
 // The limits of a device against which a graph is checked; unknown if `device` is nullptr. Views and quantities are
 // left to the caller.
 Environment deviceEnvironment(const gpu::Device* device);

@@ -146,6 +146,7 @@ struct PassInstance {
   std::vector<StepAccess> touched;        // by the command under construction
   std::span<const Kernel> renderKernels;  // with which the current rendering may draw
   bool rendering = false;
+  uint32_t layer = kNone;             // that is rendered, where the layers of a rendering take turns
   std::vector<double> counterValues;  // set by the CPU
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters

@@ -69,6 +69,7 @@ FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instance
 }
 
 FrameSlot::~FrameSlot() {
+  for (const VkCommandBuffer cmd : commands) state.device->forget(cmd);
   const VkDevice device = state.device->handle();
   if (fence) vkDestroyFence(device, fence, nullptr);
   if (pool) vkDestroyCommandPool(device, pool, nullptr);

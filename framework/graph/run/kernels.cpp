@@ -73,7 +73,9 @@ KernelBinding resolvePort(PassInstance& pass, const std::string& shader, const g
                  "binding `" + b.name + "` is " + kindName(b.kind) + ", but port `" + port.name + "` is " +
                      (image ? "an image" : "a buffer"),
                  "make both the same kind");
-  if (!any(access.usage, usageOf(b.kind)))
+  const bool insteadOfTexels = b.kind == gpu::BindingKind::StorageBuffer && b.readOnly &&
+                               pass.state->device->lacks("maxTexelBufferElements");
+  if (!any(access.usage, usageOf(b.kind)) && !(insteadOfTexels && any(access.usage, Usage::TexelRead)))
     bindingError(pass, shader,
                  "binding `" + b.name + "` is " + kindName(b.kind) + ", a usage that port `" + port.name +
                      "` does not declare",

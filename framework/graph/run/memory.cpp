@@ -174,6 +174,12 @@ CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const B
   return options;
 }
 
+void replaceFormats(const gpu::Device& device, BoundGraph& graph) {
+  if (!device.lacks("VK_FORMAT_R16G16_SNORM")) return;
+  for (BoundResource& resource : graph.resources)
+    if (resource.desc.format == VK_FORMAT_R16G16_SNORM) resource.desc.format = VK_FORMAT_R32G32_SFLOAT;
+}
+
 Environment deviceEnvironment(const gpu::Device* device) {
   Environment environment;
   if (device) {

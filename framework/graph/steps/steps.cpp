@@ -46,6 +46,9 @@ StepAccess bindingAccess(const BoundPass& pass, uint32_t access, const gpu::Refl
   Usage usage = Usage(uint32_t(pass.accesses[access].usage) & uint32_t(usageOf(binding.kind)));
   // A port that only reads is not written, whatever the shader could do.
   if (binding.readOnly || !pass.accesses[access].writes) usage = without(usage, Usage::StorageWrite);
+  // Where texel buffers are too small, storage buffers take their place (common/device/texels.glsl).
+  if (binding.kind == gpu::BindingKind::StorageBuffer && binding.readOnly && !any(usage, Usage::StorageRead))
+    usage = usage | Usage(uint32_t(pass.accesses[access].usage) & uint32_t(Usage::TexelRead));
   if (binding.writeOnly) usage = without(usage, Usage::StorageRead);
   return portAccess(pass, access, usage, stages);
 }

@@ -45,7 +45,7 @@ const std::vector<UsageRule>& usageRules() {
        {kGeneral, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL}},
       {Usage::Uniform, 0, VK_ACCESS_2_UNIFORM_READ_BIT, 0, {}},
-      {Usage::TexelRead, 0, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, 0, {}},
+      {Usage::TexelRead, 0, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT, 0, {}},
       {Usage::Indirect, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, 0, {}},
       {Usage::TransferRead,
        VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,

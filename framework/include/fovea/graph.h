@@ -80,9 +80,10 @@ void loadPlugin(const std::filesystem::path& file);
 void addPasses(const std::filesystem::path& folder);
 
 struct SessionOptions {
-  std::string device;         // number or part of the name; "" selects the best device
-  bool validation = false;    // run under the Vulkan validation layers
-  glm::uvec2 size{512, 512};  // pixels
+  std::string device;                // number or part of the name; "" selects the best device
+  std::vector<std::string> without;  // features to do without, as `fovea render --without`
+  bool validation = false;           // run under the Vulkan validation layers
+  glm::uvec2 size{512, 512};         // pixels
   uint32_t seed = 1;
   double frameRate = 42;             // frames per second of scene time
   std::vector<std::string> set;      // parameter values: "vpl_count=500", "blur.radius=3"

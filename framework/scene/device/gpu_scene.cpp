@@ -246,7 +246,8 @@ std::vector<glm::vec4> GpuScene::Impl::materialList(const Scene& scene, const Ge
   if (fullMaterials)
     full = appendFullMaterials(
         scene, g, [&](const TextureUse& use) { return textureEntry(scene, use); }, texels);
-  if (const uint64_t limit = device.limits().maxTexelBufferElements; texels.size() > limit)
+  const uint64_t limit = device.limits().maxTexelBufferElements;
+  if (texels.size() > limit && !device.lacks("maxTexelBufferElements"))
     throw Error(ExitCode::OutOfMemory,
                 "scene materials: " + std::to_string(texels.size()) +
                     " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
@@ -268,9 +269,8 @@ void GpuScene::Impl::makeUniforms(uint32_t slots) {
 void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t slots) {
   if (movedVertices() > 0) animator = std::make_unique<Animator>(device, scene, g, slots);
   for (uint32_t slot = 0; slot < slots; ++slot) {
-    objects.emplace_back(device,
-                         gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectRecord),
-                                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, gpu::MemoryKind::Upload});
+    objects.emplace_back(device, gpu::BufferDesc{"scene objects", objectCount * sizeof(ObjectRecord),
+                                                 kTexelUsage, gpu::MemoryKind::Upload});
     storeObjects({}, slot);
   }
 }
@@ -297,10 +297,17 @@ constexpr VkDescriptorType kBindings[] = {
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 
+// Storage buffers take the place of texel buffers where these are too small (common/device/texels.glsl).
+VkDescriptorType typeOf(uint32_t binding, const gpu::Device& device) {
+  const bool texels = kBindings[binding] == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+  return texels && device.lacks("maxTexelBufferElements") ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                                          : kBindings[binding];
+}
+
 void GpuScene::Impl::makeLayout() {
   VkDescriptorSetLayoutBinding bindings[kBindingCount]{};
   for (uint32_t i = 0; i < kBindingCount; ++i)
-    bindings[i] = {i, kBindings[i], 1, VK_SHADER_STAGE_ALL, nullptr};
+    bindings[i] = {i, typeOf(i, device), 1, VK_SHADER_STAGE_ALL, nullptr};
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = kBindingCount;
   info.pBindings = bindings;
@@ -311,7 +318,7 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 6 * slots},
+                                        {typeOf(3, device), 6 * slots},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
@@ -335,12 +342,16 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  const VkBufferView texels[6] = {triangles.texelView(VK_FORMAT_R32G32B32A32_UINT),
-                                  positions.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  attributes.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  materials.texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  objects[slot].texelView(VK_FORMAT_R32G32B32A32_SFLOAT),
-                                  previous.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)};
+  gpu::Buffer* const buffers[6] = {&triangles, &positions,     &attributes,
+                                   &materials, &objects[slot], &previous};
+  VkBufferView views[6] = {};
+  VkDescriptorBufferInfo wholes[6];
+  const bool texels = !device.lacks("maxTexelBufferElements");
+  for (uint32_t i = 0; i < 6; ++i) {
+    wholes[i] = {buffers[i]->handle(), 0, VK_WHOLE_SIZE};
+    if (texels)
+      views[i] = buffers[i]->texelView(i == 0 ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT);
+  }
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorImageInfo image{nearest, textures.image().view(),
                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
@@ -351,15 +362,17 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     writes[i].dstSet = sets[slot];
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType = kBindings[i];
+    writes[i].descriptorType = typeOf(i, device);
     if (i < 3)
       writes[i].pBufferInfo = &blocks[i];
     else if (i == 7)
       writes[i].pImageInfo = &image;
     else if (i == 10)
       writes[i].pImageInfo = &environmentInfo;
-    else
-      writes[i].pTexelBufferView = &texels[i < 7 ? i - 3 : i - 4];
+    else {
+      writes[i].pTexelBufferView = &views[i < 7 ? i - 3 : i - 4];
+      writes[i].pBufferInfo = &wholes[i < 7 ? i - 3 : i - 4];
+    }
   }
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }

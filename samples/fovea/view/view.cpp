@@ -91,10 +91,7 @@ void addView(CLI::App& program, Action& action) {
       ->add_option("--tev", options->viewer.tev,
                    "Send a picture of every frame to the image viewer tev, which listens there")
       ->type_name("HOST:PORT");
-  command
-      ->add_option("--device", options->viewer.device,
-                   "Vulkan device by number or part of its name; see `fovea devices`")
-      ->type_name("D");
+  addDeviceOptions(*command, options->viewer.device, options->viewer.without);
   command->add_flag("--validation", options->viewer.validation,
                     "Run under the Vulkan validation layers (slow)");
   command->callback([options, &action] { action = [options] { return runView(*options); }; });

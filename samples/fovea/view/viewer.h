@@ -36,7 +36,8 @@ class Viewer {
   struct Options {
     Settings settings;
     std::string device;
-    std::string tev;  // HOST:PORT of the tev that shows a picture; "" for none
+    std::vector<std::string> without;  // gpu::DeviceOptions::without
+    std::string tev;                   // HOST:PORT of the tev that shows a picture; "" for none
     bool validation = false;
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;

@@ -1,0 +1,66 @@
+// Whole graphs on a device that is told to do without features: what replaces these gives the same pictures, to the bit.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "fovea/scene.h"
+#include "framework/base/paths.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/load.h"
+#include "framework/scene/scene.h"
+#include "framework/session/test_device.h"
+#include "tests/support/graph_run.h"
+
+namespace fovea::test {
+namespace {
+
+// The moving Cornell box with all that is drawn in ways of its own: a cube that lets through half of the rays, a ring
+// of coloured glass, and a point light, which has six layers, beside the spot light.
+scene::Scene sceneToDraw() {
+  Diagnostics warnings;
+  scene::Scene scene = scene::load("cornellbox_moving", warnings);
+  scene::Light point;
+  point.type = scene::LightType::Point;
+  point.position = {-1.5f, 3.5f, 1};
+  point.intensity = 10;
+  scene.lights.push_back(point);
+  for (scene::Material& material : scene.materials) {
+    if (material.name == "yellow") material.masked = material.blended = true, material.baseColor.a = 0.5f;
+    if (material.name == "blue") material.transmission = 0.7f;
+  }
+  return scene;
+}
+
+std::vector<GraphRun> render(const scene::Scene& scene, gpu::Device& device) {
+  std::vector<GraphRun> runs;
+  const auto add = [&](const char* graph, std::vector<std::string> set) {
+    runs.push_back(
+        runGraph(graph, scene, {.size = {48, 40}, .frames = 2, .set = std::move(set), .device = &device}));
+  };
+  add("direct", {"materials=full"});
+  add("foveal", {"vpl_count=32"});
+  add("ours", {"vpl_count=32"});
+  return runs;
+}
+
+TEST(Without, TheSamePictures) {
+  const scene::Scene scene = sceneToDraw();
+  const std::vector<GraphRun> expected = render(scene, testDevice());
+  for (const std::string& feature : gpu::dispensableFeatures()) {
+    SCOPED_TRACE(feature);
+    gpu::DeviceOptions options = testDeviceOptions();
+    options.without.push_back(feature);
+    gpu::Device device(options);
+    for (const auto& folder : dataFolders("shaders")) device.shaders().addSearchPath(folder);
+    const std::vector<GraphRun> runs = render(scene, device);
+    for (size_t i = 0; i < runs.size(); ++i) {
+      for (const auto& [name, output] : expected[i].outputs)
+        EXPECT_EQ(runs[i].outputs.at(name).bytes, output.bytes) << "graph " << i << ", output " << name;
+    }
+    EXPECT_EQ(device.validationMessages(), std::vector<std::string>{});
+  }
+}
+
+}  // namespace
+}  // namespace fovea::test
