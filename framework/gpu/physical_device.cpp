@@ -131,9 +131,9 @@ std::vector<std::string> missingDispensables(VkPhysicalDevice device) {
     if (!*value) missing.push_back(name);
   }
   uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "counting extensions");
   std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()), "listing extensions");
   for (const char* name : kDispensableExtensions) {
     if (!hasExtension(extensions, name)) missing.push_back(name);
   }
