@@ -3,7 +3,7 @@
 // diffuse layer: with 1 that of `gloss`, with 2, for want of it, that of `irradiance`. With REFLECTIONS 1, smooth
 // surfaces reflect `reflections` instead.
 #if GLOSS
-#include "common/gloss.glsl"
+#include "common/materials/gloss.glsl"
 #endif
 
 layout(rgba16f) uniform readonly image2D gbufferAlbedo;

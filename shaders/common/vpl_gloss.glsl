@@ -7,7 +7,7 @@
 #ifndef FOVEA_VPL_GLOSS_GLSL
 #define FOVEA_VPL_GLOSS_GLSL
 
-#include "common/gloss.glsl"
+#include "common/materials/gloss.glsl"
 
 // The lobe of a dull dielectric reflects little, and hardly other light than its diffuse layer. From the first
 // roughness to the second it passes over into that, and with the second VPLs need not be asked.

@@ -3,7 +3,7 @@
 // because a CPU device loads indexed data lane by lane. GLOSS 0/1, 1 for full materials: in place of rho / pi stands
 // all that a surface reflects.
 #if GLOSS
-#include "common/gloss.glsl"
+#include "common/materials/gloss.glsl"
 #endif
 #include "common/scene.glsl"
 #define SHADOW_MAPS 1

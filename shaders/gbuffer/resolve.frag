@@ -1,10 +1,10 @@
 // The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
 // the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
 // buffer, Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of
-// three images holds what `specular` has no room for (glossOf() in common/gloss.glsl); TINT 0/1, 1 where something that
+// three images holds what `specular` has no room for (glossOf() in common/materials/gloss.glsl); TINT 0/1, 1 where something that
 // lets light through may stand before the surface (tint.frag).
 #if FULL
-#include "common/full_material.glsl"
+#include "common/materials/full_material.glsl"
 #endif
 #include "common/pixel_ray.glsl"
 #include "common/scene.glsl"

@@ -2,7 +2,7 @@
 // of glass relative to their means, which add up. The share of light that goes through is in the number of rays that do
 // (visibility.frag). Define: CULL 0/1.
 #include "common/device/fragment.glsl"
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;

@@ -2,7 +2,7 @@
 // materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 for full materials, of which alphaMode BLEND and thin
 // glass let some of the eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
 #include "common/device/fragment.glsl"
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 
 #if TESTED

@@ -2,7 +2,7 @@
 //
 // One of the four texels around the previous position is chosen at random with bilinear probabilities, so that
 // sub-pixel motion is correct on average at the cost of one load.
-#include "common/gloss.glsl"
+#include "common/materials/gloss.glsl"
 #include "common/history.glsl"
 #include "common/same_surface.glsl"
 #include "common/motion.glsl"

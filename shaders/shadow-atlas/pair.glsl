@@ -4,7 +4,7 @@
 #define FOVEA_SHADOW_ATLAS_PAIR_GLSL
 
 #include "common/paraboloid.glsl"
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "shadow-atlas/project.glsl"
 #include "shadow-atlas/step.glsl"
 #include "shadow-atlas/triangles.glsl"

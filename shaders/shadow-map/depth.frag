@@ -1,7 +1,7 @@
 // Holes of alpha-masked materials let light through, and with full materials so do alphaMode BLEND and thin glass: at
 // some of the texels, the same ones whenever the map is drawn. All other surfaces block it on both sides.
 #include "common/device/fragment.glsl"
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;

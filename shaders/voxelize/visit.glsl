@@ -1,6 +1,6 @@
 // Handles a cell that a triangle overlaps: without ACCUMULATE it is marked, with it the piece of the triangle is
 // added to the voxel's sums.
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "voxelize/state.glsl"

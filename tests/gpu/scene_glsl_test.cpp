@@ -27,7 +27,7 @@ std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::
   gpu::Device& device = testDevice();
   const std::string source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Queries { vec4 queries[]; };

@@ -59,10 +59,15 @@ Dependency beforeWrite(AccessHistory& history, const AccessScope& scope, bool re
     source |= history.writeStage;
     access |= history.writeAccess;
   }
+  const bool written = history.writeStage != 0;
   history = {};
   history.pendingStage = history.writeStage = scope.stage;
   history.pendingAccess = history.writeAccess = scope.access & kWrites;
-  return dependency(source, access, scope);
+  Dependency wait = dependency(source, access, scope);
+  // Readers have waited for the earlier write, and a chain of barriers leads from it to this one. That is a dependency
+  // between writes only if it ends with this access.
+  if (source && written) wait.dstAccess |= scope.access & kWrites;
+  return wait;
 }
 
 // Barriers form chains: what one of them orders before a stage, the next one orders before more if it waits for that

@@ -3,7 +3,7 @@
 #ifndef FOVEA_PASSAGE_GLSL
 #define FOVEA_PASSAGE_GLSL
 
-#include "common/gloss.glsl"
+#include "common/materials/gloss.glsl"
 #include "common/random.glsl"
 
 // Texels of a SurfaceRecord and of its textures in it.

@@ -2,7 +2,7 @@
 #ifndef FOVEA_FULL_MATERIAL_GLSL
 #define FOVEA_FULL_MATERIAL_GLSL
 
-#include "common/passage.glsl"
+#include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 
 struct TextureCoordinates {
