@@ -56,8 +56,7 @@ TEST(Without, TheSamePictures) {
     SCOPED_TRACE(feature);
     expectTheSame("direct", scene, {feature}, {"materials=full"});
   }
-  for (const char* graph : {"foveal", "ours"})
-    expectTheSame(graph, scene, gpu::dispensableFeatures(), {"vpl_count=32"});
+  expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32"});
 }
 
 }  // namespace

@@ -109,7 +109,9 @@ Difference compare(const scene::Scene& s, int& compared) {
     worse(most.normal, glm::length(glm::vec3(vec(normal)) - n));
     worse(most.albedo, glm::length(glm::vec3(vec(albedo)) - want.albedo));
     worse(most.specular, glm::length(vec(specular) - want.specular));
-    worse(most.grazing, std::abs(vec(normal).w - want.grazing));
+    // The sign marks what lets light through.
+    worse(most.grazing,
+          std::abs(vec(normal).w - (scene::letsLightThrough(m) ? -want.grazing : want.grazing)));
     worse(most.metallic, std::abs(vec(albedo).w - want.metallic));
     worse(most.emission, glm::length(glm::vec3(vec(emission)) - p.emission));
   }
