@@ -133,7 +133,8 @@ std::vector<std::string> missingDispensables(VkPhysicalDevice device) {
   uint32_t count = 0;
   check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "counting extensions");
   std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()), "listing extensions");
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "listing extensions");
   for (const char* name : kDispensableExtensions) {
     if (!hasExtension(extensions, name)) missing.push_back(name);
   }
