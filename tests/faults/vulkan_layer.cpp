@@ -11,22 +11,21 @@
 
 namespace {
 
-#define FOVEA_INSTANCE_FUNCTIONS(F)       \
-  F(vkCreateDebugUtilsMessengerEXT)       \
-  F(vkEnumerateDeviceExtensionProperties) \
-  F(vkEnumeratePhysicalDevices) F(vkGetPhysicalDeviceImageFormatProperties)
+// clang-format off
+#define FOVEA_INSTANCE_FUNCTIONS(F) \
+  F(vkCreateDebugUtilsMessengerEXT) F(vkEnumerateDeviceExtensionProperties) F(vkEnumeratePhysicalDevices) \
+  F(vkGetPhysicalDeviceImageFormatProperties)
 
-#define FOVEA_DEVICE_FUNCTIONS(F)                                                                           \
-  F(vkAllocateCommandBuffers)                                                                               \
-  F(vkAllocateDescriptorSets)                                                                               \
-  F(vkAllocateMemory) F(vkBeginCommandBuffer) F(vkBindBufferMemory) F(vkBindImageMemory) F(vkCreateBuffer)  \
-      F(vkCreateBufferView) F(vkCreateCommandPool) F(vkCreateComputePipelines) F(vkCreateDescriptorPool)    \
-          F(vkCreateDescriptorSetLayout) F(vkCreateFence) F(vkCreateGraphicsPipelines) F(vkCreateImage)     \
-              F(vkCreateImageView) F(vkCreatePipelineCache) F(vkCreatePipelineLayout) F(vkCreateQueryPool)  \
-                  F(vkCreateSampler) F(vkCreateShaderModule) F(vkDeviceWaitIdle) F(vkEndCommandBuffer)      \
-                      F(vkGetFenceStatus) F(vkGetPipelineCacheData) F(vkGetQueryPoolResults) F(vkMapMemory) \
-                          F(vkQueueSubmit2) F(vkResetCommandPool) F(vkResetFences)                          \
-                              F(vkSetDebugUtilsObjectNameEXT) F(vkWaitForFences)
+#define FOVEA_DEVICE_FUNCTIONS(F) \
+  F(vkAllocateCommandBuffers) F(vkAllocateDescriptorSets) F(vkAllocateMemory) F(vkBeginCommandBuffer) \
+  F(vkBindBufferMemory) F(vkBindImageMemory) F(vkCreateBuffer) F(vkCreateBufferView) F(vkCreateCommandPool) \
+  F(vkCreateComputePipelines) F(vkCreateDescriptorPool) F(vkCreateDescriptorSetLayout) F(vkCreateFence) \
+  F(vkCreateGraphicsPipelines) F(vkCreateImage) F(vkCreateImageView) F(vkCreatePipelineCache) \
+  F(vkCreatePipelineLayout) F(vkCreateQueryPool) F(vkCreateSampler) F(vkCreateShaderModule) \
+  F(vkDeviceWaitIdle) F(vkEndCommandBuffer) F(vkGetFenceStatus) F(vkGetPipelineCacheData) \
+  F(vkGetQueryPoolResults) F(vkMapMemory) F(vkQueueSubmit2) F(vkResetCommandPool) F(vkResetFences) \
+  F(vkSetDebugUtilsObjectNameEXT) F(vkWaitForFences)
+// clang-format on
 
 // The result of a call that fails; notes the call.
 std::optional<VkResult> fault(Fault& fault, const char* function) {
