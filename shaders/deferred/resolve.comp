@@ -1,6 +1,4 @@
-#extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 // Combines the subsets into the light of all VPLs: the geometry-aware filter of interleaved sampling, on the
 // irradiance only. Defines: INTERLEAVE, MASKED, EDGES, SCALE (see samples.glsl); TRACED 0/1, 1 if rays have found the
 // light of some pixels, of which none lies in the periphery; NEAR_FIELD 0/1, 1 if that of pass near-field is to be
@@ -92,13 +90,9 @@ layout(push_constant) uniform Constants {
 #define Light mat2x3
 layout(rgba16f) uniform writeonly image2D gloss;
 Light loadLight(ivec2 at) { return mat2x3(imageLoad(partial, at).rgb, imageLoad(partialGloss, at).rgb); }
-Light handedOver(Light light, uint lane) {
-  return mat2x3(subgroupShuffle(light[0], lane), subgroupShuffle(light[1], lane));
-}
 #else
 #define Light vec3
 Light loadLight(ivec2 at) { return imageLoad(partial, at).rgb; }
-Light handedOver(Light light, uint lane) { return subgroupShuffle(light, lane); }
 #endif
 
 struct Weighted {  // a sum of samples, and of their weights
@@ -280,35 +274,15 @@ Weighted lookWider(Centre c, ivec2 p, ivec2 offset, ivec2 size, float plane, flo
   return sum;
 }
 
-// Searches the missing subsets of the `wanted` pixels; those found are removed from the mask. Some pixels miss many
-// subsets and most miss few or none, so a subgroup distributes them: each lane searches one subset of one of its
-// pixels and passes the result to the lane of that pixel. On a CPU device all lanes would otherwise wait for the
-// pixel that misses most.
+// Searches the missing subsets of a `wanted` pixel; those found are removed from the mask. Every invocation searches for
+// its own pixel: dividing the searches among the lanes of a subgroup saves nothing measurable on a CPU device, and a
+// driver of NVIDIA (580.159) loses samples of pixels at edges when lanes exchange them.
 void search(inout Centre c, ivec2 p, ivec2 size, float plane, float least, bool wanted, bool across, bool window) {
-  uvec2 left = wanted ? c.missing : uvec2(0u);
-  uint mine = uint(bitCount(left.x) + bitCount(left.y)), end = subgroupInclusiveAdd(mine);
-  uint lanes = subgroupBallotBitCount(subgroupBallot(true)), total = subgroupMax(end);
-  for (uint first = 0u; first < total; first += lanes) {
-    uint item = first + gl_SubgroupInvocationID, owner = 0u;
-    for (uint lane = 0u; lane + 1u < lanes; ++lane) owner += uint(subgroupShuffle(end, lane) <= item);
-    uint before = item - subgroupShuffle(end - mine, owner);
-    uvec2 its = subgroupShuffle(left, owner), bit;
-    int subset = nextSubset(its, bit);
-    for (uint i = 0u; i < min(before, kSubsets); ++i) subset = nextSubset(its, bit);
-    Centre other;
-    other.position = subgroupShuffle(c.position, owner);
-    other.normal = subgroupShuffle(c.normal, owner);
-    float otherPlane = subgroupShuffle(plane, owner);
-    ivec2 at = subgroupShuffle(p, owner), offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE);
-    Weighted sum = across ? lookAcross(other, at, offset, size, otherPlane, least)
-                      : lookWider(other, at, offset, size, otherPlane, least, window);
-    uint from = owner | uint(subset) << 16u;
-    for (uint lane = 0u; lane < min(lanes, total - first); ++lane) {
-      uint to = subgroupShuffle(from, lane), found = to >> 16u;
-      Weighted handed = Weighted(handedOver(sum.light, lane), subgroupShuffle(sum.weight, lane));
-      if ((to & 0xffffu) == gl_SubgroupInvocationID)
-        take(c, handed, found < 32u ? uvec2(1u << found, 0u) : uvec2(0u, 1u << (found - 32u)));
-    }
+  uvec2 left = wanted ? c.missing : uvec2(0u), bit;
+  while (left != uvec2(0u)) {
+    int subset = nextSubset(left, bit);
+    ivec2 offset = ivec2(subset % INTERLEAVE, subset / INTERLEAVE);
+    take(c, across ? lookAcross(c, p, offset, size, plane, least) : lookWider(c, p, offset, size, plane, least, window), bit);
   }
 }
 
@@ -344,8 +318,7 @@ Light lastResort(ivec2 p, ivec2 size) { return loadLight(p); }  // its normal ha
 #endif
 
 // The mean over the subsets, and whether fewer than half of them were found on the surface. p: the sample around which
-// the window lies; size: of the grid. All lanes of a subgroup come here, including those without a pixel, which are not
-// `wanted`.
+// the window lies; size: of the grid. Pixels that are not `wanted` search for nothing.
 Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool incomplete) {
   incomplete = false;
   bool based = false;
@@ -358,7 +331,7 @@ Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool i
   }
 #endif
   float plane = c.plane, least = filterCos;
-  // `again` uses wider bounds. A loop rather than two calls, so that a second turn that no pixel needs is skipped.
+  // `again` uses wider bounds.
   bool searches = wanted, again = false;
   do {
     search(c, p, size, plane, least, searches, true, false);
@@ -369,7 +342,7 @@ Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool i
     again = true;
     plane *= kWiderPlane;
     least = kWiderCos;
-  } while (subgroupBallot(searches) != uvec4(0u));
+  } while (searches);
   if (c.found == 0u) {
     c.sum = lastResort(p, size);
     c.found = 1u;

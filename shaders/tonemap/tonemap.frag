@@ -59,5 +59,6 @@ void main() {
 #if AGX
   x = agx(x);
 #endif
-  image = vec4(srgb(min(x, 1.0)), 1.0);
+  // Rounded to bytes here, since devices differ in how they round when they write.
+  image = vec4(floor(255.0 * srgb(min(x, 1.0)) + 0.5) / 255.0, 1.0);
 }
