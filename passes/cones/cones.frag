@@ -1,0 +1,25 @@
+// Irradiance of every pixel by cones through the voxels, as pass radiance gathers it at VPLs (common/cone.glsl). Cones as
+// narrow as they must be to miss their own wall leave gaps, so pixels and frames turn them differently, for a mean.
+#include "common/random.glsl"
+#include "common/scene.glsl"
+#define CONE_GATHER
+#include "common/cone.glsl"
+
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(location = 0) out vec4 irradiance;
+
+layout(push_constant) uniform Constants { uint frameIndex; };
+
+const uint kConesStream = 0x636f6e65u;
+const uint kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
+
+void main() {
+  uvec2 p = uvec2(gl_FragCoord.xy);
+  vec4 position = imageLoad(gbufferPosition, ivec2(p));
+  irradiance = vec4(0.0);
+  if (position.w <= 0.0) return;
+  vec3 normal = normalize(imageLoad(gbufferNormal, ivec2(p)).xyz);
+  float turn = 2.0 * kPi * uniformFloat(randomStream(frame.seed, p.x, kConesStream, p.y) + frameIndex * kGoldenRatio);
+  irradiance = vec4(min(gatherHemisphere(voxelsGrid(), position.xyz, normal, turn) / kPi, 65504.0), 1.0);
+}
