@@ -44,6 +44,10 @@ class ProbeRays : public Pass {
     d.parameter(
         "bias", real(0.25, 0, 2, "spacings of the grid"),
         "how far points are moved off their surface where probes light them, as in pass probe-sample");
+    d.parameter(
+        "feedback", flag(true),
+        "whether surfaces that rays meet reflect the light that `probes` knows; if not, they reflect only "
+        "that of lights and of surfaces that shine, and the probes hold one bounce");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("probes", "probes in the grid");
@@ -61,6 +65,7 @@ class ProbeRays : public Pass {
                          ctx.inputAs<glm::vec2>("probes.distance"),
                          ctx.inputAs<scene::Probe>("probes.states")};
     settings.bias = float(p.real("bias"));
+    settings.feedback = p.flag("feedback");
     settings.fullMaterials = fullMaterials(p);
     checkSize(settings.previous.states.size(), hits.size() / directions.size());
     std::ranges::fill(hits, glm::vec4(0));

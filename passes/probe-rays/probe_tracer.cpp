@@ -15,7 +15,7 @@ namespace {
 
 using namespace scene;
 
-constexpr uint32_t kTurnStream = 0x70726f62u;
+constexpr uint32_t kTurnStream = 0x70726f62u, kEmitterStream = 0x70726f65u;
 constexpr uint32_t kProbesAtOnce = 8;  // probes that a thread takes at a time
 
 // A uniformly distributed rotation (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
@@ -26,19 +26,37 @@ glm::mat3 randomRotation(uint32_t stream) {
   return glm::mat3_cast(glm::quat(b * std::cos(v), a * std::sin(u), a * std::cos(u), b * std::sin(v)));
 }
 
-// What one ray of a probe finds. The light that the surface reflects was known to the probes after the previous frame,
-// which has one bounce more in each frame.
-glm::vec4 hitOf(const SurfaceTracer& surfaces, const ProbeField& field, glm::vec3 origin, glm::vec3 direction,
-                uint64_t& rays) {
-  const TracedSurface v = surfaces.arrive(origin, direction, kFarAway, rays);
-  if (v.triangle == kNoIndex) return {v.brighter * surfaces.outside(direction).radiance, kFarAway};
-  const float distance = glm::distance(v.position, origin);
-  if (!v.there) return {glm::vec3(0), -kBackShortened * distance};
-  const glm::vec3 rho = surfaces.reflectance(v);
-  const glm::vec3 radiance = surfaces.emitted(v) + surfaces.direct(v, rho, rays) +
-                             rho * field.light(v.position, v.normal, -direction);
-  return {radiance, distance};
-}
+class Tracer {
+ public:
+  Tracer(const Frame& frame, const View& view, const RayScene& rays, const ProbeRaySettings& settings)
+      : surfaces_(frame, view, rays, settings.fullMaterials),
+        field_(settings.grid, settings.previous, settings.bias),
+        feedback_(settings.feedback),
+        stream_(randomStream(frame.seed, uint32_t(frame.index), kEmitterStream, 0)) {}
+
+  // What ray `index` of all finds.
+  glm::vec4 hitOf(glm::vec3 origin, glm::vec3 direction, uint32_t index, uint64_t& rays) const {
+    const TracedSurface v = surfaces_.arrive(origin, direction, kFarAway, rays);
+    if (v.triangle == kNoIndex) return {v.brighter * surfaces_.outside(direction).radiance, kFarAway};
+    const float distance = glm::distance(v.position, origin);
+    if (!v.there) return {glm::vec3(0), -kBackShortened * distance};
+    const glm::vec3 rho = surfaces_.reflectance(v), light = lightAt(v, -direction, index, rays);
+    return {surfaces_.emitted(v) + surfaces_.direct(v, rho, rays) + rho * light, distance};
+  }
+
+ private:
+  // Irradiance / pi that does not come from the scene's lights. What the probes knew after the previous frame has one
+  // bounce more in each frame.
+  glm::vec3 lightAt(const TracedSurface& v, glm::vec3 towardsEye, uint32_t index, uint64_t& rays) const {
+    return feedback_ ? field_.light(v.position, v.normal, towardsEye)
+                     : surfaces_.gather(v, 0, 1, hashCombine(stream_, index), rays);
+  }
+
+  SurfaceTracer surfaces_;
+  ProbeField field_;
+  bool feedback_;
+  uint32_t stream_;
+};
 
 }  // namespace
 
@@ -55,8 +73,7 @@ void probeDirections(uint32_t seed, uint32_t frame, std::span<glm::vec4> directi
 ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const RayScene& rays,
                                   const ProbeRaySettings& settings, std::span<const glm::vec4> directions,
                                   std::span<glm::vec4> hits) {
-  const SurfaceTracer surfaces(frame, view, rays, settings.fullMaterials);
-  const ProbeField field(settings.grid, settings.previous, settings.bias);
+  const Tracer tracer(frame, view, rays, settings);
   const uint32_t probes = probesOf(settings.grid), count = uint32_t(directions.size());
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0, inside = 0;
@@ -71,8 +88,8 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
         off += state.inside > 0;
         const auto of = hits.subspan(size_t(probe) * count, count);
         for (uint32_t i = 0; i < count; ++i)
-          of[i] =
-              i % step == 0 ? hitOf(surfaces, field, origin, glm::vec3(directions[i]), sum) : glm::vec4(0);
+          of[i] = i % step == 0 ? tracer.hitOf(origin, glm::vec3(directions[i]), probe * count + i, sum)
+                                : glm::vec4(0);
       }
     traced += sum;
     inside += off;

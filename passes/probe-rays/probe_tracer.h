@@ -13,8 +13,9 @@ namespace fovea::passes {
 
 struct ProbeRaySettings {
   scene::ProbeGrid grid;
-  ProbeImages previous;        // what the probes knew after the previous frame
-  float bias = 0.25f;          // ProbeField
+  ProbeImages previous;  // what the probes knew after the previous frame
+  bool feedback = true;  // whether surfaces reflect the light that probes know, else only that of emitters
+  float bias = 0.25f;    // ProbeField
   bool fullMaterials = false;  // framework/scene/materials/bounced.h
   uint32_t threads = 0;        // 0 uses one per core; the result does not depend on it
 };

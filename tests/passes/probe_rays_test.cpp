@@ -137,6 +137,24 @@ TEST(ProbeRays, FindWhatPlainRaysFind) {
   EXPECT_GT(emitting, 1000);
 }
 
+// Without feedback surfaces reflect nothing of what the probes know. In a room that emits 1 and reflects half, which one
+// point for each ray samples, they send 1.5.
+TEST(ProbeRays, WithoutFeedback) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+  s.materials[m].emission = glm::vec3(1);
+  addRoom(s, walls, 2);
+  s.cameras.emplace_back();
+  PassTest test("probe-rays");
+  test.scene(s).viewSize(8, 8).param("probes", kSide).param("rays", 256).param("feedback", false);
+  evenProbes(glm::vec3(100)).wire(test, "probes");
+  test.run();
+  const auto hits = test.values<glm::vec4>("rays.hits");
+  double mean = 0;
+  for (const glm::vec4& hit : hits) mean += double(hit.r) / double(hits.size());
+  EXPECT_NEAR(mean, 1.5, 0.03);
+}
+
 // Those that are inside geometry trace a quarter of their rays.
 TEST(ProbeRays, AProbeInsideTracesFewer) {
   Probes probes = evenProbes(glm::vec3(1));
