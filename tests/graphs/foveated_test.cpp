@@ -165,7 +165,7 @@ TEST(Foveated, EveryGraphRunsThirtyFramesOfAMovingScene) {
     const bool foveated = name.rfind("ir_", 0) != 0 || name.rfind("ir_v", 0) == 0;
     if (foveated && name != "direct") options.set.push_back("voxels=24");
     if (name == "reference") options.set = {"spp=2"};
-    if (name == "ddgi") options.set = {"probes=4", "rays=16"};
+    if (name.rfind("ddgi", 0) == 0) options.set = {"probes=4", "rays=16"};
     expectFinite(runGraph(entry.path().string(), s, options));
     ++graphs;
   }
