@@ -1,0 +1,226 @@
+// Compares the rays of probes, what they meet and the light they find there, with plain rays.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "fovea/error.h"
+#include "passes/probe-rays/probe_tracer.h"
+#include "tests/passes/probe_reference.h"
+#include "tests/passes/ray_reference.h"
+#include "tests/support/shapes.h"
+#include "tests/support/sky.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr int kSide = 4, kRoom = kSide * kSide * kSide, kRays = 64;
+
+// A room of 4 m in which a box stands; the probe of the first cell is inside it.
+scene::Scene roomWithBox() {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), red = addMaterial(s, {0.6f, 0.2f, 0.1f});
+  const uint32_t walls[6] = {red, grey, grey, red, grey, grey};
+  addRoom(s, walls, 2);
+  addBox(s, red, {-1.8f, -1.9f, -1.8f}, {-1.1f, -1.0f, -1.2f});
+  s.materials[red].emission = {0.25f, 0.5f, 1};
+  s.lights = {pointLight({0.4f, 1.2f, 0.3f}, {10, 20, 30}), pointLight({-1, 0, 0.5f}, {5, 5, 1})};
+  s.cameras.emplace_back();
+  return s;
+}
+
+// Probes that all know the same light, and see far.
+Probes evenProbes(glm::vec3 light, int count = kRoom) {
+  Probes probes(count);
+  std::ranges::fill(probes.irradiance, glm::vec4(light, 1));
+  std::ranges::fill(probes.distance, glm::vec2(100, 10000));
+  return probes;
+}
+
+struct Traced {
+  scene::ProbeGrid grid;
+  std::vector<glm::vec4> directions, hits;
+  double rays = 0, inside = 0;
+};
+
+Traced trace(const scene::Scene& s, const Probes& probes, uint32_t frames = 1, double spacing = 0) {
+  PassTest test("probe-rays");
+  test.scene(s).viewSize(8, 8).param("probes", kSide).param("rays", kRays).param("spacing", spacing);
+  probes.wire(test, "probes");
+  test.run(frames);
+  return {test.values<scene::ProbeGrid>("rays.grid")[0], test.values<glm::vec4>("rays.directions"),
+          test.values<glm::vec4>("rays.hits"), test.counter("rays"), test.counter("inside")};
+}
+
+TEST(ProbeRays, CellsCoverTheBounds) {
+  const scene::ProbeGrid even = passes::probeGrid({-2, -2, -2}, {2, 2, 2}, 4, 0);
+  EXPECT_EQ(glm::uvec3(even.columns, even.rows, even.layers), glm::uvec3(4));
+  EXPECT_EQ(even.spacing, 1);
+  EXPECT_EQ(even.origin, glm::vec3(-1.5f));
+  const scene::ProbeGrid flat = passes::probeGrid({0, 0, 1}, {8, 0, 4}, 16, 0);
+  EXPECT_EQ(glm::uvec3(flat.columns, flat.rows, flat.layers), glm::uvec3(16, 1, 6));
+  EXPECT_EQ(flat.origin, glm::vec3(0.25f, 0, 1.25f));
+  const scene::ProbeGrid wide =
+      passes::probeGrid({0, 0, 0}, {8, 5, 8}, 16, 2);  // cells of 2 m, half a one beyond
+  EXPECT_EQ(glm::uvec3(wide.columns, wide.rows, wide.layers), glm::uvec3(4, 3, 4));
+  EXPECT_EQ(wide.origin, glm::vec3(1, 0.5f, 1));
+}
+
+// Unit vectors whose first and second moments are those of the sphere, others in every frame.
+TEST(ProbeRays, DirectionsLieEvenlyAndTurn) {
+  std::vector<glm::vec4> before(256), now(256);
+  passes::probeDirections(1, 0, before);
+  for (uint32_t frame = 1; frame < 20; ++frame) {
+    passes::probeDirections(1, frame, now);
+    glm::dvec3 mean(0);
+    glm::dmat3 moments(0);
+    double nearest = 2;
+    for (size_t i = 0; i < now.size(); ++i) {
+      const glm::dvec3 d(now[i]);
+      EXPECT_NEAR(glm::length(d), 1, 1e-5);
+      mean += d / double(now.size());
+      moments += glm::outerProduct(d, d) / double(now.size());
+      for (size_t j = 0; j < i; ++j) nearest = std::min(nearest, glm::distance(d, glm::dvec3(now[j])));
+    }
+    EXPECT_LT(glm::length(mean), 2e-3);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(moments[i][j], i == j ? 1 / 3.0 : 0, 2e-3);
+    EXPECT_GT(nearest, 0.15);  // 256 caps of that diameter cover more than a third of the sphere
+    EXPECT_GT(glm::distance(before[0], now[0]), 1e-3f);
+    std::swap(before, now);
+  }
+}
+
+TEST(ProbeRays, FindWhatPlainRaysFind) {
+  const scene::Scene s = roomWithBox();
+  const scene::Geometry g = scene::flatten(s);
+  Probes probes = evenProbes({0.5f, 1, 2});
+  probes.states[5].offset = {0.2f, -0.1f, 0.3f};
+  const Traced traced = trace(s, probes);
+  ASSERT_EQ(traced.hits.size(), size_t(kRoom * kRays));
+  EXPECT_EQ(traced.grid.rays, uint32_t(kRays));
+  int backs = 0, lit = 0, dark = 0, emitting = 0;
+  for (int i = 0; i < kRoom * kRays; ++i) {
+    const int probe = i / kRays;
+    const glm::dvec3 from = glm::dvec3(-1.5) + glm::dvec3(probe % 4, probe / 4 % 4, probe / 16) +
+                            glm::dvec3(probes.states[size_t(probe)].offset);
+    const glm::dvec3 direction(traced.directions[size_t(i % kRays)]);
+    const RayHit hit = castRay(s, g, from, direction);
+    ASSERT_TRUE(hit);
+    const glm::dvec4 got(traced.hits[size_t(i)]);
+    const glm::dvec3 normal = faceNormal(g, hit.triangle);
+    if (glm::dot(normal, direction) > 0) {
+      EXPECT_NEAR(got.a, -0.2 * hit.t, 1e-4);
+      EXPECT_EQ(glm::dvec3(got), glm::dvec3(0));
+      ++backs;
+      continue;
+    }
+    EXPECT_NEAR(got.a, hit.t, 1e-4);
+    const scene::Material& material = s.materials[g.triangles[hit.triangle].material()];
+    const glm::dvec3 at = from + hit.t * direction + 1e-4 * normal;
+    glm::dvec3 irradiance(0);
+    for (const scene::Light& light : s.lights) {
+      const glm::dvec3 to = glm::dvec3(light.position) - at;
+      const double d2 = glm::dot(to, to), cosine = glm::dot(normal, to) / std::sqrt(d2);
+      if (cosine <= 0 || castRay(s, g, at, to, {.tMax = 1})) continue;
+      irradiance += glm::dvec3(light.color) * double(light.intensity) * cosine / d2;
+    }
+    ++(irradiance == glm::dvec3(0) ? dark : lit);
+    emitting += material.emission != glm::vec3(0);
+    const glm::dvec3 rho(material.baseColor), known(0.5, 1, 2);
+    const glm::dvec3 want = glm::dvec3(material.emission) + rho * (irradiance / glm::pi<double>() + known);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 3e-3 * want[c]) << i;
+  }
+  EXPECT_EQ(backs, kRays);  // those of the probe in the box
+  EXPECT_GT(lit, 1000);
+  EXPECT_GT(dark, 5);
+  EXPECT_GT(emitting, 1000);
+}
+
+// Without feedback surfaces reflect nothing of what the probes know. In a room that emits 1 and reflects half, which one
+// point for each ray samples, they send 1.5.
+TEST(ProbeRays, WithoutFeedback) {
+  scene::Scene s;
+  const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
+  s.materials[m].emission = glm::vec3(1);
+  addRoom(s, walls, 2);
+  s.cameras.emplace_back();
+  PassTest test("probe-rays");
+  test.scene(s).viewSize(8, 8).param("probes", kSide).param("rays", 256).param("feedback", false);
+  evenProbes(glm::vec3(100)).wire(test, "probes");
+  test.run();
+  const auto hits = test.values<glm::vec4>("rays.hits");
+  double mean = 0;
+  for (const glm::vec4& hit : hits) mean += double(hit.r) / double(hits.size());
+  EXPECT_NEAR(mean, 1.5, 0.03);
+}
+
+// Those that are inside geometry trace a quarter of their rays.
+TEST(ProbeRays, AProbeInsideTracesFewer) {
+  Probes probes = evenProbes(glm::vec3(1));
+  probes.states[0].inside = 1;
+  const Traced traced = trace(roomWithBox(), probes);
+  EXPECT_EQ(traced.inside, 1);
+  for (int i = 0; i < kRays; ++i) EXPECT_EQ(traced.hits[size_t(i)].a == 0, i % 4 != 0) << i;
+  for (int i = kRays; i < kRoom * kRays; ++i) EXPECT_GT(traced.hits[size_t(i)].a, 0) << i;
+}
+
+TEST(ProbeRays, TheSkyBringsItsLight) {
+  scene::Scene s;
+  const uint32_t black = addMaterial(s, glm::vec3(0));
+  addBox(s, black, {-2, -2, -2}, {2, -1.9f, 2});
+  addBox(s, black, {-2, 1.9f, -2}, {-1.9f, 2, -1.9f});  // the bounds are those of a cube
+  s.environmentMap = skyWithSun();
+  s.cameras.emplace_back();
+  const Traced traced = trace(s, evenProbes(glm::vec3(1)));
+  int open = 0;
+  for (size_t i = 0; i < traced.hits.size(); ++i) {
+    const glm::vec4 hit = traced.hits[i];
+    if (hit.a < 1e29f) continue;
+    ++open;
+    const glm::vec3 want = s.environmentMap->radiance(glm::vec3(traced.directions[i % kRays]));
+    EXPECT_LT(glm::distance(glm::vec3(hit), want), 1e-4f * glm::length(want)) << i;
+  }
+  EXPECT_GT(open, kRoom * kRays / 2);
+  EXPECT_LT(open, kRoom * kRays);
+}
+
+TEST(ProbeRays, TheSameWhateverTheThreads) {
+  const scene::Scene s = roomWithBox();
+  const scene::Geometry g = scene::flatten(s);
+  const scene::RayScene rays(s, g);
+  const scene::Frame frame = scene::makeFrame(s, g, {8, 8}, 0, 1);
+  const Probes probes = evenProbes(glm::vec3(1));
+  passes::ProbeRaySettings settings;
+  settings.grid = passes::probeGrid(g.boundsMin, g.boundsMax, kSide, 0);
+  settings.previous = {probes.irradiance, probes.distance, probes.states};
+  std::vector<glm::vec4> directions(kRays), one(kRoom * kRays), five(kRoom * kRays);
+  passes::probeDirections(1, 0, directions);
+  settings.threads = 1;
+  const auto first = passes::traceProbeRays(frame, frame.views[0], rays, settings, directions, one);
+  settings.threads = 5;
+  const auto second = passes::traceProbeRays(frame, frame.views[0], rays, settings, directions, five);
+  EXPECT_EQ(first.rays, second.rays);
+  EXPECT_EQ(std::memcmp(one.data(), five.data(), one.size() * sizeof one[0]), 0);
+}
+
+TEST(ProbeRays, NothingToMeet) {
+  scene::Scene s;
+  s.materials.emplace_back();
+  s.cameras.emplace_back();
+  const Traced traced = trace(s, evenProbes(glm::vec3(1)));
+  EXPECT_EQ(traced.rays, 0);
+  for (const glm::vec4& hit : traced.hits) EXPECT_EQ(hit, glm::vec4(0));
+}
+
+TEST(ProbeRays, ProbesOfAnotherGridAreRefused) {
+  try {
+    trace(roomWithBox(), evenProbes(glm::vec3(1), kRoom + 1));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("`probes` knows 65 probes"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace fovea::test
