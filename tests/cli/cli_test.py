@@ -277,7 +277,8 @@ class Lists(CliTest):
 
     def graphs(self):
         folder = SOURCE / "graphs"
-        return [path for path in sorted([*folder.glob("*.json"), *folder.glob("debug/*.json")])
+        return [path for path in sorted([*folder.glob("*.json"), *folder.glob("debug/*.json"),
+                                         *folder.glob("alternatives/*.json")])
                 if not path.name.endswith(".schema.json")]
 
     def test_schema_accepts_the_graphs(self):
