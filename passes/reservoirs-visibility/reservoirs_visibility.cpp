@@ -58,6 +58,11 @@ class ReservoirsVisibility : public Pass {
              Usage::HostWrite,
              "two bits for each source k; 2 k: the pixel sees the sample of the source, 2 k + 1: the source "
              "sees that of the pixel");
+    d.parameter(
+        "both_ways", flag(true),
+        "whether rays also go from the sources to the pixel's sample; otherwise all of them see it. For "
+        "sources of the previous frame, which show the pixel's own surface: where that stood, something "
+        "else may be by now, and rays from there would end at once");
     declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
     d.counter("rays", "rays traced towards samples");
     d.counter("hidden", "rays that did not reach their sample");
@@ -75,6 +80,7 @@ class ReservoirsVisibility : public Pass {
     const auto sources = ctx.inputAs<uint32_t>("sources");
     const VkExtent3D size = ctx.extent("gbuffer.position");
     const size_t each = sources.size() / visibility.size();
+    const bool bothWays = ctx.parameters().flag("both_ways");
     std::atomic<uint32_t> next = 0;
     std::atomic<uint64_t> traced = 0, reached = 0;
     onThreads(std::min(threadCount(0), size.height), [&] {
@@ -90,8 +96,8 @@ class ReservoirsVisibility : public Pass {
             const uint32_t source = sources[i * each + k];
             if (source == kNone) continue;
             const size_t other = size_t(source >> 16) * size.width + (source & 0xffffu);
-            visibility[i] |= sees(own, i, others.reservoirs[other]) << 2 * k |
-                             sees(others, other, own.reservoirs[i]) << (2 * k + 1);
+            visibility[i] |= sees(own, i, others.reservoirs[other]) << 2 * k;
+            visibility[i] |= (bothWays ? sees(others, other, own.reservoirs[i]) : 1u) << (2 * k + 1);
           }
       traced += count;
       reached += seen;

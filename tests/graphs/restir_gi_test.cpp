@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/scene.h"
+#include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
@@ -147,6 +148,29 @@ TEST(RestirGi, FurnaceIsEvenlyLit) {
     EXPECT_NEAR(means.all / expected, 1, 0.01) << depth;
     for (const double part : means.parts) EXPECT_NEAR(part / expected, 1, 0.02) << depth;
   }
+}
+
+// What is visible of an object that moves sees what it saw before, although rays from where it was would now start inside
+// it. Its light follows a moving lamp with a delay.
+TEST(RestirGi, MovingThingsKeepTheirLight) {
+  constexpr uint64_t kLast = 24;
+  Diagnostics messages;
+  const scene::Scene s = scene::load("cornellbox_moving", messages);
+  GraphRunOptions options;
+  options.size = {kSide, kSide};
+  options.set = {"spp=1024"};
+  options.beforeFrame = [&s](scene::Frame& frame) {
+    scene::GpuScene* gpu = frame.gpu;
+    frame = scene::makeFrame(s, *frame.geometry, {kSide, kSide}, kLast, 1);
+    frame.gpu = gpu;
+  };
+  const Means wanted = meansOf(toFloats(runGraph("reference", s, options).outputs.at("indirect")));
+  options.beforeFrame = {};
+  options.frames = kLast + 1;
+  options.set = {"shadow_map_size=256"};
+  const Means means = meansOf(toFloats(runGraph(kGraph, s, options).outputs.at("indirect")));
+  std::printf("  %.4f of the light\n", means.all / wanted.all);
+  EXPECT_NEAR(means.all / wanted.all, 1, 0.05);
 }
 
 TEST(RestirGi, RepeatsBitForBitWhileThingsMove) {
