@@ -43,7 +43,7 @@ class ReservoirsVisibility : public Pass {
                       "rays to the samples of indirect light that pixels are about to share (ReSTIR GI)",
                       PassKind::Host);
     d.view();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"position", "face"}),
+    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"position", "face", "id"}),
             "surfaces seen by the eye");
     d.input("other_gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"position", "face"}),
             "surfaces of the sources: `gbuffer`, or that of the previous frame");
@@ -59,10 +59,10 @@ class ReservoirsVisibility : public Pass {
              "two bits for each source k; 2 k: the pixel sees the sample of the source, 2 k + 1: the source "
              "sees that of the pixel");
     d.parameter(
-        "both_ways", flag(true),
-        "whether rays also go from the sources to the pixel's sample; otherwise all of them see it. For "
-        "sources of the previous frame, which show the pixel's own surface: where that stood, something "
-        "else may be by now, and rays from there would end at once");
+        "previous", flag(false),
+        "whether the sources are of the previous frame. Those on things that move are then taken to see "
+        "what the pixel sees: where they were, something else may be by now, and rays from there would end "
+        "at once");
     declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
     d.counter("rays", "rays traced towards samples");
     d.counter("hidden", "rays that did not reach their sample");
@@ -80,7 +80,8 @@ class ReservoirsVisibility : public Pass {
     const auto sources = ctx.inputAs<uint32_t>("sources");
     const VkExtent3D size = ctx.extent("gbuffer.position");
     const size_t each = sources.size() / visibility.size();
-    const bool bothWays = ctx.parameters().flag("both_ways");
+    const bool previous = ctx.parameters().flag("previous");
+    const auto ids = ctx.inputAs<uint32_t>("gbuffer.id");
     std::atomic<uint32_t> next = 0;
     std::atomic<uint64_t> traced = 0, reached = 0;
     onThreads(std::min(threadCount(0), size.height), [&] {
@@ -97,7 +98,8 @@ class ReservoirsVisibility : public Pass {
             if (source == kNone) continue;
             const size_t other = size_t(source >> 16) * size.width + (source & 0xffffu);
             visibility[i] |= sees(own, i, others.reservoirs[other]) << 2 * k;
-            visibility[i] |= (bothWays ? sees(others, other, own.reservoirs[i]) : 1u) << (2 * k + 1);
+            const bool gone = previous && ids[i] >> 16 != 0;
+            visibility[i] |= (gone ? 1u : sees(others, other, own.reservoirs[i])) << (2 * k + 1);
           }
       traced += count;
       reached += seen;
