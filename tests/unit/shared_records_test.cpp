@@ -11,6 +11,7 @@
 #include "framework/gpu/shader/shader.h"
 #include "places.h"
 #include "shaders/common/records/eye_paths.h"
+#include "shaders/common/records/reservoir.h"
 #include "shaders/common/records/scene.h"
 #include "shaders/common/records/shadow.h"
 #include "shaders/common/records/voxel.h"
@@ -180,6 +181,13 @@ TEST(SharedRecords, EyePaths) {
   expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
                {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
                 AT(EyePathEnd, weight), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+}
+
+TEST(SharedRecords, Reservoirs) {
+  using passes::Reservoir;
+  expectLayout("common/records/reservoir.h", "Reservoir", sizeof(Reservoir),
+               {AT(Reservoir, position), AT(Reservoir, count), AT(Reservoir, radiance), AT(Reservoir, weight),
+                AT(Reservoir, normal), AT(Reservoir, unused)});
 }
 
 TEST(SharedRecords, OfOnePass) {
