@@ -37,7 +37,8 @@ Set operator+(Set a, const Set& b) {
 
 void expectFinite(const GraphRun& run) {
   for (const auto& [name, data] : run.outputs)
-    for (const float v : toFloats(data)) ASSERT_TRUE(std::isfinite(v) && (v >= 0 || name == "normal")) << name;
+    for (const float v : toFloats(data))
+      ASSERT_TRUE(std::isfinite(v) && (v >= 0 || name == "normal")) << name;
 }
 
 double counterOf(const graph::FrameResult& frame, const std::string& name) {
