@@ -410,12 +410,15 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 
 void ObjectReader::finish() {
   if (value_.members.size() == static_cast<size_t>(std::popcount(asked_))) return;
-  const std::vector<std::string> known(known_.begin(), known_.end());
+  std::vector<std::string> known;  // some are asked for twice
+  for (const std::string_view key : known_)
+    if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
   for (const Member& member : value_.members) {
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
     const std::string nearest = nearestName(member.key, known);
-    std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
-                                         : fmt::format("did you mean `{}`?", nearest);
+    std::string remedy = known.empty()     ? std::string()
+                         : nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
+                                           : fmt::format("did you mean `{}`?", nearest);
     diagnostics_.error(member.keyWhere.location(), pathOf(member.key),
                        fmt::format("unknown key `{}`", member.key), std::move(remedy));
   }
