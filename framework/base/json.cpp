@@ -16,6 +16,8 @@
 namespace fovea::json {
 namespace {
 
+constexpr size_t kMaxValues = 4'000'000;  // of one file; they take far more memory than their text
+
 // Computes line and column of ascending byte offsets.
 class LineCounter {
  public:
@@ -170,10 +172,18 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   template <class Set>
   bool scalar(Value::Type type, const Set& set) {
     const Position where = nextToken();
+    if (tooMany(where)) return false;
     Value& value = place();
     value.type = type;
     value.where = where;
     set(value);
+    return true;
+  }
+
+  bool tooMany(const Position& where) {
+    if (++values_ <= kMaxValues) return false;
+    diagnostics.error(where.location(), {}, fmt::format("more than {} values in one file", kMaxValues),
+                      "divide the file, or put numbers into a binary one");
     return true;
   }
 
@@ -183,6 +193,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       diagnostics.error(where.location(), {}, fmt::format("nested deeper than {} levels", kMaxDepth));
       return false;
     }
+    if (tooMany(where)) return false;
     Value& value = place();
     value.type = type;
     value.where = where;
@@ -204,7 +215,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
   std::string_view text_;
   LineCounter lines_;
-  size_t end_ = 0;
+  size_t end_ = 0, values_ = 0;
   std::vector<Value*> open_;
   std::vector<std::unordered_set<std::string>> keys_;
 };

@@ -209,6 +209,8 @@ class Inputs(CliTest):
         self.fails(BAD_INPUT, "check", "many.json", says=["8388608"])
         self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap"} for i in range(10_002)}})
         self.fails(BAD_INPUT, "check", "many.json", says=["more than 10000 passes"])
+        self.write("many.gltf", '{"asset": {"version": "2.0"}, "extras": [' + "0," * 4_000_000 + "0]}")
+        self.fails(BAD_INPUT, "scene", "info", "many.gltf", says=["many.gltf:1:8000034", "more than 4000000 values"])
         self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap"} for i in range(5_000)}})
         run = self.fails(BAD_INPUT, "check", "many.json", says=["4981 more mistakes"])
         self.assertLess(len(run.stderr), 10_000)
