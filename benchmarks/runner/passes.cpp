@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "benchmarks/runner/baseline.h"
+#include "benchmarks/runner/baseline/baseline.h"
 #include "benchmarks/runner/folder.h"
 #include "benchmarks/runner/inputs.h"
 #include "benchmarks/runner/interrupt.h"

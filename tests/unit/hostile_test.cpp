@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "benchmarks/runner/baseline.h"
+#include "benchmarks/runner/baseline/baseline.h"
 #include "benchmarks/runner/compared.h"
 #include "benchmarks/runner/suite.h"
 #include "fovea/image.h"

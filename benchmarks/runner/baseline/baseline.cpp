@@ -1,4 +1,4 @@
-#include "benchmarks/runner/baseline.h"
+#include "benchmarks/runner/baseline/baseline.h"
 
 #include <fstream>
 
