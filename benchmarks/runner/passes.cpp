@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "benchmarks/runner/baseline/baseline.h"
 #include "benchmarks/runner/folder.h"
 #include "benchmarks/runner/inputs.h"
 #include "benchmarks/runner/interrupt.h"
@@ -294,22 +294,6 @@ ExitCode Bench::compare(const Json& now, const Json& before) const {
                  spreadOf(values.get<std::vector<double>>()).median);
   }
   return slower ? ExitCode::Slower : ExitCode::Ok;
-}
-
-Json readBaseline(const std::string& file) {
-  noteRead(file);
-  std::ifstream in(file, std::ios::binary);
-  Json run = Json::parse(in, nullptr, false);
-  const auto good = [](const Json& repeat) {
-    return repeat.is_object() && repeat.contains("passes") && repeat.contains("frame") &&
-           repeat.contains("counters");
-  };
-  if (!in.good() && !in.eof()) run = Json();
-  if (!run.is_object() || !run.contains("with") || !run.contains("repeats") || !run["repeats"].is_array() ||
-      run["repeats"].empty() || !std::all_of(run["repeats"].begin(), run["repeats"].end(), good))
-    throw Error(ExitCode::BadInput, "`" + file + "` is no baseline",
-                "name a file that `fovea bench passes -o FILE` wrote, or a program `fovea`");
-  return run;
 }
 
 ExitCode Bench::run() {

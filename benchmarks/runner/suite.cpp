@@ -287,8 +287,7 @@ class SuiteReader {
           complain("`speed_up` names the graph `" + label + "`, which this sweep does not have");
       suite.speedUps.push_back(wanted);
     }
-    if (!messages_.hasErrors()) expand(name, s, suite);
-    if (suite.jobs.size() > kMaxJobs) complain("a suite has at most 100000 jobs");
+    if (!messages_.hasErrors() && !expand(name, s, suite)) complain("a suite has at most 100000 jobs");
   }
 
   static bool hasLabel(const Settings& s, const std::string& label) {
@@ -307,8 +306,8 @@ class SuiteReader {
   }
 
   // All combinations, with the first parameter slowest. Those of a scene go seed by seed, so that what is compared is
-  // measured in turns, in case the speed of the machine varies.
-  void expand(const std::string& sweep, const Settings& s, Suite& suite) {
+  // measured in turns, in case the speed of the machine varies. Returns false if there are too many.
+  bool expand(const std::string& sweep, const Settings& s, Suite& suite) {
     for (const auto& scene : s.scenes) {
       const auto first = std::ptrdiff_t(suite.jobs.size());
       for (const GraphEntry& graph : s.graphs) {
@@ -325,20 +324,23 @@ class SuiteReader {
         for (double rate : s.frameRates)
           axes.back().second.push_back(textOf(Value{.type = Value::Type::Real, .real = rate}));
         std::vector<Job> jobs = {jobOf(sweep, s, scene, graph)};
-        for (const auto& [key, values] : axes) jobs = multiplied(jobs, key, values);
+        const uint32_t seeds = overrides_.seeds.value_or(s.seeds);
+        for (const auto& [key, values] : axes) {
+          if (suite.jobs.size() + jobs.size() * values.size() * seeds > kMaxJobs) return false;
+          jobs = multiplied(jobs, key, values);
+        }
         if (graph.match)
           for (Job& job : jobs) completeMatch(s, graph, job);
-        const uint32_t seeds = overrides_.seeds.value_or(s.seeds);
         for (const Job& job : jobs)
           for (uint32_t seed = 1; seed <= seeds; ++seed) {
             suite.jobs.push_back(job);
             suite.jobs.back().seed = seed;
           }
-        if (suite.jobs.size() > kMaxJobs) return;
       }
       std::stable_sort(suite.jobs.begin() + first, suite.jobs.end(),
                        [](const Job& a, const Job& b) { return a.seed < b.seed; });
     }
+    return true;
   }
 
   // Parameters of the other graph: those of the sweep, as in this job, and its own.
@@ -466,15 +468,13 @@ Suite loadSuite(const std::string& nameOrFile, const std::vector<fs::path>& fold
         ExitCode::BadInput, "there is no suite `" + nameOrFile + "`",
         nearest.empty() ? "name a .json file, or one of: " + list : "did you mean `" + nearest + "`?");
   }
-  const std::string reason = whyUnreadable(found);
-  std::ostringstream text;
-  if (reason.empty()) text << std::ifstream(found, std::ios::binary).rdbuf();
-  if (!reason.empty() || !text)
-    throw Error(ExitCode::BadInput,
-                "cannot read the suite `" + found.string() + "`" + (reason.empty() ? "" : ": " + reason),
+  if (const std::string reason = whyUnreadable(found); !reason.empty())
+    throw Error(ExitCode::BadInput, "cannot read the suite `" + found.string() + "`: " + reason,
                 "check its name and permissions");
   noteRead(found);
-  return parseSuite(text.str(), found, overrides);
+  std::ifstream stream(found, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parseSuite(text, found, overrides);
 }
 
 bool matchesGlob(std::string_view pattern, std::string_view name) {

@@ -20,6 +20,21 @@ const char* severityName(Severity s) {
   return "error";
 }
 
+// A file of another kind can have a million mistakes.
+constexpr size_t kMostErrors = 20;
+
+// The first errors, without the warnings, if there are too many to read.
+std::vector<Diagnostic> firstErrors(std::vector<Diagnostic> list) {
+  if (list.size() <= kMostErrors) return list;
+  std::erase_if(list, [](const Diagnostic& d) { return d.severity != Severity::Error; });
+  if (list.size() <= kMostErrors) return list;
+  const size_t more = list.size() - kMostErrors;
+  list.resize(kMostErrors);
+  list.push_back(
+      {Severity::Error, {list[0].where.file, 0, 0}, {}, std::to_string(more) + " more mistakes", {}});
+  return list;
+}
+
 std::string formatAll(const std::vector<Diagnostic>& list) {
   std::string text;
   for (const Diagnostic& d : list) {
@@ -88,7 +103,7 @@ Error::Error(ExitCode code, std::string message, std::string remedy)
 }
 
 Error::Error(ExitCode code, std::vector<Diagnostic> diagnostics)
-    : code_(code), diagnostics_(std::move(diagnostics)), text_(formatAll(diagnostics_)) {}
+    : code_(code), diagnostics_(firstErrors(std::move(diagnostics))), text_(formatAll(diagnostics_)) {}
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates) {
   const size_t limit = std::max<size_t>(1, word.size() / 3);

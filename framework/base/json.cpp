@@ -16,6 +16,8 @@
 namespace fovea::json {
 namespace {
 
+constexpr size_t kMaxValues = 4'000'000;  // of one file; they take far more memory than their text
+
 // Computes line and column of ascending byte offsets.
 class LineCounter {
  public:
@@ -170,10 +172,18 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   template <class Set>
   bool scalar(Value::Type type, const Set& set) {
     const Position where = nextToken();
+    if (tooMany(where)) return false;
     Value& value = place();
     value.type = type;
     value.where = where;
     set(value);
+    return true;
+  }
+
+  bool tooMany(const Position& where) {
+    if (++values_ <= kMaxValues) return false;
+    diagnostics.error(where.location(), {}, fmt::format("more than {} values in one file", kMaxValues),
+                      "divide the file, or put numbers into a binary one");
     return true;
   }
 
@@ -183,6 +193,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       diagnostics.error(where.location(), {}, fmt::format("nested deeper than {} levels", kMaxDepth));
       return false;
     }
+    if (tooMany(where)) return false;
     Value& value = place();
     value.type = type;
     value.where = where;
@@ -204,7 +215,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
   std::string_view text_;
   LineCounter lines_;
-  size_t end_ = 0;
+  size_t end_ = 0, values_ = 0;
   std::vector<Value*> open_;
   std::vector<std::unordered_set<std::string>> keys_;
 };
@@ -410,12 +421,15 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, s
 
 void ObjectReader::finish() {
   if (value_.members.size() == static_cast<size_t>(std::popcount(asked_))) return;
-  const std::vector<std::string> known(known_.begin(), known_.end());
+  std::vector<std::string> known;  // some are asked for twice
+  for (const std::string_view key : known_)
+    if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
   for (const Member& member : value_.members) {
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
     const std::string nearest = nearestName(member.key, known);
-    std::string remedy = nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
-                                         : fmt::format("did you mean `{}`?", nearest);
+    std::string remedy = known.empty()     ? std::string()
+                         : nearest.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
+                                           : fmt::format("did you mean `{}`?", nearest);
     diagnostics_.error(member.keyWhere.location(), pathOf(member.key),
                        fmt::format("unknown key `{}`", member.key), std::move(remedy));
   }

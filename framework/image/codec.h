@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,10 @@ std::vector<std::string> extensions();
 
 // All three throw std::runtime_error with the library's reason. The format follows from the (lower-case) extension.
 // EXR holds 32-bit floats. PNG holds 8 bits per channel, values from 0 to 1 and alpha that is not premultiplied.
+// `accept` hears of width, height and channels before anything is decoded, and may throw.
+using Accept = std::function<void(uint32_t, uint32_t, size_t)>;
 void write(const std::filesystem::path& file, const Pixels& pixels);
-Pixels read(const std::filesystem::path& file);
+Pixels read(const std::filesystem::path& file, const Accept& accept);
 Image8 decode8(const uint8_t* bytes, size_t size);
 
 inline constexpr uint32_t kMaxSide = 32768;  // pixels; larger sizes in a header indicate a broken file

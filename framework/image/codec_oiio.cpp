@@ -55,12 +55,13 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
   if (!written || !closed || output->has_error()) fail(output->geterror());
 }
 
-Pixels read(const std::filesystem::path& file) {
+Pixels read(const std::filesystem::path& file, const Accept& accept) {
   const OIIO::ImageSpec config = readConfig();
   auto input = OIIO::ImageInput::open(file.string(), &config);
   if (!input) fail(OIIO::geterror());
   const OIIO::ImageSpec spec = input->spec();
   checkSize(spec);
+  accept(uint32_t(spec.width), uint32_t(spec.height), size_t(spec.nchannels));
   Pixels pixels;
   pixels.width = uint32_t(spec.width);
   pixels.height = uint32_t(spec.height);

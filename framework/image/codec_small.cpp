@@ -99,7 +99,7 @@ void writeExr(const std::filesystem::path& file, const Pixels& pixels) {
   if (!stream) fail(errno ? std::strerror(errno) : "the write failed");
 }
 
-Pixels readExr(const std::filesystem::path& file) {
+Pixels readExr(const std::filesystem::path& file, const Accept& accept) {
   const std::vector<uint8_t> bytes = readBytes(file);
   EXRVersion version;
   if (ParseEXRVersionFromMemory(&version, bytes.data(), bytes.size()) != TINYEXR_SUCCESS)
@@ -114,6 +114,8 @@ Pixels readExr(const std::filesystem::path& file) {
   exr.owned = true;
   const EXRBox2i& window = exr.header.data_window;
   checkSize(int64_t(window.max_x) - window.min_x + 1, int64_t(window.max_y) - window.min_y + 1);
+  accept(uint32_t(int64_t(window.max_x) - window.min_x + 1),
+         uint32_t(int64_t(window.max_y) - window.min_y + 1), size_t(exr.header.num_channels));
   for (int c = 0; c < exr.header.num_channels; ++c) {
     if (exr.header.pixel_types[c] == TINYEXR_PIXELTYPE_UINT) fail("its integer channels are not supported");
     exr.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
@@ -190,7 +192,7 @@ void writePng(const std::filesystem::path& file, const Pixels& pixels) {
   if (std::fflush(png.stream.get()) != 0) fail(std::strerror(errno));
 }
 
-Pixels readPng(const std::filesystem::path& file) {
+Pixels readPng(const std::filesystem::path& file, const Accept& accept) {
   static const std::vector<std::string> kNames[] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
   Png png(file, false);
   png_read_info(png.png, png.info);
@@ -201,6 +203,7 @@ Pixels readPng(const std::filesystem::path& file) {
   const uint32_t width = png_get_image_width(png.png, png.info),
                  height = png_get_image_height(png.png, png.info);
   checkSize(width, height);
+  accept(width, height, png_get_channels(png.png, png.info));
   const size_t rowBytes = png_get_rowbytes(png.png, png.info);
   std::vector<uint8_t> bytes(rowBytes * height);
   std::vector<png_bytep> rows(height);
@@ -227,11 +230,11 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
 }
 
 // The format is recognised by content; the name may be anything.
-Pixels read(const std::filesystem::path& file) {
+Pixels read(const std::filesystem::path& file, const Accept& accept) {
   uint8_t magic[8] = {};
   std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(magic), sizeof(magic));
-  if (png_sig_cmp(magic, 0, sizeof(magic)) == 0) return readPng(file);
-  if (magic[0] == 0x76 && magic[1] == 0x2f) return readExr(file);
+  if (png_sig_cmp(magic, 0, sizeof(magic)) == 0) return readPng(file, accept);
+  if (magic[0] == 0x76 && magic[1] == 0x2f) return readExr(file, accept);
   const std::vector<uint8_t> bytes = readBytes(file);
   const Image8 image = decode8(bytes.data(), bytes.size());
   Pixels pixels{image.width, image.height, {"R", "G", "B", "A"}, std::vector<float>(image.rgba.size()), {}};

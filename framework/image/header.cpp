@@ -44,4 +44,11 @@ std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes) {
   return {};
 }
 
+std::string whyTooPlain(uint64_t pixels, uint64_t bytes) {
+  constexpr uint64_t kPlainPixels = uint64_t(1) << 26, kPixelsOfByte = 64;
+  if (pixels <= kPlainPixels || (pixels - kPlainPixels) / kPixelsOfByte <= bytes) return {};
+  return std::to_string(bytes) + " bytes claim " + std::to_string(pixels / 1'000'000) +
+         " million pixels, which can show little more than plain colours";
+}
+
 }  // namespace fovea::image

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace fovea::image {
 
@@ -13,5 +14,10 @@ struct HeaderSize {
 };
 // Of a PNG or JPEG in memory; nothing if it is neither or has no such header.
 std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes);
+
+// Why files of so many bytes are not decoded though they claim so many pixels, or "". Plain colours compress a
+// thousandfold, so that a small file can ask for gigabytes; whatever shows something has a byte for each 64 pixels, and
+// up to 2^26 pixels may be plain.
+std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 
 }  // namespace fovea::image

@@ -11,9 +11,11 @@
 #include <stdexcept>
 
 #include "fovea/error.h"
+#include "framework/base/budget.h"
 #include "framework/base/files.h"
 #include "framework/base/threads.h"
 #include "framework/image/codec.h"
+#include "framework/image/header.h"
 #include "framework/image/pfm.h"
 
 namespace fovea::image {
@@ -192,7 +194,7 @@ std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit,
 void writeChecked(const fs::path& temporary, const std::string& extension, const Pixels& pixels) {
   const bool pfm = extension == "pfm";
   pfm ? writePfm(temporary, pixels) : codec::write(temporary, pixels);
-  const Pixels back = pfm ? readPfm(temporary) : codec::read(temporary);
+  const Pixels back = pfm ? readPfm(temporary) : codec::read(temporary, [](uint32_t, uint32_t, size_t) {});
   const std::string part = difference(pixels, back, extension == "png", !pfm);
   if (!part.empty()) throw std::runtime_error(part + " reads back different from what was written");
 }
@@ -271,12 +273,24 @@ void checkReadable(const fs::path& file) {
   noteRead(file);
 }
 
+// What a header claims is refused before it is decoded.
+codec::Accept acceptor(const fs::path& file) {
+  return [file](uint32_t width, uint32_t height, size_t channels) {
+    const uint64_t values = uint64_t(width) * height * channels;
+    if (const std::string reason = whyTooPlain(values / 3, fs::file_size(file)); !reason.empty())
+      cannotRead(file.string(), reason);
+    claimContent(values * 2 * sizeof(float), "image `" + file.string() + "`");
+  };
+}
+
 }  // namespace
 
 File read(const fs::path& file) {
   checkReadable(file);
   try {
-    return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::read(file));
+    return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::read(file, acceptor(file)));
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     noMemoryFor(file.string());
   } catch (const std::exception& e) {
@@ -297,6 +311,8 @@ Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name) {
   if (!png && !jpeg) cannotRead(name, size == 0 ? "it is empty" : "it is neither PNG nor JPEG");
   try {
     return codec::decode8(bytes, size);
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     noMemoryFor(name);
   } catch (const std::exception& e) {

@@ -203,10 +203,17 @@ class Inputs(CliTest):
         """Refused by sizes in headers, before it is read."""
         self.write("many.json", {"models": [{"file": "none.gltf"}] * 10_001})
         self.fails(BAD_INPUT, "scene", "info", "many.json", says=["10001 models", "10000"])
+        self.write("many.json", {"models": [{"file": "none.gltf", "name": "x" * 800}] * 10_001})
+        self.fails(BAD_INPUT, "scene", "info", "many.json", says=["8388608", "glTF"])
         self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap", "comment": "x" * 800} for i in range(10_001)}})
         self.fails(BAD_INPUT, "check", "many.json", says=["8388608"])
         self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap"} for i in range(10_002)}})
         self.fails(BAD_INPUT, "check", "many.json", says=["more than 10000 passes"])
+        self.write("many.gltf", '{"asset": {"version": "2.0"}, "extras": [' + "0," * 4_000_000 + "0]}")
+        self.fails(BAD_INPUT, "scene", "info", "many.gltf", says=["many.gltf:1:8000034", "more than 4000000 values"])
+        self.write("many.json", {"passes": {f"p{i}": {"type": "tonemap"} for i in range(5_000)}})
+        run = self.fails(BAD_INPUT, "check", "many.json", says=["4981 more mistakes"])
+        self.assertLess(len(run.stderr), 10_000)
         for value in ("", "x", "0", "-1"):
             run = self.call("scene", "info", "cornellbox", env={"FOVEA_MEMORY_LIMIT": value})
             self.assertEqual(run.returncode, BAD_INPUT if value else 0, run.stderr)
@@ -215,11 +222,14 @@ class Inputs(CliTest):
         self.model([0, 0, 0, 1, 0, 0, 0, 1, 0])
         model = json.loads((self.folder / "model.gltf").read_text())
         header = struct.pack(">II", 16384, 16384) + b"\x08\x02\0\0\0"
-        (self.folder / "large.png").write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + header)
+        start = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + b"IHDR" + header
+        (self.folder / "large.png").write_bytes(start + bytes(1 << 20))
         model["images"] = [{"uri": "large.png"}] * 40
         model["textures"] = [{"source": i} for i in range(40)]
         model["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}} for i in range(40)]
         self.write("model.gltf", model)
+        self.fails(BAD_INPUT, "scene", "info", "model.gltf", says=["bytes claim 268 million pixels", "smaller"])
+        (self.folder / "large.png").write_bytes(start + bytes(4 << 20))
         run = self.fails(OUT_OF_MEMORY, "scene", "info", "model.gltf", env={"FOVEA_MEMORY_LIMIT": "2000"},
                          says=["1 images of 269 million pixels", "2048 MiB", "2000 MiB", "FOVEA_MEMORY_LIMIT"])
         self.assertNotIn("bad_alloc", run.stderr)

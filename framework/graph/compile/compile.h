@@ -32,7 +32,7 @@ namespace fovea::graph {
 Override parseOverride(std::string_view text);
 
 // Loads a graph by file name, or by bare name ("ir_1000" for ir_1000.json) from the search paths. Throws
-// Error(BadInput) if the file cannot be read or is not JSON; all other mistakes are added to `diagnostics`.
+// Error(BadInput) if the file cannot be read, is no JSON or has too many passes; other mistakes go to `diagnostics`.
 Description load(const std::string& nameOrPath, const LoadOptions& options, Diagnostics& diagnostics);
 // The same for a text (tests, editors). `file` is its name in messages, and `extends` is relative to its folder.
 Description loadText(std::string_view text, const std::filesystem::path& file, const LoadOptions& options,

@@ -457,6 +457,8 @@ Description resolve(std::shared_ptr<const json::Value> document, const std::file
   detail::readParameters(all, root, nullptr);
   detail::readRootInputs(all, root);
   detail::expandScope(all, root);
+  if (all.full)
+    diagnostics.throwIfErrors();  // rather than a mistake for each wire to a pass that was left out
   detail::resolveWires(all);
   detail::reportUnused(all);
   return description;

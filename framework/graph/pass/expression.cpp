@@ -117,7 +117,9 @@ class Parser {
       return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
     };
     while (at_ < text_.size() && belongs(text_[at_])) ++at_;
-    if (at_ == begin) fail(fmt::format("unexpected `{}`", text_.substr(at_, 1)));
+    if (at_ == begin)
+      fail(at_ < text_.size() ? fmt::format("unexpected `{}`", text_[at_])
+                              : "the expression ends where a value is expected");
     return std::string(text_.substr(begin, at_ - begin));
   }
 

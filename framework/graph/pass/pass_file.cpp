@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 #include "framework/gpu/format.h"
@@ -239,10 +240,12 @@ class Reader {
     if (const json::Value* choices = reader.array("choices")) {
       spec.type = ParameterSpec::Type::Choice;
       for (const json::Value& c : choices->items) {
-        if (c.isString())
-          spec.choices.push_back(c.string);
-        else
+        if (!c.isString())
           error(c.where, path + ".choices", fmt::format("expected a text, found {}", c.describe()));
+        else if (std::find(spec.choices.begin(), spec.choices.end(), c.string) != spec.choices.end())
+          error(c.where, path + ".choices", fmt::format("the choice `{}` is there twice", c.string));
+        else
+          spec.choices.push_back(c.string);
       }
     }
     if (value) readDefault(spec, *value, path);
@@ -354,10 +357,20 @@ class Reader {
           fmt::format("the shader of a step {} ends in `{}`, not `{}`", why, ending, shader));
   }
 
+  static bool isMacro(std::string_view name) {
+    const auto within = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+           std::all_of(name.begin(), name.end(), within);
+  }
+
   void readDefines(StepSpec& step, ObjectReader& reader) {
     if (const json::Value* defines = reader.object("define"))
-      for (const Member& m : defines->members)
+      for (const Member& m : defines->members) {
+        if (!isMacro(m.key))
+          error(m.keyWhere, reader.pathOf("define"), fmt::format("`{}` is no name for a macro", m.key),
+                "letters, digits and _, not beginning with a digit");
         step.define(m.key, expression(m.value, reader.pathOf("define") + "." + m.key));
+      }
     if (const json::Value* constants = reader.object("constant"))
       for (const Member& m : constants->members)
         step.constants.emplace_back(m.key, expression(m.value, reader.pathOf("constant") + "." + m.key));
@@ -372,6 +385,8 @@ class Reader {
     } else if (reader.has("groups") || reader.has("threads")) {
       const bool groups = reader.has("groups");
       const json::Value* list = reader.array(groups ? "groups" : "threads");
+      if (list && (list->items.empty() || list->items.size() > 3))
+        error(list->where, reader.path(), "a size has one to three numbers, along x, y and z");
       SizeExpr size[3];
       for (size_t i = 0; list && i < std::min<size_t>(3, list->items.size()); ++i)
         size[i] = expression(list->items[i], reader.path());

@@ -20,7 +20,8 @@ namespace {
 using json::ObjectReader;
 using json::Value;
 
-constexpr size_t kMaxModels = 10000;  // each is loaded by itself
+constexpr size_t kMaxModels = 10000;                 // each is loaded by itself
+constexpr uintmax_t kMaxBytes = uintmax_t(8) << 20;  // kMaxModels of 800 bytes each
 
 struct ModelEntry {
   std::string file, builtin, get;
@@ -218,7 +219,10 @@ class Parser {
     const glm::vec3 target = readVector(r, "target", camera.position + glm::vec3(0, 0, -1));
     camera.verticalFov = float(glm::radians(fov));
     const glm::vec3 forward = target - camera.position;
-    if (glm::length(forward) <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
+    const float distance = glm::length(forward);
+    if (!std::isfinite(distance))
+      return mistake(r, "eye", "`eye` or `target` is too far away for single precision");
+    if (distance <= 1e-6f) return mistake(r, "target", "`eye` and `target` are the same point");
     camera.orientation = lookAlong(forward, up);
   }
 
@@ -345,6 +349,13 @@ Scene parseSceneFile(const Value& root, const fs::path& file, Diagnostics& warni
 }
 
 Scene loadSceneFile(const fs::path& file, Diagnostics& warnings) {
+  std::error_code unknown;
+  const uintmax_t bytes = fs::file_size(file, unknown);
+  if (!unknown && bytes > kMaxBytes)
+    throw Error(ExitCode::BadInput,
+                file.string() + " has " + std::to_string(bytes) + " bytes; a scene file may have " +
+                    std::to_string(kMaxBytes),
+                "put parts that belong together into one glTF model, and a long gaze into a table");
   return parseSceneFile(json::parseFile(file), file, warnings);
 }
 

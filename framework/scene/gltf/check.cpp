@@ -141,16 +141,7 @@ void checkDocument(const json::Value& root, const Source& source, Diagnostics& w
     checkData(root, source, errors);
     checkContent(root, source, errors);
   }
-  if (!errors.hasErrors()) return;
-  // A file of another kind can have a million mistakes.
-  constexpr size_t kMaxReported = 20;
-  std::vector<Diagnostic> list = errors.list();
-  if (list.size() > kMaxReported) {
-    const size_t more = list.size() - kMaxReported;
-    list.resize(kMaxReported);
-    list.push_back({Severity::Error, {source.name, 0, 0}, "", std::to_string(more) + " more mistakes", ""});
-  }
-  throw Error(ExitCode::BadInput, std::move(list));
+  errors.throwIfErrors();
 }
 
 }  // namespace fovea::scene::gltf

@@ -229,6 +229,8 @@ class MaterialBuilder {
     double texCoord = numberOr(info, "texCoord", 0);
     if (const Value* transform = extensionOf(info, "KHR_texture_transform")) {
       u.transform = textureTransform(transform);
+      for (int i = 0; i < 3; ++i)
+        finite(double(u.transform[i].x + u.transform[i].y), "KHR_texture_transform");
       texCoord = numberOr(transform, "texCoord", texCoord);
     }
     const std::optional<uint32_t> set = texCoords_.add(int(texCoord));
@@ -287,13 +289,17 @@ class MaterialBuilder {
     std::set<size_t> used;
     for (const tinygltf::Texture& texture : c_.model.textures)
       if (texture.source >= 0) used.insert(firstAlike_[size_t(texture.source)]);
-    uint64_t pixels = 0;
+    uint64_t pixels = 0, bytes = 0;
     for (const size_t i : used) try {
-        const image::HeaderSize size = image::headerSize(encoded(i)).value_or(image::HeaderSize{});
-        if (std::max(size.width, size.height) <= kMaxTextureSize)
-          pixels += size.pixels();  // others are refused
-      } catch (const Error&) {      // a missing file matters only if a material needs it
+        const std::span<const uint8_t> file = encoded(i);
+        const image::HeaderSize size = image::headerSize(file).value_or(image::HeaderSize{});
+        if (std::max(size.width, size.height) > kMaxTextureSize) continue;  // is refused
+        pixels += size.pixels();
+        bytes += file.size();
+      } catch (const Error&) {  // a missing file matters only if a material needs it
       }
+    if (const std::string reason = image::whyTooPlain(pixels, bytes); !reason.empty())
+      throw Error(ExitCode::BadInput, c_.source.name + ": " + reason, "make images of plain colours smaller");
     if (pixels > 0)
       claimContent(pixels * kBytes, fmt::format("{}: {} images of {} million pixels", c_.source.name,
                                                 used.size(), (pixels + 999'999) / 1'000'000));
