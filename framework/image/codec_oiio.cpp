@@ -2,7 +2,11 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <fstream>
+#include <memory>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "framework/image/codec.h"
 
@@ -28,6 +32,23 @@ void checkSize(const OIIO::ImageSpec& spec) {
   if (spec.nchannels < 1 || spec.nchannels > 1024)
     fail("it has " + std::to_string(spec.nchannels) + " channels");
   if (spec.deep || spec.depth > 1) fail("deep and volume images are not supported");
+}
+
+// Opens a picture as what its first bytes say it is. Left to itself, OpenImageIO tries all its plug-ins on what it does
+// not know, among them decoders of videos and of medical images.
+std::unique_ptr<OIIO::ImageInput> open(std::string_view begin, const std::string& name,
+                                       const OIIO::ImageSpec& config) {
+  static constexpr std::pair<std::string_view, const char*> kFormats[] = {
+      {"\x89PNG", "png"}, {"\x76\x2f\x31\x01", "openexr"}, {"\xff\xd8\xff", "jpeg"}, {"#?", "hdr"}};
+  for (const auto& [magic, format] : kFormats) {
+    if (!begin.starts_with(magic)) continue;
+    auto input = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
+    if (!input) fail(OIIO::geterror());
+    if (!input->open(name, spec, config)) fail(input->geterror());
+    return input;
+  }
+  fail("it is no EXR, PNG, JPEG or HDR file");
 }
 
 }  // namespace
@@ -56,9 +77,9 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
 }
 
 Pixels read(const std::filesystem::path& file, const Accept& accept) {
-  const OIIO::ImageSpec config = readConfig();
-  auto input = OIIO::ImageInput::open(file.string(), &config);
-  if (!input) fail(OIIO::geterror());
+  char begin[4] = {};
+  std::ifstream(file, std::ios::binary).read(begin, sizeof(begin));
+  const auto input = open({begin, sizeof(begin)}, file.string(), readConfig());
   const OIIO::ImageSpec spec = input->spec();
   checkSize(spec);
   accept(uint32_t(spec.width), uint32_t(spec.height), size_t(spec.nchannels));
@@ -80,9 +101,7 @@ Image8 decode8(const uint8_t* bytes, size_t size) {
   OIIO::ImageSpec config = readConfig();
   void* proxy = &memory;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const bool png = size > 1 && bytes[0] == 0x89 && bytes[1] == 'P';
-  auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &config);
-  if (!input) fail(OIIO::geterror());
+  const auto input = open({reinterpret_cast<const char*>(bytes), size}, "memory", config);
   const OIIO::ImageSpec spec = input->spec();
   checkSize(spec);
   const size_t count = size_t(spec.width) * spec.height;
