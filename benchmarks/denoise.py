@@ -13,7 +13,7 @@ import importlib
 import os
 import sys
 
-BAD_INPUT, CANNOT_WRITE = 3, 7
+USAGE, BAD_INPUT, CANNOT_WRITE = 2, 3, 7
 LIGHT, GUIDES = ("radiance", "indirect"), ("albedo", "normal")
 
 
@@ -42,8 +42,8 @@ def main():
     parser.add_argument("denoised", help="EXR file to write")
     parser.add_argument("--layer", help="only this layer")
     options = parser.parse_args()
-    if os.path.exists(options.denoised) and os.path.samefile(options.noisy, options.denoised):
-        fail(2, f"`{options.denoised}` would be written over the file that is read; choose another name")
+    if all(map(os.path.exists, (options.noisy, options.denoised))) and os.path.samefile(options.noisy, options.denoised):
+        fail(USAGE, f"`{options.denoised}` would be written over the file that is read; choose another name")
     oiio, oidn, numpy = load("OpenImageIO"), load("pyoidn"), load("numpy")
     picture = oiio.ImageBuf(options.noisy)
     if picture.has_error or not picture.spec().nchannels:

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <cstdio>
-#include <glm/gtc/constants.hpp>
 
 #include "framework/scene/scene.h"
+#include "tests/graphs/lit_sphere.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
 
@@ -27,20 +27,10 @@ std::vector<float> indirect(const char* graph, const scene::Scene& s, uint32_t f
   return toFloats(runGraph(graph, s, o).outputs.at("indirect"));
 }
 
-// Inside a closed diffuse sphere the light I / R^2 from its centre comes back evenly, by rho in each bounce.
-TEST(Alternatives, Furnace) {
-  constexpr float kRadius = 20, kRho = 0.5f;
-  scene::Scene s;
-  addMaterial(s, glm::vec3(kRho));
-  addHollowSphere(s, 0, glm::vec3(0), kRadius, 64, 32);
-  scene::Light lamp;
-  lamp.type = scene::LightType::Point;
-  lamp.intensity = 100;
-  s.lights = {lamp};
-  s.cameras.emplace_back();
-  s.cameras[0].position = {0, 0, 15};
-  s.cameras[0].verticalFov = 1.5f;
-  const double want = kRho / glm::pi<double>() * 100 / (kRadius * kRadius) * (kRho + kRho * kRho);
+TEST(Alternatives, FurnaceIsLitByTwoBounces) {
+  constexpr float kRho = 0.5f;
+  const scene::Scene s = litSphere(kRho);
+  const double want = litSphereRadiance(kRho, 2);
   EXPECT_NEAR(meanGreen(indirect("alternatives/vxgi", s, 4, {"voxels=48"})), want, 0.03 * want);
   EXPECT_NEAR(meanGreen(indirect("alternatives/pt_denoised", s, 4, {})), want, 0.01 * want);
 }
@@ -54,11 +44,7 @@ scene::Scene room() {
   addRoom(s, walls, 2);
   s.materials[addMaterial(s, glm::vec3(0.7f))].doubleSided = true;
   addQuad(s, uint32_t(s.materials.size()) - 1, {-1, -0.6f, -0.5f}, {1.6f, 0, 0.3f}, {0, 0.9f, 0.8f});
-  scene::Light lamp;
-  lamp.type = scene::LightType::Point;
-  lamp.position = {0.4f, 1.3f, 0.2f};
-  lamp.intensity = 4;
-  s.lights = {lamp};
+  s.lights = {pointLight({0.4f, 1.3f, 0.2f}, glm::vec3(4))};
   s.cameras.emplace_back();
   s.cameras[0].position = {0, 0, 1.8f};
   s.cameras[0].verticalFov = 1.4f;

@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "fovea/scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
+#include "tests/graphs/lit_sphere.h"
 #include "tests/support/failure_pictures.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/path_reference.h"
@@ -15,8 +15,6 @@
 
 namespace fovea::test {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std::string> set, uint32_t side,
                uint32_t frames) {
@@ -27,24 +25,15 @@ GraphRun runIr(const std::string& graph, const scene::Scene& s, std::vector<std:
   return runGraph(graph, s, options);
 }
 
-// Inside a closed diffuse sphere every point sees every other with the same form factor. The light I / R^2 from its
-// centre comes back evenly as I / R^2 (rho + rho^2 + ...), whatever the VPLs.
+// The light inside the sphere is even, whatever the VPLs.
 TEST(InstantRadiosity, FurnaceIsEvenlyLitByItsBounces) {
-  constexpr float kRadius = 20, kRho = 0.5f;
-  scene::Scene s;
-  addMaterial(s, glm::vec3(kRho));
-  addHollowSphere(s, 0, glm::vec3(0), kRadius, 64, 32);
-  s.lights = {pointLight(glm::vec3(0), glm::vec3(100))};
-  s.cameras.emplace_back();
-  s.cameras[0].position = {0, 0, 15};
-  s.cameras[0].verticalFov = 1.5f;
+  constexpr float kRho = 0.5f;
+  const scene::Scene s = litSphere(kRho);
   for (const int bounces : {1, 2, 4}) {
     // Enough paths for their mean number of bounces to be within 1% or so.
     const GraphRun run = runIr(
         "ir_accumulated", s, {"vpl_count=1024", "kernel=clamp", "bounces=" + std::to_string(bounces)}, 64, 4);
-    double series = 0;
-    for (int k = 1; k <= bounces; ++k) series += std::pow(double(kRho), k);
-    const double expected = kRho / kPi * 100 / (kRadius * kRadius) * series;
+    const double expected = litSphereRadiance(kRho, bounces);
     const auto indirect = toFloats(run.outputs.at("indirect"));
     double mean = 0;
     for (size_t i = 0; i < indirect.size(); i += 4) {

@@ -12,6 +12,7 @@
 #include "fovea/scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
+#include "tests/graphs/lit_sphere.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"
 
@@ -129,20 +130,11 @@ TEST(RestirGi, MeanIsTheLightOfTracedPathsUnlessBiased) {
   EXPECT_GT(biased.relMse, 1.5 * unbiased.relMse);
 }
 
-// Inside a closed white sphere the light I / R^2 from its centre comes back evenly as I / R^2 (rho + rho^2 + ...).
 TEST(RestirGi, FurnaceIsEvenlyLit) {
-  constexpr float kRadius = 20, kRho = 0.9f;
-  scene::Scene s;
-  addMaterial(s, glm::vec3(kRho));
-  addHollowSphere(s, 0, glm::vec3(0), kRadius, 64, 32);
-  s.lights = {pointLight(glm::vec3(0), glm::vec3(100))};
-  s.cameras.emplace_back();
-  s.cameras[0].position = {0, 0, 15};
-  s.cameras[0].verticalFov = 1.5f;
+  constexpr float kRho = 0.9f;
+  const scene::Scene s = litSphere(kRho);
   for (const int depth : {3, 4, 6}) {
-    double series = 0;
-    for (int k = 1; k <= depth - 2; ++k) series += std::pow(double(kRho), k);
-    const double expected = kRho / glm::pi<double>() * 100 / (kRadius * kRadius) * series;
+    const double expected = litSphereRadiance(kRho, depth - 2);
     const Means means = meansOf(meanOf(s, 1, {"depth=" + std::to_string(depth)}));
     std::printf("  depth %d: %.4f of the light\n", depth, means.all / expected);
     EXPECT_NEAR(means.all / expected, 1, 0.01) << depth;
