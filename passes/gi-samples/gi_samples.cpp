@@ -64,7 +64,7 @@ class Sampler {
     if (aim != nullptr && hit.triangle != aim->triangle) return;
     Reservoir sample;
     float density = cosine * glm::one_over_pi<float>();
-    if (hit.triangle == scene::kNoIndex) {
+    if (hit.isOutside()) {
       const scene::SurfaceTracer::Outside outside = surfaces_.outside(direction);
       sample.position = v.position + kSky * direction;
       sample.normal = -direction;

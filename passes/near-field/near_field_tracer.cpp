@@ -170,16 +170,17 @@ class Tracer {
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
-    const bool seesOutside = surfaces_.hasEnvironment() && radius2 > 0;
+    const bool tracesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
       light = fromEmitters(v, hashCombine(stream, kAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
     const TracedSurface hit =
-        surfaces_.arrive(v.origin, direction, seesOutside ? kFarAway : reach, statistics.rays);
-    if (!hit.there) return light + (seesOutside ? hit.brighter * fromOutside(v, direction) : glm::vec3(0));
+        surfaces_.arrive(v.origin, direction, tracesOutside ? kFarAway : reach, statistics.rays);
+    if (tracesOutside && hit.isOutside()) return light + hit.brighter * fromOutside(v, direction);
+    if (!hit.there) return light;
     const float distance = glm::distance(hit.position, v.position);
-    if (seesOutside && distance > reach) return light;
+    if (tracesOutside && distance > reach) return light;
     const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
     statistics.hits += 1 / probability;
     statistics.length += distance / probability;

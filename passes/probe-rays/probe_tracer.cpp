@@ -37,7 +37,7 @@ class Tracer {
   // What ray `index` of all finds.
   glm::vec4 hitOf(glm::vec3 origin, glm::vec3 direction, uint32_t index, uint64_t& rays) const {
     const TracedSurface v = surfaces_.arrive(origin, direction, kFarAway, rays);
-    if (v.triangle == kNoIndex) return {v.brighter * surfaces_.outside(direction).radiance, kFarAway};
+    if (v.isOutside()) return {v.brighter * surfaces_.outside(direction).radiance, kFarAway};
     const float distance = glm::distance(v.position, origin);
     if (!v.there) return {glm::vec3(0), -kBackShortened * distance};
     const glm::vec3 rho = surfaces_.reflectance(v), light = lightAt(v, -direction, index, rays);

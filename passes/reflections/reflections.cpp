@@ -85,7 +85,8 @@ class Tracer {
     const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
     const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;
     const scene::TracedSurface hit = surfaces_.arrive(origin, direction, scene::kFarAway, sum.rays);
-    if (!hit.there) return {weight * hit.brighter * surfaces_.outside(direction).radiance, kOutside};
+    if (hit.isOutside()) return {weight * hit.brighter * surfaces_.outside(direction).radiance, kOutside};
+    if (!hit.there) return {0, 0, 0, glm::distance(hit.position, origin)};
     const glm::vec3 gathered = gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, sum);
     return {weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered),
             glm::distance(hit.position, origin)};

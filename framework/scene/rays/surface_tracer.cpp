@@ -238,7 +238,7 @@ glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32
     if (glm::dot(direction, v.face) <= 0) continue;
     const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
     if (!next.there) {
-      if (const Outside light = outside(direction); light.density > 0)
+      if (const Outside light = outside(direction); next.isOutside() && light.density > 0)
         sum += next.brighter * light.radiance * balance(light.density, direction);
       continue;
     }

@@ -14,8 +14,8 @@ namespace fovea::scene {
 
 // A surface as seen by the ray that reached it.
 struct TracedSurface {
-  bool there = false;
-  uint32_t triangle = kNoIndex;  // index into Geometry::triangles
+  bool there = false;            // false on a black back, too
+  uint32_t triangle = kNoIndex;  // index into Geometry::triangles; kNoIndex if the ray has met nothing
   float u = 0, v = 0;            // barycentric weights of the triangle's second and third vertex
   glm::vec3 position{0};         // world space, m
   glm::vec3 origin{0};           // start of rays that leave it, just off the surface
@@ -25,6 +25,8 @@ struct TracedSurface {
   // The factor on its light that makes up for the rays that glass has let through, and what glass before it makes of
   // the light on its way along the ray; the latter alone if the ray met nothing.
   glm::vec3 brighter{1};
+
+  bool isOutside() const { return triangle == kNoIndex; }
 };
 
 // Point `turn` of the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), whose
