@@ -120,7 +120,18 @@ TEST(FirstView, ThingsAreSeenAsAWhole) {
   }
 }
 
-// A pole, a needle of two millimetres and a wall as long as a town.
+// Their walls are shown from both sides, so that it is no matter on which one stands; unless there is something inside.
+TEST(FirstView, ClosedBoxesAreSeenFromOutside) {
+  scene::Scene crate = box(glm::vec3(1)), slab = box({20, 0.5f, 20}), furnished = box(glm::vec3(2));
+  addQuad(furnished, addMaterial(furnished, {0.5f, 0.3f, 0.2f}), {-1.5f, -2, -1}, {3, 0, 0}, {0, 2.5f, 0});
+  furnished.materials[1].doubleSided = true;
+  for (scene::Scene* s : {&crate, &slab, &furnished}) {
+    s->materials[0].doubleSided = true;
+    EXPECT_THAT(scene::addFirstView(*s).camera, HasSubstr(s == &furnished ? "inside" : "whole"));
+    expectGoodPicture(*s);
+  }
+}
+
 // What moves stays in the picture in the course of its animation.
 TEST(FirstView, ThingsAreSeenWhereverTheyMove) {
   scene::Scene s = box(glm::vec3(0.5f));
@@ -151,6 +162,7 @@ TEST(FirstView, ThingsAreSeenWhereverTheyMove) {
   }
 }
 
+// A pole, a needle of two millimetres and a wall as long as a town.
 TEST(FirstView, AFloorFillsThePictureOfThinThings) {
   for (const glm::vec3 half :
        {glm::vec3(0.02f, 1, 0.02f), glm::vec3(2e-5f, 1e-3f, 2e-5f), glm::vec3(900, 2, 30)}) {
@@ -210,6 +222,22 @@ TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
   s.materials[shining].emission = glm::vec3(20);
   addQuad(s, shining, {3, 1, 0}, {0.1f, 0, 0}, {0, 0.1f, 0});
   EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
+  expectGoodPicture(s);
+}
+
+// A room where all light falls onto a small part of what is seen.
+TEST(FirstView, DarkRoomsAreExposedForWhatIsDark) {
+  scene::Scene s = room();
+  s.materials[0].baseColor = glm::vec4(0.03f, 0.03f, 0.03f, 1);
+  scene::Light spot;
+  spot.type = scene::LightType::Spot;
+  spot.intensity = 100;
+  spot.position = {1, 1.9f, 1};
+  spot.direction = {0, -1, 0};
+  spot.outerConeAngle = 0.12f;
+  s.lights.push_back(spot);
+  s.materials[1].baseColor = glm::vec4(0.9f, 0.9f, 0.9f, 1);
+  scene::addFirstView(s);
   expectGoodPicture(s);
 }
 

@@ -20,13 +20,14 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kSeed = 0x66697273u;
-constexpr int kRays = 24;                                // of a view, along each axis
-constexpr uint32_t kSpots = 256;                         // where an eye might stand
-constexpr uint32_t kDirections = 16;                     // around such a spot
-constexpr uint32_t kBestSpots = 12;                      // of which views are compared
-constexpr int kMoments = 12;                             // of an animation that are looked at
-constexpr float kEyeHeight = 1.6f;                       // m
-constexpr float kEnclosed = 0.75f;                       // share of the rays around a spot that meet walls
+constexpr int kRays = 24;              // of a view, along each axis
+constexpr uint32_t kSpots = 256;       // where an eye might stand
+constexpr uint32_t kDirections = 16;   // around such a spot
+constexpr uint32_t kBestSpots = 12;    // of which views are compared
+constexpr int kMoments = 12;           // of an animation that are looked at
+constexpr float kEyeHeight = 1.6f;     // m
+constexpr float kEnclosed = 0.75f;     // share of the rays around a spot that meet walls
+constexpr float kLeastHidden = 0.05f;  // of what is seen inside, for it to be worth going in
 constexpr float kInsideFov = 1.05f, kOutsideFov = 0.7f;  // radians, vertical
 
 struct Looker {
@@ -111,6 +112,26 @@ Shown look(const Looker& in, const Camera& camera) {
   return shown;
 }
 
+// The share of what a camera shows that none of these eyes sees.
+float hiddenShare(const Looker& in, const Camera& camera, std::span<const glm::vec3> eyes) {
+  const View view = makeView(camera, {kRays, kRays}, in.geometry);
+  uint32_t shown = 0, hidden = 0;
+  for (int y = 0; y < kRays; ++y)
+    for (int x = 0; x < kRays; ++x) {
+      const glm::vec3 direction = glm::normalize(view.rayDirection(glm::vec2(x, y) + 0.5f));
+      const Looker::Met met = in.meet(camera.position, direction);
+      if (!met.there) continue;
+      const glm::vec3 place = camera.position + met.distance * direction;
+      const auto sees = [&](glm::vec3 eye) {
+        const float distance = glm::distance(eye, place);
+        return in.meet(eye, (place - eye) / distance).distance > 0.999f * distance;
+      };
+      ++shown;
+      hidden += !std::ranges::any_of(eyes, sees);
+    }
+  return float(hidden) / float(std::max(shown, 1u));
+}
+
 // The near plane lies before everything that is shown.
 void finish(Camera& camera, const Looker& in, float nearest) {
   camera.name = "default";
@@ -163,8 +184,9 @@ struct Candidate {
   float score = -1;
 };
 
-// Three quarters from the front, which is +Z in glTF, or from another side that shows more of it.
-Candidate fromOutside(const Looker& in) {
+// Three quarters from the front, which is +Z in glTF, or from another side that shows more of it. eyes: where else one
+// may stand, also below.
+Candidate fromOutside(const Looker& in, std::vector<glm::vec3>& eyes) {
   Candidate best;
   for (const float pitch : {0.3f, 0.6f})
     for (const float degrees :
@@ -175,6 +197,8 @@ Candidate fromOutside(const Looker& in) {
       c.camera.verticalFov = kOutsideFov;
       c.camera.orientation = lookAlong(-from, {0, 1, 0});
       fit(c.camera, in);
+      eyes.push_back(c.camera.position);
+      eyes.push_back(2.0f * in.centre - c.camera.position);
       c.shown = look(in, c.camera);
       const float front = 1 - 0.15f * std::abs(yaw) / glm::pi<float>(), level = pitch < 0.5f ? 1 : 0.8f;
       c.score = c.shown.surfaces * (0.5f + c.shown.planes) * front * level;
@@ -265,14 +289,16 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry) {
                   size,
                   0.5f * (geometry.boundsMin + geometry.boundsMax),
                   std::max(glm::length(size), 1e-6f)};
-  Candidate outside = fromOutside(in);
+  std::vector<glm::vec3> eyes;
+  Candidate outside = fromOutside(in, eyes);
   std::set<uint32_t> materials, triangles;
   Candidate inside = fromInside(in, materials, triangles);
-  // What is a room shows its backs outside, or less of what it is made of.
+  // What is a room shows its backs outside, or less of what it is made of; a box looks the same inside.
   const Shown& seen = outside.shown;
   const bool more = materials.size() != seen.materials.size() ? materials.size() > seen.materials.size()
                                                               : triangles.size() > seen.triangles.size();
-  const bool goIn = inside.score > 0 && (seen.backs > 0.5f * seen.surfaces || more);
+  const bool goIn = inside.score > 0 && (seen.backs > 0.5f * seen.surfaces ||
+                                         (more && hiddenShare(in, inside.camera, eyes) > kLeastHidden));
   Candidate& chosen = goIn ? inside : outside;
   finish(chosen.camera, in, chosen.shown.nearest);
   scene.cameras.push_back(chosen.camera);

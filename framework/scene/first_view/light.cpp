@@ -18,6 +18,8 @@ constexpr uint32_t kGathered = 4;          // rays for further bounces at each o
 constexpr float kDark = 0.02f;             // of the light of what is brightest: less is not seen beside it
 constexpr float kDisplay = 0.45f;          // mean display value
 constexpr float kClipped = 0.015f;         // most of the surfaces' pixels that may be clipped
+constexpr float kDisplayInDark = 0.27f;    // the same where most of the picture stays dark with that,
+constexpr float kClippedInDark = 0.04f;    // and more may be clipped
 constexpr float kSunlight = 3.0f;          // lux, on a surface that faces it
 constexpr float kSkylight = 0.35f;         // of the sunlight
 const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything, as displayed before sRGB
@@ -147,25 +149,28 @@ float firstExposure(const Scene& scene, const Geometry& geometry) {
   for (size_t i = 0; i < picture.pixels.size(); ++i)
     if (picture.surfaces[i].there) pixels.push_back(picture.pixels[i]);
   if (pixels.empty()) return 1;
-  const auto darker = [](glm::vec3 a, glm::vec3 b) { return brightest(a) < brightest(b); };
-  const size_t rank = size_t(float(pixels.size()) * (1 - kClipped));
-  std::ranges::nth_element(pixels, pixels.begin() + ptrdiff_t(rank), darker);
-  const float bright = brightest(pixels[rank]);
-  if (!(bright > 0)) return 1;
+  std::ranges::sort(pixels, {}, brightest);
   const auto display = [&](float exposure) {
     float sum = 0;
     for (const glm::vec3 p : pixels)
       for (int c = 0; c < 3; ++c) sum += image::srgbEncode(std::min(exposure * p[c], 1.0f));
     return sum / float(3 * pixels.size());
   };
-  float low = 1e-6f, high = 1 / bright;
-  if (display(high) > kDisplay)
-    for (int i = 0; i < 30; ++i) {
-      const float middle = std::sqrt(low * high);
-      (display(middle) < kDisplay ? low : high) = middle;
-    }
-  const float unit = std::pow(10.0f, std::floor(std::log10(high)) - 1);
-  return std::round(high / unit) * unit;
+  // The greatest exposure with at most this mean display value and this share of clipped pixels.
+  const auto greatest = [&](float mean, float clipped) {
+    const float bright = brightest(pixels[size_t(float(pixels.size()) * (1 - clipped))]);
+    float low = 1e-6f, high = bright > 0 ? 1 / bright : 0;
+    if (display(high) > mean)
+      for (int i = 0; i < 30; ++i) {
+        const float middle = std::sqrt(low * high);
+        (display(middle) < mean ? low : high) = middle;
+      }
+    return high;
+  };
+  const float exposure = std::max(greatest(kDisplay, kClipped), greatest(kDisplayInDark, kClippedInDark));
+  if (exposure == 0) return 1;
+  const float unit = std::pow(10.0f, std::floor(std::log10(exposure)) - 1);
+  return std::round(exposure / unit) * unit;
 }
 
 FirstView addFirstView(Scene& scene) {
