@@ -37,7 +37,7 @@ void replaceEnvironment(Scene& scene, const LoadOptions& options) {
 
 // Loads a model on its own, with all that a picture of it needs.
 Scene loadBareModel(const fs::path& file, Diagnostics& warnings, const LoadOptions& options) {
-  Scene scene = loadGltf(file, warnings);
+  Scene scene = loadGltf(file, warnings, true);
   replaceEnvironment(scene, options);
   const FirstView added = addFirstView(scene);
   std::string list;

@@ -15,8 +15,8 @@ std::vector<std::filesystem::path> modelSearchPath();
 std::vector<std::filesystem::path> sceneSearchPath();
 
 // Loads a glTF model on its own, without a default view or light. Guards against hostile files; gltf/check.h
-// gives the rules.
-Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings);
+// gives the rules. fullMaterials: that of the scene; what only diffuse materials lack then needs no warning.
+Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings, bool fullMaterials = false);
 
 // Gives a scene whose nodes draw more than a million triangles coarser Primitive::lightIndices, each mesh once for all
 // of its nodes. Returns whether it did.

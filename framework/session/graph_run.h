@@ -20,7 +20,7 @@ namespace fovea::session {
 std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options);
 
 // The environment to which a graph is bound: the views of every frame, the device's limits (unknown if `device` is
-// nullptr) and the scene's quantities.
+// nullptr) and the scene's quantities and texts.
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
                                     const scene::Geometry& geometry, glm::uvec2 size);
 

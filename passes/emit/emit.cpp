@@ -6,6 +6,7 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/emit/light_paths.h"
+#include "passes/materials.h"
 #include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
@@ -36,6 +37,7 @@ class Emit : public Pass {
     d.parameter("averaged_frames", integer(1, 1, 65536),
                 "number of frames averaged into the final image; each VPL's area (kernel `disc`) is divided "
                 "by it, as if all VPLs were in one frame");
+    declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("paths", "light paths that contribute");
     d.counter("rays", "rays traced");
     d.counter("vpls", "slots filled");
@@ -51,6 +53,7 @@ class Emit : public Pass {
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.neighbours = uint32_t(p.integer("neighbours"));
     settings.emissiveTriangles = p.flag("emissive");
+    settings.fullMaterials = fullMaterials(p);
     settings.seed =
         randomStream(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u, kEmitStream, 0);
     EmitResult result;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "framework/base/low_discrepancy.h"
+#include "framework/scene/materials/bounced.h"
 #include "passes/emit/light_sampler.h"
 
 namespace fovea::passes {
@@ -68,7 +69,8 @@ class PathTracer {
     const float cosShading = -side * glm::dot(s.shadingNormal, ray.direction);
     if (cosShading <= 0 || cosGeometric <= 0) return false;
     const Material& material = frame_.scene->materials[s.material];
-    const glm::vec3 rho = glm::clamp(glm::vec3(reflectance(*frame_.scene, material, s.uv)), 0.0f, 1.0f);
+    const glm::vec3 rho =
+        glm::clamp(bouncedReflectance(*frame_.scene, material, s.uv, settings_.fullMaterials), 0.0f, 1.0f);
     flux *= rho * std::min(cosShading / cosGeometric, kMaxNormalCorrection);
     store(s.position, normal, flux);
     const float survival = std::max({rho.r, rho.g, rho.b});

@@ -17,6 +17,7 @@ struct EmitSettings {
   uint32_t seed = 0;        // seed of the quasi-random numbers; another seed gives other paths
   uint32_t neighbours = 8;  // nearest VPLs used to estimate the area of a VPL
   bool emissiveTriangles = true;
+  bool fullMaterials = false;  // as in framework/scene/materials/bounced.h
 };
 
 struct EmitResult {

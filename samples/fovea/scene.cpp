@@ -99,6 +99,7 @@ Json sceneFileOf(const Scene& s, const std::string& environment) {
          {"color", toJson(light.color)},
          {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
   }
+  if (s.fullMaterials) file["materials"] = "full";
   file["exposure"] = rounded(s.exposure);
   if (s.environmentMap)
     file["environment"] = {{"file", environment}};

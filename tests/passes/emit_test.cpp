@@ -115,6 +115,17 @@ TEST(Emit, SurvivalByTheBrightestChannelKeepsAllChannelsRight) {
   expectFlux(emitted(test, s), 4 * kPi * (rho + rho * rho + rho * rho * rho), 0.02);
 }
 
+// Black as diffuse surfaces; with full materials they reflect their colour.
+TEST(Emit, MetalsReflectTheirColourIfMaterialsAreFull) {
+  scene::Scene s = room({0.9f, 0.6f, 0.3f});
+  for (scene::Material& m : s.materials) m.metallic = 1;
+  s.lights = {pointLight({0.5f, 0, 0}, glm::vec3(1))};
+  PassTest black("emit"), gold("emit");
+  EXPECT_EQ(filled(emitted(black.param("count", 256).param("bounces", 1), s)), 0);
+  gold.param("count", 256).param("bounces", 1).param("materials", "full");
+  expectFlux(emitted(gold, s), 4 * kPi * glm::dvec3(0.9, 0.6, 0.3), 1e-4);
+}
+
 // The rule that stops when the list is full is unbiased: the mean over many short lists is that of single
 // paths. Dividing by the number of paths traced, the unfinished one included, would be off by more than ten
 // standard errors here.

@@ -168,6 +168,29 @@ TEST(Bind, QuantitiesOfTheScene) {
   EXPECT_EQ(g.resources[0].desc.count, 43u);
 }
 
+// Of a parameter of the graph, of a pass or of a sub-graph. What --set says counts instead.
+TEST(Bind, TextsOfTheScene) {
+  const auto registry = basicRegistry();
+  Environment env = basicEnvironment(*registry);
+  env.texts = {{"scene.kernel", "clamp"}};
+  const std::string text = R"({"parameters": {"kernel": "$scene.kernel"}, "passes": {
+      "a": {"type": "source", "params": {"kernel": "$kernel", "label": "$$scene.kernel"}},
+      "b": {"type": "source", "params": {"kernel": "$scene.kernel"}}}, "outputs": {"o": "a", "p": "b"}})";
+  const auto kernels = [&](const LoadOptions& options) {
+    Diagnostics messages;
+    const BoundGraph g = bind(loadText(text, "g.json", options, messages), env, messages);
+    EXPECT_EQ(g.passes[0].parameters.text("label"), "$scene.kernel");
+    return g.passes[0].parameters.text("kernel") + " " + g.passes[1].parameters.text("kernel");
+  };
+  EXPECT_EQ(kernels({}), "clamp clamp");
+  EXPECT_EQ(kernels({{{"kernel", "disc"}}, {}}), "disc clamp");
+  env.texts = {{"scene.kernels", "clamp"}};
+  Diagnostics messages;
+  EXPECT_THROW(bind(loadText(text, "g.json", {}, messages), env, messages), Error);
+  EXPECT_THAT(messages.format(),
+              HasSubstr("parameter `kernel`: expected one of disc, clamp, found `$scene.kernel`"));
+}
+
 TEST(Bind, AccessesSayWhatIsReadAndWritten) {
   const Compiled c = bound(R"({"passes": {
     "a": {"type": "source"}, "u": {"type": "update", "inputs": {"image": "a"}},

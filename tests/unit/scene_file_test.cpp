@@ -1,6 +1,8 @@
 // Tests scene files: everything they can say, and that all mistakes are reported at their positions, all at once.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -394,6 +396,28 @@ TEST(Load, BareModelsGetAViewAndASun) {
     EXPECT_GT(glm::dot(glm::normalize(p - s.cameras[0].position), forward),
               std::cos(0.75f * s.cameras[0].verticalFov));
   EXPECT_LT(s.lights[0].direction.y, 0);
+}
+
+// Alone, a model is shown as its author meant it; in a scene file, as that says.
+TEST(Load, BareModelsHaveFullMaterials) {
+  TriangleDocument d;
+  d.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
+  d.extra =
+      R"(,"materials":[{"name":"gold","alphaMode":"BLEND","pbrMetallicRoughness":{"metallicFactor":1}}])";
+  TemporaryFolder folder;
+  const auto file = folder.write("tri.gltf", d.json());
+  Diagnostics warnings;
+  EXPECT_TRUE(load(file.string(), warnings).fullMaterials);
+  EXPECT_THAT(warnings.format(), AllOf(Not(HasSubstr("gold")), Not(HasSubstr("diffuse"))));
+  for (const auto& [key, full] : {std::pair("", false), std::pair(R"(, "materials": "diffuse")", false),
+                                  std::pair(R"(, "materials": "full")", true)}) {
+    Diagnostics own;
+    const Scene s = loadJson(folder, fmt::format(R"({{"models": [{{"file": "tri.gltf"}}]{}}})", key), own);
+    EXPECT_EQ(s.fullMaterials, full) << key;
+    EXPECT_EQ(own.format().find("gold") == std::string::npos, full) << own.format();
+  }
+  EXPECT_THAT(errorOfJson(R"({"models": [{"builtin": "cornellbox"}], "materials": "shiny"})"),
+              HasSubstr("shiny"));
 }
 
 TEST(Load, NamesAndFiles) {

@@ -90,9 +90,12 @@ std::string describeGiven(const json::Value& given) {
 
 void readParameter(Binding& b, uint32_t pass, const ParameterSpec& spec, const ParameterDescription& given,
                    Value& out) {
-  if (assign(spec, *given.value, out)) return;
-  using Type = ParameterSpec::Type;
   json::Value value = *given.value;
+  if (given.fromEnvironment)
+    for (const auto& [name, text] : b.environment.texts)
+      if (std::string_view(value.string).substr(1) == name) value.string = text;
+  if (assign(spec, value, out)) return;
+  using Type = ParameterSpec::Type;
   if (given.fromCommandLine && value.isString() && spec.type != Type::Choice && spec.type != Type::Text) {
     using Json = json::Value::Type;
     if (readTyped(value.string, spec.type == Type::Bool ? Json::Bool : Json::Real, value) &&

@@ -69,6 +69,9 @@ bool isName(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
 }
 
+// Whether a text stands for what the environment gives, to which the graph is bound later.
+static bool isOfScene(std::string_view text) { return text.starts_with("$scene."); }
+
 bool readScalar(Expansion& all, Scope& scope, const json::Value& value, ParameterDescription& out) {
   if (value.isNull() || value.isArray() || value.isObject()) {
     report(all, scope, value,
@@ -85,6 +88,7 @@ bool readScalar(Expansion& all, Scope& scope, const json::Value& value, Paramete
     out.value = &all.description.made.emplace_back(std::make_shared<Member>(std::move(plain)))->value;
     return true;
   }
+  if (isOfScene(text)) return out.fromEnvironment = true;
   Scope::Parameter* parameter = scope.findParameter(text.substr(1));
   if (!parameter) {
     std::vector<std::string> names;
@@ -95,6 +99,7 @@ bool readScalar(Expansion& all, Scope& scope, const json::Value& value, Paramete
   parameter->used = true;
   out.value = parameter->value.value;
   out.fromCommandLine = parameter->value.fromCommandLine;
+  out.fromEnvironment = parameter->value.fromEnvironment;
   // A wrong value is reported where it was typed if it comes from the command line, otherwise where it is used.
   if (out.fromCommandLine) out.where = parameter->value.where;
   return true;
@@ -157,7 +162,7 @@ void declareParameters(Expansion& all, Scope& scope) {
              fmt::format("`{}` is no name for a parameter", member.key), "letters, digits, _ and -");
     const std::string& text = member.value.string;
     Scope::Parameter parameter{&member, {}};
-    if (text.size() > 1 && text[0] == '$' && text[1] != '$')
+    if (text.size() > 1 && text[0] == '$' && text[1] != '$' && !isOfScene(text))
       report(all, scope, member.value, "a parameter's default cannot be another parameter",
              "write the value itself");
     else if (readScalar(all, scope, member.value, parameter.value))

@@ -46,6 +46,7 @@ struct ParameterDescription {
   const json::Value* value = nullptr;     // true, false, a number or a text
   const json::Position* where = nullptr;  // where a wrong value is reported
   bool fromCommandLine = false;           // a text is yet to be read as the parameter's own type
+  bool fromEnvironment = false;  // a text that stands for one of Environment::texts, as "$scene.materials"
 };
 
 struct PassDescription {

@@ -269,9 +269,11 @@ struct Scene {
   // Where a ray hits nothing: light from all around, or else a radiance that is only seen.
   std::shared_ptr<const EnvironmentMap> environmentMap;
   glm::vec3 environment{0};
+  // What graphs take `$scene.materials` for: `full`, all that the materials say, or else `diffuse`.
+  bool fullMaterials = false;
   uint64_t hash = 0;  // hash of all content, for caches and reports
-  // What a model does not say and load() has assumed: camera, exposure and environment, and the last of the lights. The
-  // floor, if there is one, is the last of the nodes.
+  // What a model does not say and load() has assumed: camera, exposure and environment, full materials, and the last of
+  // the lights. The floor, if there is one, is the last of the nodes.
   bool assumed = false, assumedFloor = false;
   uint32_t assumedLights = 0;
 };

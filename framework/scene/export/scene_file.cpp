@@ -132,6 +132,7 @@ std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagn
                {"exposure", shortest(scene.exposure)},
                {"environment", vector(scene.environment)},
                {"ipd", shortest(scene.ipd)}};
+  if (scene.fullMaterials) root["materials"] = "full";
   if (scene.lens)
     root["lens"] = {{"outward_deg", shortest(glm::degrees(scene.lens->outward))},
                     {"inward_deg", shortest(glm::degrees(scene.lens->inward))},

@@ -212,7 +212,8 @@ uint32_t MotionReader::nodeOf(const MoverEntry& m, Scene& scene, const std::file
     placement.name = m.name;
     placement.scale = m.scale;
     placement.lights = false;
-    Scene model = loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings);
+    Scene model = loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings,
+                           scene.fullMaterials);
     chooseAnimation(model, m.animation, errors_);
     model.cameras.clear();
     for (Node& n : model.nodes) n.camera = kNoIndex;

@@ -59,6 +59,7 @@ class Parser {
     eachItem(r, "lights", [&](const Value& v, const std::string& path) { light(v, path); });
     if (const Value* c = r.find("camera")) camera(*c);
     if (const Value* f = r.object("floor")) floor(*f);
+    scene_.fullMaterials = r.choice("materials", "diffuse", {"diffuse", "full"}) == "full";
     hasExposure_ = r.has("exposure");
     scene_.exposure = float(r.number("exposure", 1.0, 1e-6, 1e6));
     hasEnvironment_ = r.has("environment");
@@ -78,10 +79,10 @@ class Parser {
     Scene out = std::move(scene_);
     if (gazeFile_) out.gaze = readGazeCsv(findFile(*gazeFile_, folder));
     for (const ModelEntry& m : models_) {
-      Scene model =
-          m.builtin.empty()
-              ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder), warnings)
-              : builtin(m.builtin);
+      Scene model = m.builtin.empty()
+                        ? loadGltf(findFile({"model", m.file, m.get, m.where, m.path + ".file"}, folder),
+                                   warnings, out.fullMaterials)
+                        : builtin(m.builtin);
       if (!hasExposure_ && !m.builtin.empty()) out.exposure = model.exposure;
       if (!hasEnvironment_ && !m.builtin.empty()) out.environment = model.environment;
       if (out.gaze.empty()) out.gaze = model.gaze;

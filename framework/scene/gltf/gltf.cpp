@@ -12,6 +12,10 @@ void Context::warn(std::string path, std::string message, std::string remedy) co
   warnings.warning({source.name, 0, 0}, std::move(path), std::move(message), std::move(remedy));
 }
 
+void Context::warnIfDiffuse(std::string path, std::string message, std::string remedy) const {
+  if (!scene.fullMaterials) warn(std::move(path), std::move(message), std::move(remedy));
+}
+
 void Context::fail(std::string path, std::string message, std::string remedy) const {
   throw Error(
       ExitCode::BadInput,
@@ -26,8 +30,9 @@ std::string nameOf(std::string_view array, size_t index, const std::string& name
 
 }  // namespace gltf
 
-Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings) {
+Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings, bool fullMaterials) {
   Scene scene;
+  scene.fullMaterials = fullMaterials;
   scene.name = file.stem().string();
   scene.source = file.string();
   try {

@@ -119,6 +119,8 @@ struct Context {
   uint64_t degenerateTriangles = 0, badNormals = 0;
 
   void warn(std::string path, std::string message, std::string remedy = {}) const;
+  // Of what only diffuse materials lack.
+  void warnIfDiffuse(std::string path, std::string message, std::string remedy = {}) const;
   [[noreturn]] void fail(std::string path, std::string message, std::string remedy = {}) const;
 };
 

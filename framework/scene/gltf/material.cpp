@@ -136,7 +136,8 @@ class MaterialBuilder {
     m.alphaCutoff = float(from.alphaCutoff);
     m.masked = from.alphaMode == "MASK";
     if (from.alphaMode != "BLEND") return;
-    c_.warn(place_, "alphaMode BLEND is drawn as MASK with a cutoff of 0.5, unless materials are full");
+    c_.warnIfDiffuse(place_,
+                     "alphaMode BLEND is drawn as MASK with a cutoff of 0.5, unless materials are full");
     m.masked = m.blended = true;
     m.alphaCutoff = 0.5f;
   }
@@ -156,8 +157,8 @@ class MaterialBuilder {
       m.metallicMean = 0;
     }
     if (m.meanMetallic() > 0.99f && m.emission == glm::vec3(0.0f))
-      c_.warn(place_, "a pure metal reflects nothing diffusely and is black as a diffuse material",
-              "set metallicFactor to 0, or render it with full materials");
+      c_.warnIfDiffuse(place_, "a pure metal reflects nothing diffusely and is black as a diffuse material",
+                       "set metallicFactor to 0, or render it with full materials");
   }
 
   void extensions(const Value* written, Material& m) {

@@ -380,8 +380,8 @@ void buildMeshes(Context& c) {
     c.warn("meshes", std::to_string(c.badNormals) +
                          " normals were zero or not finite; they now follow their triangles");
   if (!builder.colored_.empty())
-    c.warn(*builder.colored_.begin(), "diffuse materials ignore the vertex colours (COLOR_0) of " +
-                                          std::to_string(builder.colored_.size()) + " mesh(es)");
+    c.warnIfDiffuse(*builder.colored_.begin(), "diffuse materials ignore the vertex colours (COLOR_0) of " +
+                                                   std::to_string(builder.colored_.size()) + " mesh(es)");
 }
 
 }  // namespace fovea::scene::gltf
