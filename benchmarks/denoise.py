@@ -8,26 +8,11 @@ metadata are copied. benchmarks/README.md says how to install the Python modules
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the picture cannot be written.
 """
-import argparse
-import importlib
 import os
-import sys
 
-USAGE, BAD_INPUT, CANNOT_WRITE = 2, 3, 7
+from pictures import BAD_INPUT, CANNOT_WRITE, USAGE, Parser, fail, load
+
 LIGHT, GUIDES = ("radiance", "indirect"), ("albedo", "normal")
-
-
-def fail(code, message):
-    print(f"denoise.py: {message}", file=sys.stderr)
-    sys.exit(code)
-
-
-def load(module):
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        fail(BAD_INPUT, f"{sys.executable} cannot import the module {module} ({error}); "
-                        "benchmarks/README.md says how to install it")
 
 
 def channels(names, layer):
@@ -37,7 +22,7 @@ def channels(names, layer):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.add_argument("noisy", help="EXR file with the layer, as `fovea render -o` writes it")
     parser.add_argument("denoised", help="EXR file to write")
     parser.add_argument("--layer", help="only this layer")

@@ -10,30 +10,17 @@ one with more. benchmarks/README.md says how to install the Python modules that 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the heat map cannot be written.
 """
 import argparse
-import importlib
 import json
 import math
 import os
 import re
 import sys
 
-USAGE, BAD_INPUT, CANNOT_WRITE = 2, 3, 7
+from pictures import BAD_INPUT, CANNOT_WRITE, Parser, Picture, fail, load
+
 CONTRAST = 1000  # of the display: its peak luminance over that of its black in a dark room
 REFLECTIVITY = 0.005  # of the screen, which scatters ambient light evenly
 LUMINANCE_OF_RGB = (0.2126, 0.7152, 0.0722)  # Rec. 709
-
-
-def fail(code, message):
-    print(f"perceptual.py: {message}", file=sys.stderr)
-    sys.exit(code)
-
-
-def load(module):
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        fail(BAD_INPUT, f"{sys.executable} cannot import the module {module} ({error}); "
-                        "benchmarks/README.md says how to install it")
 
 
 # ---- Sequences
@@ -62,52 +49,14 @@ def find_frames(pattern):
     return frames
 
 
-class Picture:
-    """Size, gaze and exposure of an EXR file. The pixels are read when they are asked for."""
-
-    def __init__(self, file):
-        self.file = file
-        self.spec = self.open().spec()
-        self.size = (self.spec.width, self.spec.height)
-        layers = [[layer + colour for colour in "RGB"] for layer in ("radiance.", "")]
-        self.channels = next((names for names in layers if set(names) <= set(self.spec.channelnames)), None)
-        if self.channels is None:
-            fail(BAD_INPUT, f"`{file}` has neither the layer `radiance` nor the channels R, G and B; "
-                            "render it with a graph that has the output `radiance`")
-
-    def open(self):
-        image_io = load("OpenImageIO")
-        image = image_io.ImageInput.open(self.file)
-        if image is None:
-            fail(BAD_INPUT, f"`{self.file}` cannot be read ({image_io.geterror()}); render it again")
-        return image
-
-    def metadata(self, key, count, remedy):
-        """The numbers of an entry that `fovea render` writes."""
-        text = self.spec.getattribute(f"fovea.{key}")
-        try:
-            numbers = [float(part) for part in str(text).split(",")]
-        except ValueError:
-            numbers = []
-        if len(numbers) != count or not all(map(math.isfinite, numbers)):
-            fail(BAD_INPUT, f"`{self.file}` has no usable entry `fovea.{key}` in its metadata; {remedy}")
-        return numbers
+class Frame(Picture):
+    """A picture with its gaze and exposure."""
 
     def gaze(self):
         return self.metadata("gaze", 2, "give --gaze X,Y or --no-foveation")
 
     def exposure(self):
         return self.metadata("exposure", 1, "give --exposure E")[0]
-
-    def radiance(self):
-        image = self.open()
-        pixels = image.read_image("float")
-        if pixels is None:
-            fail(BAD_INPUT, f"`{self.file}` cannot be read ({image.geterror()}); render it again")
-        pixels = pixels[:, :, [self.spec.channelnames.index(name) for name in self.channels]]
-        if not load("numpy").isfinite(pixels).all():
-            fail(BAD_INPUT, f"`{self.file}` holds radiance that is not finite; render it again")
-        return pixels
 
 
 def read_sequences(patterns):
@@ -118,7 +67,7 @@ def read_sequences(patterns):
         if its_span != span[-1]:
             fail(BAD_INPUT, f"`{pattern}` has {its_span} but `{patterns[-1]}` {span[-1]}; "
                             "render the same frames of both with --first, --warmup and --frames")
-    sequences = [[Picture(file) for file in f.values()] for f in frames]
+    sequences = [[Frame(file) for file in f.values()] for f in frames]
     first = sequences[-1][0]
     for picture in sum(sequences, []):
         if picture.size != first.size:
@@ -127,18 +76,18 @@ def read_sequences(patterns):
     return sequences
 
 
-def common_exposure(pictures):
-    first = pictures[0]
-    for picture in pictures:
+def common_exposure(frames):
+    first = frames[0]
+    for picture in frames:
         if picture.exposure() != first.exposure():
             fail(BAD_INPUT, f"`{picture.file}` has the exposure {picture.exposure():g} but `{first.file}` "
                             f"{first.exposure():g}; give one for both with --exposure E")
     return first.exposure()
 
 
-def fixations(pictures, gaze):
+def fixations(frames, gaze):
     """Where the eye looks in each picture, in pixels; the centre of the pixel at the top left is 0, 0."""
-    return [[part * side - 0.5 for part, side in zip(gaze or picture.gaze(), picture.size)] for picture in pictures]
+    return [[part * side - 0.5 for part, side in zip(gaze or picture.gaze(), picture.size)] for picture in frames]
 
 
 # ---- Display
@@ -187,15 +136,15 @@ class Video:
         return self.tensor(self.reference[frame], device)
 
     def tensor(self, picture, device):
-        luminance = self.to_luminance(picture.radiance()).astype("float32")
+        luminance = self.to_luminance(picture.pixels()).astype("float32")
         return load("torch").from_numpy(luminance).to(device)[None, None, None]
 
 
 def write_heatmap(pattern, frames, heatmap):
     """Writes pictures, a tensor of shape 1, 3, F, H, W: all of them if the name has a frame number, else the last."""
     image_io = load("OpenImageIO")
-    pictures = heatmap[0].permute(1, 2, 3, 0).float().numpy()
-    files = {pattern % frame if "%" in pattern else pattern: picture for frame, picture in zip(frames, pictures)}
+    pixels = heatmap[0].permute(1, 2, 3, 0).float().numpy()
+    files = {pattern % frame if "%" in pattern else pattern: picture for frame, picture in zip(frames, pixels)}
     for file, picture in files.items():
         buffer = image_io.ImageBuf(image_io.ImageSpec(picture.shape[1], picture.shape[0], 3, "uint8"))
         buffer.set_pixels(image_io.ROI(0, picture.shape[1], 0, picture.shape[0], 0, 1, 0, 3), picture)
@@ -204,11 +153,6 @@ def write_heatmap(pattern, frames, heatmap):
 
 
 # ---- Command line
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        fail(USAGE, f"{message}; --help prints the options")
-
 
 def positive(text):
     value = float(text)

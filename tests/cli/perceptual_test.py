@@ -101,10 +101,10 @@ class PerceptualInputs(PerceptualTest):
         self.write("text_0040.exr", "this is no picture")
         self.refuses(BAD_INPUT, "text_%04d.exr", truth, says=["text_0040.exr", "cannot be read"])
         self.refuses(BAD_INPUT, self.grey("depth", 1, layer="depth."), truth, says=["depth_0040.exr", "`radiance`"])
-        self.assertEqual(perceptual.Picture(self.picture("plain.exr", numpy.ones((2, 2, 3)), layer="")).channels, [*"RGB"])
-        bad = perceptual.Picture(self.picture("nan.exr", numpy.full((2, 2, 3), math.nan)))
+        self.assertEqual(perceptual.Frame(self.picture("plain.exr", numpy.ones((2, 2, 3)), layer="")).channels, [*"RGB"])
+        bad = perceptual.Frame(self.picture("nan.exr", numpy.full((2, 2, 3), math.nan)))
         with self.assertRaises(SystemExit) as end:
-            bad.radiance()
+            bad.pixels()
         self.assertEqual(end.exception.code, BAD_INPUT)
 
     def test_metadata(self):
@@ -135,7 +135,7 @@ class PerceptualDisplay(PerceptualTest):
     def test_gaze_of_every_frame(self):
         files = [self.picture(f"{i}.exr", numpy.ones((16, 24, 3)), {"gaze": gaze})
                  for i, gaze in enumerate(["0,0", "0.5,0.25", "1,1"])]
-        pictures = [perceptual.Picture(file) for file in files]
+        pictures = [perceptual.Frame(file) for file in files]
         self.assertEqual(perceptual.fixations(pictures, None), [[-0.5, -0.5], [11.5, 3.5], [23.5, 15.5]])
         self.assertEqual(perceptual.fixations(pictures, (0.5, 0.5)), [[11.5, 7.5]] * 3)
 
@@ -162,7 +162,7 @@ class PerceptualDisplay(PerceptualTest):
         self.assertTrue(file.open(str(self.folder / "layers.exr"), spec))
         file.write_image(numpy.tile(numpy.array([9, 3, 2, 1], numpy.float32), (2, 2, 1)))
         file.close()
-        pixels = perceptual.Picture(str(self.folder / "layers.exr")).radiance()
+        pixels = perceptual.Frame(str(self.folder / "layers.exr")).pixels()
         self.assertEqual(pixels[1, 1].tolist(), [1, 2, 3])
 
 
