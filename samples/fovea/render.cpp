@@ -299,7 +299,7 @@ void Render::renderFrames() {
 }
 
 void Render::writeResults() {
-  if (timings_->frames().empty()) stopIfInterrupted();
+  if (timings_->empty()) stopIfInterrupted();
   if (picture_) outputs_->writeLast(*picture_, metadata(picture_->frame));
   picture_.reset();
   info_.peakDeviceBytes = device_->peakAllocatedBytes();
