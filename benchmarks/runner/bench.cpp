@@ -78,7 +78,7 @@ class Bench {
       : options_(options),
         shard_(parseShard(options.shard)),
         folder_(options.folder, cacheOf(options)),
-        progress_(options.quiet) {}
+        progress_(options.quiet, options.frameLimit) {}
   ExitCode run();
 
  private:

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "fovea/error.h"
+#include "benchmarks/runner/progress.h"
 
 namespace fovea::bench {
 
 struct SuiteOptions {
   std::string suite, folder, cache, only, shard, size, device;
   std::optional<uint32_t> seeds;
+  double frameLimit = kFrameLimit;
   std::vector<std::string> plugins, without;
   bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
 };

@@ -48,7 +48,7 @@ Json describe(const PassBenchOptions& options, const std::string& device) {
 class Bench {
  public:
   explicit Bench(const PassBenchOptions& options)
-      : options_(options), progress_(options.quiet || options.json) {}
+      : options_(options), progress_(options.quiet || options.json, options.frameLimit) {}
   ExitCode run();
 
  private:

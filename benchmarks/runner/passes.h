@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/error.h"
+#include "benchmarks/runner/progress.h"
 
 namespace fovea::bench {
 
@@ -13,6 +13,7 @@ struct PassBenchOptions {
   std::vector<std::string> set;
   uint32_t frames = 5, warmup = 3, first = 0, repeats = 5;
   double threshold = 2;  // percent
+  double frameLimit = kFrameLimit;
   bool json = false;
   std::string output, size, device;  // as the suite's options of the same names
   std::vector<std::string> plugins, without;

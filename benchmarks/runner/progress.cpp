@@ -8,7 +8,10 @@
 
 namespace fovea::bench {
 
-Progress::Progress(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO)) {}
+Progress::Progress(bool quiet, double frameLimit)
+    : watchdog_(std::chrono::duration<double>(frameLimit), ExitCode::DeviceLost,
+                frameLimitMessage(frameLimit)),
+      enabled_(!quiet && isatty(STDERR_FILENO)) {}
 
 void Progress::show(const std::string& line) {
   if (!enabled_) return;
@@ -17,9 +20,16 @@ void Progress::show(const std::string& line) {
   shown_ = true;
 }
 
-void Progress::stage(const std::string& what) { show(what + " ..."); }
+void Progress::stage(const std::string& what) {
+  watchdog_.end();
+  show(what + " ...");
+}
 
 void Progress::frames(uint64_t done, uint64_t total) {
+  if (done < total)
+    watchdog_.begin();
+  else
+    watchdog_.end();
   const auto now = std::chrono::steady_clock::now();
   if (done == 0) start_ = now;
   std::string line = fmt::format("frame {}/{}", std::min(done + 1, total), total);
@@ -33,6 +43,7 @@ void Progress::frames(uint64_t done, uint64_t total) {
 }
 
 void Progress::pass(const std::string& name, double share) {
+  watchdog_.begin();
   const auto now = std::chrono::steady_clock::now();
   if (pass_ != name || share < passShare_) {
     pass_ = name;
@@ -47,10 +58,19 @@ void Progress::pass(const std::string& name, double share) {
 }
 
 void Progress::clear() {
+  watchdog_.end();
   if (!shown_) return;
   std::fputs("\r\x1b[K", stderr);
   std::fflush(stderr);
   shown_ = false;
+}
+
+std::string frameLimitMessage(double seconds) {
+  return fmt::format(
+      "{}fovea: error: a frame takes longer than {}\n  -> if its passes do end, allow more with "
+      "--frame-limit; what was "
+      "finished before is kept\n",
+      isatty(STDERR_FILENO) ? "\n" : "", formatDuration(seconds));
 }
 
 std::string formatDuration(double seconds) {

@@ -48,6 +48,31 @@ std::string countersOf(const graph::FrameResult& frame, const std::string& pass)
   return text;
 }
 
+// All numbers of a frame, in an order that its shape determines.
+template <class Result, class Visit>
+void eachNumber(Result& frame, const Visit& visit) {
+  for (auto* ms : {&frame.gpuMs, &frame.animateMs, &frame.animateCpuMs, &frame.cpuMs, &frame.wallMs})
+    visit(*ms);
+  for (auto& pass : frame.passes) {
+    visit(pass.gpuMs);
+    visit(pass.cpuMs);
+    for (auto& step : pass.steps) visit(step.gpuMs);
+  }
+  for (auto& [name, value] : frame.counters) visit(value);
+}
+
+bool sameShape(const graph::FrameResult& a, const graph::FrameResult& b) {
+  const auto sameStep = [](const graph::StepTiming& s, const graph::StepTiming& t) {
+    return s.name == t.name;
+  };
+  const auto samePass = [&](const graph::PassTiming& s, const graph::PassTiming& t) {
+    return s.pass == t.pass && std::ranges::equal(s.steps, t.steps, sameStep);
+  };
+  const auto sameName = [](const auto& s, const auto& t) { return s.first == t.first; };
+  return std::ranges::equal(a.passes, b.passes, samePass) &&
+         std::ranges::equal(a.counters, b.counters, sameName);
+}
+
 }  // namespace
 
 Spread spreadOf(std::vector<double> values) {
@@ -59,15 +84,37 @@ Spread spreadOf(std::vector<double> values) {
 }
 
 void Timings::add(const graph::FrameResult& result) {
-  graph::FrameResult& kept = frames_.emplace_back();
-  kept.frame = result.frame;
-  kept.gpuMs = result.gpuMs, kept.cpuMs = result.cpuMs, kept.wallMs = result.wallMs;
-  kept.animateMs = result.animateMs, kept.animateCpuMs = result.animateCpuMs;
-  kept.passes = result.passes;
-  kept.counters = result.counters;
+  graph::FrameResult kept = {.frame = result.frame,
+                             .gpuMs = result.gpuMs,
+                             .animateMs = result.animateMs,
+                             .animateCpuMs = result.animateCpuMs,
+                             .cpuMs = result.cpuMs,
+                             .wallMs = result.wallMs,
+                             .passes = result.passes,
+                             .counters = result.counters,
+                             .outputs = {}};
   if (kept.animateMs > 0 || kept.animateCpuMs > 0)
     kept.passes.insert(kept.passes.begin(),
                        graph::PassTiming{kAnimate, kept.animateMs, kept.animateCpuMs, {}});
+  const auto same = [&](const graph::FrameResult& shape) { return sameShape(shape, kept); };
+  const auto shape = std::find_if(shapes_.begin(), shapes_.end(), same);
+  Frame& frame = frames_.emplace_back(Frame{kept.frame, size_t(shape - shapes_.begin()), {}});
+  size_t count = 0;
+  eachNumber(kept, [&](double) { ++count; });
+  frame.values.reserve(count);
+  eachNumber(kept, [&](double value) { frame.values.push_back(value); });
+  if (shape == shapes_.end()) shapes_.push_back(std::move(kept));
+}
+
+void Timings::eachFrame(const std::function<void(const graph::FrameResult&)>& visit) const {
+  std::vector<graph::FrameResult> shown = shapes_;
+  for (const Frame& frame : frames_) {
+    graph::FrameResult& result = shown[frame.shape];
+    result.frame = frame.number;
+    auto value = frame.values.begin();
+    eachNumber(result, [&](double& number) { number = *value++; });
+    visit(result);
+  }
 }
 
 std::string Timings::name(uint32_t pass) const {
@@ -80,13 +127,14 @@ std::string Timings::type(uint32_t pass) const {
 std::vector<Timings::Row> Timings::rows() const {
   std::vector<uint32_t> order;
   std::map<uint32_t, std::pair<std::vector<double>, std::vector<double>>> values;
-  for (const graph::FrameResult& frame : frames_)
+  eachFrame([&](const graph::FrameResult& frame) {
     for (const graph::PassTiming& t : frame.passes) {
       auto [entry, isNew] = values.try_emplace(t.pass);
       if (isNew) order.push_back(t.pass);
       entry->second.first.push_back(t.gpuMs);
       entry->second.second.push_back(t.cpuMs);
     }
+  });
   std::vector<Row> rows;
   for (uint32_t index : order) {
     const bool host =
@@ -100,15 +148,20 @@ std::vector<Timings::Row> Timings::rows() const {
 // A step that did not run in a frame took no time there.
 std::vector<std::pair<std::string, Spread>> Timings::steps(uint32_t pass) const {
   std::vector<std::pair<std::string, std::vector<double>>> values;
-  for (size_t f = 0; f < frames_.size(); ++f)
-    for (const graph::PassTiming& t : frames_[f].passes)
-      for (const graph::StepTiming& step : t.pass == pass ? t.steps : std::vector<graph::StepTiming>()) {
+  size_t f = 0;
+  eachFrame([&](const graph::FrameResult& frame) {
+    for (const graph::PassTiming& t : frame.passes) {
+      if (t.pass != pass) continue;
+      for (const graph::StepTiming& step : t.steps) {
         auto known =
             std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == step.name; });
         if (known == values.end())
           known = values.insert(known, {step.name, std::vector<double>(frames_.size())});
         known->second[f] += step.gpuMs;
       }
+    }
+    ++f;
+  });
   std::vector<std::pair<std::string, Spread>> list;
   for (auto& [name, times] : values) list.emplace_back(name, spreadOf(std::move(times)));
   if (list.size() == 1) list.clear();
@@ -132,14 +185,14 @@ std::vector<Timings::ViewTotal> Timings::viewTotals() const {
   for (const Row& row : all) ++totals[slotOf(row.pass)].passes;
   if (totals.size() < 3) return {};
   std::vector<std::vector<double>> times(totals.size());
-  for (const graph::FrameResult& frame : frames_) {
+  eachFrame([&](const graph::FrameResult& frame) {
     std::vector<double> sums(totals.size(), 0.0);
     for (const graph::PassTiming& t : frame.passes) {
       const bool host = t.pass != kAnimate && graph.passes[t.pass].declaration->kind == graph::PassKind::Host;
       sums[slotOf(t.pass)] += host ? t.cpuMs : t.gpuMs;
     }
     for (size_t i = 0; i < sums.size(); ++i) times[i].push_back(sums[i]);
-  }
+  });
   for (size_t i = 0; i < totals.size(); ++i) totals[i].time = spreadOf(times[i]);
   return totals;
 }
@@ -147,12 +200,13 @@ std::vector<Timings::ViewTotal> Timings::viewTotals() const {
 std::vector<std::pair<std::string, double>> Timings::counters() const {
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> values;
-  for (const graph::FrameResult& frame : frames_)
+  eachFrame([&](const graph::FrameResult& frame) {
     for (const auto& [name, value] : frame.counters) {
       auto [entry, isNew] = values.try_emplace(name);
       if (isNew) order.push_back(name);
       entry->second.push_back(value);
     }
+  });
   std::vector<std::pair<std::string, double>> result;
   for (const std::string& name : order) result.emplace_back(name, medianOf(values[name]));
   return result;
@@ -161,7 +215,7 @@ std::vector<std::pair<std::string, double>> Timings::counters() const {
 template <class Get>
 Spread Timings::frameSpread(Get get) const {
   std::vector<double> values;
-  for (const graph::FrameResult& frame : frames_) values.push_back(get(frame));
+  eachFrame([&](const graph::FrameResult& frame) { values.push_back(get(frame)); });
   return spreadOf(std::move(values));
 }
 
@@ -243,7 +297,7 @@ std::string Timings::json(const RunInfo& run) const {
   Json counted = Json::object();
   for (const auto& [name, value] : counters()) counted[name] = value;
   Json frames = Json::array();
-  for (const graph::FrameResult& f : frames_) {
+  eachFrame([&](const graph::FrameResult& f) {
     Json one = {{"frame", f.frame},
                 {"wall_ms", rounded(f.wallMs)},
                 {"gpu_ms", rounded(f.gpuMs)},
@@ -251,7 +305,7 @@ std::string Timings::json(const RunInfo& run) const {
     one["counters"] = Json::object();
     for (const auto& [name, value] : f.counters) one["counters"][name] = value;
     frames.push_back(std::move(one));
-  }
+  });
   Json document = {
       {"device", run.device},
       {"graph", run.graph},
@@ -275,11 +329,12 @@ std::string Timings::json(const RunInfo& run) const {
 
 std::string Timings::csv() const {
   std::string text = "frame,pass,type,gpu_ms,cpu_ms,frame_gpu_ms,frame_cpu_ms,frame_wall_ms,counters\n";
-  for (const graph::FrameResult& frame : frames_)
+  eachFrame([&](const graph::FrameResult& frame) {
     for (const graph::PassTiming& t : frame.passes)
       text += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame.frame, name(t.pass),
                           type(t.pass), t.gpuMs, t.cpuMs, frame.gpuMs, frame.cpuMs, frame.wallMs,
                           countersOf(frame, name(t.pass)));
+  });
   return text;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,7 +32,9 @@ class Timings {
   explicit Timings(std::shared_ptr<const graph::Plan> plan) : plan_(std::move(plan)) {}
 
   void add(const graph::FrameResult& result);  // outputs are not kept
-  const std::vector<graph::FrameResult>& frames() const { return frames_; }
+  bool empty() const { return frames_.empty(); }
+  // Calls `visit(const graph::FrameResult&)` with every frame, in order.
+  void eachFrame(const std::function<void(const graph::FrameResult&)>& visit) const;
   // Name of a PassTiming's pass. In a scene that moves, `animate` precedes the passes and computes the vertices.
   std::string name(uint32_t pass) const;
   std::string type(uint32_t pass) const;
@@ -65,8 +68,17 @@ class Timings {
   template <class Get>
   Spread frameSpread(Get get) const;
 
+  // A run may have millions of frames, and most have the same passes, steps and counters. These are kept once, as a
+  // frame whose numbers do not count, and of each frame only its numbers.
+  struct Frame {
+    uint64_t number = 0;
+    size_t shape = 0;
+    std::vector<double> values;
+  };
+
   std::shared_ptr<const graph::Plan> plan_;
-  std::vector<graph::FrameResult> frames_;
+  std::vector<graph::FrameResult> shapes_;
+  std::vector<Frame> frames_;
 };
 
 }  // namespace fovea::bench

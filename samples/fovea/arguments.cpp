@@ -42,6 +42,16 @@ void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::s
       ->type_name("FEATURE");
 }
 
+void addFrameLimitOption(CLI::App& command, double& seconds) {
+  command
+      .add_option(
+          "--frame-limit", seconds,
+          "End with exit code 6 if a frame takes longer and its passes report no progress,\nas with a shader "
+          "that never ends; 0: never; default 3600")
+      ->type_name("S")
+      ->check(numberBetween(0, 1e9));
+}
+
 void addEnvironmentOption(CLI::App& command, std::string& file) {
   command
       .add_option("--environment", file,

@@ -18,6 +18,8 @@ void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
 void addGraphOptions(CLI::App& command, GraphOptions& options);
 // --device, --without
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without);
+// --frame-limit
+void addFrameLimitOption(CLI::App& command, double& seconds);
 // --environment
 void addEnvironmentOption(CLI::App& command, std::string& file);
 // --gaze, --radius, --layer, --exposure, --json

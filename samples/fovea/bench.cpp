@@ -47,6 +47,7 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(1u, 1000u).description(""));
   addDeviceOptions(command, options.device, options.without);
+  addFrameLimitOption(command, options.frameLimit);
   addPluginOption(command, options.plugins);
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
@@ -103,7 +104,7 @@ void addBench(CLI::App& program, Action& action) {
         throw Error(ExitCode::Usage,
                     "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
       passes->output = options->folder, passes->size = options->size, passes->device = options->device;
-      passes->without = options->without;
+      passes->without = options->without, passes->frameLimit = options->frameLimit;
       passes->plugins = options->plugins, passes->quiet = options->quiet;
       return benchPasses(*passes);
     };

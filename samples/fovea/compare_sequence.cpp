@@ -154,7 +154,7 @@ void print(const Options& options, const Frames& frames, const Compared& last,
 ExitCode compareSequence(const Options& options) {
   const Frames frames = findFrames(options.sequence), references = findFrames(options.reference);
   checkSameFrames(options, frames, references);
-  Progress progress(options.common.json);
+  Progress progress(options.common.json, 0);
   image::SequenceComparison comparison;
   Compared last;
   std::string layer;

@@ -20,8 +20,9 @@ namespace {
 
 constexpr const char* kFooter =
     R"(Exit codes: 0 done, 1 a defect of fovea or of a pass, 2 wrong command line, 3 a graph, scene, image,
-shader or plug-in that cannot be used, 4 no usable Vulkan device, 5 out of memory, 6 device lost, 7 a file could not be
-written, 8 passes became slower than the baseline (bench passes), 130 interrupted.)";
+shader or plug-in that cannot be used, 4 no usable Vulkan device, 5 out of memory, 6 device lost or a frame
+too long, 7 a file could not be written, 8 passes became slower than the baseline (bench passes),
+130 interrupted.)";
 
 ExitCode report(ExitCode code, const std::string& text) {
   std::fflush(stdout);

@@ -34,7 +34,7 @@ constexpr double kSlowFrameMs = 500;
 struct RenderOptions {
   GraphOptions graph;
   std::string scene, environment, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
-  double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0;
+  double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0, frameLimit = kFrameLimit;
   std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
   bool quiet = false, validation = false, showFovea = false;
@@ -96,7 +96,7 @@ class Render {
 };
 
 Render::Render(const RenderOptions& options)
-    : options_(options), progress_(options.quiet), size_(parseSize(options.size)) {
+    : options_(options), progress_(options.quiet, options.frameLimit), size_(parseSize(options.size)) {
   if (!options.gaze.empty()) gaze_ = parseGaze(options.gaze);
   if (!options.lens.empty()) lens_ = parseLens(options.lens);
   outputs_ = std::make_unique<OutputFiles>(options.outputs);
@@ -299,7 +299,7 @@ void Render::renderFrames() {
 }
 
 void Render::writeResults() {
-  if (timings_->frames().empty()) stopIfInterrupted();
+  if (timings_->empty()) stopIfInterrupted();
   if (picture_) outputs_->writeLast(*picture_, metadata(picture_->frame));
   picture_.reset();
   info_.peakDeviceBytes = device_->peakAllocatedBytes();
@@ -424,6 +424,7 @@ void addRender(CLI::App& program, Action& action) {
   command->add_flag("--show-fovea", options->showFovea,
                     "Draw the foveal circle and a cross where the eye looks onto .png pictures");
   addDeviceOptions(*command, options->device, options->without);
+  addFrameLimitOption(*command, options->frameLimit);
   command->add_flag("--validation", options->validation, "Run under the Vulkan validation layers (slow)");
   command->callback([options, &action] { action = [options] { return Render(*options).run(); }; });
 }

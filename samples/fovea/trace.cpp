@@ -60,14 +60,14 @@ std::string chromeTrace(const Timings& timings, const RunInfo& run) {
   events.push_back(trackName(kGpuTrack, "GPU"));
   events.push_back(trackName(kCpuTrack, "CPU"));
   double start = 0;
-  for (const graph::FrameResult& frame : timings.frames()) {
+  timings.eachFrame([&](const graph::FrameResult& frame) {
     addTrack(events, timings, frame, kGpuTrack, start);
     addTrack(events, timings, frame, kCpuTrack, start);
     for (const auto& [name, value] : frame.counters)
       events.push_back(
           {{"ph", "C"}, {"pid", 1}, {"name", name}, {"ts", start * 1000.0}, {"args", {{"value", value}}}});
     start += std::max({frame.wallMs, frame.gpuMs, frame.cpuMs});
-  }
+  });
   const Json document = {
       {"traceEvents", events},
       {"displayTimeUnit", "ms"},

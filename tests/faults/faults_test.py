@@ -220,6 +220,71 @@ class Kills(CliTest):
         self.assertEqual(errors("out"), errors("whole"))
 
 
+class Caches(CliTest):
+    """Files of the caches of shaders and pipelines, of fovea and of the driver, in each of which a random bit is flipped.
+    FOVEA_FLIPS is how often; more by request, since each makes the driver
+    compile everything anew."""
+
+    FLIPS = int(os.environ.get("FOVEA_FLIPS", "1"))
+
+    def test_flipped_bits(self):
+        """The pictures are the same."""
+        command = ["render", "ours", "--scene", "cornellbox", *SMALL, "--set", "shadow_map_size=64", "--set",
+                   "vpl_count=32", "--set", "map_size=16", "-q", "-o", "a.exr"]
+        environment = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+        picture = self.folder / "a.exr"
+        self.succeeds(*command, env=environment)
+        whole = picture.read_bytes()
+        cache = {p: p.read_bytes() for p in (self.folder / "cache").rglob("*") if p.is_file()}
+        self.assertGreater(len(cache), 10)
+        randomness = random.Random(1)
+        for flip in range(self.FLIPS):
+            for path, content in cache.items():
+                damaged = bytearray(content)
+                if damaged:
+                    damaged[randomness.randrange(len(damaged))] ^= 1 << randomness.randrange(8)
+                path.write_bytes(damaged)
+            picture.unlink()
+            self.succeeds(*command, env=environment)
+            self.assertEqual(picture.read_bytes(), whole, f"flip {flip}")
+
+
+class FrameLimit(CliTest):
+    def test_frame_that_does_not_end(self):
+        """The process ends, with what was finished before. The third frame would take minutes."""
+        if "llvmpipe" not in self.succeeds("devices").stdout:
+            self.skipTest("on a GPU the frame would not take long enough")
+        (self.folder / "passes").mkdir()
+        self.write("passes/ponder.pass.json", {
+            "doc": "thinks for long from the third frame on", "inputs": {"picture": "a picture"},
+            "outputs": {"image": {"doc": "it", "format": "rgba8"}},
+            "steps": [{"shader": "ponder.frag", "colors": ["image"]}]})
+        self.write("passes/ponder.frag", """#version 460
+#include "common/scene.glsl"
+layout(set = 0, binding = 0) uniform sampler2D picture;
+layout(location = 0) out vec4 color;
+void main() {
+  color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+  float x = 0;
+  for (uint i = 0; frame.index >= 2 && i < 60000; ++i) x = sin(exp(sin(exp(sin(exp(sin(exp(sin(x + color.x)))))))));
+  color.x += 1e-6 * x;
+}
+""")
+        self.write("graph.json", {"extends": "direct.json", "outputs": {"image": "ponder.image"},
+                                  "passes": {"ponder": {"type": "ponder", "inputs": {"picture": "tonemap.image"}}}})
+        command = ["render", "graph.json", "--scene", "cornellbox", "--size", "512x512", "--set", "shadow_map_size=64",
+                   "-o", "a_%d.png", "--frames"]
+        self.succeeds(*command, 2, "--frame-limit", 0)
+        whole = {p.name: p.read_bytes() for p in self.folder.glob("*.png")}
+        for file in whole:
+            (self.folder / file).unlink()
+        run = self.call(*command, 4, "--frame-limit", 8)
+        self.assertEqual(run.returncode, DEVICE_LOST, run.stderr)
+        self.assertTrue(run.stderr.startswith("fovea: error: a frame takes longer than 8.0 s\n"), run.stderr)
+        self.assertIn("--frame-limit", run.stderr)
+        self.assertEqual({p.name: p.read_bytes() for p in self.folder.glob("*a_*")}, whole)
+
+
 class Inputs(CliTest):
     def test_folder_of_shaders_that_cannot_be_searched(self):
         (self.folder / "data").mkdir()

@@ -1,4 +1,4 @@
-// A file for fuzz targets of what is read from files only.
+// Files for fuzz targets of what is read from files only.
 #pragma once
 
 #include <unistd.h>
@@ -11,11 +11,16 @@
 
 namespace fovea::test {
 
+// In memory, if the system has a place for that: on a disk, each change of a file may take milliseconds.
+inline std::filesystem::path fuzzFolder() {
+  const std::filesystem::path memory = "/dev/shm";
+  return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
+}
+
 class FuzzFile {
  public:
   explicit FuzzFile(const std::string& extension)
-      : path_(std::filesystem::temp_directory_path() /
-              ("fovea-fuzz-" + std::to_string(getpid()) + extension)) {}
+      : path_(fuzzFolder() / ("fovea-fuzz-" + std::to_string(getpid()) + extension)) {}
   ~FuzzFile() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);

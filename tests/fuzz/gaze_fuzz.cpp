@@ -2,15 +2,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <string_view>
 
-#include "framework/scene/motion/motion.h"
-#include "tests/fuzz/fuzz_file.h"
+#include "framework/scene/file/reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  static const fovea::test::FuzzFile file(".csv");
-  file.write(data, size);
   try {
-    fovea::scene::readGazeCsv(file.path());
+    fovea::scene::parseGazeCsv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
   } catch (const fovea::Error& e) {
     if (e.code() != fovea::ExitCode::BadInput) std::abort();
   }

@@ -7,16 +7,18 @@
 #include <fstream>
 #include <string>
 
-#include "framework/scene/load.h"
+#include "framework/scene/gltf/internal.h"
 #include "framework/scene/scene.h"
+#include "tests/fuzz/fuzz_file.h"
 
 namespace {
 
-// The model lies in a folder of its own, so that a uri can find nothing but the model itself.
+// The model lies in a folder of its own, so that a uri can find nothing but the file `b` there.
 const std::filesystem::path& modelFile() {
   static const std::filesystem::path file = [] {
-    std::string folder = (std::filesystem::temp_directory_path() / "fovea-fuzz-XXXXXX").string();
+    std::string folder = (fovea::test::fuzzFolder() / "fovea-fuzz-XXXXXX").string();
     if (!mkdtemp(folder.data())) std::abort();
+    std::ofstream(std::filesystem::path(folder) / "b", std::ios::binary) << std::string(256, '\x01');
     return std::filesystem::path(folder) / "m.gltf";
   }();
   return file;
@@ -25,11 +27,10 @@ const std::filesystem::path& modelFile() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  std::ofstream(modelFile(), std::ios::binary | std::ios::trunc)
-      .write(reinterpret_cast<const char*>(data), std::streamsize(size));
   fovea::Diagnostics warnings;
   try {
-    const fovea::scene::Scene scene = fovea::scene::loadGltf(modelFile(), warnings);
+    const fovea::scene::Scene scene =
+        fovea::scene::gltf::parseGltf({data, data + size}, modelFile(), warnings);
     const fovea::scene::Geometry g = fovea::scene::flatten(scene);
     for (const fovea::scene::Triangle& t : g.triangles)
       for (uint32_t v : t.v)

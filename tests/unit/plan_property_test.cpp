@@ -16,17 +16,6 @@ bool expectedRefusal(const std::string& message) {
   return false;
 }
 
-MemoryTable randomMemory(uint32_t seed, std::shared_ptr<const BoundGraph> graph) {
-  return [seed, graph](uint32_t resource) {
-    Dice dice(hashCombine(seed, resource));
-    MemoryNeed need = estimateMemory(graph->resources[resource].desc);
-    need.alignment = uint64_t(1) << dice(13);
-    need.bytes += dice(5000);
-    if (dice.chance(30)) need.memoryTypeBits = 6;
-    return need;
-  };
-}
-
 TEST(PlanProperty, RandomGraphsAreFreeOfHazards) {
   uint32_t accepted = 0, refused = 0, plans = 0, histories = 0, kept = 0, aliasing = 0, hosts = 0,
            inPlace = 0;

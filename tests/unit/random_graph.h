@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/unit/graph_support.h"
@@ -14,11 +15,19 @@ namespace fovea::graph::test {
 class Dice {
  public:
   explicit Dice(uint32_t seed) : seed_(hashPcg(seed)) {}
-  uint32_t operator()(uint32_t sides) { return hashCombine(seed_, ++count_) % sides; }
+  // The first rolls are these bytes, for a fuzzer to choose; they must outlive the dice.
+  explicit Dice(std::string_view rolls) : seed_(0), rolls_(rolls) {}
+  uint32_t operator()(uint32_t sides) {
+    if (rolls_.empty()) return hashCombine(seed_, ++count_) % sides;
+    const uint32_t roll = static_cast<unsigned char>(rolls_[0]);
+    rolls_.remove_prefix(1);
+    return sides <= 256 ? roll % sides : (roll << 8 | (*this)(256)) % sides;
+  }
   bool chance(uint32_t percent) { return (*this)(100) < percent; }
 
  private:
   uint32_t seed_, count_ = 0;
+  std::string_view rolls_;
 };
 
 // Kinds of value that the random ports carry.
@@ -126,8 +135,7 @@ inline std::vector<RandomType> addRandomTypes(
 }
 
 // A graph that is valid in nearly all cases; the exceptions are orders that updates in place make impossible.
-inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t seed, uint32_t maxPasses = 36) {
-  Dice dice(seed);
+inline std::string randomGraph(const std::vector<RandomType>& types, Dice& dice, uint32_t maxPasses = 36) {
   const uint32_t count = 2 + dice(maxPasses - 1);
   struct Offer {
     std::string wire;
@@ -207,6 +215,22 @@ inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t se
   }
   return fmt::format("{{\"inputs\": {{{}}},\n\"passes\": {{{}\n}},\n\"outputs\": {{{}}}}}", inputs, passes,
                      outputs);
+}
+inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t seed, uint32_t maxPasses = 36) {
+  Dice dice(seed);
+  return randomGraph(types, dice, maxPasses);
+}
+
+// Sizes, alignments and memory types of the resources of a graph, as a strange driver might want them.
+inline MemoryTable randomMemory(uint32_t seed, std::shared_ptr<const BoundGraph> graph) {
+  return [seed, graph](uint32_t resource) {
+    Dice dice(hashCombine(seed, resource));
+    MemoryNeed need = estimateMemory(graph->resources[resource].desc);
+    need.alignment = uint64_t(1) << dice(13);
+    need.bytes += dice(5000);
+    if (dice.chance(30)) need.memoryTypeBits = 6;
+    return need;
+  };
 }
 
 }  // namespace fovea::graph::test

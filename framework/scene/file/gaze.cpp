@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <iterator>
 #include <map>
-#include <sstream>
 
 #include "framework/base/files.h"
 #include "framework/scene/file/reader.h"
@@ -22,16 +22,24 @@ std::optional<glm::vec2> readEye(ObjectReader& r, std::string_view key) {
   return p;
 }
 
-std::string trimmed(const std::string& s) {
+std::string_view trimmed(std::string_view s) {
   const size_t first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
-  return first == std::string::npos ? "" : s.substr(first, last - first + 1);
+  return first == s.npos ? std::string_view() : s.substr(first, last - first + 1);
 }
 
-std::vector<std::string> cells(const std::string& line) {
+// Takes what precedes the next `separator` off the front of `rest`, and the separator with it; all of it if there is
+// none.
+std::string_view taken(std::string_view& rest, char separator) {
+  const std::string_view front = rest.substr(0, rest.find(separator));
+  rest.remove_prefix(std::min(rest.size(), front.size() + 1));
+  return front;
+}
+
+std::vector<std::string> cells(std::string_view line) {
   std::vector<std::string> list;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) list.push_back(trimmed(cell));
-  if (!line.empty() && line.back() == ',') list.emplace_back();
+  const bool lastEmpty = line.ends_with(',');
+  while (!line.empty()) list.emplace_back(trimmed(taken(line, ',')));
+  if (lastEmpty) list.emplace_back();
   return list;
 }
 
@@ -41,19 +49,12 @@ constexpr uintmax_t kMaxBytes = 64u << 20;  // a day at 40 Hz
 
 class CsvReader {
  public:
-  explicit CsvReader(const std::filesystem::path& file) : file_(file.string()) {}
+  explicit CsvReader(const std::string& file) : file_(file) {}
 
-  std::vector<GazeSample> read() {
-    if (const std::string reason = whyUnreadable(file_); !reason.empty())
-      throw Error(ExitCode::BadInput, file_ + ": cannot be read: " + reason);
-    std::error_code ec;
-    if (std::filesystem::file_size(file_, ec) > kMaxBytes)
-      throw Error(ExitCode::BadInput, file_ + ": has more than 64 MiB");
-    noteRead(file_);
-    std::ifstream stream(file_);
-    for (std::string text; std::getline(stream, text);) {
+  std::vector<GazeSample> read(std::string_view rest) {
+    while (!rest.empty()) {
       ++line_;
-      text = trimmed(text);
+      const std::string_view text = trimmed(taken(rest, '\n'));
       if (text.empty() || text[0] == '#') continue;
       if (columns_.empty())
         header(text);
@@ -71,7 +72,7 @@ class CsvReader {
     errors_.error({file_, std::max(line_, 1), column}, "", message, remedy);
   }
 
-  void header(const std::string& text) {
+  void header(std::string_view text) {
     columns_ = cells(text);
     // Text of a file that is something else is nobody's business.
     if (std::find(columns_.begin(), columns_.end(), "t") == columns_.end()) {
@@ -117,7 +118,7 @@ class CsvReader {
     return glm::vec2(*a, *b);
   }
 
-  void row(const std::string& text) {
+  void row(std::string_view text) {
     const std::vector<std::string> values = cells(text);
     if (values.size() != columns_.size())
       return mistakeAt(
@@ -168,6 +169,20 @@ std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors) {
   return samples;
 }
 
-std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file) { return CsvReader(file).read(); }
+std::vector<GazeSample> parseGazeCsv(std::string_view text, const std::string& file) {
+  return CsvReader(file).read(text);
+}
+
+std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (const std::string reason = whyUnreadable(file); !reason.empty())
+    throw Error(ExitCode::BadInput, name + ": cannot be read: " + reason);
+  std::error_code ec;
+  if (std::filesystem::file_size(file, ec) > kMaxBytes)
+    throw Error(ExitCode::BadInput, name + ": has more than 64 MiB");
+  noteRead(file);
+  std::ifstream stream(file, std::ios::binary);
+  return parseGazeCsv(std::string(std::istreambuf_iterator<char>(stream), {}), name);
+}
 
 }  // namespace fovea::scene

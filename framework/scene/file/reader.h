@@ -93,6 +93,8 @@ void applySubdivision(const SubdivisionEntry& entry, Scene& model);
 
 // Reads gaze samples from an array of the scene file; readGazeCsv() (motion.h) reads a table.
 std::vector<GazeSample> readGaze(const json::Value& list, Diagnostics& errors);
+// A table in memory; `file` is its name in messages.
+std::vector<GazeSample> parseGazeCsv(std::string_view text, const std::string& file);
 
 // The entry `animation` of a model: its name or number, or { "name", "speed", "repeat" }.
 struct AnimationChoice {

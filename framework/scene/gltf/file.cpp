@@ -103,11 +103,11 @@ std::vector<uint8_t> readFile(const fs::path& file) {
   return bytes;
 }
 
-Source readSource(const fs::path& file) {
+Source sourceOf(std::vector<uint8_t> bytes, const fs::path& file) {
   Source s;
   s.file = file;
   s.name = file.string();
-  s.bytes = readFile(file);
+  s.bytes = std::move(bytes);
   std::error_code ec;
   s.folder = fs::absolute(file, ec).lexically_normal().parent_path();
   if (s.bytes.empty()) throw Error(ExitCode::BadInput, s.name + ": the file is empty");

@@ -28,35 +28,38 @@ std::string nameOf(std::string_view array, size_t index, const std::string& name
   return text;
 }
 
-}  // namespace gltf
-
-Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings, bool fullMaterials) {
+Scene parseGltf(std::vector<uint8_t> bytes, const std::filesystem::path& file, Diagnostics& warnings,
+                bool fullMaterials) {
   Scene scene;
   scene.fullMaterials = fullMaterials;
   scene.name = file.stem().string();
   scene.source = file.string();
-  try {
-    const gltf::Source source = gltf::readSource(file);
-    const json::Value root = json::parse(source.json, source.name);
-    gltf::checkDocument(root, source, warnings);
-    tinygltf::Model model;
-    gltf::parseModel(source, root, model);
-    gltf::decodeBufferViews(source, root, model);
-    gltf::decodePrimitives(source, root, model);
-    gltf::Context c{source, root, model, scene, warnings};
-    gltf::buildMaterials(c);
-    gltf::buildMeshes(c);
-    gltf::buildNodes(c);
-    gltf::buildSkins(c);
-    gltf::buildAnimations(c);
-    if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
-    if (scene.meshes.empty() || scene.nodes.empty())
-      c.warn("", "the model shows nothing: no scene with a mesh in it");
-  } catch (const std::bad_alloc&) {
-    throw Error(ExitCode::OutOfMemory, file.string() + ": not enough memory to load the model");
-  }
+  const Source source = sourceOf(std::move(bytes), file);
+  const json::Value root = json::parse(source.json, source.name);
+  checkDocument(root, source, warnings);
+  tinygltf::Model model;
+  parseModel(source, root, model);
+  decodeBufferViews(source, root, model);
+  decodePrimitives(source, root, model);
+  Context c{source, root, model, scene, warnings};
+  buildMaterials(c);
+  buildMeshes(c);
+  buildNodes(c);
+  buildSkins(c);
+  buildAnimations(c);
+  if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
+  if (scene.meshes.empty() || scene.nodes.empty())
+    c.warn("", "the model shows nothing: no scene with a mesh in it");
   scene.hash = contentHash(scene);
   return scene;
+}
+
+}  // namespace gltf
+
+Scene loadGltf(const std::filesystem::path& file, Diagnostics& warnings, bool fullMaterials) try {
+  return gltf::parseGltf(gltf::readFile(file), file, warnings, fullMaterials);
+} catch (const std::bad_alloc&) {
+  throw Error(ExitCode::OutOfMemory, file.string() + ": not enough memory to load the model");
 }
 
 }  // namespace fovea::scene

@@ -41,6 +41,10 @@ inline constexpr uint64_t kMaxVertices = uint64_t(1) << 26;
 inline constexpr uint64_t kMaxZeroElements = uint64_t(1) << 22;  // in accessors without data of their own
 inline constexpr uint32_t kMaxTextureSize = 16384;
 
+// What loadGltf() does with the bytes of a file; `file` says where it lies, for messages and for files that it names.
+Scene parseGltf(std::vector<uint8_t> bytes, const std::filesystem::path& file, Diagnostics& warnings,
+                bool fullMaterials = false);
+
 // ---- file ----
 
 struct Source {
@@ -53,7 +57,8 @@ struct Source {
   std::span<const uint8_t> chunk;  // the BIN chunk of a GLB, inside bytes
 };
 
-Source readSource(const std::filesystem::path& file);
+// Of the bytes of a file. Throws Error(BadInput) for a damaged container.
+Source sourceOf(std::vector<uint8_t> bytes, const std::filesystem::path& file);
 
 // Reads a whole regular file of at most kMaxFileBytes. Throws Error(BadInput) naming it.
 std::vector<uint8_t> readFile(const std::filesystem::path& file);

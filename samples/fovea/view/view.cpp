@@ -92,6 +92,7 @@ void addView(CLI::App& program, Action& action) {
                    "Send a picture of every frame to the image viewer tev, which listens there")
       ->type_name("HOST:PORT");
   addDeviceOptions(*command, options->viewer.device, options->viewer.without);
+  addFrameLimitOption(*command, options->viewer.frameLimit);
   command->add_flag("--validation", options->viewer.validation,
                     "Run under the Vulkan validation layers (slow)");
   command->callback([options, &action] { action = [options] { return runView(*options); }; });

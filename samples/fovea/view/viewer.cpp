@@ -30,7 +30,11 @@ constexpr auto kIdle = milliseconds(100), kRest = milliseconds(60);
 }  // namespace
 
 Viewer::Viewer(Exchange& exchange, const Options& options)
-    : exchange_(exchange), options_(options), settings_(options.settings) {
+    : exchange_(exchange),
+      options_(options),
+      settings_(options.settings),
+      watchdog_(std::chrono::duration<double>(options.frameLimit), ExitCode::DeviceLost,
+                bench::frameLimitMessage(options.frameLimit)) {
   // Mistakes in the graph are told before a device is looked for and a scene loaded.
   Diagnostics early;
   const graph::Description description = bench::loadGraph(settings_.graph, early);
@@ -310,7 +314,9 @@ bool Viewer::run() {
       continue;
     }
     if (options_.frames == 0) pace();
+    watchdog_.begin();
     render();
+    watchdog_.end();
   }
   drain();
   return restart_ && !bench::interrupted();

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "benchmarks/runner/inputs.h"
+#include "benchmarks/runner/progress.h"
+#include "framework/base/watchdog.h"
 #include "framework/session/graph_run.h"
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/graph/changes.h"
@@ -39,6 +41,7 @@ class Viewer {
     std::vector<std::string> without;  // gpu::DeviceOptions::without
     std::string tev;                   // HOST:PORT of the tev that shows a picture; "" for none
     bool validation = false;
+    double frameLimit = bench::kFrameLimit;  // seconds; 0 for none
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;
     // Of a run that goes on here; what it changed of the settings is in the settings.
@@ -107,6 +110,7 @@ class Viewer {
   Exchange& exchange_;
   Options options_;
   Settings settings_;
+  Watchdog watchdog_;  // over frames
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Build> build_;
   std::string secondName_;  // of a graph; "" for none

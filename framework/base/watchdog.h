@@ -1,0 +1,38 @@
+// Ends the process when something takes too long that nothing can stop, such as a shader that never ends.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "fovea/error.h"
+
+namespace fovea {
+
+class Watchdog {
+ public:
+  // Watches nothing if `limit` is 0. Throws Error(OutOfMemory) if there is no thread to be had.
+  Watchdog(std::chrono::duration<double> limit, ExitCode code, std::string message);
+  ~Watchdog();
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  // From now on end() or another begin() has to follow within the limit. If it does not, the process prints the message
+  // and ends with the code, without destroying anything.
+  void begin() { since_ = Clock::now().time_since_epoch().count(); }
+  void end() { since_ = kNever; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr Clock::rep kNever = 0;
+  void watch(const std::stop_token& stop) const;
+
+  Clock::duration limit_;
+  ExitCode code_;
+  std::string message_;
+  std::atomic<Clock::rep> since_ = kNever;
+  std::jthread thread_;
+};
+
+}  // namespace fovea

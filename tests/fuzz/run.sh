@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Fuzzes for so many seconds a target, or so many executions if an `x` follows:
+#
+#   tests/fuzz/run.sh 600                          every target for ten minutes
+#   tests/fuzz/run.sh 2000000x gaze_fuzz suite_fuzz
+#
+# Needs clang. Inputs are kept in build/fuzz/corpus from run to run, and those that reach nothing new are removed at the
+# end. What crashes, takes longer than 2 s or more than 1 GiB ends the run, and lies in build/fuzz/found.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+[ $# -ge 1 ] || { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0" >&2; exit 2; }
+case $1 in *x) amount=-runs=${1%x} ;; *) amount=-max_total_time=$1 ;; esac
+shift
+targets=("$@")
+[ $# -gt 0 ] || for source in tests/fuzz/*_fuzz.cpp; do targets+=("$(basename "$source" .cpp)"); done
+
+good=tests/data/hostile/good
+seeds() {
+  case $1 in
+    gaze_fuzz) ls $good/*.csv samples/scenes/*.csv ;;
+    gltf_fuzz) ls $good/*.gl* tests/fuzz/corpus/gltf/* ;;
+    image_fuzz) ls tests/fuzz/corpus/image/* ;;
+    graph_fuzz) ls tests/fuzz/corpus/graph/* ;;
+    pass_file_fuzz) ls samples/own_pass/files/passes/*.pass.json $good/*.pass.json ;;
+    scene_file_fuzz) ls samples/scenes/*.json $good/scene*.json ;;
+    suite_fuzz) ls benchmarks/suites/*.json $good/suite*.json ;;
+  esac 2>/dev/null || true
+}
+
+[ -f build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null
+ninja -C build/fuzz "${targets[@]}"
+mkdir -p build/fuzz/found
+export LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0
+for target in "${targets[@]}"; do
+  corpus=build/fuzz/corpus/$target
+  mkdir -p "$corpus" "$corpus.seeds"
+  for file in $(seeds "$target"); do cp "$file" "$corpus.seeds/"; done
+  # The words of the seeds are the words of the format.
+  cat "$corpus.seeds"/* 2>/dev/null | LC_ALL=C grep -aoE '"[A-Za-z0-9_.@-]{1,32}"' | sort -u >"$corpus.dict" || true
+  dictionary=()
+  [ ! -s "$corpus.dict" ] || dictionary=(-dict="$corpus.dict")
+  build/fuzz/bin/"$target" "$amount" -timeout=2 -rss_limit_mb=1024 -print_final_stats=1 "${dictionary[@]}" \
+    -artifact_prefix=build/fuzz/found/"$target"- "$corpus" "$corpus.seeds" 2>"$corpus.log" ||
+    { tail -40 "$corpus.log" >&2; echo "fuzz: $target failed, see $corpus.log" >&2; exit 1; }
+  echo "$target: $(sed -n 's/^stat:://p' "$corpus.log" | tr -s '\n ' '  ')"
+  mkdir "$corpus.small"
+  build/fuzz/bin/"$target" -merge=1 -timeout=2 -rss_limit_mb=1024 \
+    "$corpus.small" "$corpus" "$corpus.seeds" 2>>"$corpus.log"
+  rm -r "$corpus" "$corpus.seeds"
+  mv "$corpus.small" "$corpus"
+done
