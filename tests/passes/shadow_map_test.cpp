@@ -91,12 +91,13 @@ TEST_F(ShadowMapTest, DepthEqualsRays) {
         const double got = depth_[(size_t(layer) * kSize + y) * kSize + x];
         // Vertices are snapped to a grid, so the true value lies between those of rays around the centre.
         double lo = 2, hi = -1;
-        for (const glm::dvec2 d : {glm::dvec2(0), {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
-          const double z = castDepth(scene_, test_.geometry(), worldToClip, clipToWorld, x + 0.5 + d.x * hair,
-                                     y + 0.5 + d.y * hair);
-          lo = std::min(lo, z);
-          hi = std::max(hi, z);
-        }
+        for (double r = 1.0 / 128; r <= hair; r *= 2)
+          for (const glm::dvec2 d : {glm::dvec2(0), {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
+            const double z = castDepth(scene_, test_.geometry(), worldToClip, clipToWorld, x + 0.5 + d.x * r,
+                                       y + 0.5 + d.y * r);
+            lo = std::min(lo, z);
+            hi = std::max(hi, z);
+          }
         const double tolerance = views_[layer].bias + views_[layer].relativeBias * hi;
         wrong += got < lo - 0.5 * tolerance || got > hi + 0.5 * tolerance;
         edges += hi - lo > 0.05 * hi;
