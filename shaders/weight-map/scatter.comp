@@ -8,8 +8,8 @@
 
 // An invocation processes a block of pixels row by row, alternating in direction. Neighbours mostly show the same
 // side, so a run of them costs one look-up of the side and one atomic. A run is a loop of its own, as a CPU device
-// executes everything in a loop in every turn. The loops end at their heads: SwiftShader gives an invocation that has left
-// a loop at its foot the values of those that go on.
+// executes everything in a loop in every turn. The loops end at their heads: SwiftShader gives an invocation that has
+// left a loop at its foot the values of those that go on.
 const int kBlock = BLOCK;
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;

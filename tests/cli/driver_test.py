@@ -49,7 +49,8 @@ def graphs():
     named = os.environ.get("FOVEA_DRIVER_GRAPHS", "direct foveal ours ir_1000").split()
     if named != ["all"]:
         return named
-    files = [path for folder in ("", "debug", "alternatives") for path in sorted((SOURCE / "graphs" / folder).glob("*.json"))]
+    folders = [SOURCE / "graphs" / folder for folder in ("", "debug", "alternatives")]
+    files = [path for folder in folders for path in sorted(folder.glob("*.json"))]
     return [str(path) for path in files if not path.name.endswith(".schema.json")]
 
 

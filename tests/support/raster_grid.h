@@ -8,8 +8,8 @@
 
 namespace fovea::test {
 
-// Distance in pixels of the points on which corners are placed: 1/256 on most devices, 1/16 on SwiftShader, which is all
-// that Vulkan asks for.
+// Distance in pixels of the points on which corners are placed: 1/256 on most devices, 1/16 on SwiftShader, which is
+// all that Vulkan asks for.
 inline float rasterGrid() { return std::ldexp(1.0f, -int(testDevice().limits().subPixelPrecisionBits)); }
 
 }  // namespace fovea::test
