@@ -1,9 +1,12 @@
 #include "fovea/test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <span>
 #include <stdexcept>
 
+#include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/pass/registry.h"
@@ -37,6 +40,27 @@ std::string describe(const InputData& input) {
   if (d.array) text += ", \"layers\": " + std::to_string(d.layers);
   if (d.mips > 1) text += ", \"mips\": " + std::to_string(d.mips);
   return text + "}";
+}
+
+// Whether the device has a wider format in the place of one that a test or a declaration names (replaceFormats()).
+bool replaced(VkFormat format) {
+  return format == VK_FORMAT_R16G16_SNORM && testDevice().lacks("VK_FORMAT_R16G16_SNORM");
+}
+
+std::vector<std::byte> toReplaced(VkFormat format, const std::vector<std::byte>& texels) {
+  const std::vector<float> values = gpu::texelsToFloats(format, texels);
+  const auto bytes = std::as_bytes(std::span(values));
+  return {bytes.begin(), bytes.end()};
+}
+
+void fromReplaced(VkFormat format, graph::OutputData& output) {
+  const std::vector<float> values = gpu::texelsToFloats(output.desc.format, output.bytes);
+  std::vector<int16_t> texels(values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    texels[i] = int16_t(std::lround(std::clamp(values[i], -1.0f, 1.0f) * 32767.0f));
+  const auto bytes = std::as_bytes(std::span(texels));
+  output.bytes.assign(bytes.begin(), bytes.end());
+  output.desc.format = format;
 }
 
 scene::Scene defaultScene() {
@@ -216,13 +240,22 @@ void PassTest::run(uint32_t frames) {
     if (impl_->hook) impl_->hook(*this, frame);
     scene::moveObjects(frame, impl_->geometry);
     for (auto& [name, input] : impl_->inputs) {
-      if (input.changed) executor.setInput(name, input.raw);
+      if (input.changed && replaced(input.desc.format))
+        executor.setInput(name, toReplaced(input.desc.format, input.raw));
+      else if (input.changed)
+        executor.setInput(name, input.raw);
       input.changed = false;
     }
     impl_->graph->submit(frame, i + 1 == frames);
     impl_->lastFrame = frame;
   }
   while (auto result = executor.next()) impl_->result = std::move(*result);
+  for (const graph::PortSpec& port : impl_->declaration->ports)
+    for (const graph::MemberSpec& m : port.members) {
+      const auto output = impl_->result.outputs.find(graph::memberPath(port, m));
+      if (output != impl_->result.outputs.end() && replaced(m.resource.format))
+        fromReplaced(m.resource.format, output->second);
+    }
   const std::vector<std::string> messages = takeValidationMessages();
   if (!messages.empty())
     throw std::runtime_error("the validation layers object " + std::to_string(messages.size()) +

@@ -27,13 +27,20 @@ constexpr float kRayEnd = 0.9999f;  // rays end just before the sample
 // What pixels show, and their reservoirs.
 struct Pixels {
   std::span<const glm::vec4> position;
-  std::span<const uint32_t> face;  // octahedral
+  std::span<const uint32_t> face;       // octahedral
+  std::span<const glm::vec2> wideFace;  // the same, on devices that lack its format (graph::replaceFormats())
   std::span<const Reservoir> reservoirs;
 
   Pixels(const HostContext& ctx, const std::string& gbuffer, const std::string& reservoirs_)
       : position(ctx.inputAs<glm::vec4>(gbuffer + ".position")),
         face(ctx.inputAs<uint32_t>(gbuffer + ".face")),
+        wideFace(ctx.inputAs<glm::vec2>(gbuffer + ".face")),
         reservoirs(ctx.inputAs<Reservoir>(reservoirs_)) {}
+
+  glm::vec3 faceAt(size_t pixel) const {
+    const bool wide = wideFace.size() == position.size();
+    return scene::octDecode(wide ? wideFace[pixel] : glm::unpackSnorm2x16(face[pixel]));
+  }
 };
 
 class ReservoirsVisibility : public Pass {
@@ -128,8 +135,7 @@ class ReservoirsVisibility : public Pass {
 
   static bool reaches(const scene::Frame& frame, const scene::RayScene& rays, glm::vec3 eye,
                       const Pixels& pixels, size_t pixel, const Reservoir& r, uint64_t& count) {
-    const glm::vec3 position(pixels.position[pixel]),
-        face = scene::octDecode(glm::unpackSnorm2x16(pixels.face[pixel]));
+    const glm::vec3 position(pixels.position[pixel]), face = pixels.faceAt(pixel);
     if (glm::dot(r.position - position, face) <= 0 || glm::dot(position - r.position, r.normal) <= 0)
       return false;
     const glm::vec3 origin = position + (face - glm::normalize(position - eye)) * rays.epsilon();

@@ -3,13 +3,16 @@
 #ifndef FOVEA_VOXEL_GLSL
 #define FOVEA_VOXEL_GLSL
 
+#include "common/device/exact.glsl"
 #include "common/records/voxel.h"
 
 VoxelGrid voxelGrid(uint resolution) {
   vec3 extent = max(frame.boundsMax - frame.boundsMin, vec3(0.0));
   float longest = max(max(extent.x, extent.y), max(extent.z, 1e-3));
-  float pad = 1e-3 * longest;
-  return VoxelGrid(frame.boundsMin - pad, (longest + 2.0 * pad) / float(resolution), int(resolution));
+  precise float pad = 1e-3 * longest;
+  precise vec3 origin = frame.boundsMin - pad;
+  precise float edge = longest + 2.0 * pad;
+  return VoxelGrid(origin, quotient(edge, float(resolution)), int(resolution));
 }
 
 vec3 worldToVoxel(VoxelGrid grid, vec3 position) { return (position - grid.origin) / grid.cell; }

@@ -331,9 +331,9 @@ Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool i
   }
 #endif
   float plane = c.plane, least = filterCos;
-  // `again` uses wider bounds.
+  // `again` uses wider bounds. The loop ends at its head, see weight-map/scatter.comp.
   bool searches = wanted, again = false;
-  do {
+  while (searches) {
     search(c, p, size, plane, least, searches, true, false);
     search(c, p, size, plane, least, searches, false, again);
     bool few = wanted && 2u * c.found < kSubsets;
@@ -342,7 +342,7 @@ Light meanOfSubsets(inout Centre c, ivec2 p, ivec2 size, bool wanted, out bool i
     again = true;
     plane *= kWiderPlane;
     least = kWiderCos;
-  } while (searches);
+  }
   if (c.found == 0u) {
     c.sum = lastResort(p, size);
     c.found = 1u;

@@ -38,24 +38,24 @@ void main() {
   int blocks = width * (int(pair.box.hi.y - pair.box.lo.y) / 8 + 1);
   float perRow = 1.0 / float(width), toMap = 2.0 / float(size);
   int block = int(slice);
-  do {
+  while (block < blocks) {
     // The search for the next block that may be hit is a loop of its own: every device skips turns of a loop, but not
-    // every one skips the sides of a branch.
-    vec2 corner;
-    bool reached;
-    do {
+    // every one skips the sides of a branch. The loops end at their heads, see weight-map/scatter.comp.
+    vec2 corner = vec2(0.0);
+    bool reached = false;
+    while (!reached && block < blocks) {
       float row = floor((float(block) + 0.5) * perRow);
       corner = pair.box.lo + 8.0 * vec2(float(block - int(row) * width), row);
-      reached = block < blocks && mayHit(pair.test, (corner + 4.0) * toMap - 1.0, 3.5 * toMap);
+      reached = mayHit(pair.test, (corner + 4.0) * toMap - 1.0, 3.5 * toMap);
       block += int(slices);
-    } while (!reached && block < blocks);
+    }
 
     vec2 texel = corner + vec2(float(gl_LocalInvocationIndex % 8u), 0.0);
     vec2 last = min(corner + 7.0, pair.box.hi);
     if (!reached) last.y = -1.0;
-    do {
-      rasterise(pair, texel, texel.x <= last.x && texel.y <= last.y, toMap);
+    while (texel.y <= last.y) {
+      rasterise(pair, texel, texel.x <= last.x, toMap);
       texel.y += 1.0;
-    } while (texel.y <= last.y);
-  } while (block < blocks);
+    }
+  }
 }

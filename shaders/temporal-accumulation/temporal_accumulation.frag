@@ -1,6 +1,7 @@
 // Running mean at every pixel of samples that some or all pixels get in a frame. A pixel takes over the previous
 // frame's mean from where its surface was then, and adds its own sample, or that of its block if it was taken on the
 // same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels.
+#include "common/device/half.glsl"
 #include "common/same_surface.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
@@ -105,7 +106,7 @@ void main() {
   // A CPU device skips a loop of zero turns, but not a branch.
   int without = surface && s.wanted && !(old.a > 0.0) ? 1 : 0;
   for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side, its);
-  mean = surface ? result : vec4(0.0);
+  mean = surface ? vec4(nearestHalf(result.rgb), result.a) : vec4(0.0);
 }
 #else
 void main() {
@@ -115,6 +116,6 @@ void main() {
   // After a jump of the gaze, what comes from a mean that was not longer is another estimate, and a worse one.
   if (its.a > 1.0 && old.a <= frames) old.a = min(old.a, mostOfOthers);
   float count = min(old.a + weight, frames * max(its.a, 1.0));
-  mean = vec4(mix(old.rgb, its.rgb, min(weight / count, 1.0)), count);
+  mean = vec4(nearestHalf(mix(old.rgb, its.rgb, min(weight / count, 1.0))), count);
 }
 #endif

@@ -1,8 +1,10 @@
 // A triangle against the cells of the grid: which ones it overlaps, and the piece of it in each. Needs
 // common/scene.glsl and common/voxel.glsl. tests/support/voxels.cpp has the same operations in the
-// same order, hence `precise`.
+// same order, hence `precise` and quotient().
 #ifndef FOVEA_VOXELIZE_TRIANGLE_GLSL
 #define FOVEA_VOXELIZE_TRIANGLE_GLSL
+
+#include "common/device/exact.glsl"
 
 // In units of cells, with the axes permuted so that z is that of the largest component of the normal. A column of
 // cells along z then meets the triangle in at most four cells.
@@ -20,7 +22,7 @@ vec3 turnBack(vec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx :
 
 CellTriangle loadCellTriangle(VoxelGrid grid, uvec4 indices) {
   vec3 A = scenePosition(indices.x), B = scenePosition(indices.y), C = scenePosition(indices.z);
-  precise float inverse = 1.0 / grid.cell;
+  float inverse = quotient(1.0, grid.cell);
   // Edges come from the original positions: differences of coordinates rounded to the grid's precision would ruin the
   // areas of small triangles.
   precise vec3 e1 = (B - A) * inverse;
@@ -35,14 +37,14 @@ CellTriangle loadCellTriangle(VoxelGrid grid, uvec4 indices) {
   t.n = turnAxes(n, t.axis);
   bool degenerate = !(abs(t.n.z) > 1e-12);
   if (degenerate) t.n.z = 1.0;
-  precise float len = sqrt((n.x * n.x + n.y * n.y) + n.z * n.z);
-  precise float inverseLength = 1.0 / len;
+  precise float square = (n.x * n.x + n.y * n.y) + n.z * n.z;
+  float len = root(square), inverseLength = quotient(1.0, len);
   precise vec3 normal = n * inverseLength;
-  precise float inverseZ = 1.0 / abs(t.n.z);
+  float inverseZ = quotient(1.0, abs(t.n.z));
   precise float areaScale = 0.5 * len * inverseZ;
   t.normal = normal;
   t.areaScale = areaScale;
-  precise float perZ = -1.0 / t.n.z;
+  float perZ = quotient(-1.0, t.n.z);
   precise vec2 slope = t.n.xy * perZ;
   t.slope = slope;
   vec3 least = floor(min(min(a, b), c)), most = max(max(a, b), c);
@@ -135,7 +137,8 @@ int clipPolygon(int from, int to, int size, bool upper) {
       ++kept;
     }
     if ((dp >= 0.0) != (dq >= 0.0)) {
-      precise float inverse = 1.0 / (dp - dq);
+      precise float change = dp - dq;
+      float inverse = quotient(1.0, change);
       precise float s = dp * inverse;
       precise vec3 x = p + (q - p) * s;
       x.x = upper ? 1.0 : 0.0;
@@ -173,7 +176,8 @@ Piece clipToCell(CellTriangle t, vec3 a, vec3 b, vec3 c) {
   }
   if (size < 3 || !(sum > 0.0)) return Piece(0.0, vec3(0.0));
   precise float area = sum * t.areaScale;
-  precise float third = 1.0 / (3.0 * sum);
+  precise float thrice = 3.0 * sum;
+  float third = quotient(1.0, thrice);
   precise vec3 centre = first + moment * third;
   return Piece(area, centre);
 }
@@ -198,7 +202,7 @@ vec2 cellUv(CellTriangle t, uvec4 indices, vec3 a, vec3 p) {
   precise vec3 e1 = t.b - t.a;
   precise vec3 e2 = t.c - t.a;
   precise vec3 d = p - a;
-  precise float inverse = 1.0 / t.n.z;
+  float inverse = quotient(1.0, t.n.z);
   precise float s = (d.x * e2.y - d.y * e2.x) * inverse;
   precise float r = (e1.x * d.y - e1.y * d.x) * inverse;
   precise vec2 uv = sceneUv(indices.x) * (1.0 - s - r) + sceneUv(indices.y) * s + sceneUv(indices.z) * r;

@@ -8,7 +8,8 @@
 
 // An invocation processes a block of pixels row by row, alternating in direction. Neighbours mostly show the same
 // side, so a run of them costs one look-up of the side and one atomic. A run is a loop of its own, as a CPU device
-// executes everything in a loop in every turn.
+// executes everything in a loop in every turn. The loops end at their heads: SwiftShader gives an invocation that has
+// left a loop at its foot the values of those that go on.
 const int kBlock = BLOCK;
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
@@ -71,11 +72,11 @@ void main() {
   uint visible = 0u, unassigned = 0u;
   Seen next = seenAt(grid, first, 0, size);
   int i = 0;
-  do {
+  while (i < kBlock * kBlock) {
     Seen run = next;
     float weight = 0.0;
     uint pixels = 0u;
-    do {
+    while (i < kBlock * kBlock && next.surface == run.surface && next.cell == run.cell && next.facing == run.facing) {
 #if WHOLE_IMAGE
       weight = 1.0;
 #else
@@ -83,11 +84,11 @@ void main() {
 #endif
       ++pixels;
       next = seenAt(grid, first, ++i, size);
-    } while (next.surface == run.surface && next.cell == run.cell && next.facing == run.facing && i < kBlock * kBlock);
+    }
     uint side = run.surface ? seenSide(grid, run.cell, run.facing) : kNoSide;
     visible += give(side, weight);
     unassigned += run.surface && side == kNoSide ? pixels : 0u;
-  } while (i < kBlock * kBlock);
+  }
   visible = subgroupAdd(visible);
   unassigned = subgroupAdd(unassigned);
   if (subgroupElect()) {

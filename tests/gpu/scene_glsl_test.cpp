@@ -21,12 +21,14 @@ namespace {
 
 using test::testDevice;
 
-// Runs `body` once per query; it reads vec4 q and writes vec4 r[3].
+// Runs `body` once per query; it reads vec4 q and writes vec4 r[3]. `head` stands before all else.
 std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::vector<glm::vec4>& queries,
-                                const std::string& name, const std::string& body) {
+                                const std::string& name, const std::string& body,
+                                const std::string& head = "") {
   gpu::Device& device = testDevice();
   const std::string source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
+)" + head + R"(
 #include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 layout(local_size_x = 64) in;
@@ -163,6 +165,36 @@ TEST(SceneGlsl, MaterialsAndTextures) {
     EXPECT_FLOAT_EQ(results[3 * i + 2].w, m.baseColor.g * (1 - m.metallic));
   }
   for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(results[results.size() - 3][c]));
+}
+
+// Even where the device's own are as far off as Vulkan allows.
+TEST(SceneGlsl, QuotientsAndRootsAreThoseOfTheCpu) {
+  GpuScene gpu(testDevice(), Scene{}, {}, 2);
+  std::vector<glm::vec4> queries;
+  for (uint32_t i = 0; i < 20000; ++i) {
+    const float scale = std::exp2(std::floor(40 * random(1, i)) - 20);
+    queries.emplace_back(random(2, i) - 0.5f, scale * (random(3, i) - 0.5f), scale * random(4, i), 0);
+  }
+  queries.emplace_back(0, 3, 0, 0);
+  for (const int off : {-2, 0, 2}) {
+    const auto results =
+        evaluate(gpu, Frame{}, queries, "exact", R"(
+    r[0] = vec4(quotient(q.x, q.y), quotient(1.0, q.y), root(q.z), quotient(1.0, 0.0 * q.z));
+  )",
+                 "float offBy(float x) { return x == 0.0 ? x : intBitsToFloat(floatBitsToInt(x) + " +
+                     std::to_string(off) +
+                     "); }\n#define DEVICE_QUOTIENT(a, b) offBy((a) / (b))\n"
+                     "#define DEVICE_ROOT(x) offBy(sqrt(x))\n#include \"common/device/exact.glsl\"");
+    for (size_t i = 0; i < queries.size(); ++i) {
+      const glm::vec4 q = queries[i], r = results[3 * i];
+      ASSERT_EQ(r.x, q.x / q.y) << q.x << " / " << q.y << " off by " << off;
+      ASSERT_EQ(r.y, 1 / q.y) << "1 / " << q.y << " off by " << off;
+      ASSERT_EQ(r.z, std::sqrt(q.z)) << "root of " << q.z << " off by " << off;
+      if (off == 0) {
+        ASSERT_EQ(r.w, std::numeric_limits<float>::infinity());
+      }
+    }
+  }
 }
 
 TEST(SceneGlsl, Lights) {

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "fovea/test.h"
+#include "framework/gpu/device.h"
+#include "framework/session/test_device.h"
 #include "tests/passes/manage_reference.h"
 #include "tests/support/shapes.h"
 
@@ -17,6 +19,11 @@ namespace fovea::test {
 
 using scene::Candidate;
 using scene::VplState;
+
+// VPLs that a texel buffer of the device has room for.
+inline uint32_t longestList() {
+  return testDevice().limits().maxTexelBufferElements / uint32_t(sizeof(VplState) / sizeof(glm::vec4));
+}
 
 // Numbers for test data.
 class Dice {

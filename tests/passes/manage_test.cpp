@@ -291,6 +291,7 @@ TEST(Manage, DensityAndOrder) {
 // One candidate in each of 40^3 cells: no two of them share a cell of the grid.
 TEST(Manage, CellsAreTheirOwn) {
   constexpr uint32_t kEdge = 40, kCount = kEdge * kEdge * kEdge;
+  if (kCount > longestList()) GTEST_SKIP() << "this device has texel buffers of few elements";
   ManageInput in;
   in.vpls.resize(kCount);
   in.vplImportance.resize(kCount);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "framework/base/random.h"
 #include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/eye_scene.h"
 
@@ -197,6 +198,32 @@ TEST(TemporalAccumulation, ASampleForEveryPixel) {
       const float want = alone ? sample : old + (sample - old) / 8;
       EXPECT_NEAR(v[c], want, 2e-3f * want) << i;
     }
+  }
+}
+
+// The image's numbers are the nearest ones to the means: rounding takes no light away, although it happens every frame.
+TEST(TemporalAccumulation, RoundingTakesNoLight) {
+  const Eye eye({0, 0, 0});
+  for (const float scale : {1.0f, 1e-5f}) {  // normal numbers and those below 2^-14
+    std::vector<glm::vec4> samples, history;
+    const auto value = [scale](uint32_t stream, int i) {
+      const float v = scale * (1 + uniformFloat(hashCombine(stream, uint32_t(i))));
+      return glm::unpackHalf1x16(glm::packHalf1x16(v));
+    };
+    for (int i = 0; i < kSize.x * kSize.y; ++i) {
+      samples.emplace_back(value(1, i), value(2, i), value(3, i), 1);
+      history.emplace_back(value(4, i), value(5, i), value(6, i), 8);
+    }
+    const auto got = accumulate(eye, samples, history);
+    const double step = scale == 1 ? 0x1p-10 : 0x1p-24;
+    double sum = 0;
+    for (size_t i = 0; i < samples.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float want = history[i][c] + (samples[i][c] - history[i][c]) / 8;
+        EXPECT_NEAR(got[4 * i + size_t(c)], want, 0.501 * step) << i;
+        sum += got[4 * i + size_t(c)] - want;
+      }
+    EXPECT_NEAR(sum / double(3 * samples.size()), 0, 0.02 * step);
   }
 }
 
