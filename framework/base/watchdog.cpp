@@ -3,9 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 
 #include "framework/base/threads.h"
 
@@ -23,13 +21,11 @@ Watchdog::Watchdog(std::chrono::duration<double> limit, ExitCode code, std::stri
 
 Watchdog::~Watchdog() = default;
 
-void Watchdog::watch(const std::stop_token& stop) const {
+void Watchdog::watch(const std::stop_token& stop) {
   const auto pause =
       std::clamp<Clock::duration>(limit_ / 8, std::chrono::milliseconds(5), std::chrono::seconds(1));
-  std::mutex mutex;
-  std::condition_variable_any stopped;
-  std::unique_lock lock(mutex);
-  while (!stopped.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
+  std::unique_lock lock(mutex_);
+  while (!stopped_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
     const Clock::rep since = since_;
     if (since == kNever || Clock::now().time_since_epoch() - Clock::duration(since) < limit_) continue;
     // Whoever hangs may hold the locks of streams.

@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -26,12 +28,15 @@ class Watchdog {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr Clock::rep kNever = 0;
-  void watch(const std::stop_token& stop) const;
+  void watch(const std::stop_token& stop);
 
   Clock::duration limit_;
   ExitCode code_;
   std::string message_;
   std::atomic<Clock::rep> since_ = kNever;
+  // Made here, as it needs memory, and the lack of that would end a thread with the process.
+  std::mutex mutex_;
+  std::condition_variable_any stopped_;
   std::jthread thread_;
 };
 
