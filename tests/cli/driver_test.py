@@ -31,7 +31,7 @@ EDGES = 0.01  # share of the pixels
 MOST = 1e-4  # relative mean squared error of the others
 
 # Where VPLs are chosen at random in proportion to what pixels show, one such pixel moves every choice after it. The
-# pictures then differ as those of two seeds do, and only their light can be compared.
+# pictures then show other VPLs, and only their light can be compared.
 SAME_VPLS = ("direct", "ir_1000", "ir_fixed_seed", "ir_accumulated", "ir_eq", "ir_stereo", "reference")
 LIGHT = 0.02
 

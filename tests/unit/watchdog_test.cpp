@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const testing::ExitedWithCode kLost(int(ExitCode::DeviceLost));
+const testing::ExitedWithCode kLost{int(ExitCode::DeviceLost)};
 void sleep(milliseconds time) { std::this_thread::sleep_for(time); }
 
 TEST(WatchdogDeathTest, EndsWhatTakesTooLong) {
