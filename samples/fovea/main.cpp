@@ -1,10 +1,14 @@
 // The command-line program: renders and checks graphs, and lists passes, scenes and devices.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "benchmarks/runner/interrupt.h"
@@ -108,10 +112,26 @@ ExitCode run(int argc, char** argv) {
   }
 }
 
+// Libraries run out of memory where they have promised not to throw, as the standard library does in folders. That ends
+// the program with the same message and code as anywhere else.
+const std::terminate_handler kUsualEnd = std::get_terminate();
+void terminate() {
+  try {
+    if (const std::exception_ptr current = std::current_exception()) std::rethrow_exception(current);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kMessage = "fovea: error: there is not enough memory\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+    std::_Exit(int(ExitCode::OutOfMemory));
+  } catch (...) {  // the usual end says what it was
+  }
+  kUsualEnd();
+}
+
 }  // namespace
 }  // namespace fovea::cli
 
 int main(int argc, char** argv) {
+  std::set_terminate(fovea::cli::terminate);
   fovea::bench::stopAtInterrupts();
   fovea::keepFreedMemory();
   const fovea::ExitCode code = fovea::cli::run(argc, argv);
