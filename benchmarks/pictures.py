@@ -1,4 +1,4 @@
-"""What the tools beside `fovea bench` have in common: exit codes and messages, and pictures that `fovea render` wrote."""
+"""What the tools beside `fovea bench` share: exit codes and messages, and pictures that `fovea render` wrote."""
 import argparse
 import importlib
 import math
@@ -40,10 +40,8 @@ class Picture:
         names = [[f"{layer}.{colour}" if layer else colour for colour in "RGB"] for layer in layers]
         self.channels = next((channels for channels in names if set(channels) <= set(self.spec.channelnames)), None)
         if self.channels is None:
-            wanted = " nor ".join(f"the layer `{layer}`" if layer else "the channels R, G and B" for layer in layers)
-            fail(BAD_INPUT, f"`{file}` has neither {wanted}; render it with a graph that has the output `{layers[0]}`"
-                 if len(layers) > 1 else
-                 f"`{file}` has no layer `{layers[0]}`; render it with a graph that has this output")
+            wanted = " or ".join(f"layer `{layer}`" if layer else "channels R, G and B" for layer in layers)
+            fail(BAD_INPUT, f"`{file}` has no {wanted}; render it with a graph that has the output `{layers[0]}`")
 
     def open(self):
         image_io = load("OpenImageIO")

@@ -18,10 +18,9 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from program import BAD_INPUT, CANNOT_WRITE, SOURCE, USAGE, CliTest
+from program import BAD_INPUT, BENCHMARKS, CANNOT_WRITE, USAGE, ToolTest
 
-SCRIPT = SOURCE / "benchmarks/perceptual.py"
-sys.path.insert(0, str(SCRIPT.parent))
+sys.path.insert(0, str(BENCHMARKS))
 sys.dont_write_bytecode = True
 import perceptual  # noqa: E402
 
@@ -29,18 +28,8 @@ SIZE = (24, 16)
 METADATA = {"gaze": "0.25,0.75", "exposure": "1.25"}
 
 
-class PerceptualTest(CliTest):
-    def command(self, *arguments):
-        return [sys.executable, str(SCRIPT), *map(str, arguments)]
-
-    def refuses(self, code, *arguments, says=()):
-        """Checks the exit code, and that there is one line that contains the given texts."""
-        run = self.call(*arguments)
-        self.assertEqual(run.returncode, code, run.stderr)
-        self.assertEqual(run.stdout, "")
-        self.assertRegex(run.stderr, r"\Aperceptual\.py: [^\n]+\n\Z")
-        for text in says:
-            self.assertIn(text, run.stderr)
+class PerceptualTest(ToolTest):
+    script = "perceptual.py"
 
     def picture(self, name, pixels, metadata=None, layer="radiance."):
         height, width, channels = pixels.shape

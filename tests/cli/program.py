@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import unittest
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
 SOURCE = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
+BENCHMARKS = SOURCE / "benchmarks" if SOURCE else None
 
 USAGE, BAD_INPUT, NO_DEVICE, OUT_OF_MEMORY, CANNOT_WRITE, INTERRUPTED = 2, 3, 4, 5, 7, 130
 # Small and quick settings; the tests do not depend on the amount of work.
@@ -56,3 +58,21 @@ class CliTest(unittest.TestCase):
     def graph(self, **changes):
         """A graph file that extends direct.json."""
         return self.write("graph.json", {"extends": "direct.json", **changes})
+
+
+class ToolTest(CliTest):
+    """Of a script in benchmarks, whose name is `script`."""
+
+    script = None
+
+    def command(self, *arguments):
+        return [sys.executable, str(BENCHMARKS / self.script), *map(str, arguments)]
+
+    def refuses(self, code, *arguments, says=()):
+        """Checks the exit code, and that there is one line that contains the given texts."""
+        run = self.call(*arguments)
+        self.assertEqual(run.returncode, code, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertRegex(run.stderr, r"\A" + re.escape(self.script) + r": [^\n]+\n\Z")
+        for text in says:
+            self.assertIn(text, run.stderr)

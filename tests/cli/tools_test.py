@@ -16,34 +16,18 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from program import BAD_INPUT, CANNOT_WRITE, PROGRAM, SOURCE, USAGE, CliTest
+from program import BAD_INPUT, BENCHMARKS, CANNOT_WRITE, PROGRAM, USAGE, ToolTest
 
-BENCHMARKS = SOURCE / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 sys.dont_write_bytecode = True
 import recovery  # noqa: E402
 
-# A lamp that is switched on in frame 10.
+# A lamp that becomes five times as bright in frame 10.
 SCENE = {"models": [{"builtin": "cornellbox", "lights": False}],
          "lights": [{"type": "point", "name": "lamp", "position": [0, 1.5, 0], "intensity": 1}],
          "moving_lights": [{"light": "lamp", "interpolation": "linear",
-                            "keys": [{"t": 0, "intensity": 1}, {"t": 0.23, "intensity": 1}, {"t": 0.235, "intensity": 5}]}]}
-
-
-class ToolTest(CliTest):
-    script = None
-
-    def command(self, *arguments):
-        return [sys.executable, str(BENCHMARKS / self.script), *map(str, arguments)]
-
-    def refuses(self, code, *arguments, says=()):
-        """Checks the exit code, and that there is one line that contains the given texts."""
-        run = self.call(*arguments)
-        self.assertEqual(run.returncode, code, run.stderr)
-        self.assertEqual(run.stdout, "")
-        self.assertRegex(run.stderr, r"\A" + self.script + r": [^\n]+\n\Z")
-        for text in says:
-            self.assertIn(text, run.stderr)
+                            "keys": [{"t": 0, "intensity": 1}, {"t": 0.23, "intensity": 1},
+                                     {"t": 0.235, "intensity": 5}]}]}
 
 
 class Recovery(ToolTest):

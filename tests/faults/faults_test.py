@@ -249,8 +249,7 @@ class Kills(CliTest):
 
 class Caches(CliTest):
     """Files of the caches of shaders and pipelines, of fovea and of the driver, in each of which a random bit is flipped.
-    FOVEA_FLIPS is how often; more by request, since each makes the driver
-    compile everything anew."""
+    FOVEA_FLIPS is how often, once unless asked, since each time the driver compiles everything anew."""
 
     FLIPS = int(os.environ.get("FOVEA_FLIPS", "1"))
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "fovea/image.h"
@@ -225,19 +226,21 @@ TEST(FirstView, ASunHelpsWhereALanternDoesNot) {
   expectGoodPicture(s);
 }
 
-// A room where all light falls onto a small part of what is seen.
+// A dim wall with a lamp on it, which fills 3% of the picture and is fifty times as bright.
 TEST(FirstView, DarkRoomsAreExposedForWhatIsDark) {
-  scene::Scene s = room();
-  s.materials[0].baseColor = glm::vec4(0.03f, 0.03f, 0.03f, 1);
-  scene::Light spot;
-  spot.type = scene::LightType::Spot;
-  spot.intensity = 100;
-  spot.position = {1, 1.9f, 1};
-  spot.direction = {0, -1, 0};
-  spot.outerConeAngle = 0.12f;
-  s.lights.push_back(spot);
-  s.materials[1].baseColor = glm::vec4(0.9f, 0.9f, 0.9f, 1);
-  scene::addFirstView(s);
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), shining = addMaterial(s, glm::vec3(0));
+  s.materials[shining].emission = glm::vec3(25 * glm::one_over_pi<float>());
+  addQuad(s, grey, {-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
+  addQuad(s, shining, {-0.17f, -0.17f, 0.001f}, {0.346f, 0, 0}, {0, 0.346f, 0});
+  scene::Camera camera;
+  camera.position = {0, 0, 1};
+  camera.verticalFov = glm::half_pi<float>();
+  s.cameras.push_back(camera);
+  scene::Light dim;
+  dim.direction = {0, 0, -1};
+  s.lights.push_back(dim);
+  s.exposure = scene::firstExposure(s, scene::flatten(s));
   expectGoodPicture(s);
 }
 

@@ -216,6 +216,7 @@ inline std::string randomGraph(const std::vector<RandomType>& types, Dice& dice,
   return fmt::format("{{\"inputs\": {{{}}},\n\"passes\": {{{}\n}},\n\"outputs\": {{{}}}}}", inputs, passes,
                      outputs);
 }
+
 inline std::string randomGraph(const std::vector<RandomType>& types, uint32_t seed, uint32_t maxPasses = 36) {
   Dice dice(seed);
   return randomGraph(types, dice, maxPasses);

@@ -1,7 +1,7 @@
 // Quotients and square roots to the last bit. Vulkan rounds sums, differences and products as IEEE 754 does, and as
-// the CPU does with which results are compared, but lets a quotient be 2.5 units in the last place off. Where a surface ends
-// in a cell or beside it would then depend on the device. DEVICE_QUOTIENT and DEVICE_ROOT are what the device makes of
-// them; a test puts worse ones in their place.
+// the CPU does with which results are compared, but a quotient may be 2.5 units in the last place off. Where a surface
+// ends in a cell or beside it would then depend on the device. DEVICE_QUOTIENT and DEVICE_ROOT are what the device makes
+// of them; a test puts worse ones in their place.
 #ifndef FOVEA_EXACT_GLSL
 #define FOVEA_EXACT_GLSL
 
