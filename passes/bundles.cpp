@@ -43,6 +43,7 @@ ResourceSpec radiosityBuffer(const SizeExpr& count) { return buffer("VplRadiosit
 ResourceSpec voxelRadianceBuffer(const SizeExpr& count) { return buffer("VoxelRadiance", kTexel, count); }
 ResourceSpec voxelWeightBuffer(const SizeExpr& count) { return buffer("VoxelWeight", sizeof(float), count); }
 ResourceSpec spreadBuffer() { return buffer("VplSpread", kTexel); }
+ResourceSpec changeBuffer() { return buffer("LightChange", kTexel); }
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <vector>
 
 #include "framework/base/random.h"
 #include "framework/base/threads.h"
@@ -20,6 +22,7 @@ constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // r
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
 constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
+constexpr uint32_t kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
 
 float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 3; }
 
@@ -116,6 +119,22 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   return end;
 }
 
+float lightOf(const EyePathEnd& end) { return meanChannel(end.radiance) * end.weight; }
+
+// How much light some paths find now differs from what they found before.
+struct Difference {
+  void add(float before, float now) {
+    changed += std::abs(now - before);
+    larger += std::max(now, before);
+  }
+  Difference operator+(const Difference& other) const {
+    return {changed + other.changed, larger + other.larger};
+  }
+  double share() const { return larger > 0 ? changed / larger : 0; }
+
+  double changed = 0, larger = 0;
+};
+
 }  // namespace
 
 float sumUnit(std::span<const EyePathEnd> ends) {
@@ -131,31 +150,55 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   const uint32_t points = uint32_t(lists.starts.size()), renew = std::max(settings.renewFrames, 1u),
                  trace = std::max(settings.traceFrames, 1u);
   const Fovea fovea = makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius);
-  std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0;
-  // Traces all paths of one point together, so that its start is found only once.
-  const auto work = [&] {
-    uint64_t count = 0;
-    for (uint32_t first = next.fetch_add(kPointsAtOnce); first < points;
-         first = next.fetch_add(kPointsAtOnce))
-      for (uint32_t point = first; point < std::min(first + kPointsAtOnce, points); ++point) {
-        EyePathStart& start = lists.starts[point];
-        const glm::vec2 pixel = glm::vec2(screenPoint(settings.region, settings.imageShare64ths, point,
-                                                      points, fovea, glm::ivec2(view.size))) +
-                                0.5f;
-        const bool due = point % renew == settings.turn % renew;
-        const bool anew = (due && !tracer.belongs(start, pixel, count)) || !tracer.stands(start, count);
-        if (anew) start = tracer.look(pixel, count);
-        if (!anew && point % trace != settings.turn % trace) continue;
-        const uint32_t paths = (uint32_t(ends.size()) - point + points - 1) / points;
-        for (uint32_t turn = 0; turn < paths; ++turn)
-          ends[turn * points + point] =
-              start.there > 0 ? tracer.end(start, point, turn, paths, count) : EyePathEnd{};
-      }
-    traced += count;
+  // Calls work(point, rays) for all points.
+  const auto forPoints = [&](const auto& work) {
+    std::atomic<uint32_t> next = 0;
+    onThreads(std::min(threadCount(settings.threads), (points + kPointsAtOnce - 1) / kPointsAtOnce), [&] {
+      uint64_t count = 0;
+      for (uint32_t first = next.fetch_add(kPointsAtOnce); first < points;
+           first = next.fetch_add(kPointsAtOnce))
+        for (uint32_t point = first; point < std::min(first + kPointsAtOnce, points); ++point)
+          work(point, count);
+      traced += count;
+    });
   };
-  onThreads(std::min(threadCount(settings.threads), (points + kPointsAtOnce - 1) / kPointsAtOnce), work);
-  EyePathStatistics statistics{traced, 0};
+  // Traces all paths of one point and compares the light they find with what is there.
+  const auto tracePaths = [&](uint32_t point, uint64_t& count) {
+    Difference difference;
+    const EyePathStart& start = lists.starts[point];
+    const uint32_t paths = (uint32_t(ends.size()) - point + points - 1) / points;
+    for (uint32_t turn = 0; turn < paths; ++turn) {
+      EyePathEnd& end = ends[turn * points + point];
+      const EyePathEnd now = start.there > 0 ? tracer.end(start, point, turn, paths, count) : EyePathEnd{};
+      difference.add(lightOf(end), lightOf(now));
+      end = now;
+    }
+    return difference;
+  };
+
+  std::vector<Difference> differences(points);
+  std::vector<uint8_t> waits(points);
+  forPoints([&](uint32_t point, uint64_t& count) {
+    EyePathStart& start = lists.starts[point];
+    const glm::vec2 pixel = glm::vec2(screenPoint(settings.region, settings.imageShare64ths, point, points,
+                                                  fovea, glm::ivec2(view.size))) +
+                            0.5f;
+    const bool due = point % renew == settings.turn % renew;
+    const bool anew = (due && !tracer.belongs(start, pixel, count)) || !tracer.stands(start, count);
+    if (anew) start = tracer.look(pixel, count);
+    waits[point] = !anew && point % trace != settings.turn % trace;
+    if (waits[point]) return;
+    const Difference difference = tracePaths(point, count);
+    if (!anew) differences[point] = difference;
+  });
+  EyePathStatistics statistics;
+  statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
+  if (statistics.change > 0)
+    forPoints([&](uint32_t point, uint64_t& count) {
+      if (waits[point] && uniformFloat(point * kGoldenRatio) < statistics.change) tracePaths(point, count);
+    });
+  statistics.rays = traced;
   const float unit = sumUnit(ends);
   for (EyePathEnd& e : ends) {
     e.unit = unit;

@@ -34,6 +34,9 @@ struct EyePathSettings {
 
 struct EyePathStatistics {
   uint64_t rays = 0, ends = 0;
+  // Share of the light that has changed, in [0, 1]: the differences between what the paths find that are traced again
+  // from their starts and what they found before, divided by the larger of both.
+  double change = 0;
 };
 
 struct EyePathLists {
@@ -42,7 +45,8 @@ struct EyePathLists {
 };
 
 // Fills the lists. If the number of a start is not `turn` modulo renewFrames, the start is kept as long as there is a
-// surface; its paths are kept as well if its number is not `turn` modulo traceFrames.
+// surface; its paths are kept as well if its number is not `turn` modulo traceFrames, except that as large a share of
+// them is traced all the same as the light of the others has changed.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);

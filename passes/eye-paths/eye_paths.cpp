@@ -15,6 +15,10 @@ namespace {
 
 using namespace graph;
 
+// How many variances of a sample weigh as much as the square of its mean if the error is one that all pixels share: what
+// is left of light that is gone is seen more than noise is.
+constexpr float kBiasInVariances = 16;
+
 class EyePaths : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -26,6 +30,9 @@ class EyePaths : public Pass {
     d.output("paths", "eye-paths", eyePathOutput(parameter("points"), parameter("paths")),
              "what the screen points show, where their paths end and the light found there; the paths of one "
              "point are `points` entries apart");
+    d.output("change", changeBuffer(), Usage::HostWrite,
+             "x: share c of the light found by the paths traced again that differs from what they found "
+             "before, in [0, 1]; y: s = 16 c^2, after which a history of n samples is worth n / (1 + n s)");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),
@@ -53,10 +60,12 @@ class EyePaths : public Pass {
                 "kept, with the light it found, when it is due for renewal");
     d.parameter("trace_frames", integer(1, 1, 1000),
                 "frames in which all paths are traced anew, those of a share of the points in each frame; "
-                "the others keep the light they found unless their start is new");
+                "the others keep the light they found unless their start is new; of them, as large a share "
+                "is traced all the same as the light of the former has changed");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
+    d.counter("change", "share of the light that has changed, in [0, 1]");
     return d;
   }
 
@@ -94,7 +103,10 @@ class EyePaths : public Pass {
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
+    const float change = float(statistics.change);
+    ctx.outputAs<glm::vec4>("change")[0] = {change, kBiasInVariances * change * change, 0, 0};
     ctx.counter("ends", double(statistics.ends));
+    ctx.counter("change", statistics.change);
   }
 
  private:

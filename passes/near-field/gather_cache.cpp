@@ -40,6 +40,15 @@ std::optional<glm::vec3> GatherCache::find(uint64_t cell) const {
   return found.sum / found.weight;
 }
 
+void GatherCache::age(float ageing) {
+  if (!(ageing > 0)) return;
+  for (Cell& cell : cells_) {
+    const float kept = 1 / (1 + cell.weight * ageing);
+    cell.sum *= kept;
+    cell.weight *= kept;
+  }
+}
+
 void GatherCache::add(std::span<const Sample> samples) {
   for (const Sample& sample : samples) {
     Cell& cell = cells_[placeOf(sample.cell)];

@@ -31,6 +31,8 @@ class GatherCache {
   // Adds the samples in their order, so the same samples always give the same cache. Old samples fade, at least half
   // of the weight belonging to the last `kMost`.
   void add(std::span<const Sample> samples);
+  // Lets what is there count less, as light has changed: n samples as n / (1 + n ageing), while their mean stays.
+  void age(float ageing);
   void clear() { cells_.assign(kCells, {}); }
 
   static constexpr float kEnough = 16, kMost = 256;  // samples in a cell

@@ -1,6 +1,7 @@
 // Light from nearby surfaces, which VPLs shaded as discs leave out.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
@@ -19,6 +20,11 @@ using namespace graph;
 constexpr double kLengthKept = 7 / 8.0;  // share of the mean ray length kept from frame to frame
 constexpr double kCellWidth = 0.1;       // width of the cache's cells, in mean ray lengths
 
+// Rays per sample in the fovea, `most` if all of its history is lost.
+uint32_t raysAfterChange(uint32_t most, float lost) {
+  return uint32_t(std::lround(glm::mix(1.0f, float(most), lost)));
+}
+
 class NearField : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -29,6 +35,9 @@ class NearField : public Pass {
         "through the triangles",
         PassKind::Host);
     d.view();
+    d.input("change", changeBuffer(), Usage::HostRead,
+            "y: s, after which what was gathered before counts less, as light has changed (pass eye-paths)")
+        .makeOptional();
     d.output("samples",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
              Usage::HostWrite,
@@ -50,7 +59,7 @@ class NearField : public Pass {
                 "rays per sample after a camera cut, when there is no history to build on");
     d.parameter("saccade_samples", integer(1, 1, 16),
                 "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
-                "fovea is that of wide blocks");
+                "fovea is that of wide blocks, and up to so many when light changes");
     d.parameter("emitter_points", integer(4, 1, 64),
                 "points on surfaces that shine, of which the ray aimed at them chooses one");
     declareMaterials(d, "`full` lets metals keep their colour");
@@ -83,7 +92,9 @@ class NearField : public Pass {
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
       const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
+      const float ageing = ctx.has("change") ? ctx.inputAs<glm::vec4>("change")[0].y : 0;
       settings.cache = &cache_;
+      cache_.age(ageing);
       const auto trace = [&] {
         area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
         settings.area = float(area);
@@ -97,8 +108,9 @@ class NearField : public Pass {
         length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
         settings.samples = uint32_t(p.integer("first_samples"));
         trace();
-      } else if (frame.saccade > 0) {
-        settings.foveaFactor = uint32_t(p.integer("saccade_samples"));
+      } else {
+        settings.foveaFactor = raysAfterChange(uint32_t(p.integer("saccade_samples")),
+                                               frame.saccade > 0 ? 1 : ageing / (1 + ageing));
       }
       statistics = trace();
       if (statistics.hits > 0)

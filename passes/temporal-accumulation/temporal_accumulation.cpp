@@ -41,6 +41,10 @@ class TemporalAccumulation : public Pass {
         "the mean is there, if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
+    d.input("change", changeBuffer(), Usage::TexelRead,
+            "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed (pass "
+            "eye-paths)")
+        .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
     d.parameter(
@@ -51,7 +55,9 @@ class TemporalAccumulation : public Pass {
                 "weight of a sample after a camera cut, as in pass near-field");
     d.parameter(
         "saccade_samples", integer(1, 1, 16),
-        "weight of a sample for 8 frames after a jump of the gaze, as in pass near-field; samples for "
+        "weight of a sample for 8 frames after a jump of the gaze and when light changes, as in pass "
+        "near-field; "
+        "samples for "
         "blocks wider than a texel of `samples` keep the weight 1, and what they have left in the mean "
         "counts less where a narrower block follows");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
@@ -61,7 +67,9 @@ class TemporalAccumulation : public Pass {
                 "least angle between normals of different surfaces");
     // Samples are for blocks if a texel of them covers several pixels.
     const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1);
-    d.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"}).define("BLOCKS", blocks);
+    d.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"})
+        .define("BLOCKS", blocks)
+        .define("CHANGES", wired("change"));
     return d;
   }
 
@@ -78,7 +86,8 @@ class TemporalAccumulation : public Pass {
     if (shift > 0)
       commands.constant("leastCos", std::cos(glm::radians(float(p.real("normal_angle")))))
           .constant("shift", shift)
-          .constant("wideWeight", float(first ? rays : 1));
+          .constant("wideWeight", float(first ? rays : 1))
+          .constant("changedWeight", float(p.integer("saccade_samples")));
     else
       commands.constant("mostOfOthers", mostOfOthers(ctx.frame()));
     commands.drawFullscreen();

@@ -1,6 +1,7 @@
 // Running mean at every pixel of samples that some or all pixels get in a frame. A pixel takes over the previous
 // frame's mean from where its surface was then, and adds its own sample, or that of its block if it was taken on the
-// same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels.
+// same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels; CHANGES 0/1, 1 if `change`
+// says by how much light has changed.
 #include "common/device/half.glsl"
 #include "common/same_surface.glsl"
 
@@ -10,6 +11,9 @@ layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D origin;
 layout(rgba16f) uniform readonly image2D samples;
 layout(rgba16f) uniform readonly image2D history;
+#if CHANGES
+uniform samplerBuffer change;  // y: ageing
+#endif
 layout(location = 0) out vec4 mean;
 
 layout(push_constant) uniform Constants {
@@ -20,6 +24,7 @@ layout(push_constant) uniform Constants {
   float leastCos;
   int shift;             // a texel of `samples` is 2^shift pixels wide
   float wideWeight;      // of a sample whose block is wider than that
+  float changedWeight;   // of a sample if all light has changed
 #else
   float mostOfOthers;    // frames that the history of another estimate may count
 #endif
@@ -27,10 +32,17 @@ layout(push_constant) uniform Constants {
 
 const uint kNone = 0xffffffffu;
 
-// rgb: mean, a: number of frames in it, 0 if there is none.
+#if CHANGES
+float ageing() { return texelFetch(change, 0).y; }
+#else
+float ageing() { return 0.0; }
+#endif
+
+// rgb: mean, a: number of samples that it is worth, 0 if there is none.
 vec4 fromHistory(ivec2 p) {
   uint from = imageLoad(origin, p).r;
-  return from == kNone ? vec4(0.0) : imageLoad(history, ivec2(from & 0xffffu, from >> 16));
+  vec4 old = from == kNone ? vec4(0.0) : imageLoad(history, ivec2(from & 0xffffu, from >> 16));
+  return vec4(old.rgb, old.a / (1.0 + old.a * ageing()));
 }
 
 #if BLOCKS
@@ -97,7 +109,8 @@ void main() {
   // All pixels of a larger block change at once, so they change less each time.
   float most = frames * float(max(s.side >> shift, 1));
   bool wide = s.side >> shift > 1;
-  float its = wide ? wideWeight : weight;
+  float lost = ageing() / (1.0 + ageing());
+  float its = wide ? wideWeight : max(weight, round(mix(1.0, changedWeight, lost)));
   // Where the gaze has jumped. Only wide blocks leave counts above `frames`, by the ratio of the widths; each of their
   // samples covers as many narrow blocks as the square of it.
   if (!wide && its > 1.0 && old.a > frames) old.a = frames * frames / old.a;

@@ -365,31 +365,74 @@ TEST(EyePaths, StartsStayUntilTheyStray) {
   }
 }
 
-// The light is switched off between two frames; in each frame a share of the points notices.
-TEST(EyePaths, PathsAreTracedInTurns) {
-  const Look look(litRoom(true), {32, 32});
-  for (uint32_t dark = 1; dark <= 4; ++dark) {
+// Ends of paths after `frames` frames, from the fourth of which on light is `factor` times as bright, and what the pass
+// says of the change.
+struct AfterChange {
+  explicit AfterChange(const Look& look, uint32_t frames, float factor) {
     PassTest test("eye-paths");
     test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
     test.viewSize(32, 32).scene(look.scene);
-    test.beforeFrame([](PassTest&, scene::Frame& f) {
-      if (f.index >= 3) f.lights.clear();
+    test.beforeFrame([factor](PassTest&, scene::Frame& f) {
+      for (scene::Light& light : f.lights)
+        if (f.index >= 3) light.color *= factor;
     });
-    test.run(3 + dark);  // frame f traces the points f, f + 4..
-    const auto got = test.values<EyePathEnd>("paths.ends");
-    int lit = 0;
-    for (uint32_t i = 0; i < got.size(); ++i) {
-      if ((i % 100 + 4 - 3) % 4 < dark) {
-        EXPECT_EQ(got[i].radiance, glm::vec3(0)) << dark << " " << i;
-      }
-      lit += got[i].radiance != glm::vec3(0);
-    }
-    EXPECT_GE(lit, 490 * int(4 - dark) / 4);
-    EXPECT_LE(lit, 125 * int(4 - dark));
-    if (dark == 1) {
-      EXPECT_LT(test.counter("rays"), 100 + 125 * 8);
-    }
+    test.run(frames);
+    ends = test.values<EyePathEnd>("paths.ends");
+    change = test.values<glm::vec4>("change")[0];
+    rays = test.counter("rays");
   }
+  // How many paths found other light than those of `before`.
+  int changed(const AfterChange& before) const {
+    int count = 0;
+    for (size_t i = 0; i < ends.size(); ++i) count += ends[i].radiance != before.ends[i].radiance;
+    return count;
+  }
+
+  std::vector<EyePathEnd> ends;
+  glm::vec4 change{0};
+  double rays = 0;
+};
+
+// In each frame a share of the points notices that light has become weaker by 1%, and few of the others.
+TEST(EyePaths, PathsAreTracedInTurns) {
+  const Look look(litRoom(true), {32, 32});
+  const AfterChange before(look, 3, 1);
+  EXPECT_EQ(before.change, glm::vec4(0));
+  EXPECT_LT(before.rays, 100 + 125 * 10);
+  for (uint32_t turns = 1; turns <= 4; ++turns) {
+    const AfterChange after(look, 3 + turns, 0.99f);  // frame f traces the points f, f + 4..
+    for (uint32_t i = 0; i < after.ends.size(); ++i)
+      if ((i % 100 + 4 - 3) % 4 < turns && before.ends[i].radiance != glm::vec3(0)) {
+        EXPECT_NE(after.ends[i].radiance, before.ends[i].radiance) << turns << " " << i;
+      }
+    EXPECT_NEAR(after.changed(before), 125 * turns, 20) << turns;
+    EXPECT_NEAR(after.change.x, 0.01f, 2e-3f) << turns;
+  }
+  EXPECT_EQ(AfterChange(look, 8, 0.99f).change, glm::vec4(0));
+}
+
+// As large a share of the other paths is traced at once as the light has changed by.
+TEST(EyePaths, ChangedLightIsFoundAtOnce) {
+  const Look look(litRoom(true), {32, 32});
+  const AfterChange before(look, 3, 1);
+  for (const float factor : {0.0f, 0.4f, 2.0f}) {
+    const AfterChange after(look, 4, factor);
+    const float change = factor < 1 ? 1 - factor : 1 - 1 / factor;
+    EXPECT_NEAR(after.change.x, change, 1e-3f);
+    EXPECT_FLOAT_EQ(after.change.y, 16 * after.change.x * after.change.x);
+    EXPECT_NEAR(after.changed(before), 125 + 375 * change, 30) << factor;
+  }
+  EXPECT_EQ(AfterChange(look, 5, 0).change, glm::vec4(0)) << "it has changed before";
+}
+
+// What the eye sees anew by moving has not changed.
+TEST(EyePaths, OtherStartsAreNoChange) {
+  const Look look(litRoom(true), {32, 32});
+  PassTest test("eye-paths");
+  test.param("paths", 500).param("points", 100).viewSize(32, 32).scene(look.scene);
+  test.beforeFrame([](PassTest&, scene::Frame& f) { f.views[0].gaze.x = f.index < 3 ? 0.5f : 0.12f; });
+  test.run(4);
+  EXPECT_EQ(test.values<glm::vec4>("change")[0], glm::vec4(0));
 }
 
 // For the frames after a jump of the gaze, points move on as fast as `saccade_renew_frames` says.

@@ -40,6 +40,20 @@ TEST(GatherCache, OldSamplesFade) {
   EXPECT_LT(cache.find(5)->r, 0.02f);
 }
 
+TEST(GatherCache, ChangedLightAgesSamples) {
+  GatherCache cache;
+  cache.add(samplesOf(5, 96, glm::vec3(1)));
+  cache.age(0);
+  cache.add(samplesOf(5, 32, glm::vec3(5)));
+  EXPECT_FLOAT_EQ(cache.find(5)->r, 2);
+  cache.age(1 / 128.0f);  // 128 samples are worth 64
+  EXPECT_FLOAT_EQ(cache.find(5)->r, 2);
+  cache.add(samplesOf(5, 64, glm::vec3(4)));
+  EXPECT_FLOAT_EQ(cache.find(5)->r, 3);
+  cache.age(16);
+  EXPECT_FALSE(cache.find(5)) << "too few are left";
+}
+
 // Points of one cell share it, others do not; nor do the two sides of a thin wall, and cells of another width.
 TEST(GatherCache, CellsOfSpace) {
   GatherCache cache;

@@ -412,6 +412,30 @@ TEST(NearField, MoreRaysForANewFovea) {
   EXPECT_GT(differ, inside / 2);
 }
 
+// When light changes, samples in the fovea are of more rays, and what the cache knows of the old light is forgotten.
+TEST(NearField, MoreRaysForChangedLight) {
+  const Look look(shiningRoom(true), glm::ivec2(16));
+  struct Counters {
+    double shaded, gathered;
+  };
+  const auto after = [&](float ageing) {
+    PassTest test("near-field");
+    test.viewSize(16, 16).scene(look.room.scene).param("saccade_samples", 5).param("vpls", 10);
+    test.param("fovea_radius", 2.0).param("first_samples", 1024);  // which fill the cache
+    test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
+    test.beforeFrame([ageing](PassTest& t, scene::Frame& f) {
+      if (f.index == 1) t.buffer("change", std::vector<glm::vec4>{{0, ageing, 0, 0}}, "LightChange");
+    });
+    test.run(2);
+    return Counters{test.counter("shaded"), test.counter("gathered")};
+  };
+  const Counters same = after(0), half = after(1), all = after(1e6f);
+  EXPECT_NEAR(half.shaded, 3 * same.shaded, 0.5 * same.shaded);
+  EXPECT_NEAR(all.shaded, 5 * same.shaded, 0.5 * same.shaded);
+  EXPECT_LT(same.gathered, 0.8 * same.shaded);
+  EXPECT_EQ(all.gathered, all.shaded);
+}
+
 TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
   const Look look(shiningRoom(false), glm::ivec2(16));
   double length = 0;

@@ -24,10 +24,12 @@ std::vector<uint32_t> ownPlaces() {
   return places;
 }
 
-// One frame of the pass; `samples` holds one per block of 2 x 2 pixels, or one per pixel.
+// One frame of the pass; `samples` holds one per block of 2 x 2 pixels, or one per pixel. ageing: of the history, as
+// light has changed; not wired if negative.
 std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samples,
                               const std::vector<glm::vec4>& history, int firstSamples = 1,
-                              const std::vector<uint32_t>& origin = ownPlaces(), float saccade = 0) {
+                              const std::vector<uint32_t>& origin = ownPlaces(), float saccade = 0,
+                              float ageing = -1) {
   PassTest test("temporal-accumulation");
   test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 3);
   test.beforeFrame([saccade](PassTest&, scene::Frame& f) { f.saccade = saccade; });
@@ -38,6 +40,7 @@ std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samp
              1, halves(samples));
   test.image("history", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              halves(history));
+  if (ageing >= 0) test.buffer("change", std::vector<glm::vec4>{{0, ageing, 0, 0}}, "LightChange");
   test.scene(eye.scene).run(saccade > 0 ? 2 : 1);  // a first frame has no saccade
   return test.floats("mean");
 }
@@ -283,6 +286,29 @@ TEST(TemporalAccumulation, TakesOverWhatItsOriginHad) {
       EXPECT_EQ(blocks[4 * size_t(i) + size_t(c)], kept[c]) << i;
       EXPECT_NEAR(pixels[4 * size_t(i) + size_t(c)], mean[c], 2e-3f * mean[c]) << i;
     }
+  }
+}
+
+// When light changes, n samples are worth n / (1 + n s), and those for narrow blocks are of up to three rays.
+TEST(TemporalAccumulation, HistoryAgesWhenLightChanges) {
+  const Eye eye({0, 0, 0});
+  struct Case {
+    float side, history, ageing, rays;  // width of the blocks, 0: a sample for every pixel
+  };
+  for (const Case& c : {Case{2, 4, 0, 1}, Case{2, 4, 0.25f, 1}, Case{2, 6, 0.5f, 2}, Case{2, 6, 16, 3},
+                        Case{8, 12, 0.25f, 1}, Case{0, 4, 0.25f, 1}, Case{0, 4, 16, 1}}) {
+    const glm::ivec2 size = c.side > 0 ? kSize / 2 : kSize;
+    const auto got = accumulate(eye, everywhere(size, {9, 9, 9, c.side}),
+                                everywhere(kSize, {1, 1, 1, c.history}), 1, ownPlaces(), 0, c.ageing);
+    const float worth = c.history / (1 + c.history * c.ageing), count = worth + c.rays;
+    int own = 0;
+    for (size_t i = 0; i < got.size(); i += 4) {
+      if (got[i] == 1) continue;  // another surface than its block's sample
+      EXPECT_NEAR(got[i], 1 + 8 * c.rays / count, 5e-3f) << c.side << " " << c.ageing;
+      EXPECT_NEAR(got[i + 3], count, 5e-3f) << c.side << " " << c.ageing;
+      ++own;
+    }
+    EXPECT_GT(own, 1000);
   }
 }
 
