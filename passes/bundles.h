@@ -25,9 +25,9 @@ graph::ResourceSpec voxelRadianceBuffer(const graph::SizeExpr& count = 1);
 graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
 // x: least area of a VPL's disc, y: of one on a surface that shines, if it is larger, m^2.
 graph::ResourceSpec spreadBuffer();
-// x: share c of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
-// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s = 16 c^2, after which a
-// history of n samples is worth n / (1 + n s).
+// x: share of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
+// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history of
+// n samples is worth n / (1 + n s).
 graph::ResourceSpec changeBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------

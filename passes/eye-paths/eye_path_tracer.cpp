@@ -22,6 +22,8 @@ constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // r
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
 constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
+constexpr double kTracedPerChange =
+    2;  // share of the points traced out of turn, in shares of light that has changed
 constexpr uint32_t kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
 
 float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 3; }
@@ -194,9 +196,9 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   });
   EyePathStatistics statistics;
   statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
-  if (statistics.change > 0)
+  if (const double share = kTracedPerChange * statistics.change; share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
-      if (waits[point] && uniformFloat(point * kGoldenRatio) < statistics.change) tracePaths(point, count);
+      if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracePaths(point, count);
     });
   statistics.rays = traced;
   const float unit = sumUnit(ends);

@@ -15,9 +15,10 @@ namespace {
 
 using namespace graph;
 
-// How many variances of a sample weigh as much as the square of its mean if the error is one that all pixels share: what
-// is left of light that is gone is seen more than noise is.
-constexpr float kBiasInVariances = 16;
+// How much more the square of an error weighs that all pixels share than one of noise: what is left of light that is
+// gone is seen more.
+constexpr float kBiasWeight = 16;
+constexpr float kUsualKept = 0.75f;  // share of the usual change that is kept from frame to frame
 
 class EyePaths : public Pass {
  public:
@@ -30,9 +31,11 @@ class EyePaths : public Pass {
     d.output("paths", "eye-paths", eyePathOutput(parameter("points"), parameter("paths")),
              "what the screen points show, where their paths end and the light found there; the paths of one "
              "point are `points` entries apart");
-    d.output("change", changeBuffer(), Usage::HostWrite,
-             "x: share c of the light found by the paths traced again that differs from what they found "
-             "before, in [0, 1]; y: s = 16 c^2, after which a history of n samples is worth n / (1 + n s)");
+    d.output(
+        "change", changeBuffer(), Usage::HostWrite,
+        "x: share c of the light found by the paths traced again that differs from what they found "
+        "before, in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s); j is "
+        "the part of c that exceeds the changes in the frames before");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),
@@ -103,8 +106,11 @@ class EyePaths : public Pass {
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
-    const float change = float(statistics.change);
-    ctx.outputAs<glm::vec4>("change")[0] = {change, kBiasInVariances * change * change, 0, 0};
+    // Running means are made for what moves all the time.
+    const float change = float(statistics.change),
+                sudden = ctx.firstFrame() ? 0 : std::max(change - usualChange_, 0.0f);
+    usualChange_ = ctx.firstFrame() ? 0 : std::max(change, kUsualKept * usualChange_);
+    ctx.outputAs<glm::vec4>("change")[0] = {change, kBiasWeight * sudden * sudden, 0, 0};
     ctx.counter("ends", double(statistics.ends));
     ctx.counter("change", statistics.change);
   }
@@ -112,6 +118,7 @@ class EyePaths : public Pass {
  private:
   std::vector<EyePathStart> starts_;  // as last written to the output
   std::vector<EyePathEnd> ends_;
+  float usualChange_ = 0;  // largest change of the frames so far, forgotten in a few of them
 };
 
 FOVEA_PASS(EyePaths);

@@ -411,18 +411,46 @@ TEST(EyePaths, PathsAreTracedInTurns) {
   EXPECT_EQ(AfterChange(look, 8, 0.99f).change, glm::vec4(0));
 }
 
-// As large a share of the other paths is traced at once as the light has changed by.
+// Twice as large a share of the other paths is traced at once as the light has changed by.
 TEST(EyePaths, ChangedLightIsFoundAtOnce) {
   const Look look(litRoom(true), {32, 32});
   const AfterChange before(look, 3, 1);
-  for (const float factor : {0.0f, 0.4f, 2.0f}) {
+  for (const float factor : {0.0f, 0.7f, 1.1f, 2.0f}) {
     const AfterChange after(look, 4, factor);
     const float change = factor < 1 ? 1 - factor : 1 - 1 / factor;
     EXPECT_NEAR(after.change.x, change, 1e-3f);
     EXPECT_FLOAT_EQ(after.change.y, 16 * after.change.x * after.change.x);
-    EXPECT_NEAR(after.changed(before), 125 + 375 * change, 30) << factor;
+    EXPECT_NEAR(after.changed(before), 125 + 375 * std::min(2 * change, 1.0f), 30) << factor;
   }
   EXPECT_EQ(AfterChange(look, 5, 0).change, glm::vec4(0)) << "it has changed before";
+}
+
+// Only the part that exceeds the changes of the frames before is sudden.
+TEST(EyePaths, LightThatChangesSteadilyAgesNothing) {
+  const Look look(litRoom(true), {32, 32});
+  const auto after = [&](uint32_t frames) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 1000);
+    test.viewSize(32, 32).scene(look.scene);
+    test.beforeFrame(
+        [](PassTest&, scene::Frame& f) {  // by a tenth in each of the frames 3 to 6, then by half
+          for (scene::Light& light : f.lights)
+            light.color *=
+                std::pow(0.9f, float(std::clamp(int(f.index) - 2, 0, 4))) * (f.index < 8 ? 1.0f : 0.5f);
+        });
+    test.run(frames);
+    return glm::vec2(test.values<glm::vec4>("change")[0]);
+  };
+  EXPECT_EQ(after(3), glm::vec2(0));
+  const glm::vec2 first = after(4), next = after(5), still = after(8), half = after(9);
+  EXPECT_NEAR(first.x, 0.1f, 1e-3f);
+  EXPECT_NEAR(first.y, 16 * 0.1f * 0.1f, 5e-3f);
+  EXPECT_NEAR(next.x, 0.1f, 1e-3f);
+  EXPECT_NEAR(next.y, 0, 1e-6f);
+  EXPECT_EQ(still, glm::vec2(0));
+  const float sudden = 0.5f - 0.1f * 0.75f;  // a quarter is forgotten in frame 7, in which nothing changes
+  EXPECT_NEAR(half.x, 0.5f, 1e-3f);
+  EXPECT_NEAR(half.y, 16 * sudden * sudden, 0.05f);
 }
 
 // What the eye sees anew by moving has not changed.
