@@ -5,7 +5,8 @@ Usage: benchmarks/recovery.py SCENE.json --change N [--graphs foveal,ours] [--js
 In the scene something happens in the frame N, before and after which everything stands still: a gaze that jumps, a
 light that is switched, a door. Each graph renders the frames before it and those after it, and once more the latter
 alone, starting long after the change: that is what it settles at. Both are compared with two path-traced pictures that
-have different noise, so that theirs adds nothing to the error. benchmarks/README.md describes the table.
+have different noise, so that theirs adds nothing to the error. Errors are means over some seeds: a list of VPLs may happen
+to be twice as good as another. benchmarks/README.md describes the table.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the table cannot be written;
 otherwise that of `fovea`.
@@ -23,6 +24,7 @@ from pictures import BAD_INPUT, CANNOT_WRITE, Parser, Picture, fail, load
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SETTLED_FRAMES = 10
+REFERENCE_SEEDS = 1001, 1002  # unlike those of the methods, which may trace the same paths
 ALMOST = 1.25  # of the settled error
 
 
@@ -64,10 +66,15 @@ def error(picture, references):
 def recovery(renderer, graph, references):
     """Ratios of the errors after the change to the settled one, and the latter."""
     o = renderer.options
-    settled = renderer.frames(graph, o.change, o.frames, SETTLED_FRAMES)
-    settled = sum(error(picture, references) for picture in settled) / SETTLED_FRAMES
-    after = renderer.frames(graph, max(o.change - o.before, 0), min(o.before, o.change), o.frames)
-    return [error(picture, references) / settled for picture in after], settled
+
+    def errors(first, warmup, count):
+        """The errors of `count` frames, each the mean over the seeds."""
+        runs = [renderer.frames(graph, first, warmup, count, "--seed", str(seed)) for seed in range(1, o.seeds + 1)]
+        return [sum(error(picture, references) for picture in frame) / o.seeds for frame in zip(*runs)]
+
+    settled = sum(errors(o.change, o.frames, SETTLED_FRAMES)) / SETTLED_FRAMES
+    after = errors(max(o.change - o.before, 0), min(o.before, o.change), o.frames)
+    return [e / settled for e in after], settled
 
 
 def frames_until(ratios, limit):
@@ -95,6 +102,7 @@ def parse(arguments):
     add("--graphs", default="foveal,ours,ir_1000", metavar="A,B", help="default: foveal,ours,ir_1000")
     add("--before", type=whole(1), default=40, metavar="N", help="frames rendered before the change; default 40")
     add("--frames", type=whole(1), default=40, metavar="N", help="frames rendered after it; default 40")
+    add("--seeds", type=whole(1), default=3, metavar="N", help="runs over which errors are averaged; default 3")
     add("--size", default="256x256", metavar="WxH", help="default: 256x256")
     add("--spp", type=whole(1), default=256, help="samples a pixel of each path-traced picture; default 256")
     add("--layer", default="indirect", help="layer that is compared; default: indirect")
@@ -113,15 +121,15 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         renderer = Renderer(options, pathlib.Path(folder))
         references = [renderer.frames("reference", options.change, 0, 1, "--set", f"spp={options.spp}",
-                                      "--seed", str(seed))[0] for seed in (1, 2)]
+                                      "--seed", str(seed))[0] for seed in REFERENCE_SEEDS]
         for graph in options.graphs.split(","):
             ratios, settled = recovery(renderer, graph, references)
             rows.append({"graph": graph, "settled": settled, "frames": frames_until(ratios, ALMOST), "ratios": ratios})
             print(f"{graph}: {rows[-1]['frames']}", file=sys.stderr)
     if options.json:
         pathlib.Path(options.json).write_text(json.dumps(
-            {"scene": options.scene, "change": options.change, "size": options.size, "layer": options.layer,
-             "spp": options.spp, "limit": ALMOST, "methods": rows}, indent=2) + "\n")
+            {"scene": options.scene, "change": options.change, "seeds": options.seeds, "size": options.size,
+             "layer": options.layer, "spp": options.spp, "limit": ALMOST, "methods": rows}, indent=2) + "\n")
     shown = [i for i in (0, 1, 2, 4, 8, 16, 32) if i < options.frames]
     column = max(len(row["graph"]) for row in rows)
     print(f"{'graph':{column}} {'settled':>9} frames " + " ".join(f"{i:>6}" for i in shown))
