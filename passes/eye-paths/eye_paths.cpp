@@ -18,6 +18,7 @@ using namespace graph;
 // How much more the square of an error weighs that all pixels share than one of noise: what is left of light that is
 // gone is seen more.
 constexpr float kBiasWeight = 16;
+constexpr float kRegained = 0.25f;   // share of what was lost that is regained in each frame
 constexpr float kUsualKept = 0.75f;  // share of the usual change that is kept from frame to frame
 
 class EyePaths : public Pass {
@@ -35,7 +36,9 @@ class EyePaths : public Pass {
         "change", changeBuffer(), Usage::HostWrite,
         "x: share c of the light found by the paths traced again that differs from what they found "
         "before, in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s); j is "
-        "the part of c that exceeds the changes in the frames before");
+        "the part of c that exceeds the changes in the frames before; z: s / (1 + s), how much is lost, and "
+        "a quarter less "
+        "in each frame after");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),
@@ -110,7 +113,9 @@ class EyePaths : public Pass {
     const float change = float(statistics.change),
                 sudden = ctx.firstFrame() ? 0 : std::max(change - usualChange_, 0.0f);
     usualChange_ = ctx.firstFrame() ? 0 : std::max(change, kUsualKept * usualChange_);
-    ctx.outputAs<glm::vec4>("change")[0] = {change, kBiasWeight * sudden * sudden, 0, 0};
+    const float ageing = kBiasWeight * sudden * sudden;
+    lost_ = std::max(ageing / (1 + ageing), ctx.firstFrame() ? 0.0f : lost_ - kRegained);
+    ctx.outputAs<glm::vec4>("change")[0] = {change, ageing, lost_, 0};
     ctx.counter("ends", double(statistics.ends));
     ctx.counter("change", statistics.change);
   }
@@ -118,6 +123,7 @@ class EyePaths : public Pass {
  private:
   std::vector<EyePathStart> starts_;  // as last written to the output
   std::vector<EyePathEnd> ends_;
+  float lost_ = 0;         // z of the output
   float usualChange_ = 0;  // largest change of the frames so far, forgotten in a few of them
 };
 

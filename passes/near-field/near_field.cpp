@@ -36,7 +36,9 @@ class NearField : public Pass {
         PassKind::Host);
     d.view();
     d.input("change", changeBuffer(), Usage::HostRead,
-            "y: s, after which what was gathered before counts less, as light has changed (pass eye-paths)")
+            "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: "
+            "share of "
+            "their history that samples have lost (pass eye-paths)")
         .makeOptional();
     d.output("samples",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
@@ -92,9 +94,9 @@ class NearField : public Pass {
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
       const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
-      const float ageing = ctx.has("change") ? ctx.inputAs<glm::vec4>("change")[0].y : 0;
+      const glm::vec4 change = ctx.has("change") ? ctx.inputAs<glm::vec4>("change")[0] : glm::vec4(0);
       settings.cache = &cache_;
-      cache_.age(ageing);
+      cache_.age(change.y);
       const auto trace = [&] {
         area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
         settings.area = float(area);
@@ -109,8 +111,8 @@ class NearField : public Pass {
         settings.samples = uint32_t(p.integer("first_samples"));
         trace();
       } else {
-        settings.foveaFactor = raysAfterChange(uint32_t(p.integer("saccade_samples")),
-                                               frame.saccade > 0 ? 1 : ageing / (1 + ageing));
+        settings.foveaFactor =
+            raysAfterChange(uint32_t(p.integer("saccade_samples")), frame.saccade > 0 ? 1 : change.z);
       }
       statistics = trace();
       if (statistics.hits > 0)

@@ -42,8 +42,9 @@ class TemporalAccumulation : public Pass {
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
     d.input("change", changeBuffer(), Usage::TexelRead,
-            "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed (pass "
-            "eye-paths)")
+            "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed; z: share "
+            "of their "
+            "history that samples have lost (pass eye-paths)")
         .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");

@@ -12,7 +12,7 @@ layout(r32ui) uniform readonly uimage2D origin;
 layout(rgba16f) uniform readonly image2D samples;
 layout(rgba16f) uniform readonly image2D history;
 #if CHANGES
-uniform samplerBuffer change;  // y: ageing
+uniform samplerBuffer change;  // y: ageing, z: share of the history that is lost
 #endif
 layout(location = 0) out vec4 mean;
 
@@ -34,8 +34,10 @@ const uint kNone = 0xffffffffu;
 
 #if CHANGES
 float ageing() { return texelFetch(change, 0).y; }
+float lost() { return texelFetch(change, 0).z; }
 #else
 float ageing() { return 0.0; }
+float lost() { return 0.0; }
 #endif
 
 // rgb: mean, a: number of samples that it is worth, 0 if there is none.
@@ -109,8 +111,7 @@ void main() {
   // All pixels of a larger block change at once, so they change less each time.
   float most = frames * float(max(s.side >> shift, 1));
   bool wide = s.side >> shift > 1;
-  float lost = ageing() / (1.0 + ageing());
-  float its = wide ? wideWeight : max(weight, round(mix(1.0, changedWeight, lost)));
+  float its = wide ? wideWeight : max(weight, round(mix(1.0, changedWeight, lost())));
   // Where the gaze has jumped. Only wide blocks leave counts above `frames`, by the ratio of the widths; each of their
   // samples covers as many narrow blocks as the square of it.
   if (!wide && its > 1.0 && old.a > frames) old.a = frames * frames / old.a;

@@ -424,7 +424,8 @@ TEST(NearField, MoreRaysForChangedLight) {
     test.param("fovea_radius", 2.0).param("first_samples", 1024);  // which fill the cache
     test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
     test.beforeFrame([ageing](PassTest& t, scene::Frame& f) {
-      if (f.index == 1) t.buffer("change", std::vector<glm::vec4>{{0, ageing, 0, 0}}, "LightChange");
+      if (f.index == 1)
+        t.buffer("change", std::vector<glm::vec4>{{0, ageing, ageing / (1 + ageing), 0}}, "LightChange");
     });
     test.run(2);
     return Counters{test.counter("shaded"), test.counter("gathered")};

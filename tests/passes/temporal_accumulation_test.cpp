@@ -40,7 +40,8 @@ std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samp
              1, halves(samples));
   test.image("history", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              halves(history));
-  if (ageing >= 0) test.buffer("change", std::vector<glm::vec4>{{0, ageing, 0, 0}}, "LightChange");
+  if (ageing >= 0)
+    test.buffer("change", std::vector<glm::vec4>{{0, ageing, ageing / (1 + ageing), 0}}, "LightChange");
   test.scene(eye.scene).run(saccade > 0 ? 2 : 1);  // a first frame has no saccade
   return test.floats("mean");
 }
