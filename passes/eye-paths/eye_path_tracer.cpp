@@ -22,11 +22,29 @@ constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // r
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
 constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
-constexpr double kTracedPerChange =
-    2;  // share of the points traced out of turn, in shares of light that has changed
+constexpr double kOutOfTurn = 2;  // share of points traced out of turn, in shares of light that has changed
 constexpr uint32_t kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
 
 float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 3; }
+
+// How much light some paths find now differs from what they found before.
+struct Difference {
+  void add(const EyePathEnd& before, const EyePathEnd& now) {
+    const float a = lightOf(before), b = lightOf(now);
+    changed += std::abs(b - a);
+    larger += std::max(a, b);
+  }
+  Difference operator+(const Difference& other) const {
+    return {changed + other.changed, larger + other.larger};
+  }
+  // In [0, 1]; 0 where there is no light, or none that is a number.
+  double share() const { return changed / larger > 0 ? std::min(changed / larger, 1.0) : 0; }
+
+  double changed = 0, larger = 0;
+
+ private:
+  static float lightOf(const EyePathEnd& end) { return meanChannel(end.radiance) * end.weight; }
+};
 
 class Tracer {
  public:
@@ -43,11 +61,14 @@ class Tracer {
   }
   bool stands(const EyePathStart& start, uint64_t& rays) const;
   bool belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const;
+  // Traces all paths of a point anew.
+  Difference tracePaths(const EyePathLists& lists, uint32_t point, uint64_t& rays) const;
+
+ private:
   // Path `turn` of the `paths` that leave a start.
   EyePathEnd end(const EyePathStart& start, uint32_t point, uint32_t turn, uint32_t paths,
                  uint64_t& rays) const;
 
- private:
   const View& view_;
   const RayScene& rays_;
   const EyePathSettings& settings_;
@@ -121,21 +142,19 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   return end;
 }
 
-float lightOf(const EyePathEnd& end) { return meanChannel(end.radiance) * end.weight; }
-
-// How much light some paths find now differs from what they found before.
-struct Difference {
-  void add(float before, float now) {
-    changed += std::abs(now - before);
-    larger += std::max(now, before);
+Difference Tracer::tracePaths(const EyePathLists& lists, uint32_t point, uint64_t& rays) const {
+  const uint32_t points = uint32_t(lists.starts.size()),
+                 paths = (uint32_t(lists.ends.size()) - point + points - 1) / points;
+  const EyePathStart& start = lists.starts[point];
+  Difference difference;
+  for (uint32_t turn = 0; turn < paths; ++turn) {
+    EyePathEnd& before = lists.ends[turn * points + point];
+    const EyePathEnd now = start.there > 0 ? end(start, point, turn, paths, rays) : EyePathEnd{};
+    difference.add(before, now);
+    before = now;
   }
-  Difference operator+(const Difference& other) const {
-    return {changed + other.changed, larger + other.larger};
-  }
-  double share() const { return larger > 0 ? changed / larger : 0; }
-
-  double changed = 0, larger = 0;
-};
+  return difference;
+}
 
 }  // namespace
 
@@ -165,19 +184,6 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
       traced += count;
     });
   };
-  // Traces all paths of one point and compares the light they find with what is there.
-  const auto tracePaths = [&](uint32_t point, uint64_t& count) {
-    Difference difference;
-    const EyePathStart& start = lists.starts[point];
-    const uint32_t paths = (uint32_t(ends.size()) - point + points - 1) / points;
-    for (uint32_t turn = 0; turn < paths; ++turn) {
-      EyePathEnd& end = ends[turn * points + point];
-      const EyePathEnd now = start.there > 0 ? tracer.end(start, point, turn, paths, count) : EyePathEnd{};
-      difference.add(lightOf(end), lightOf(now));
-      end = now;
-    }
-    return difference;
-  };
 
   std::vector<Difference> differences(points);
   std::vector<uint8_t> waits(points);
@@ -191,14 +197,14 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
     if (anew) start = tracer.look(pixel, count);
     waits[point] = !anew && point % trace != settings.turn % trace;
     if (waits[point]) return;
-    const Difference difference = tracePaths(point, count);
+    const Difference difference = tracer.tracePaths(lists, point, count);
     if (!anew) differences[point] = difference;
   });
   EyePathStatistics statistics;
   statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
-  if (const double share = kTracedPerChange * statistics.change; share > 0)
+  if (const double share = kOutOfTurn * statistics.change; share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
-      if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracePaths(point, count);
+      if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracer.tracePaths(lists, point, count);
     });
   statistics.rays = traced;
   const float unit = sumUnit(ends);

@@ -45,8 +45,8 @@ struct EyePathLists {
 };
 
 // Fills the lists. If the number of a start is not `turn` modulo renewFrames, the start is kept as long as there is a
-// surface; its paths are kept as well if its number is not `turn` modulo traceFrames, except that as large a share of
-// them is traced all the same as the light of the others has changed, twice over.
+// surface; its paths are kept as well if its number is not `turn` modulo traceFrames, except that twice as large a share
+// of them is traced all the same as the light of the others has changed.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);

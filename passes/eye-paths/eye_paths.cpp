@@ -34,11 +34,10 @@ class EyePaths : public Pass {
              "point are `points` entries apart");
     d.output(
         "change", changeBuffer(), Usage::HostWrite,
-        "x: share c of the light found by the paths traced again that differs from what they found "
-        "before, in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s); j is "
-        "the part of c that exceeds the changes in the frames before; z: s / (1 + s), how much is lost, and "
-        "a quarter less "
-        "in each frame after");
+        "x: share c of the light found by the paths traced again that differs from what they found before, "
+        "in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s), j being the "
+        "part of c that exceeds the changes in the frames before; z: s / (1 + s), the share that is lost, "
+        "and a quarter less in each frame after");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),
@@ -66,8 +65,8 @@ class EyePaths : public Pass {
                 "kept, with the light it found, when it is due for renewal");
     d.parameter("trace_frames", integer(1, 1, 1000),
                 "frames in which all paths are traced anew, those of a share of the points in each frame; "
-                "the others keep the light they found unless their start is new; of them, as large a share "
-                "is traced all the same as the light of the former has changed");
+                "the others keep the light they found unless their start is new; of them, twice as large a "
+                "share is traced all the same as the light of the former has changed");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
@@ -109,18 +108,21 @@ class EyePaths : public Pass {
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
-    // Running means are made for what moves all the time.
-    const float change = float(statistics.change),
-                sudden = ctx.firstFrame() ? 0 : std::max(change - usualChange_, 0.0f);
-    usualChange_ = ctx.firstFrame() ? 0 : std::max(change, kUsualKept * usualChange_);
-    const float ageing = kBiasWeight * sudden * sudden;
-    lost_ = std::max(ageing / (1 + ageing), ctx.firstFrame() ? 0.0f : lost_ - kRegained);
-    ctx.outputAs<glm::vec4>("change")[0] = {change, ageing, lost_, 0};
+    ctx.outputAs<glm::vec4>("change")[0] = changeOf(float(statistics.change), ctx.firstFrame());
     ctx.counter("ends", double(statistics.ends));
     ctx.counter("change", statistics.change);
   }
 
  private:
+  // The output `change`. Running means are made for what moves all the time, so only what is sudden ages them.
+  glm::vec4 changeOf(float change, bool first) {
+    if (first) usualChange_ = lost_ = 0;
+    const float sudden = std::max(change - usualChange_, 0.0f), ageing = kBiasWeight * sudden * sudden;
+    usualChange_ = std::max(change, kUsualKept * usualChange_);
+    lost_ = std::max(ageing / (1 + ageing), lost_ - kRegained);
+    return {change, ageing, lost_, 0};
+  }
+
   std::vector<EyePathStart> starts_;  // as last written to the output
   std::vector<EyePathEnd> ends_;
   float lost_ = 0;         // z of the output

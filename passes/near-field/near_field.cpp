@@ -35,10 +35,10 @@ class NearField : public Pass {
         "through the triangles",
         PassKind::Host);
     d.view();
-    d.input("change", changeBuffer(), Usage::HostRead,
-            "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: "
-            "share of "
-            "their history that samples have lost (pass eye-paths)")
+    d.input(
+         "change", changeBuffer(), Usage::HostRead,
+         "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: share "
+         "of their history that samples have lost (pass eye-paths)")
         .makeOptional();
     d.output("samples",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),

@@ -43,8 +43,7 @@ class TemporalAccumulation : public Pass {
             "`mean` of the previous frame");
     d.input("change", changeBuffer(), Usage::TexelRead,
             "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed; z: share "
-            "of their "
-            "history that samples have lost (pass eye-paths)")
+            "of their history that samples have lost (pass eye-paths)")
         .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
@@ -56,11 +55,9 @@ class TemporalAccumulation : public Pass {
                 "weight of a sample after a camera cut, as in pass near-field");
     d.parameter(
         "saccade_samples", integer(1, 1, 16),
-        "weight of a sample for 8 frames after a jump of the gaze and when light changes, as in pass "
-        "near-field; "
-        "samples for "
-        "blocks wider than a texel of `samples` keep the weight 1, and what they have left in the mean "
-        "counts less where a narrower block follows");
+        "weight of a sample for 8 frames after a jump of the gaze and up to that when light changes, as in "
+        "pass near-field; samples for blocks wider than a texel of `samples` keep the weight 1, and what "
+        "they have left in the mean counts less where a narrower block follows");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
                 "the pixel's distance from the eye");

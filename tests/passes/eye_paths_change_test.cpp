@@ -1,0 +1,126 @@
+// Tests what eye paths make of light that changes: how soon they find it, and what they say of the change.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/test.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/scene.h"
+#include "shaders/common/records/eye_paths.h"
+#include "tests/support/shapes.h"
+
+namespace fovea::test {
+namespace {
+
+using passes::EyePathEnd;
+
+scene::Scene litRoom() {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), red = addMaterial(s, {0.6f, 0.2f, 0.1f});
+  const uint32_t walls[6] = {red, grey, grey, red, grey, grey};
+  addRoom(s, walls, 2);
+  s.lights = {pointLight({0.4f, 1.2f, 0.3f}, {10, 20, 30}), pointLight({-1, 0, 0.5f}, {5, 5, 1})};
+  s.cameras.emplace_back();
+  return s;
+}
+
+// Ends of paths after `frames` frames, from the fourth of which on light is `factor` times as bright, and what the pass
+// says of the change.
+struct AfterChange {
+  AfterChange(uint32_t frames, float factor) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
+    test.viewSize(32, 32).scene(litRoom());
+    test.beforeFrame([factor](PassTest&, scene::Frame& f) {
+      for (scene::Light& light : f.lights)
+        if (f.index >= 3) light.color *= factor;
+    });
+    test.run(frames);
+    ends = test.values<EyePathEnd>("paths.ends");
+    change = test.values<glm::vec4>("change")[0];
+    rays = test.counter("rays");
+  }
+  // How many paths found other light than those of `before`.
+  int changed(const AfterChange& before) const {
+    int count = 0;
+    for (size_t i = 0; i < ends.size(); ++i) count += ends[i].radiance != before.ends[i].radiance;
+    return count;
+  }
+
+  std::vector<EyePathEnd> ends;
+  glm::vec4 change{0};
+  double rays = 0;
+};
+
+// In each frame a share of the points notices that light has become weaker by 1%, and few of the others.
+TEST(EyePathsChange, PathsAreTracedInTurns) {
+  const AfterChange before(3, 1);
+  EXPECT_EQ(before.change, glm::vec4(0));
+  EXPECT_LT(before.rays, 100 + 125 * 10);
+  for (uint32_t turns = 1; turns <= 4; ++turns) {
+    const AfterChange after(3 + turns, 0.99f);  // frame f traces the points f, f + 4..
+    for (uint32_t i = 0; i < after.ends.size(); ++i)
+      if ((i % 100 + 4 - 3) % 4 < turns && before.ends[i].radiance != glm::vec3(0)) {
+        EXPECT_NE(after.ends[i].radiance, before.ends[i].radiance) << turns << " " << i;
+      }
+    EXPECT_NEAR(after.changed(before), 125 * turns, 20) << turns;
+    EXPECT_NEAR(after.change.x, 0.01f, 2e-3f) << turns;
+  }
+  EXPECT_EQ(AfterChange(8, 0.99f).change, glm::vec4(0));
+}
+
+// Twice as large a share of the other paths is traced at once as the light has changed by.
+TEST(EyePathsChange, ChangedLightIsFoundAtOnce) {
+  const AfterChange before(3, 1);
+  for (const float factor : {0.0f, 0.7f, 1.1f, 2.0f}) {
+    const AfterChange after(4, factor);
+    const float change = factor < 1 ? 1 - factor : 1 - 1 / factor;
+    EXPECT_NEAR(after.change.x, change, 1e-3f);
+    EXPECT_FLOAT_EQ(after.change.y, 16 * after.change.x * after.change.x);
+    EXPECT_NEAR(after.changed(before), 125 + 375 * std::min(2 * change, 1.0f), 30) << factor;
+  }
+  const glm::vec4 next = AfterChange(5, 0).change;
+  EXPECT_EQ(glm::vec2(next), glm::vec2(0)) << "it has changed before";
+}
+
+// Only the part that exceeds the changes of the frames before is sudden.
+TEST(EyePathsChange, LightThatChangesSteadilyAgesNothing) {
+  const auto after = [&](uint32_t frames) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 1000);
+    test.viewSize(32, 32).scene(litRoom());
+    test.beforeFrame(
+        [](PassTest&, scene::Frame& f) {  // by a tenth in each of the frames 3 to 6, then by half
+          for (scene::Light& light : f.lights)
+            light.color *=
+                std::pow(0.9f, float(std::clamp(int(f.index) - 2, 0, 4))) * (f.index < 8 ? 1.0f : 0.5f);
+        });
+    test.run(frames);
+    return glm::vec3(test.values<glm::vec4>("change")[0]);
+  };
+  EXPECT_EQ(after(3), glm::vec3(0));
+  const glm::vec3 first = after(4), next = after(5), still = after(8), half = after(9);
+  EXPECT_NEAR(first.x, 0.1f, 1e-3f);
+  EXPECT_NEAR(first.y, 16 * 0.1f * 0.1f, 5e-3f);
+  EXPECT_NEAR(next.x, 0.1f, 1e-3f);
+  EXPECT_NEAR(next.y, 0, 1e-6f);
+  EXPECT_EQ(still, glm::vec3(0));
+  const float sudden = 0.5f - 0.1f * 0.75f;  // a quarter is forgotten in frame 7, in which nothing changes
+  EXPECT_NEAR(half.x, 0.5f, 1e-3f);
+  EXPECT_NEAR(half.y, 16 * sudden * sudden, 0.05f);
+  EXPECT_FLOAT_EQ(half.z, half.y / (1 + half.y));
+  EXPECT_EQ(after(10), glm::vec3(0, 0, half.z - 0.25f)) << "a quarter is regained";
+}
+
+// What the eye sees anew by moving has not changed.
+TEST(EyePathsChange, OtherStartsAreNoChange) {
+  PassTest test("eye-paths");
+  test.param("paths", 500).param("points", 100).viewSize(32, 32).scene(litRoom());
+  test.beforeFrame([](PassTest&, scene::Frame& f) { f.views[0].gaze.x = f.index < 3 ? 0.5f : 0.12f; });
+  test.run(4);
+  EXPECT_EQ(test.values<glm::vec4>("change")[0], glm::vec4(0));
+}
+
+}  // namespace
+}  // namespace fovea::test
