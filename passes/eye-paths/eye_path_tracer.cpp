@@ -202,7 +202,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   });
   EyePathStatistics statistics;
   statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
-  if (const double share = kOutOfTurn * statistics.change; share > 0)
+  if (const double share = kOutOfTurn * (statistics.change - settings.usualChange); share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
       if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracer.tracePaths(lists, point, count);
     });

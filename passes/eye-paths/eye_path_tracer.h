@@ -29,6 +29,7 @@ struct EyePathSettings {
   float stray = 0;             // image widths; a start that is still seen this close to its place is kept
   uint32_t traceFrames = 1;    // frames in which every path is traced anew once, a share in each frame
   uint32_t turn = 0;           // which share has its turn, for both cycles
+  double usualChange = 0;      // EyePathStatistics::change that is no reason to trace others
   uint32_t threads = 0;        // 0 uses one per core; the result does not depend on it
 };
 
@@ -46,7 +47,7 @@ struct EyePathLists {
 
 // Fills the lists. If the number of a start is not `turn` modulo renewFrames, the start is kept as long as there is a
 // surface; its paths are kept as well if its number is not `turn` modulo traceFrames, except that twice as large a share
-// of them is traced all the same as the light of the others has changed.
+// of them is traced all the same as the light of the others has changed beyond usualChange.
 EyePathStatistics traceEyePaths(const scene::Frame& frame, const scene::View& view,
                                 const scene::RayScene& rays, const EyePathSettings& settings,
                                 const EyePathLists& lists);

@@ -66,7 +66,7 @@ class EyePaths : public Pass {
     d.parameter("trace_frames", integer(1, 1, 1000),
                 "frames in which all paths are traced anew, those of a share of the points in each frame; "
                 "the others keep the light they found unless their start is new; of them, twice as large a "
-                "share is traced all the same as the light of the former has changed");
+                "share is traced all the same as the light of the former has changed suddenly");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
@@ -96,6 +96,8 @@ class EyePaths : public Pass {
     settings.stray = ctx.firstFrame() ? 0 : float(p.real("stray"));
     settings.traceFrames = uint32_t(p.integer("trace_frames"));
     settings.turn = uint32_t(ctx.frameNumber());
+    if (ctx.firstFrame()) usualChange_ = lost_ = 0;
+    settings.usualChange = usualChange_;
     starts_.resize(ctx.count("paths.starts"));
     ends_.resize(ctx.count("paths.ends"));
     EyePathStatistics statistics;
@@ -108,15 +110,14 @@ class EyePaths : public Pass {
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
-    ctx.outputAs<glm::vec4>("change")[0] = changeOf(float(statistics.change), ctx.firstFrame());
+    ctx.outputAs<glm::vec4>("change")[0] = changeOf(float(statistics.change));
     ctx.counter("ends", double(statistics.ends));
     ctx.counter("change", statistics.change);
   }
 
  private:
   // The output `change`. Running means are made for what moves all the time, so only what is sudden ages them.
-  glm::vec4 changeOf(float change, bool first) {
-    if (first) usualChange_ = lost_ = 0;
+  glm::vec4 changeOf(float change) {
     const float sudden = std::max(change - usualChange_, 0.0f), ageing = kBiasWeight * sudden * sudden;
     usualChange_ = std::max(change, kUsualKept * usualChange_);
     lost_ = std::max(ageing / (1 + ageing), lost_ - kRegained);

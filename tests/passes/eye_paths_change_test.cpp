@@ -113,6 +113,22 @@ TEST(EyePathsChange, LightThatChangesSteadilyAgesNothing) {
   EXPECT_EQ(after(10), glm::vec3(0, 0, half.z - 0.25f)) << "a quarter is regained";
 }
 
+// What changes all the time has hardly any paths traced out of turn.
+TEST(EyePathsChange, SteadyChangesCostLittle) {
+  const auto rays = [](float perFrame) {
+    PassTest test("eye-paths");
+    test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
+    test.viewSize(32, 32).scene(litRoom());
+    test.beforeFrame([perFrame](PassTest&, scene::Frame& f) {
+      for (scene::Light& light : f.lights) light.color *= std::pow(perFrame, float(f.index));
+    });
+    test.run(12);
+    EXPECT_NEAR(test.values<glm::vec4>("change")[0].x, 1 - std::pow(perFrame, 4.0f), 0.02f);
+    return test.counter("rays");
+  };
+  EXPECT_LT(rays(0.9f), 1.15 * rays(1)) << "the quarters of the points lose not quite the same share";
+}
+
 // What the eye sees anew by moving has not changed.
 TEST(EyePathsChange, OtherStartsAreNoChange) {
   PassTest test("eye-paths");
