@@ -5,8 +5,8 @@ Usage: benchmarks/recovery.py SCENE.json --change N [--graphs foveal,ours] [--js
 In the scene something happens in the frame N, before and after which everything stands still: a gaze that jumps, a
 light that is switched, a door. Each graph renders the frames before it and those after it, and once more the latter
 alone, starting long after the change: that is what it settles at. Both are compared with two path-traced pictures that
-have different noise, so that theirs adds nothing to the error. Errors are means over some seeds: a list of VPLs may happen
-to be twice as good as another. benchmarks/README.md describes the table.
+have different noise, so that theirs adds nothing to the error. Errors are means over some seeds: a list of VPLs may
+happen to be twice as good as another. benchmarks/README.md describes the table.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the table cannot be written;
 otherwise that of `fovea`.

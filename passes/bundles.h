@@ -26,8 +26,9 @@ graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
 // x: least area of a VPL's disc, y: of one on a surface that shines, if it is larger, m^2.
 graph::ResourceSpec spreadBuffer();
 // x: share of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
-// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history of
-// n samples is worth n / (1 + n s); z: how much was lost that way, from 0 to 1, and by a quarter less in each frame after.
+// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history
+// of n samples is worth n / (1 + n s); z: how much was lost that way, from 0 to 1, and by a quarter less in each frame
+// after.
 graph::ResourceSpec changeBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------

@@ -42,8 +42,8 @@ for target in "${targets[@]}"; do
   cat "$corpus.seeds"/* 2>/dev/null | LC_ALL=C grep -aoE '"[A-Za-z0-9_.@-]{1,32}"' | sort -u >"$corpus.dict" || true
   dictionary=()
   [ ! -s "$corpus.dict" ] || dictionary=(-dict="$corpus.dict")
-  build/fuzz/bin/"$target" "$amount" -timeout=2 -rss_limit_mb=1024 -malloc_limit_mb=4096 -print_final_stats=1 "${dictionary[@]}" \
-    -artifact_prefix=build/fuzz/found/"$target"- "$corpus" "$corpus.seeds" 2>"$corpus.log" ||
+  build/fuzz/bin/"$target" "$amount" -timeout=2 -rss_limit_mb=1024 -malloc_limit_mb=4096 -print_final_stats=1 \
+    "${dictionary[@]}" -artifact_prefix=build/fuzz/found/"$target"- "$corpus" "$corpus.seeds" 2>"$corpus.log" ||
     { tail -40 "$corpus.log" >&2; echo "fuzz: $target failed, see $corpus.log" >&2; exit 1; }
   echo "$target: $(sed -n 's/^stat:://p' "$corpus.log" | tr -s '\n ' '  ')"
   mkdir "$corpus.small"

@@ -129,7 +129,7 @@ TEST(EyePathsChange, SteadyChangesCostLittle) {
   EXPECT_LT(rays(0.9f), 1.15 * rays(1)) << "the quarters of the points lose not quite the same share";
 }
 
-// What the eye sees anew by moving has not changed.
+// What the eye sees anew by looking elsewhere has not changed.
 TEST(EyePathsChange, OtherStartsAreNoChange) {
   PassTest test("eye-paths");
   test.param("paths", 500).param("points", 100).viewSize(32, 32).scene(litRoom());
