@@ -34,13 +34,6 @@ void addBeside(std::vector<fs::path>& list, const fs::path& folder) {
       addFolder(list, own);
 }
 
-fs::path libraryFolder() {
-  Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&libraryFolder), &info) == 0 || !info.dli_fname) return {};
-  std::error_code ignored;
-  return fs::weakly_canonical(info.dli_fname, ignored).parent_path();
-}
-
 void addFromEnvironment(std::vector<fs::path>& list) {
   for (const fs::path& folder : pathsInVariable("FOVEA_DATA")) {
     std::error_code ignored;
@@ -69,6 +62,13 @@ fs::path programFolder() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
   return failed ? fs::path() : program.parent_path();
+}
+
+fs::path libraryFolder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&libraryFolder), &info) == 0 || !info.dli_fname) return {};
+  std::error_code ignored;
+  return fs::weakly_canonical(info.dli_fname, ignored).parent_path();
 }
 
 std::vector<fs::path> dataDirectories() {

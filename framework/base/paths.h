@@ -26,4 +26,7 @@ std::vector<std::filesystem::path> pathsInVariable(const char* name);
 // The folder of the running program; "" if the system does not tell.
 std::filesystem::path programFolder();
 
+// The folder of libfovea.so; "" if the system does not tell.
+std::filesystem::path libraryFolder();
+
 }  // namespace fovea

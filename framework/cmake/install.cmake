@@ -2,6 +2,9 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS fovea_framework EXPORT fovea-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(FOVEA_OPENIMAGEIO)
+  install(TARGETS fovea_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/include/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_SOURCE_DIR}/samples/scenes
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea PATTERN "builtin" EXCLUDE)

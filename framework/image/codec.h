@@ -1,5 +1,6 @@
-// The interface of one image library; image.cpp adds files, layers and safety. Exactly one implementation is linked:
-// codec_oiio.cpp (OpenImageIO) or codec_small.cpp (tinyexr, libpng and stb; small enough for a portable bundle).
+// The interface of one image library; image.cpp adds files, layers and safety. There are two implementations:
+// codec_oiio.cpp (OpenImageIO, in a library of its own that codec_load.cpp loads) and codec_small.cpp (tinyexr, libpng
+// and stb; small enough for a portable bundle).
 #pragma once
 
 #include <filesystem>
@@ -20,15 +21,21 @@ struct Pixels {
 };
 
 // Extensions that are both read and written, without the dot. PFM is not among them; image.cpp handles it itself.
-std::vector<std::string> extensions();
+inline constexpr const char* kExtensions[] = {"exr", "png"};
+
+// Hears of width, height and channels before anything is decoded, and may throw.
+using Accept = std::function<void(uint32_t, uint32_t, size_t)>;
 
 // All three throw std::runtime_error with the library's reason. The format follows from the (lower-case) extension.
 // EXR holds 32-bit floats. PNG holds 8 bits per channel, values from 0 to 1 and alpha that is not premultiplied.
-// `accept` hears of width, height and channels before anything is decoded, and may throw.
-using Accept = std::function<void(uint32_t, uint32_t, size_t)>;
-void write(const std::filesystem::path& file, const Pixels& pixels);
-Pixels read(const std::filesystem::path& file, const Accept& accept);
-Image8 decode8(const uint8_t* bytes, size_t size);
+struct Library {
+  void (*write)(const std::filesystem::path& file, const Pixels& pixels);
+  Pixels (*read)(const std::filesystem::path& file, const Accept& accept);
+  Image8 (*decode8)(const uint8_t* bytes, size_t size);
+};
+
+// The implementation there is. Throws Error(BadInput) if it cannot be loaded.
+const Library& library();
 
 inline constexpr uint32_t kMaxSide = 32768;  // pixels; larger sizes in a header indicate a broken file
 

@@ -1,4 +1,3 @@
-#ifdef FOVEA_OPENIMAGEIO
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -50,10 +49,6 @@ std::unique_ptr<OIIO::ImageInput> open(std::string_view begin, const std::string
   }
   fail("it is no EXR, PNG, JPEG or HDR file");
 }
-
-}  // namespace
-
-std::vector<std::string> extensions() { return {"exr", "png"}; }
 
 void write(const std::filesystem::path& file, const Pixels& pixels) {
   const bool png = file.extension() == ".png";
@@ -119,5 +114,12 @@ Image8 decode8(const uint8_t* bytes, size_t size) {
   return image;
 }
 
+constexpr Library kOpenImageIO{write, read, decode8};
+
+}  // namespace
 }  // namespace fovea::image::codec
-#endif
+
+// What codec_load.cpp asks for.
+extern "C" const fovea::image::codec::Library* fovea_image_library() {
+  return &fovea::image::codec::kOpenImageIO;
+}

@@ -1,4 +1,3 @@
-#ifndef FOVEA_OPENIMAGEIO
 #include <png.h>
 #include <stb_image.h>
 #include <tinyexr.h>
@@ -220,10 +219,6 @@ Pixels readPng(const std::filesystem::path& file, const Accept& accept) {
   return pixels;
 }
 
-}  // namespace
-
-std::vector<std::string> extensions() { return {"exr", "png"}; }
-
 void write(const std::filesystem::path& file, const Pixels& pixels) {
   errno = 0;
   file.extension() == ".png" ? writePng(file, pixels) : writeExr(file, pixels);
@@ -254,5 +249,11 @@ Image8 decode8(const uint8_t* bytes, size_t size) {
   return {uint32_t(width), uint32_t(height), {pixels.get(), pixels.get() + size_t(width) * height * 4}};
 }
 
+}  // namespace
+
+const Library& library() {
+  static constexpr Library kSmall{write, read, decode8};
+  return kSmall;
+}
+
 }  // namespace fovea::image::codec
-#endif

@@ -193,8 +193,9 @@ std::string difference(const Pixels& wanted, const Pixels& found, bool eightBit,
 
 void writeChecked(const fs::path& temporary, const std::string& extension, const Pixels& pixels) {
   const bool pfm = extension == "pfm";
-  pfm ? writePfm(temporary, pixels) : codec::write(temporary, pixels);
-  const Pixels back = pfm ? readPfm(temporary) : codec::read(temporary, [](uint32_t, uint32_t, size_t) {});
+  pfm ? writePfm(temporary, pixels) : codec::library().write(temporary, pixels);
+  const Pixels back =
+      pfm ? readPfm(temporary) : codec::library().read(temporary, [](uint32_t, uint32_t, size_t) {});
   const std::string part = difference(pixels, back, extension == "png", !pfm);
   if (!part.empty()) throw std::runtime_error(part + " reads back different from what was written");
 }
@@ -216,13 +217,14 @@ const Image* File::find(std::string_view layer) const {
 }
 
 std::vector<std::string> writableExtensions() {
-  std::vector<std::string> list = codec::extensions();
+  std::vector<std::string> list(std::begin(codec::kExtensions), std::end(codec::kExtensions));
   list.push_back("pfm");
   return list;
 }
 
 void checkWritable(const fs::path& file) {
   checkExtension(file);
+  codec::library();  // loaded now, neither after the work nor between frames
   if (const std::string reason = whyUnwritable(file); !reason.empty()) cannotWrite(file, reason);
 }
 
@@ -288,7 +290,7 @@ codec::Accept acceptor(const fs::path& file) {
 File read(const fs::path& file) {
   checkReadable(file);
   try {
-    return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::read(file, acceptor(file)));
+    return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::library().read(file, acceptor(file)));
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -310,7 +312,7 @@ Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name) {
   const bool jpeg = size >= 3 && std::memcmp(bytes, "\xff\xd8\xff", 3) == 0;
   if (!png && !jpeg) cannotRead(name, size == 0 ? "it is empty" : "it is neither PNG nor JPEG");
   try {
-    return codec::decode8(bytes, size);
+    return codec::library().decode8(bytes, size);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -8,7 +8,7 @@ import threading
 import time
 import unittest
 
-from program import DIRECT, SMALL, SOURCE, USAGE, CliTest
+from program import BAD_INPUT, DIRECT, PROGRAM, SMALL, SOURCE, USAGE, CliTest
 
 
 class Outputs(CliTest):
@@ -19,6 +19,15 @@ class Outputs(CliTest):
 
     def contents(self):
         return {p.relative_to(self.folder): p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+
+    def test_without_the_image_library(self):
+        """Who has lost the library behind images is told so before anything is rendered. Other commands do without it."""
+        shutil.copy(PROGRAM.parent.parent / "lib" / "libfovea.so.0", self.folder)
+        alone = {"LD_LIBRARY_PATH": str(self.folder)}
+        run = self.fails(BAD_INPUT, *DIRECT, "-o", "a.png", env=alone,
+                         says=("the image library cannot be loaded", "libfovea-images.so", "build fovea again"))
+        self.assertNotIn("pass", run.stderr)
+        self.succeeds(*DIRECT, "-q", "--timings", "t.json", env=alone)
 
     def test_one_file_for_two_outputs(self):
         (self.folder / "sub").mkdir()
