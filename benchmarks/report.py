@@ -226,6 +226,30 @@ class Report:
                     plt.ylabel(MEASURES[name][0], fontsize=9)
             self.figure(f"{sweep}-{axis}-{name}", f"{MEASURES[name][0]} over {axis}; lower is better")
 
+    def time_plots(self, sweep, axes, rows, names):
+        """Errors over the time of a frame: one curve a graph, each of whose points does another amount of work."""
+        scenes, graphs = (list(dict.fromkeys(r[k] for r in rows)) for k in ("scene", "graph"))
+        columns = min(3, len(scenes))
+        for name in (n for n in names if n in ("error.fovea.mse", "error.periphery.mse", "temporal.fovea.excess")):
+            plt.figure(figsize=(1 + 3.6 * columns, 3.2 * math.ceil(len(scenes) / columns)))
+            for i, scene in enumerate(scenes):
+                plt.subplot(math.ceil(len(scenes) / columns), columns, i + 1)
+                for graph in graphs:
+                    found = {}
+                    for r in (r for r in rows if r["scene"] == scene and r["graph"] == graph and r["mean"]):
+                        found.setdefault(tuple(r[a] for a in axes), {})[r["measure"]] = float(r["mean"])
+                    points = sorted((v["time.wall_ms"], MEASURES[name][1] * v[name]) for v in found.values() if v.get(name, 0) > 0)
+                    if points:
+                        plt.loglog(*zip(*points), marker="o", markersize=4, label=graph)
+                plt.title(scene, fontsize=9)
+                plt.xlabel(MEASURES["time.wall_ms"][0], fontsize=9)
+                plt.grid(alpha=0.3, which="both")
+                if i % columns == 0:
+                    plt.ylabel(MEASURES[name][0], fontsize=9)
+                if i == 0:
+                    plt.legend(fontsize=7)
+            self.figure(f"{sweep}-time-{name}", f"{MEASURES[name][0]} over {MEASURES['time.wall_ms'][2]}; lower is better")
+
     @staticmethod
     def number(text):
         return float(text.split("x")[0])  # sizes: by width
@@ -338,10 +362,17 @@ class Report:
             self.line_plots(sweep, axes[0], rows, ordered)
         elif not axes:
             self.bar_plots(sweep, rows, ordered)
+        elif self.each_has_an_axis_of_its_own(axes, rows):
+            self.time_plots(sweep, axes, rows, ordered)
         if not any(n.startswith(("error", "temporal")) for n in names):
             self.step_plot(sweep, axes)
         self.pictures(sweep)
         return names
+
+    @staticmethod
+    def each_has_an_axis_of_its_own(axes, rows):
+        """Whether graphs are varied by different parameters, so that only times tell what their settings have in common."""
+        return all(sum(bool(r[a]) for a in axes) == 1 for r in rows)
 
     def is_number(self, text):
         try:

@@ -9,7 +9,8 @@ started=$SECONDS
 cd "$top"
 built=$SECONDS
 status=0
-ctest --preset release -j2 --output-on-failure --timeout 600 "$@" || status=$?
+# Three at a time, as some wait for the clock or a browser.
+ctest --preset release -j3 --output-on-failure --timeout 600 "$@" || status=$?
 printf 'set-up and build took %d s, the tests %d s\n' $((built - started)) $((SECONDS - built))
 if [ "$status" -ne 0 ]; then
   echo "tests: some FAILED, see above; again with: ctest --preset release --rerun-failed" >&2
