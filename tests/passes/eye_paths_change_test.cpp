@@ -138,5 +138,26 @@ TEST(EyePathsChange, OtherStartsAreNoChange) {
   EXPECT_EQ(test.values<glm::vec4>("change")[0], glm::vec4(0));
 }
 
+// Nor does a camera that walks past starts that stay change what their paths find, though it moves the origins of their
+// rays by as little as keeps these off the surface.
+TEST(EyePathsChange, AWalkingEyeIsNoChange) {
+  PassTest test("eye-paths");
+  test.param("paths", 500).param("points", 100).param("stray", 0.25).viewSize(32, 32).scene(litRoom());
+  test.beforeFrame([](PassTest&, scene::Frame& f) {
+    scene::Camera camera;
+    camera.position.x += 0.02f * float(f.index);
+    f.views[0] = scene::makeView(camera, f.views[0].size, *f.geometry);
+  });
+  test.run(3);
+  const auto before = test.values<EyePathEnd>("paths.ends");
+  test.run(1);
+  EXPECT_NEAR(test.values<glm::vec4>("change")[0].x, 0, 1e-4f);
+  const auto after = test.values<EyePathEnd>("paths.ends");
+  int kept = 0;
+  for (size_t i = 0; i < after.size(); ++i)
+    kept += glm::distance(after[i].position, before[i].position) < 1e-3f;
+  EXPECT_GT(kept, 250);
+}
+
 }  // namespace
 }  // namespace fovea::test
