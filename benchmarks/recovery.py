@@ -36,6 +36,15 @@ class Renderer:
 
     def frames(self, graph, first, warmup, count, *more):
         """The fovea of `count` frames of the graph, each an array of pixels x 3, radiance in W/(sr m^2)."""
+        return [self.fovea(file) for file in self.render(graph, first, warmup, count, *more)]
+
+    def stands_still(self, first, last):
+        """Whether the eye sees the same direct light in both frames."""
+        first, last = (Picture(str(self.render("direct", frame, 0, 1)[0])).pixels() for frame in (first, last))
+        return (first == last).all()
+
+    def render(self, graph, first, warmup, count, *more):
+        """The files of `count` frames, until the next call."""
         for file in self.folder.iterdir():
             file.unlink()
         command = [self.options.fovea, "render", graph, "--scene", self.options.scene, "--size", self.options.size,
@@ -44,7 +53,7 @@ class Renderer:
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
             fail(run.returncode, f"`{graph}` cannot be rendered: {run.stderr.strip()}")
-        return [self.fovea(file) for file in sorted(self.folder.iterdir())]
+        return sorted(self.folder.iterdir())
 
     def fovea(self, file):
         numpy = load("numpy")
@@ -120,6 +129,10 @@ def main():
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         renderer = Renderer(options, pathlib.Path(folder))
+        last = options.change + options.frames + SETTLED_FRAMES - 1
+        if not renderer.stands_still(options.change, last):
+            fail(BAD_INPUT, f"something moves in `{options.scene}` between the frames {options.change} and {last}; let "
+                            "nothing change after --change (`\"animation\": false` stills a model)")
         references = [renderer.frames("reference", options.change, 0, 1, "--set", f"spp={options.spp}",
                                       "--seed", str(seed))[0] for seed in REFERENCE_SEEDS]
         for graph in options.graphs.split(","):

@@ -50,6 +50,13 @@ class Recovery(ToolTest):
         self.refuses(BAD_INPUT, "none.json", "--change", "5", says=["none.json"])
         self.refuses(CANNOT_WRITE, scene, "--change", "5", "--json", "nowhere/a.json", says=["nowhere/a.json"])
 
+    def test_scenes_that_go_on_moving(self):
+        moving = {**SCENE, "movers": [{"shape": "box", "size": [1, 1, 1],
+                                       "keys": [{"t": 0}, {"t": 1, "translation": [1, 0, 0]}]}]}
+        scene = self.write("scene.json", moving)
+        self.refuses(BAD_INPUT, scene, "--change", 10, "--frames", 3, "--size", "32x32", "--fovea", PROGRAM,
+                     says=["scene.json", "between the frames 10 and 22", "animation"])
+
     def test_changes_are_seen(self):
         """A method that keeps nothing is as good as ever at once; one that adds up all frames remembers."""
         scene = self.write("scene.json", SCENE)
