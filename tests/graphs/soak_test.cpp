@@ -1,6 +1,7 @@
 // Tests what whole graphs endure for long: cuts of the camera, jumps of the gaze, other sizes and edits of the graph in
 // random order leave memory, pictures and times as they were. It runs on request only, for FOVEA_SOAK_FRAMES frames of
-// each graph.
+// each graph, and looks at the memory of the process only with FOVEA_TEST_VALIDATION=off: the validation layers remember
+// 13 KB of each frame and 0.3 MB of each graph.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -120,13 +121,15 @@ TEST_P(Soak, LeavesEverythingAsItWas) {
       std::printf("%s, frame %u: %.1f MiB resident, %.1f MiB on the device, %.2f ms a frame\n", GetParam(),
                   (stage + 1) * each, double(resident[stage]) / (1 << 20),
                   double(onDevice[stage]) / (1 << 20), ms[stage]);
+      std::fflush(stdout);
     }
     // The first stages warm the caches of driver and allocator.
     constexpr uint32_t kWarm = 2;
     constexpr uint64_t kAllocator = 4 << 20;  // more or less, by how its blocks fit
     for (uint32_t stage = kWarm + 1; stage < kStages; ++stage)
       EXPECT_EQ(onDevice[stage], onDevice[kWarm]) << stage;
-    if (!kSanitized) EXPECT_LE(resident[kStages - 1], uint64_t(1.02 * double(resident[kWarm])) + kAllocator);
+    if (!kSanitized && testDeviceOptions().validation == gpu::Validation::Off)
+      EXPECT_LE(resident[kStages - 1], uint64_t(1.02 * double(resident[kWarm])) + kAllocator);
     // The machine may be busy with something else, so that only much slower frames say something.
     EXPECT_LT(ms[kStages - 1], 2 * ms[kWarm]);
   }
