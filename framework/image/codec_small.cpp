@@ -224,6 +224,17 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
   file.extension() == ".png" ? writePng(file, pixels) : writeExr(file, pixels);
 }
 
+Image8 decode8(const uint8_t* bytes, size_t size) {
+  int width = 0, height = 0, channels = 0;
+  if (size > size_t(INT32_MAX)) fail("it has more than 2 GiB");
+  if (!stbi_info_from_memory(bytes, int(size), &width, &height, &channels)) fail(stbi_failure_reason());
+  checkSize(width, height);
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(bytes, int(size), &width, &height, &channels, 4), stbi_image_free);
+  if (!pixels) fail(stbi_failure_reason());
+  return {uint32_t(width), uint32_t(height), {pixels.get(), pixels.get() + size_t(width) * height * 4}};
+}
+
 // The format is recognised by content; the name may be anything.
 Pixels read(const std::filesystem::path& file, const Accept& accept) {
   uint8_t magic[8] = {};
@@ -236,17 +247,6 @@ Pixels read(const std::filesystem::path& file, const Accept& accept) {
   std::transform(image.rgba.begin(), image.rgba.end(), pixels.data.begin(),
                  [](uint8_t v) { return float(v) / 255; });
   return pixels;
-}
-
-Image8 decode8(const uint8_t* bytes, size_t size) {
-  int width = 0, height = 0, channels = 0;
-  if (size > size_t(INT32_MAX)) fail("it has more than 2 GiB");
-  if (!stbi_info_from_memory(bytes, int(size), &width, &height, &channels)) fail(stbi_failure_reason());
-  checkSize(width, height);
-  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-      stbi_load_from_memory(bytes, int(size), &width, &height, &channels, 4), stbi_image_free);
-  if (!pixels) fail(stbi_failure_reason());
-  return {uint32_t(width), uint32_t(height), {pixels.get(), pixels.get() + size_t(width) * height * 4}};
 }
 
 }  // namespace
