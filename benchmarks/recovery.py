@@ -40,8 +40,8 @@ class Renderer:
 
     def stands_still(self, first, last):
         """Whether the eye sees the same direct light in both frames."""
-        first, last = (Picture(str(self.render("direct", frame, 0, 1)[0])).pixels() for frame in (first, last))
-        return (first == last).all()
+        early, late = (Picture(str(self.render("direct", frame, 0, 1)[0])).pixels() for frame in (first, last))
+        return (early == late).all()
 
     def render(self, graph, first, warmup, count, *more):
         """The files of `count` frames, until the next call."""

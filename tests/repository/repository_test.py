@@ -121,6 +121,13 @@ class Rooms(unittest.TestCase):
                     self.assertTrue(name.startswith("fovea/"), f"{path} includes {name}, which is not installed")
 
 
+    def test_the_top_level_holds_nothing_else(self):
+        """Such as what a tool has left there."""
+        files = {p.name for p in tracked() if len(p.parts) == 1 and not p.name.startswith(".")}
+        self.assertEqual(files, {"CHANGELOG.md", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE",
+                                 "README.md", "SECURITY.md"})
+
+
 class Sizes(unittest.TestCase):
     def test_no_folder_holds_more_than_25_files(self):
         count = {}
