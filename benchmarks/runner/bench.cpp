@@ -128,6 +128,7 @@ void Bench::chooseJobs() {
   SuiteOverrides overrides;
   if (!options_.size.empty()) overrides.size = parseSize(options_.size);
   overrides.seeds = options_.seeds;
+  overrides.scenes = sceneNames(options_.scenes);
   suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
   for (const Job& job : suite_.jobs) {
     chosen_.push_back(options_.only.empty() || matchesGlob(options_.only, job.name()));

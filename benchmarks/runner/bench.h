@@ -14,7 +14,7 @@ struct SuiteOptions {
   std::string suite, folder, cache, only, shard, size, device;
   std::optional<uint32_t> seeds;
   double frameLimit = kFrameLimit;
-  std::vector<std::string> plugins, without;
+  std::vector<std::string> scenes, plugins, without;
   bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -14,6 +16,8 @@
 namespace fovea::bench {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 template <class T>
 std::optional<T> parseNumber(std::string_view text) {
@@ -69,6 +73,35 @@ scene::Lens parseLens(std::string_view text) {
                             scene::kLeastLensAngle, scene::kMostLensAngle),
                 "outwards, inwards, up and down, as in 55,45,50,52");
   return {angles[0], angles[1], angles[2], angles[3]};
+}
+
+std::vector<std::string> sceneNames(const std::vector<std::string>& filesAndFolders) {
+  std::vector<std::string> scenes;
+  for (const std::string& given : filesAndFolders) {
+    if (!fs::is_directory(given)) {
+      scenes.push_back(given);
+      continue;
+    }
+    std::set<std::string> files;
+    std::error_code unreadable;
+    for (const fs::directory_entry& entry : fs::directory_iterator(given, unreadable))
+      if (entry.path().extension() == ".json") files.insert(entry.path().string());
+    if (files.empty())
+      throw Error(ExitCode::BadInput,
+                  fmt::format("the folder `{}` has no scene files (.json) to be read", given),
+                  "write one that names the model; samples/scenes/README.md describes them");
+    scenes.insert(scenes.end(), files.begin(), files.end());
+  }
+  std::map<std::string, std::string> known;
+  for (const std::string& scene : scenes) {
+    const auto [other, isNew] = known.emplace(fs::path(scene).stem().string(), scene);
+    if (!isNew)
+      throw Error(ExitCode::Usage,
+                  fmt::format("the scenes `{}` and `{}` are both called `{}`, and so would their results",
+                              other->second, scene, other->first),
+                  "rename one of the files");
+  }
+  return scenes;
 }
 
 void loadPlugins(const std::vector<std::string>& plugins) {

@@ -334,7 +334,6 @@ ExitCode Bench::run() {
 
 ExitCode benchPasses(const PassBenchOptions& given) {
   PassBenchOptions options = given;
-  if (options.scene.empty()) throw Error(ExitCode::Usage, "--scene is missing", "e.g. --scene cornellbox");
   if (options.size.empty()) options.size = "1024x1024";
   return Bench(options).run();
 }

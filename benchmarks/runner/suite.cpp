@@ -1,5 +1,7 @@
 #include "benchmarks/runner/suite.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -205,6 +207,8 @@ class SuiteReader {
   void readSettings(ObjectReader& r, Settings& s) {
     Texts scenes = texts(r, "scenes");
     if (r.has("scenes")) s.scenes = std::move(scenes);
+    if (!overrides_.scenes.empty()) s.scenes.clear();
+    for (const std::string& scene : overrides_.scenes) s.scenes.push_back({scene, {}});
     if (const Value* graphs = r.array("graphs")) {
       s.graphs.clear();
       for (size_t i = 0; i < graphs->items.size(); ++i)
@@ -479,20 +483,7 @@ Suite loadSuite(const std::string& nameOrFile, const std::vector<fs::path>& fold
 
 bool matchesGlob(std::string_view pattern, std::string_view name) {
   if (pattern.find_first_of("*?") == pattern.npos) return name.find(pattern) != name.npos;
-  size_t p = 0, n = 0, star = pattern.npos, mark = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p, ++n;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++, mark = n;
-    } else if (star != pattern.npos) {
-      p = star + 1, n = ++mark;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
+  return fnmatch(std::string(pattern).c_str(), std::string(name).c_str(), FNM_NOESCAPE) == 0;
 }
 
 }  // namespace fovea::bench

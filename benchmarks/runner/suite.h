@@ -63,6 +63,7 @@ struct Suite {
 struct SuiteOverrides {
   std::optional<glm::uvec2> size;  // for every job that does not vary its size
   std::optional<uint32_t> seeds;
+  std::vector<std::string> scenes;  // for every sweep, if there are any
 };
 
 // Throws Error(BadInput) with every mistake in the file and its place.

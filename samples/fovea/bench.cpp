@@ -41,6 +41,11 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
       "Measure anew what was measured with other code, device or parameters,\ninstead of refusing to go on");
   command.add_flag("--report", options.report, "Only tables and report, from the results that are there");
   command.add_flag("--list", options.list, "Print the names of the jobs and stop");
+  addList(
+      command, "--scene", options.scenes,
+      "Scene instead of those of the suite: a file, a bare name, or a folder, which stands\nfor the scene "
+      "files (.json) in it; may be repeated")
+      ->type_name("SCENE");
   command.add_option("--size", options.size, "Picture size instead of the suite's, where that does not vary")
       ->type_name("WxH");
   command.add_option("--seeds", options.seeds, "Seeds instead of the suite's number of them")
@@ -54,11 +59,8 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
 
 void addPassBenchOptions(CLI::App& command, PassBenchOptions& options) {
   const std::string group = "Passes of one graph (fovea bench passes --graph ..; -o then names a .json file)";
-  command.add_option("--graph", options.graph, "Graph: a file or a bare name")
+  command.add_option("--graph", options.graph, "Graph: a file or a bare name; --scene names the scene")
       ->type_name("GRAPH")
-      ->group(group);
-  command.add_option("--scene", options.scene, "Scene: a file or a bare name")
-      ->type_name("SCENE")
       ->group(group);
   addList(command, "--set", options.set, "Override a parameter, as in `fovea render`")
       ->type_name("NAME=VALUE")
@@ -103,6 +105,9 @@ void addBench(CLI::App& program, Action& action) {
       if (options->suite != "passes")
         throw Error(ExitCode::Usage,
                     "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
+      if (options->scenes.size() != 1)
+        throw Error(ExitCode::Usage, "`fovea bench passes` needs one --scene", "e.g. --scene cornellbox");
+      passes->scene = options->scenes.front();
       passes->output = options->folder, passes->size = options->size, passes->device = options->device;
       passes->without = options->without, passes->frameLimit = options->frameLimit;
       passes->plugins = options->plugins, passes->quiet = options->quiet;

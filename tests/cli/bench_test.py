@@ -218,6 +218,21 @@ class Suites(CliTest):
         self.assertNotIn(("cornellbox", "direct", "time.wall_ms"), self.rows())
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--report", says=["framework", name])
 
+    def test_scenes_of_the_command_line(self):
+        """A folder of scene files and a bare name replace the scenes of the suite."""
+        self.suite(measures=["time"], scenes=["cornellbox"])
+        (self.folder / "mine/none").mkdir(parents=True)
+        for name in ("dim", "bright"):
+            self.write(f"mine/{name}.json", {"models": [{"builtin": "cornellbox"}], "exposure": 2 if name == "bright" else 1})
+        listed = self.succeeds("bench", "tiny.json", "--list", "--scene", "mine", "--scene", "cornellbox_moving").stdout.split()
+        self.assertEqual(listed, [f"all-{s}-{g}-s1" for s in ("bright", "dim", "cornellbox_moving") for g in ("direct", "ir_1000")])
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--scene", "mine", "--only", "direct")
+        self.assertEqual({key[:2] for key in self.rows()}, {("mine/bright.json", "direct"), ("mine/dim.json", "direct")})
+        self.write("mine/none/readme.txt", "")
+        self.fails(BAD_INPUT, "bench", "tiny.json", "--list", "--scene", "mine/none", says=["mine/none", "no scene files"])
+        self.fails(USAGE, "bench", "tiny.json", "--list", "--scene", "mine", "--scene", "dim", says=["mine/dim.json", "both", "rename"])
+        self.fails(USAGE, "bench", "passes", "--graph", "direct", says=["--scene", "cornellbox"])
+
     def test_shared_references(self):
         """Several suites share one cache, which may be filled at any time; the jobs then make no references."""
         self.suite(scenes=["cornellbox"])

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "benchmarks/runner/inputs.h"
+#include "graph_support.h"
 #include "places.h"
 
 namespace fovea::bench {
 namespace {
 
+using graph::test::TempFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -65,11 +68,30 @@ TEST(BenchSuite, ASweepsWordReplacesTheHeads) {
 TEST(BenchSuite, SizeAndSeedsOfTheCommandLine) {
   const char* text =
       R"({"scenes": ["a"], "graphs": ["g"], "sweeps": [{"name": "n"}, {"name": "m", "size": ["8x8", "9x9"]}]})";
-  const Suite suite = parseSuite(text, "s.json", {glm::uvec2(5, 6), 2});
+  const Suite suite = parseSuite(text, "s.json", {.size = glm::uvec2(5, 6), .seeds = 2});
   ASSERT_EQ(suite.jobs.size(), 6u);
   EXPECT_EQ(suite.jobs[1].size, glm::uvec2(5, 6));
   EXPECT_EQ(suite.jobs[1].seed, 2u);
   EXPECT_EQ(suite.jobs[2].size, glm::uvec2(8, 8));  // sizes that the sweep varies stay
+}
+
+TEST(BenchSuite, ScenesOfTheCommandLineReplaceThoseOfAllSweeps) {
+  const char* text =
+      R"({"scenes": ["a"], "graphs": ["g"], "sweeps": [{"name": "n"}, {"name": "m", "scenes": ["b"]}]})";
+  const Suite suite = parseSuite(text, "s.json", {.scenes = {"x/mine.json", "c"}});
+  EXPECT_THAT(namesOf(suite), ElementsAre("n-mine-g-s1", "m-mine-g-s1", "n-c-g-s1", "m-c-g-s1"));
+  EXPECT_EQ(suite.jobs[0].scene, "x/mine.json");
+}
+
+TEST(BenchSuite, AFolderStandsForTheSceneFilesInIt) {
+  TempFolder folder;
+  for (const char* name : {"b.json", "a.json", "a.bin"}) folder.write(name, "{}");
+  const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+  EXPECT_THAT(sceneNames({"room", folder.path().string()}),
+              ElementsAre("room", path("a.json"), path("b.json")));
+  EXPECT_THROW(sceneNames({path("a.json"), "elsewhere/a.gltf"}), Error);  // results would have one name
+  std::filesystem::create_directory(folder.path() / "empty");
+  EXPECT_THROW(sceneNames({path("empty")}), Error);
 }
 
 TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {
