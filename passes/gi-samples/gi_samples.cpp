@@ -24,27 +24,34 @@ constexpr uint32_t kSampleStream = 0x67697361u, kChoiceStream = 0x67696368u, kAi
                    kGatherStream = 0x67696774u;
 constexpr float kSky = 1e6f;  // distance of the points that stand for the environment, m
 
-// Where surfaces shine, or the environment does, a second ray is aimed at them, and one of both rays is chosen by
-// resampling, weighted by the balance heuristic (Veach and Guibas 1995).
+// Where surfaces shine, or the environment does, each path has a second ray that is aimed at them. One of all rays of a
+// pixel is chosen by resampling, weighted by the balance heuristic (Veach and Guibas 1995).
 class Sampler {
  public:
   Sampler(const scene::Frame& frame, const scene::View& view, const scene::RayScene& rays, bool fullMaterials,
-          uint32_t depth, uint32_t turn)
-      : surfaces_(frame, view, rays, fullMaterials), seed_(frame.seed), depth_(depth), turn_(turn) {}
+          uint32_t depth, uint32_t paths, uint32_t turn)
+      : surfaces_(frame, view, rays, fullMaterials),
+        seed_(frame.seed),
+        depth_(depth),
+        paths_(paths),
+        turn_(turn) {}
 
   Reservoir sampleAt(glm::uvec2 pixel, uint64_t& rays) const {
     const scene::TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, rays);
     if (!v.there) return {};
     const uint32_t stream = randomStream(seed_, pixel.x, kSampleStream, pixel.y);
-    const auto streamOf = [&](uint32_t kind) { return randomStream(stream, turn_, kind, 0); };
-    Choice choice{WeightedChoice(uniformFloat(streamOf(kChoiceStream)))};
-    const glm::vec3 bounce = scene::cosineDirection(v.normal, scene::streamSequence(stream, turn_));
-    consider(choice, v, bounce, nullptr, streamOf(kGatherStream), rays);
-    if (surfaces_.hasEmitters())
-      if (const auto aim = surfaces_.towardsEmitter(v, streamOf(kAimStream)); aim.there)
-        consider(choice, v, aim.direction, &aim, hashCombine(streamOf(kGatherStream), 1), rays);
+    Choice choice{WeightedChoice(uniformFloat(randomStream(stream, turn_, kChoiceStream, 0)))};
+    for (uint32_t path = turn_ * paths_; path < (turn_ + 1) * paths_; ++path) {
+      const uint32_t gatherStream = randomStream(stream, path, kGatherStream, 0);
+      const glm::vec3 bounce = scene::cosineDirection(v.normal, scene::streamSequence(stream, path));
+      consider(choice, v, bounce, nullptr, gatherStream, rays);
+      if (!surfaces_.hasEmitters()) continue;
+      const auto aim = surfaces_.towardsEmitter(v, randomStream(stream, path, kAimStream, 0));
+      if (aim.there) consider(choice, v, aim.direction, &aim, hashCombine(gatherStream, 1), rays);
+    }
     choice.sample.count = 1;
-    if (choice.among.any()) choice.sample.weight = choice.among.inverseProbability() / choice.density;
+    if (choice.among.any())
+      choice.sample.weight = choice.among.inverseProbability() / (choice.density * float(paths_));
     return choice.sample;
   }
 
@@ -52,7 +59,7 @@ class Sampler {
   struct Choice {
     WeightedChoice among;
     Reservoir sample;   // the one chosen
-    float density = 1;  // with which the rays go there, per sr
+    float density = 1;  // with which the rays of a path go there, per sr
   };
 
   // aim: what the ray is aimed at, if anything. A ray that meets something else instead does not count.
@@ -90,7 +97,7 @@ class Sampler {
   }
 
   scene::SurfaceTracer surfaces_;
-  uint32_t seed_, depth_, turn_;
+  uint32_t seed_, depth_, paths_, turn_;
 };
 
 class GiSamples : public Pass {
@@ -107,6 +114,7 @@ class GiSamples : public Pass {
                 "edges of the longest path from a light to the eye, as in pass path-trace");
     d.parameter("spacing", integer(1, 1, 2),
                 "1: every pixel gets a sample; 2: in each frame one of each block of 2 x 2 pixels, in turn");
+    d.parameter("paths", integer(1, 1, 64), "paths that are traced for a sample, of which one is chosen");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those from the eye and towards lights");
     d.counter("samples", "pixels that show a surface and got a sample");
@@ -122,7 +130,8 @@ class GiSamples : public Pass {
     const glm::uvec2 size = ctx.view().size;
     const uint32_t spacing = uint32_t(p.integer("spacing")), turn = uint32_t(ctx.frameNumber());
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
-    const Sampler sampler(frame, ctx.view(), *rays, fullMaterials(p), uint32_t(p.integer("depth")), turn);
+    const Sampler sampler(frame, ctx.view(), *rays, fullMaterials(p), uint32_t(p.integer("depth")),
+                          uint32_t(p.integer("paths")), turn);
     std::atomic<uint32_t> next = 0;
     std::atomic<uint64_t> traced = 0, samples = 0;
     onThreads(std::min(threadCount(0), size.y), [&] {

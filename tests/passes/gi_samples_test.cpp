@@ -17,13 +17,13 @@ struct Samples {
   double rays = 0, samples = 0;  // of the last frame
 };
 
-Samples samplesOf(const scene::Scene& scene, glm::ivec2 size, int depth, int spacing = 1,
-                  uint32_t frames = 1) {
+Samples samplesOf(const scene::Scene& scene, glm::ivec2 size, int depth, int spacing = 1, uint32_t frames = 1,
+                  int paths = 1) {
   Samples result;
   for (uint32_t n = 1; n <= frames; ++n) {
     PassTest test("gi-samples");
     test.viewSize(uint32_t(size.x), uint32_t(size.y)).scene(scene);
-    test.param("depth", depth).param("spacing", spacing);
+    test.param("depth", depth).param("spacing", spacing).param("paths", paths);
     test.run(n);
     result.frames.push_back(test.values<Reservoir>("reservoirs"));
     result.rays = test.counter("rays");
@@ -47,16 +47,21 @@ double ratio(const Room& room, const Samples& samples, const Expected& expected)
   return sum / wanted;
 }
 
-// Without surfaces that shine, a sample is where a cosine-weighted ray ends, with the direct light that leaves there.
-TEST(GiSamples, EqualsARayAndDirectLight) {
+scene::Scene roomWithLamp(glm::vec3 lamp, glm::vec3 candela) {
   scene::Scene s;
   uint32_t walls[6];
   for (uint32_t i = 0; i < 6; ++i)
     walls[i] = addMaterial(s, {0.1f + 0.1f * float(i), 0.5f, 0.9f - 0.1f * float(i)});
   addRoom(s, walls, 2);
   addBox(s, walls[1], {-1.1f, -2, -1.6f}, {0.2f, -0.4f, -0.7f});
-  const glm::vec3 lamp(1.2f, 1.1f, -0.4f), candela(3, 5, 8);
   s.lights = {pointLight(lamp, candela)};
+  return s;
+}
+
+// Without surfaces that shine, a sample is where a cosine-weighted ray ends, with the direct light that leaves there.
+TEST(GiSamples, EqualsARayAndDirectLight) {
+  const glm::vec3 lamp(1.2f, 1.1f, -0.4f), candela(3, 5, 8);
+  const scene::Scene s = roomWithLamp(lamp, candela);
   const Room room = lookInto(s, 8, kSize);
   const GBuffer seen = gbufferOf(room);
   const Samples samples = samplesOf(room.scene, kSize, 3);
@@ -143,6 +148,29 @@ TEST(GiSamples, LampIsReachedInBothWays) {
         most =
             std::max(most, frame[i].radiance.r * frame[i].weight * cosineAt(seen.pixels[i], frame[i]) / want);
   EXPECT_LT(most, 30);
+}
+
+// The sample chosen among four paths stands for the same light, with less variance: what is left comes from colours.
+TEST(GiSamples, OneOfSeveralPathsIsChosen) {
+  const Room room = lookInto(roomWithLamp({1.2f, 1.1f, -0.4f}, {3, 5, 8}), 8, {48, 48});
+  const GBuffer seen = gbufferOf(room);
+  const auto light = [&](const Samples& samples) {  // mean and mean of the square
+    glm::dvec2 sum(0);
+    size_t pixels = 0;
+    for (const auto& frame : samples.frames)
+      for (size_t i = 0; i < frame.size(); ++i, ++pixels) {
+        const double value = frame[i].weight > 0
+                                 ? frame[i].radiance.r * frame[i].weight * cosineAt(seen.pixels[i], frame[i])
+                                 : 0.0;
+        sum += glm::dvec2(value, value * value);
+        EXPECT_EQ(frame[i].count, 1);
+      }
+    return sum / double(pixels);
+  };
+  const glm::dvec2 one = light(samplesOf(room.scene, room.size, 4, 1, 8)),
+                   four = light(samplesOf(room.scene, room.size, 4, 1, 8, 4));
+  EXPECT_NEAR(four.x / one.x, 1, 0.02);
+  EXPECT_LT(four.y - four.x * four.x, 0.6 * (one.y - one.x * one.x));
 }
 
 TEST(GiSamples, SkyIsADistantPoint) {
