@@ -34,10 +34,11 @@ T read(const std::byte* at) {
   return value;
 }
 
-// Formats whose channels share a word.
-bool packedWords(VkFormat format, const std::byte* texel, uint32_t* out) {
+// Formats whose channels share a word. Texels of others may have fewer bytes.
+bool packedWords(const FormatInfo& format, const std::byte* texel, uint32_t* out) {
+  if (format.bytesPerTexel != 4) return false;
   const auto word = read<uint32_t>(texel);
-  switch (format) {
+  switch (format.format) {
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32: {
       const glm::vec3 v = glm::unpackF2x11_1x10(word);
       for (int c = 0; c < 3; ++c) out[c] = wordOf(v[c]);
@@ -83,7 +84,7 @@ uint32_t channelWord(FormatInfo::Type type, uint32_t bytes, const std::byte* at)
 }
 
 void texelWords(const FormatInfo& format, const std::byte* texel, uint32_t* out) {
-  if (packedWords(format.format, texel, out)) return;
+  if (packedWords(format, texel, out)) return;
   const uint32_t bytes = format.bytesPerTexel / format.channels;
   for (uint32_t c = 0; c < format.channels; ++c) out[c] = channelWord(format.type, bytes, texel + c * bytes);
   if (format.name.starts_with("bgra")) std::swap(out[0], out[2]);
