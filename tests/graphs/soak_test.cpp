@@ -22,12 +22,6 @@
 namespace fovea::test {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;  // what was freed is kept for a while
-#else
-constexpr bool kSanitized = false;
-#endif
-
 uint64_t residentBytes() {
   malloc_trim(0);
   uint64_t all = 0, resident = 0;
@@ -127,7 +121,7 @@ TEST_P(Soak, LeavesEverythingAsItWas) {
     constexpr uint64_t kAllocator = 4 << 20;  // more or less, by how its blocks fit
     for (uint32_t stage = kWarm + 1; stage < kStages; ++stage)
       EXPECT_EQ(onDevice[stage], onDevice[kWarm]) << stage;
-    if (!kSanitized && testDeviceOptions().validation == gpu::Validation::Off)
+    if (!FOVEA_SANITIZED && testDeviceOptions().validation == gpu::Validation::Off)
       EXPECT_LE(resident[kStages - 1], uint64_t(1.02 * double(resident[kWarm])) + kAllocator);
     // The machine may be busy with something else, so that only much slower frames say something.
     EXPECT_LT(ms[kStages - 1], 2 * ms[kWarm]);
