@@ -20,7 +20,8 @@ packages=(
   # images without OpenImageIO, for the preset `portable`
   libpng-dev libstb-dev libtinyexr-dev
   # tests and benchmarks
-  clang clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema python3-matplotlib
+  clang libclang-rt-dev clang-format clang-tidy libgtest-dev libgmock-dev libbenchmark-dev
+  python3-jsonschema python3-matplotlib
   chromium chromium-driver python3-selenium
 )
 

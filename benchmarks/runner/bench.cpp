@@ -301,6 +301,7 @@ std::string Bench::command() const {
   std::string text = "fovea bench " + options_.suite + " -o DIR";
   if (!options_.size.empty()) text += " --size " + options_.size;
   if (options_.seeds) text += fmt::format(" --seeds {}", *options_.seeds);
+  for (const std::string& scene : options_.scenes) text += " --scene " + scene;
   return text;
 }
 

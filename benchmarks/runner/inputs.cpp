@@ -78,17 +78,17 @@ scene::Lens parseLens(std::string_view text) {
 std::vector<std::string> sceneNames(const std::vector<std::string>& filesAndFolders) {
   std::vector<std::string> scenes;
   for (const std::string& given : filesAndFolders) {
-    if (!fs::is_directory(given)) {
+    std::error_code unreadable;
+    if (!fs::path(given).has_parent_path() || !fs::is_directory(given, unreadable)) {
       scenes.push_back(given);
       continue;
     }
     std::set<std::string> files;
-    std::error_code unreadable;
     for (const fs::directory_entry& entry : fs::directory_iterator(given, unreadable))
       if (entry.path().extension() == ".json") files.insert(entry.path().string());
     if (files.empty())
       throw Error(ExitCode::BadInput,
-                  fmt::format("the folder `{}` has no scene files (.json) to be read", given),
+                  fmt::format("the folder `{}` has no readable scene files (.json)", given),
                   "write one that names the model; samples/scenes/README.md describes them");
     scenes.insert(scenes.end(), files.begin(), files.end());
   }
@@ -99,7 +99,7 @@ std::vector<std::string> sceneNames(const std::vector<std::string>& filesAndFold
       throw Error(ExitCode::Usage,
                   fmt::format("the scenes `{}` and `{}` are both called `{}`, and so would their results",
                               other->second, scene, other->first),
-                  "rename one of the files");
+                  "rename one of the files, or name the scene once");
   }
   return scenes;
 }

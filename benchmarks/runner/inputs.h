@@ -29,7 +29,8 @@ glm::vec2 parseGaze(std::string_view text);
 // Parses "55,45,50,52": degrees outwards, inwards, up and down. Throws Error(Usage).
 scene::Lens parseLens(std::string_view text);
 
-// Replaces each folder by the scene files (.json) in it, in alphabetical order. Throws Error(BadInput) if there are none,
+// Replaces each folder, written with a slash ("mine/") as other names are bare ones, by the scene files (.json) in it,
+// in alphabetical order. Throws Error(BadInput) if there are none,
 // and Error(Usage) if two scenes are called the same, as results are named after them.
 std::vector<std::string> sceneNames(const std::vector<std::string>& filesAndFolders);
 

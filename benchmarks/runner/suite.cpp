@@ -372,7 +372,7 @@ class SuiteReader {
     job.error = has("error"), job.temporal = has("temporal"), job.pictures = has("pictures");
     job.match = graph.match;
     job.sceneWhere = scene.where, job.graphWhere = graph.where;
-    job.sceneOptional = optional_.count(scene.value) > 0;
+    job.sceneOptional = overrides_.scenes.empty() && optional_.count(scene.value) > 0;
     return job;
   }
 

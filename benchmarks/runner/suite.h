@@ -73,7 +73,7 @@ Suite parseSuite(std::string_view text, const std::filesystem::path& file,
 Suite loadSuite(const std::string& nameOrFile, const std::vector<std::filesystem::path>& folders,
                 const SuiteOverrides& overrides = {});
 
-// Matches the wildcards `*` and `?`; a pattern without them matches any part of the name.
+// Matches wildcards as fnmatch(3) does; a pattern without `*` and `?` matches any part of the name.
 bool matchesGlob(std::string_view pattern, std::string_view name);
 
 }  // namespace fovea::bench

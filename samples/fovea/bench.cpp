@@ -28,7 +28,8 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
       ->type_name("DIR");
   command.add_flag("--references-only", options.referencesOnly,
                    "Only render the references that are missing, for a run at another time");
-  command.add_option("--only", options.only, "Only jobs whose name matches (*, ?) or contains this")
+  command
+      .add_option("--only", options.only, "Only jobs whose name matches (*, ?, [ab], [!ab]) or contains this")
       ->type_name("GLOB");
   command
       .add_option("--shard", options.shard,
@@ -41,10 +42,9 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
       "Measure anew what was measured with other code, device or parameters,\ninstead of refusing to go on");
   command.add_flag("--report", options.report, "Only tables and report, from the results that are there");
   command.add_flag("--list", options.list, "Print the names of the jobs and stop");
-  addList(
-      command, "--scene", options.scenes,
-      "Scene instead of those of the suite: a file, a bare name, or a folder, which stands\nfor the scene "
-      "files (.json) in it; may be repeated")
+  addList(command, "--scene", options.scenes,
+          "Scene instead of those of the suite: a file, a bare name, or a folder with a slash\n"
+          "(mine/), which stands for the scene files (.json) in it; may be repeated")
       ->type_name("SCENE");
   command.add_option("--size", options.size, "Picture size instead of the suite's, where that does not vary")
       ->type_name("WxH");

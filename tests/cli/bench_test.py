@@ -224,14 +224,18 @@ class Suites(CliTest):
         (self.folder / "mine/none").mkdir(parents=True)
         for name in ("dim", "bright"):
             self.write(f"mine/{name}.json", {"models": [{"builtin": "cornellbox"}], "exposure": 2 if name == "bright" else 1})
-        listed = self.succeeds("bench", "tiny.json", "--list", "--scene", "mine", "--scene", "cornellbox_moving").stdout.split()
+        listed = self.succeeds("bench", "tiny.json", "--list", "--scene", "mine/", "--scene", "cornellbox_moving").stdout.split()
         self.assertEqual(listed, [f"all-{s}-{g}-s1" for s in ("bright", "dim", "cornellbox_moving") for g in ("direct", "ir_1000")])
-        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--scene", "mine", "--only", "direct")
+        self.succeeds("bench", "tiny.json", "-o", "out", "-q", "--scene", "mine/", "--only", "direct")
         self.assertEqual({key[:2] for key in self.rows()}, {("mine/bright.json", "direct"), ("mine/dim.json", "direct")})
         self.write("mine/none/readme.txt", "")
-        self.fails(BAD_INPUT, "bench", "tiny.json", "--list", "--scene", "mine/none", says=["mine/none", "no scene files"])
-        self.fails(USAGE, "bench", "tiny.json", "--list", "--scene", "mine", "--scene", "dim", says=["mine/dim.json", "both", "rename"])
+        self.fails(BAD_INPUT, "bench", "tiny.json", "--list", "--scene", "mine/none/", says=["mine/none", "no readable scene files"])
+        self.fails(USAGE, "bench", "tiny.json", "--list", "--scene", "mine/", "--scene", "mine/dim.json", says=["mine/dim.json", "both", "rename"])
         self.fails(USAGE, "bench", "passes", "--graph", "direct", says=["--scene", "cornellbox"])
+        # A scene that the command line names has to be there, even if the suite could do without it.
+        self.suite(measures=["time"], scenes=["cornellbox", "nowhere"], optional_scenes=["nowhere"])
+        for name in ("nowhere", "mine/" + 300 * "x" + "/"):
+            self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--scene", name, says=[name[:20], "cannot be used"])
 
     def test_shared_references(self):
         """Several suites share one cache, which may be filled at any time; the jobs then make no references."""

@@ -140,6 +140,7 @@ TEST(GiSamples, LampIsReachedInBothWays) {
   };
   const Samples samples = samplesOf(room.scene, room.size, 3, 1, 4);
   EXPECT_NEAR(ratio(room, samples, expected), 1, 0.02);
+  EXPECT_NEAR(ratio(room, samplesOf(room.scene, room.size, 3, 1, 1, 4), expected), 1, 0.02);
   const GBuffer seen = gbufferOf(room);
   double most = 0;  // of the light of a sample, in lights that are expected
   for (const auto& frame : samples.frames)
@@ -150,7 +151,7 @@ TEST(GiSamples, LampIsReachedInBothWays) {
   EXPECT_LT(most, 30);
 }
 
-// The sample chosen among four paths stands for the same light, with less variance: what is left comes from colours.
+// The sample chosen among four paths stands for the same light, with less variance.
 TEST(GiSamples, OneOfSeveralPathsIsChosen) {
   const Room room = lookInto(roomWithLamp({1.2f, 1.1f, -0.4f}, {3, 5, 8}), 8, {48, 48});
   const GBuffer seen = gbufferOf(room);
