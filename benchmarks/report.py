@@ -18,6 +18,7 @@ try:
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    import matplotlib.ticker
 except ImportError:
     if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):  # Debian's, where the package is
         os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
@@ -234,16 +235,19 @@ class Report:
             plt.figure(figsize=(1 + 3.6 * columns, 3.2 * math.ceil(len(scenes) / columns)))
             for i, scene in enumerate(scenes):
                 plt.subplot(math.ceil(len(scenes) / columns), columns, i + 1)
-                for graph in graphs:
-                    found = {}
+                for number, graph in enumerate(graphs):
+                    found = {}  # in the order of the suite, so that a curve joins amounts of work that follow each other
                     for r in (r for r in rows if r["scene"] == scene and r["graph"] == graph and r["mean"]):
                         found.setdefault(tuple(r[a] for a in axes), {})[r["measure"]] = float(r["mean"])
-                    points = sorted((v["time.wall_ms"], MEASURES[name][1] * v[name]) for v in found.values() if v.get(name, 0) > 0)
-                    if points:
-                        plt.loglog(*zip(*points), marker="o", markersize=4, label=graph)
+                    points = [(v["time.wall_ms"], MEASURES[name][1] * v[name]) for v in found.values() if v.get(name, 0) > 0]
+                    plt.loglog(*zip(*points or [(math.nan, math.nan)]), marker="o", markersize=4, label=graph, color=f"C{number}")
                 plt.title(scene, fontsize=9)
                 plt.xlabel(MEASURES["time.wall_ms"][0], fontsize=9)
                 plt.grid(alpha=0.3, which="both")
+                for axis in (plt.gca().xaxis, plt.gca().yaxis):
+                    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+                    axis.set_major_formatter("{x:g}")
+                    axis.set_minor_formatter("")
                 if i % columns == 0:
                     plt.ylabel(MEASURES[name][0], fontsize=9)
                 if i == 0:
