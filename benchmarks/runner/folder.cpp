@@ -294,8 +294,7 @@ std::vector<StoredResult> mergedResults(const BenchFolder& folder, const std::ve
       if (!why.empty() && choice)
         throw Error(ExitCode::BadInput, "results that cannot be compared: " + why,
                     "give the same --size, --seeds and --scene, keep them in different folders, or run the "
-                    "suite with "
-                    "--replace");
+                    "suite with --replace");
       if (!why.empty() && !found[i]) leaveOut(why);
       if (found[i]) common.add(*found[i]);
     }

@@ -30,8 +30,8 @@ glm::vec2 parseGaze(std::string_view text);
 scene::Lens parseLens(std::string_view text);
 
 // Replaces each folder, written with a slash ("mine/") as other names are bare ones, by the scene files (.json) in it,
-// in alphabetical order. Throws Error(BadInput) if there are none,
-// and Error(Usage) if two scenes are called the same, as results are named after them.
+// in alphabetical order. Throws Error(BadInput) if there are none, and Error(Usage) if two scenes are called the same, as
+// results are named after them.
 std::vector<std::string> sceneNames(const std::vector<std::string>& filesAndFolders);
 
 void loadPlugins(const std::vector<std::string>& plugins);

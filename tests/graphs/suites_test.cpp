@@ -34,7 +34,7 @@ TEST(Suites, GraphsTakeTheirParameters) {
         ADD_FAILURE() << entry.path().filename() << ", " << job.name() << ": " << e.what();
       }
     }
-  EXPECT_GT(seen.size(), 90u);
+  EXPECT_GT(seen.size(), 100u);
 }
 
 }  // namespace
