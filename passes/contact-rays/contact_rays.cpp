@@ -19,6 +19,7 @@
 #include "framework/shader_twins/octahedral.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/same_plane.h"
 #include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
@@ -27,11 +28,12 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kContactStream = 0x636f6e74u;
-constexpr size_t kSubsets = 4;        // a pixel looks at one of so many subsets of the VPLs in a frame
-constexpr size_t kBlock = 16;         // VPLs whose light is summed before one of them is chosen
-constexpr float kLeastChance = 0.1f;  // of a VPL that no ray has reached, relative to one that all reach
-constexpr float kKept = 0.75f;        // share of the tallies that is kept from frame to frame
-constexpr float kRayEnd = 0.999f;     // rays end just before the VPL's surface
+constexpr size_t kSubsets = 4;           // a pixel looks at one of so many subsets of the VPLs in a frame
+constexpr size_t kBlock = 16;            // VPLs whose light is summed before one of them is chosen
+constexpr float kLeastChance = 0.1f;     // of a VPL that no ray has reached, relative to one that all reach
+constexpr float kKept = 0.75f;           // share of the tallies that is kept from frame to frame
+constexpr float kRayEnd = 0.999f;        // rays end just before the VPL's surface
+constexpr float kRowWeights[] = {2, 1};  // of a pixel in a row of three, by its distance from the middle
 
 // How many rays went to the VPL in a slot, and how many of them reached it.
 struct Tally {
@@ -104,6 +106,37 @@ size_t pick(std::span<const float> values, float& place) {
   return last;
 }
 
+struct Surface {
+  glm::vec3 position, normal;
+};
+
+// contact: a texel of pass contacts.
+Surface surfaceAt(const scene::View& view, glm::uvec2 pixel, glm::uvec2 contact) {
+  const glm::vec3 away = glm::normalize(view.rayDirection(glm::vec2(pixel) + 0.5f));
+  return {view.eye + std::bit_cast<float>(contact.x) * away,
+          scene::octDecode(glm::unpackSnorm2x16(contact.y))};
+}
+
+// The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
+// surface. Two rays are a poor estimate, and a narrow window hardly widens the shadow of what is close.
+glm::vec3 meanAround(const scene::View& view, glm::ivec2 size, std::span<const glm::uvec2> contacts,
+                     std::span<const glm::vec3> found, glm::ivec2 pixel) {
+  const auto indexOf = [&](glm::ivec2 p) { return size_t(p.y) * size_t(size.x) + size_t(p.x); };
+  const Surface at = surfaceAt(view, pixel, contacts[indexOf(pixel)]);
+  const glm::ivec2 low = glm::max(pixel - 1, 0), high = glm::min(pixel + 1, size - 1);
+  glm::vec4 sum(0);
+  for (glm::ivec2 p = low; p.y <= high.y; ++p.y)
+    for (p.x = low.x; p.x <= high.x; ++p.x) {
+      const size_t i = indexOf(p);
+      if (contacts[i].x == 0) continue;
+      const Surface other = surfaceAt(view, p, contacts[i]);
+      const bool same = p == pixel || onSamePlane(at.position, at.normal, other.position, other.normal);
+      const glm::ivec2 steps = glm::abs(p - pixel);
+      if (same) sum += kRowWeights[steps.x] * kRowWeights[steps.y] * glm::vec4(found[i], 1);
+    }
+  return glm::vec3(sum) / sum.w;
+}
+
 // Light of VPLs at single pixels, for one thread.
 class Sampler {
  public:
@@ -121,11 +154,9 @@ class Sampler {
 
   // Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance
   // that nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence.
-  // contact: a texel of pass contacts.
   glm::vec3 lightAt(glm::uvec2 pixel, glm::uvec2 contact) {
-    const glm::vec3 away = glm::normalize(view_.rayDirection(glm::vec2(pixel) + 0.5f));
-    const glm::vec3 position = view_.eye + std::bit_cast<float>(contact.x) * away;
-    const glm::vec3 normal = scene::octDecode(glm::unpackSnorm2x16(contact.y));
+    const auto [position, normal] = surfaceAt(view_, pixel, contact);
+    const glm::vec3 away = glm::normalize(position - view_.eye);
     const glm::vec3 origin = position + (normal - away) * rays_.epsilon();
     const glm::vec2 u =
         scene::streamSequence(randomStream(frame_.seed, pixel.x, kContactStream, pixel.y), turn_);
@@ -182,6 +213,10 @@ class ContactRays : public Pass {
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
     d.parameter("rays", integer(2, 1, 1024), "rays per pixel");
+    d.parameter(
+        "filter", flag(true),
+        "whether the light of a pixel is averaged with that of the eight around it, as far as they are in "
+        "contact and on the same plane");
     d.parameter("longer", real(4, 1, 1000),
                 "length of a running mean of `light`, in lengths of that elsewhere, for pass "
                 "temporal-accumulation");
@@ -218,6 +253,8 @@ class ContactRays : public Pass {
     }
     const uint32_t count = uint32_t(ctx.parameters().integer("rays"));
     const float longer = float(ctx.parameters().real("longer"));
+    const bool filters = ctx.parameters().flag("filter");
+    found_.resize(contacts.size());
     std::atomic<uint32_t> next = 0;
     std::mutex adding;
     uint64_t pixels = 0;
@@ -229,8 +266,7 @@ class ContactRays : public Pass {
           const size_t i = size_t(y) * width + x;
           if (contacts[i].x == 0) continue;
           ++found;
-          const glm::vec3 value = sampler.lightAt({x, y}, contacts[i]);
-          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), longer));
+          found_[i] = sampler.lightAt({x, y}, contacts[i]);
         }
       const std::lock_guard lock(adding);
       pixels += found;
@@ -238,6 +274,17 @@ class ContactRays : public Pass {
         tallies[i].rays += sampler.tallies[i].rays;
         tallies[i].reached += sampler.tallies[i].reached;
       }
+    });
+    next = 0;
+    onThreads(std::min(threadCount(0), height), [&] {
+      for (uint32_t y = next++; y < height; y = next++)
+        for (uint32_t x = 0; x < width; ++x) {
+          const size_t i = size_t(y) * width + x;
+          if (contacts[i].x == 0) continue;
+          const glm::vec3 value =
+              filters ? meanAround(ctx.view(), {width, height}, contacts, found_, {x, y}) : found_[i];
+          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), longer));
+        }
     });
     for (size_t i = 0; i < tallies.size(); ++i) {
       tallies[i].rays += kKept * history[i].rays;
@@ -249,6 +296,7 @@ class ContactRays : public Pass {
 
  private:
   Lights subsets_[kSubsets];
+  std::vector<glm::vec3> found_;  // at each pixel in contact
 };
 
 FOVEA_PASS(ContactRays);

@@ -13,6 +13,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/near-field/cached_light.h"
+#include "passes/same_plane.h"
 
 namespace fovea::passes {
 namespace {
@@ -23,8 +24,7 @@ constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGath
                    kAimStream = 0x6e656169u;
 constexpr uint32_t kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
 constexpr float kClose = 2;  // an emitter closer than so many widths of a wide block splits it
-constexpr float kSameCos = 0.9f, kSameSlope = 0.1f;  // least and largest of two samples on the same surface
-constexpr float kSure = 4;  // rays continue with a probability of this many times their share of the light
+constexpr float kSure = 4;   // rays continue with a probability of this many times their share of the light
 
 // What one row of the picture, or one part of a list, adds.
 struct Row : GatheredLight {
@@ -129,15 +129,13 @@ class Tracer {
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
       for (int x = std::max(column - 1, 0); x <= std::min(column + 1, int(tileColumns()) - 1); ++x) {
         const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
-        if (other.narrow || !other.at.there || !onSamePlane(at, other.at)) continue;
+        if (other.narrow || !isSame(at, other.at)) continue;
         sum += kWeights[x - column + 1] * kWeights[y - row + 1] * glm::vec4(glm::vec3(other.sample), 1);
       }
     return glm::vec3(sum) / sum.w;
   }
-  static bool onSamePlane(const TracedSurface& a, const TracedSurface& b) {
-    const glm::vec3 to = b.position - a.position;
-    return glm::dot(a.normal, b.normal) > kSameCos &&
-           std::abs(glm::dot(to, a.normal)) <= kSameSlope * glm::length(to);
+  static bool isSame(const TracedSurface& a, const TracedSurface& b) {
+    return b.there && onSamePlane(a.position, a.normal, b.position, b.normal);
   }
 
   // Returns the mean over the turns. `at` becomes the surface of the first turn's pixel, from which rays also leave in
@@ -154,8 +152,7 @@ class Tracer {
     glm::vec3 sum(0);
     for (uint32_t i = 0; at.there && i < count; ++i) {
       const TracedSurface v = i < factor ? at : seenIn(settings_.turn + i / factor);
-      const bool same = v.there && onSamePlane(at, v);
-      sum += lightAt(same ? v : at, block, factor * settings_.turn + i, statistics);
+      sum += lightAt(isSame(at, v) ? v : at, block, factor * settings_.turn + i, statistics);
     }
     return {sum / float(count), float(sampleCode(side, samplePixel(settings_.turn, side, block), at.there))};
   }

@@ -34,12 +34,16 @@ constexpr uint32_t kWidth = uint32_t(kSize.x), kHeight = uint32_t(kSize.y);
 
 constexpr float kLonger = 3;  // length of means of this light, in those of others
 
-// Every third pixel of the eye's picture is in contact.
-std::vector<glm::uvec2> everyThird(const GBuffer& seen) {
+bool everyThird(size_t pixel) { return pixel % 3 == 0; }
+bool mostPixels(size_t pixel) { return pixel % 5 != 0; }
+
+// The chosen pixels of the eye's picture are in contact.
+std::vector<glm::uvec2> contactsOf(const GBuffer& seen, bool (*chosen)(size_t)) {
   std::vector<glm::uvec2> contacts(seen.pixels.size(), glm::uvec2(0));
-  for (size_t i = 0; i < contacts.size(); i += 3)
-    contacts[i] = {std::bit_cast<uint32_t>(seen.pixels[i].distance),
-                   glm::packSnorm2x16(octEncode(seen.pixels[i].normal))};
+  for (size_t i = 0; i < contacts.size(); ++i)
+    if (chosen(i))
+      contacts[i] = {std::bit_cast<uint32_t>(seen.pixels[i].distance),
+                     glm::packSnorm2x16(octEncode(seen.pixels[i].normal))};
   return contacts;
 }
 
@@ -49,20 +53,31 @@ struct Result {
   double pixels = 0;
 };
 
-Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, int rays = 1024,
-           std::vector<glm::vec2> history = {}) {
+struct Settings {
+  int rays = 1024;
+  std::vector<glm::vec2> history;
+  bool filter = false;
+  bool (*contact)(size_t) = everyThird;
+};
+
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings = {}) {
+  const int rays = settings.rays;
+  std::vector<glm::vec2> history = settings.history;
   history.resize(vpls.size());
   PassTest test("contact-rays");
+  test.param("filter", settings.filter);
   test.param("longer", kLonger);
   test.param("rays", rays);
   test.viewSize(kWidth, kHeight).scene(eye.scene);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0] = eye.view; });
-  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, everyThird(eye.seen));
+  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, settings.contact));
   test.buffer("vpls", vpls, "Vpl");
   test.buffer("history", history, "VplTally");
   test.run();
   Result result{test.values<uint64_t>("light"), test.values<glm::vec2>("tallies"), test.counter("pixels")};
-  EXPECT_EQ(result.pixels, double((eye.seen.pixels.size() + 2) / 3));
+  size_t inContact = 0;
+  for (size_t i = 0; i < eye.seen.pixels.size(); ++i) inContact += settings.contact(i);
+  EXPECT_EQ(result.pixels, double(inContact));
   EXPECT_EQ(test.counter("rays"), rays * result.pixels);
   return result;
 }
@@ -107,7 +122,7 @@ TEST(ContactRays, AnyHistoryGivesTheSameLight) {
   const auto vpls = lamps();
   std::vector<glm::vec2> history;
   for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, 40 * (i % 3));
-  const Result got = run(eye, vpls, 1024, history);
+  const Result got = run(eye, vpls, {.history = history});
   expectLightOfAllVpls(eye, vpls, got);
   double rays = 0;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -120,13 +135,52 @@ TEST(ContactRays, AnyHistoryGivesTheSameLight) {
   EXPECT_GT(rays, 0.9 * 1024 * got.pixels) << "few pixels lie in no VPL's light";
 }
 
+// The box hides part of the wall, so that many windows show both, and pixels that are not in contact.
+TEST(ContactRays, FilterAveragesPixelsOnTheSamePlane) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  const Result single = run(eye, vpls, {.rays = 2, .contact = mostPixels}),
+               got = run(eye, vpls, {.rays = 2, .filter = true, .contact = mostPixels});
+  int others = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const size_t at = size_t(y * kSize.x + x);
+      if (!mostPixels(at)) {
+        EXPECT_EQ(got.light[at], 0u);
+        continue;
+      }
+      const SurfacePixel& p = eye.seen.pixels[at];
+      glm::dvec3 sum(0);
+      double weights = 0;
+      for (int k = 0; k < 9; ++k) {
+        const int dx = k % 3 - 1, dy = k / 3 - 1;
+        if (x + dx < 0 || y + dy < 0 || x + dx >= kSize.x || y + dy >= kSize.y) continue;
+        const size_t i = at + size_t(dy * kSize.x + dx);
+        if (!mostPixels(i)) continue;
+        const glm::vec3 to = eye.seen.pixels[i].position - p.position;
+        const bool same = glm::dot(eye.seen.pixels[i].normal, p.normal) > 0.9f &&
+                          std::abs(glm::dot(to, p.normal)) < 0.1f * glm::length(to) + 1e-6f;
+        others += !same;
+        if (!same) continue;
+        const double weight = (dx == 0 ? 2 : 1) * (dy == 0 ? 2 : 1);
+        sum += weight * glm::dvec3(glm::unpackHalf4x16(single.light[i]));
+        weights += weight;
+      }
+      const glm::vec4 light = glm::unpackHalf4x16(got.light[at]);
+      EXPECT_EQ(light.a, kLonger);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(light[c], sum[c] / weights, 2e-3 * sum[c] / weights + 1e-6) << x << " " << y;
+    }
+  EXPECT_GT(others, 100);
+}
+
 // In each frame one subset stands for all.
 TEST(ContactRays, SubsetsTakeTurns) {
   const Eye eye({0.3f, 0.2f, 0});
   std::vector<scene::Vpl> vpls = lamps();
   const auto litShare = [&] {
     int lit = 0, all = 0;
-    const Result got = run(eye, vpls, 256);
+    const Result got = run(eye, vpls, {.rays = 256});
     for (size_t i = 0; i < got.light.size(); i += 3, ++all) lit += glm::unpackHalf4x16(got.light[i]).g > 0;
     return double(lit) / all;
   };
@@ -141,7 +195,7 @@ TEST(ContactRays, WithoutVplsThereIsNoLight) {
   PassTest test("contact-rays");
   test.param("longer", kLonger);
   test.viewSize(kWidth, kHeight).scene(eye.scene);
-  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, everyThird(eye.seen));
+  test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, everyThird));
   test.buffer("vpls", std::vector<scene::Vpl>(8), "Vpl");
   test.buffer("history", std::vector<glm::vec2>(8, {100, 50}), "VplTally");
   test.run();

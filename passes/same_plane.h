@@ -1,0 +1,18 @@
+// Whether two samples of a picture may share their light.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace fovea::passes {
+
+// Whether a surface runs on flat from one point to another; of any scale. Positions in m, unit normals.
+inline bool onSamePlane(glm::vec3 position, glm::vec3 normal, glm::vec3 otherPosition,
+                        glm::vec3 otherNormal) {
+  constexpr float kLeastCos = 0.9f, kLargestSlope = 0.1f;
+  const glm::vec3 to = otherPosition - position;
+  return glm::dot(normal, otherNormal) > kLeastCos &&
+         std::abs(glm::dot(to, normal)) <= kLargestSlope * glm::length(to);
+}
+
+}  // namespace fovea::passes
