@@ -1,7 +1,8 @@
 // Strategy `importance-area` with the kernel `disc`, second to last step: the disc of a VPL's own area sends less
 // light to nearby points of the region than the disc of a voxel would. Finds how much brighter the VPL must be to
 // make up for that. One work group per VPL. NEAR 1: no disc is smaller than `spread`, for which pass near-field
-// compensates; the paths were assigned without that light.
+// compensates; the paths were assigned without that light. Rays then bring what is near, so that a VPL that lights only
+// its own crack need not be bright enough for it, and would be a spot there.
 #include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"
@@ -23,6 +24,8 @@ layout(push_constant) uniform Constants {
   uint points;
   float areaCap;
 };
+
+const float kMostNearGain = 2.0;
 
 shared float sums[64];
 
@@ -50,5 +53,6 @@ void main() {
     barrier();
   }
   float after = sums[0] / float(points);
-  if (lane == 0u && inside) gains.list[slot] = after > 0.0 ? min(before / after, areaCap) : 1.0;
+  float most = NEAR != 0 ? kMostNearGain : areaCap;
+  if (lane == 0u && inside) gains.list[slot] = after > 0.0 ? min(before / after, most) : 1.0;
 }

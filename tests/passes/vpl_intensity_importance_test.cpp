@@ -261,6 +261,39 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
   }
 }
 
+// A single VPL gets the light of all paths. Its disc sends less to what is close than its density says, for which it
+// makes up, but where rays bring what is near by no more than a factor of two.
+TEST(Weights, NearDiscsMakeUpForLittle) {
+  const Room room = closedRoom(false, 32);
+  const WeightSettings settings;
+  const auto points = screenPoints(room, settings);
+  const auto ends = colouredEnds(room, points, 4096);
+  const double pi = glm::pi<double>(), nearArea = 0.1;
+  glm::dvec3 light(0);
+  double found = 0;
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const double d = glm::distance(ends[i].position, points[i % points.size()].position);
+    light += glm::dvec3(ends[i].radiance) * (pi * d * d / (pi * d * d + nearArea)) / double(ends.size());
+    found += (ends[i].kind > 0) / double(ends.size());
+  }
+  for (const bool close : {false, true}) {
+    Inputs in = inputs(room, {vplsOf(room, candidatesOf(room, 20, settings)).front()});
+    scene::VplState& vpl = in.vpls[0];
+    vpl.normal = -points[0].normal;
+    vpl.position = points[0].position + (close ? 0.02f : 0.8f) * points[0].normal;
+    in.maps = emptyMaps(1);
+    const double before = seenDensities(room, in.vpls, points, in.maps)[0];
+    const std::vector<double> areas{std::max(nearArea, found / before)};
+    const double after = seenDensities(room, in.vpls, points, in.maps, 0, &areas)[0];
+    EXPECT_EQ(before / after > 3, close) << before / after;
+    const auto got = weighTraced(in, points, ends, settings, float(nearArea))[0];
+    for (int c = 0; c < 3; ++c) {
+      const double want = light[c] / before * std::min(before / after, 2.0);
+      EXPECT_NEAR(got.intensity[c], want, 0.02 * want) << "channel " << c << ", " << close;
+    }
+  }
+}
+
 // Otherwise near-field light would be in the picture twice.
 TEST(Weights, SpreadNeedsPathsAndDiscs) {
   const Room room = closedRoom(false, 32);
