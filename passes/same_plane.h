@@ -6,7 +6,8 @@
 
 namespace fovea::passes {
 
-// Whether a surface runs on flat from one point to another; of any scale. Positions in m, unit normals.
+// Whether two points lie nearly on one plane: their normals differ by less than 26 degrees, and the other point is off
+// the first one's tangent plane by at most a tenth of their distance. Positions in any unit; unit normals.
 inline bool onSamePlane(glm::vec3 position, glm::vec3 normal, glm::vec3 otherPosition,
                         glm::vec3 otherNormal) {
   constexpr float kLeastCos = 0.9f, kLargestSlope = 0.1f;

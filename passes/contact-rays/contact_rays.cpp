@@ -254,7 +254,7 @@ class ContactRays : public Pass {
     const uint32_t count = uint32_t(ctx.parameters().integer("rays"));
     const float longer = float(ctx.parameters().real("longer"));
     const bool filters = ctx.parameters().flag("filter");
-    found_.resize(contacts.size());
+    unfiltered_.resize(contacts.size());
     std::atomic<uint32_t> next = 0;
     std::mutex adding;
     uint64_t pixels = 0;
@@ -266,7 +266,7 @@ class ContactRays : public Pass {
           const size_t i = size_t(y) * width + x;
           if (contacts[i].x == 0) continue;
           ++found;
-          found_[i] = sampler.lightAt({x, y}, contacts[i]);
+          unfiltered_[i] = glm::min(sampler.lightAt({x, y}, contacts[i]), 65504.0f);
         }
       const std::lock_guard lock(adding);
       pixels += found;
@@ -281,9 +281,10 @@ class ContactRays : public Pass {
         for (uint32_t x = 0; x < width; ++x) {
           const size_t i = size_t(y) * width + x;
           if (contacts[i].x == 0) continue;
-          const glm::vec3 value =
-              filters ? meanAround(ctx.view(), {width, height}, contacts, found_, {x, y}) : found_[i];
-          light[i] = glm::packHalf4x16(glm::vec4(glm::min(value, 65504.0f), longer));
+          const glm::vec3 value = filters
+                                      ? meanAround(ctx.view(), {width, height}, contacts, unfiltered_, {x, y})
+                                      : unfiltered_[i];
+          light[i] = glm::packHalf4x16(glm::vec4(value, longer));
         }
     });
     for (size_t i = 0; i < tallies.size(); ++i) {
@@ -296,7 +297,7 @@ class ContactRays : public Pass {
 
  private:
   Lights subsets_[kSubsets];
-  std::vector<glm::vec3> found_;  // at each pixel in contact
+  std::vector<glm::vec3> unfiltered_;  // light at each pixel in contact
 };
 
 FOVEA_PASS(ContactRays);

@@ -129,12 +129,12 @@ class Tracer {
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
       for (int x = std::max(column - 1, 0); x <= std::min(column + 1, int(tileColumns()) - 1); ++x) {
         const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
-        if (other.narrow || !isSame(at, other.at)) continue;
+        if (other.narrow || !sameSurface(at, other.at)) continue;
         sum += kWeights[x - column + 1] * kWeights[y - row + 1] * glm::vec4(glm::vec3(other.sample), 1);
       }
     return glm::vec3(sum) / sum.w;
   }
-  static bool isSame(const TracedSurface& a, const TracedSurface& b) {
+  static bool sameSurface(const TracedSurface& a, const TracedSurface& b) {
     return b.there && onSamePlane(a.position, a.normal, b.position, b.normal);
   }
 
@@ -152,7 +152,7 @@ class Tracer {
     glm::vec3 sum(0);
     for (uint32_t i = 0; at.there && i < count; ++i) {
       const TracedSurface v = i < factor ? at : seenIn(settings_.turn + i / factor);
-      sum += lightAt(isSame(at, v) ? v : at, block, factor * settings_.turn + i, statistics);
+      sum += lightAt(sameSurface(at, v) ? v : at, block, factor * settings_.turn + i, statistics);
     }
     return {sum / float(count), float(sampleCode(side, samplePixel(settings_.turn, side, block), at.there))};
   }

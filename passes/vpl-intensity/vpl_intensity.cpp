@@ -271,7 +271,7 @@ PassDeclaration IntensityImportanceArea::declaration() {
             "effective number of screen points in a density: squared sum of their terms divided by the sum "
             "of squares");
   d.scratch("gains", buffer("float", 4, countOf("vpls")), kReadWrite,
-            "factor by which a VPL must be brighter to make up for its disc");
+            "factor by which a VPL is brighter to make up for its disc; with `spread` at most 2");
   d.scratch("sums", buffer("PathSum", sizeof(intensity::PathSum), countOf("vpls")),
             kReadWrite | Usage::TransferWrite,
             "paths and their light assigned to each VPL, as whole numbers");

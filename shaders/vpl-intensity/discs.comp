@@ -1,8 +1,8 @@
 // Strategy `importance-area` with the kernel `disc`, second to last step: the disc of a VPL's own area sends less
 // light to nearby points of the region than the disc of a voxel would. Finds how much brighter the VPL must be to
 // make up for that. One work group per VPL. NEAR 1: no disc is smaller than `spread`, for which pass near-field
-// compensates; the paths were assigned without that light. Rays then bring what is near, so that a VPL that lights only
-// its own crack need not be bright enough for it, and would be a spot there.
+// compensates; the paths were assigned without that light. The factor is then at most kMostNearGain, as a VPL that
+// lights only a crack would be a bright spot there. What this cuts off is lost.
 #include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "vpl-intensity/vpl_intensity.glsl"

@@ -262,12 +262,13 @@ TEST(Weights, TracedPathsBringTheirOwnLight) {
 }
 
 // A single VPL gets the light of all paths. Its disc sends less to what is close than its density says, for which it
-// makes up, but where rays bring what is near by no more than a factor of two.
-TEST(Weights, NearDiscsMakeUpForLittle) {
+// makes up, but by no more than a factor of two where pass near-field is wired.
+TEST(Weights, NearFieldLimitsTheGainOfDiscs) {
   const Room room = closedRoom(false, 32);
   const WeightSettings settings;
   const auto points = screenPoints(room, settings);
-  const auto ends = colouredEnds(room, points, 4096);
+  auto ends = colouredEnds(room, points, 4096);
+  ends.resize(4 * ends.size());  // most paths escape, so that the disc of the VPL's own light is small
   const double pi = glm::pi<double>(), nearArea = 0.1;
   glm::dvec3 light(0);
   double found = 0;
@@ -285,7 +286,10 @@ TEST(Weights, NearDiscsMakeUpForLittle) {
     const double before = seenDensities(room, in.vpls, points, in.maps)[0];
     const std::vector<double> areas{std::max(nearArea, found / before)};
     const double after = seenDensities(room, in.vpls, points, in.maps, 0, &areas)[0];
-    EXPECT_EQ(before / after > 3, close) << before / after;
+    if (close)
+      EXPECT_GT(before / after, 3);
+    else
+      EXPECT_LT(before / after, 2);
     const auto got = weighTraced(in, points, ends, settings, float(nearArea))[0];
     for (int c = 0; c < 3; ++c) {
       const double want = light[c] / before * std::min(before / after, 2.0);
