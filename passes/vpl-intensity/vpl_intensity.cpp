@@ -245,9 +245,11 @@ PassDeclaration IntensityImportanceArea::declaration() {
           "paths of pass eye-paths, with the same number of points; this pass then assigns these, "
           "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
-  d.input("spread", spreadBuffer(), Usage::TexelRead,
-          "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
-          "discs of this area leave out; needs `traced` and kernel `disc`")
+  d.input(
+       "spread", spreadBuffer(), Usage::TexelRead,
+       "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
+       "discs of this area leave out, and the intensity of a VPL is at most doubled to make up for its disc; "
+       "needs `traced` and kernel `disc`")
       .makeOptional();
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths through the voxels to assign (M), without `traced`");
