@@ -106,11 +106,15 @@ Error::Error(ExitCode code, std::vector<Diagnostic> diagnostics)
     : code_(code), diagnostics_(firstErrors(std::move(diagnostics))), text_(formatAll(diagnostics_)) {}
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates) {
+  word = word.substr(0, 64);
   const size_t limit = std::max<size_t>(1, word.size() / 3);
   std::string best;
   size_t bestDistance = limit + 1;
   for (const std::string& candidate : candidates) {
-    const size_t distance = editDistance(word.substr(0, 64), std::string_view(candidate).substr(0, 64));
+    const std::string_view name = std::string_view(candidate).substr(0, 64);
+    // The difference of the lengths has to be inserted.
+    if (std::max(word.size(), name.size()) - std::min(word.size(), name.size()) >= bestDistance) continue;
+    const size_t distance = editDistance(word, name);
     if (distance < bestDistance) {
       bestDistance = distance;
       best = candidate;

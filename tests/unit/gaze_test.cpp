@@ -75,6 +75,8 @@ TEST(Gaze, ATableSaysWhichLineIsWrong) {
               AllOf(HasSubstr("g.csv:3"), HasSubstr("increase")));
   EXPECT_THAT(error("time,x,y\n"), HasSubstr("g.csv:1"));
   EXPECT_THAT(error(std::string("\x00\xff\x13 garbage", 11)), HasSubstr("g.csv:1"));
+  EXPECT_THAT(error("t,x,y,vald\n"), HasSubstr("did you mean `valid`?"));
+  EXPECT_THAT(error("t,x,y," + std::string(400, 'v') + "\n"), HasSubstr("the columns are t, x, y"));
   EXPECT_THAT(error(""), HasSubstr("no header line"));
   EXPECT_THAT(error("root:secret:20228:0:99999:7:::\n"),
               AllOf(HasSubstr("t,x,y,valid"), Not(HasSubstr("secret"))));

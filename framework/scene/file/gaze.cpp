@@ -82,6 +82,7 @@ class CsvReader {
     }
     std::map<std::string, int> seen;
     for (const std::string& name : columns_) {
+      if (errors_.list().size() >= kMaxMistakes) errors_.throwIfErrors();
       if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end()) {
         const std::string nearest = nearestName(name, kColumns);
         mistakeAt(1, "no column `" + name + "` is known",
