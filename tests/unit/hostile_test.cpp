@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <ctime>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <optional>
@@ -26,6 +27,18 @@ using test::TemporaryFolder;
 const fs::path kTables = FOVEA_TEST_DATA "/hostile";
 // Of CPU time, so that it does not count what else the machine does.
 constexpr double kMostSeconds = FOVEA_SANITIZED ? 20 : 1;
+
+// Physical memory that the process uses, and the most that it has used since the last call of forgetPeak(), in MiB.
+uint64_t memoryOf(const std::string& line) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (uint64_t kilobytes; word == line && status >> kilobytes) return kilobytes >> 10;
+  return 0;
+}
+uint64_t memoryNow() { return memoryOf("VmRSS:"); }
+uint64_t peakMemory() { return memoryOf("VmHWM:"); }
+void forgetPeak() { std::ofstream("/proc/self/clear_refs") << 5; }
+constexpr uint64_t kMostMemory = FOVEA_SANITIZED ? 1000 : 500;
 
 // ---- How each kind of file is read
 
@@ -241,6 +254,8 @@ TEST_P(Hostile, IsRefusedAtOnceWithItsMessage) {
   for (const std::string& edit : c.edits) editor.apply(edit);
   editor.flush();
   std::string message;
+  forgetPeak();
+  const uint64_t memory = memoryNow();
   const std::clock_t start = std::clock();
   try {
     readers().at(c.kind)(folder_.path() / c.file);
@@ -249,6 +264,7 @@ TEST_P(Hostile, IsRefusedAtOnceWithItsMessage) {
     EXPECT_EQ(int(e.code()), int(c.code)) << message;
   }
   EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, kMostSeconds);
+  EXPECT_LT(peakMemory(), memory + kMostMemory);
   const std::string folder = folder_.path().string() + "/";
   for (size_t at; (at = message.find(folder)) != std::string::npos;) message.erase(at, folder.size());
   ASSERT_FALSE(message.empty()) << "accepted";
