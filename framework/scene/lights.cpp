@@ -1,6 +1,7 @@
 #include "framework/scene/lights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace fovea::scene {
@@ -37,6 +38,11 @@ uint32_t shadowLayers(std::span<const Light> lights) {
   uint32_t layers = 0;
   for (const Light& light : lights) layers += shadowLayers(light);
   return layers;
+}
+
+uint32_t mostShadowTexels(uint32_t layers) {
+  constexpr uint64_t kTexels = uint64_t(1) << 28;
+  return std::bit_floor(uint32_t(std::sqrt(double(kTexels) / std::max(layers, 1u))));
 }
 
 }  // namespace fovea::scene

@@ -226,7 +226,8 @@ std::vector<std::pair<std::string, int64_t>> quantities(const Scene& scene, cons
           {"scene.static_triangles", atLeastOne(geometry.staticTriangles)},
           {"scene.vertices", atLeastOne(geometry.positions.size())},
           {"scene.lights", atLeastOne(scene.lights.size())},
-          {"scene.shadow_layers", atLeastOne(shadowLayers(scene.lights))}};
+          {"scene.shadow_layers", atLeastOne(shadowLayers(scene.lights))},
+          {"scene.shadow_texels", atLeastOne(mostShadowTexels(shadowLayers(scene.lights)))}};
 }
 
 }  // namespace fovea::scene

@@ -24,7 +24,8 @@ glm::vec4 reflectance(const Scene& scene, const Material& material, glm::vec2 uv
 glm::vec3 emission(const Scene& scene, const Material& material, glm::vec2 uv);
 
 // Numbers about a scene on which the sizes of a graph's resources may depend: "scene.triangles",
-// "scene.static_triangles", "scene.vertices", "scene.lights" and "scene.shadow_layers", each at least 1.
+// "scene.static_triangles", "scene.vertices", "scene.lights", "scene.shadow_layers" and "scene.shadow_texels"
+// (mostShadowTexels), each at least 1.
 std::vector<std::pair<std::string, int64_t>> quantities(const Scene& scene, const Geometry& geometry);
 
 }  // namespace fovea::scene

@@ -23,18 +23,19 @@ class ShadowMap : public Pass {
         "shadow maps of all lights, with one layer for a directional or spot light and six for a point light",
         PassKind::ComputeAndGraphics);
     d.recorded();
-    d.output("maps", "shadow-maps", shadowMapOutput(parameter("size"), environment("scene.shadow_layers")),
+    const SizeExpr side = min(parameter("size"), environment("scene.shadow_texels"));
+    d.output("maps", "shadow-maps", shadowMapOutput(side, environment("scene.shadow_layers")),
              "shadow maps of the lights")
         .keep(Lifetime::Scene);
-    d.scratch("still",
-              image2DArray(VK_FORMAT_D32_SFLOAT, parameter("size"), parameter("size"),
-                           environment("scene.shadow_layers")),
+    d.scratch("still", image2DArray(VK_FORMAT_D32_SFLOAT, side, side, environment("scene.shadow_layers")),
               Usage::DepthAttachment | Usage::TransferRead, "depth of static geometry")
         .keep(Lifetime::Scene);
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
-    d.parameter("size", size, "width and height of a map");
-    d.step("shadow-map/views.comp").groups(1);
+    d.parameter("size", size,
+                "width and height of a map; less if many lights need many maps, which have at most 2^28 "
+                "texels together");
+    d.step("shadow-map/views.comp").constant("size", widthOf("maps.depth")).groups(1);
     return d;
   }
 

@@ -3,7 +3,7 @@
 #include "common/paraboloid.glsl"
 #include "common/shadow.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;  // kMaxLights
 
 layout(std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
 

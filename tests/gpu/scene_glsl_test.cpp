@@ -475,14 +475,24 @@ TEST(SceneGlsl, ManyLargeTexturesTakeSeveralPages) {
 }
 
 TEST(SceneGlsl, LimitsAreNamed) {
-  Scene scene;
-  scene.lights.resize(kMaxLights + 1);
-  try {
-    GpuScene gpu(testDevice(), scene, {}, 2);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    EXPECT_NE(std::string(e.what()).find("65 lights"), std::string::npos) << e.what();
+  const struct {
+    LightType type;
+    size_t count;
+    const char* says;
+  } cases[] = {{LightType::Directional, kMaxLights + 1, "129 lights"},
+               {LightType::Point, 97, "582 shadow maps"}};
+  for (const auto& c : cases) {
+    Scene scene;
+    Light light;
+    light.type = c.type;
+    scene.lights.assign(c.count, light);
+    try {
+      GpuScene gpu(testDevice(), scene, {}, 2);
+      FAIL() << c.says;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::BadInput);
+      EXPECT_NE(std::string(e.what()).find(c.says), std::string::npos) << e.what();
+    }
   }
 }
 

@@ -193,5 +193,21 @@ TEST(ShadowMap, WithoutLightsThereIsOneEmptyLayer) {
   EXPECT_EQ(test.floats("maps.depth"), std::vector<float>(16 * 16, 0.0f));
 }
 
+// With 51 point lights there are 306 maps, and none of them gets the 2048x2048 texels that were asked for.
+TEST(ShadowMap, ManyLightsShareTheTexels) {
+  scene::Scene s = litScene();
+  s.lights.assign(51, s.lights[1]);
+  s.lights.back().position = {-2.5f, 2, 0.1f};
+  PassTest test("shadow-map");
+  test.scene(s);
+  test.run();
+  EXPECT_EQ(test.desc("maps.depth").layers, 306u);
+  EXPECT_EQ(test.desc("maps.depth").width, 512u);
+  const auto views = test.values<ShadowView>("maps.views");
+  EXPECT_FLOAT_EQ(views[305].texelWidth, 2.0f / 506);  // a right angle, and three texels more on each side
+  const glm::vec4 centre = views[305].worldToClip * glm::vec4(-2.5f, 2, 1.1f, 1);
+  EXPECT_LT(glm::length(glm::vec2(centre) / centre.w), 1e-5f);
+}
+
 }  // namespace
 }  // namespace fovea::test

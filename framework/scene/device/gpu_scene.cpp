@@ -14,6 +14,7 @@
 #include "framework/scene/device/gpu_textures.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
+#include "shaders/common/records/shadow.h"
 
 namespace fovea::scene {
 
@@ -82,6 +83,16 @@ void checkCount(const char* what, size_t count, size_t limit) {
               "the scene has " + std::to_string(count) + " " + what + "; at most " + std::to_string(limit) +
                   " are supported",
               std::string("remove some ") + what);
+}
+
+void checkLights(std::span<const Light> lights) {
+  checkCount("lights", lights.size(), kMaxLights);
+  const uint32_t layers = shadowLayers(lights);
+  if (layers <= kMaxShadowLayers) return;
+  throw Error(ExitCode::BadInput,
+              "the lights of the scene need " + std::to_string(layers) + " shadow maps; at most " +
+                  std::to_string(kMaxShadowLayers) + " are supported",
+              "replace point lights, which need six each, by spot lights, or remove some");
 }
 
 TransformRows rowsOf(const glm::mat4& m) {
@@ -170,7 +181,7 @@ struct GpuScene::Impl {
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
-    checkCount("lights", scene.lights.size(), kMaxLights);
+    checkLights(scene.lights);
     if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
     indices = makeBuffer(device, "scene indices", indexList(g),
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -390,7 +401,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geom
 GpuScene::~GpuScene() = default;
 
 void GpuScene::update(const Frame& frame, uint32_t slot) {
-  checkCount("lights", frame.lights.size(), kMaxLights);
+  checkLights(frame.lights);
   checkCount("views", frame.views.size(), kMaxViews);
   if (slot >= impl_->sets.size())
     throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");

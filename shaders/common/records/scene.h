@@ -52,7 +52,7 @@ struct ViewBlock {
 SHARED_SIZE(ViewBlock, 368)
 SHARED_OFFSET(ViewBlock, gaze, 336)
 
-SHARED_CONSTANT uint kMaxLights = 64u;
+SHARED_CONSTANT uint kMaxLights = 128u;
 
 SHARED_CONSTANT uint kLightDirectional = 0u, kLightPoint = 1u, kLightSpot = 2u;  // LightRecord::type
 

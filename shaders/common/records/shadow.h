@@ -5,7 +5,7 @@
 
 SHARED_BEGIN(fovea::scene)
 
-SHARED_CONSTANT uint kMaxShadowLayers = kMaxLights * 6u;  // six faces each
+SHARED_CONSTANT uint kMaxShadowLayers = 576u;  // as many ShadowViews as fit into a uniform block of 64 KiB
 
 // Projection of one layer. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit). With
 // near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
