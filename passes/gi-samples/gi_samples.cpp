@@ -11,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/fovea.h"
 #include "passes/materials.h"
 #include "passes/near-field/near_field_tracer.h"
 #include "shaders/common/records/reservoir.h"
@@ -114,6 +115,9 @@ class GiSamples : public Pass {
                 "edges of the longest path from a light to the eye, as in pass path-trace");
     d.parameter("spacing", integer(1, 1, 2),
                 "1: every pixel gets a sample; 2: in each frame one of each block of 2 x 2 pixels, in turn");
+    d.parameter("outside_spacing", integer(1, 1, 2),
+                "the same for pixels outside of the fovea, if it is wider than `spacing`");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter("paths", integer(1, 1, 64), "paths that are traced for a sample, of which one is chosen");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those from the eye and towards lights");
@@ -128,7 +132,9 @@ class GiSamples : public Pass {
     std::ranges::fill(reservoirs, Reservoir{});
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
     const glm::uvec2 size = ctx.view().size;
-    const uint32_t spacing = uint32_t(p.integer("spacing")), turn = uint32_t(ctx.frameNumber());
+    const uint32_t inside = uint32_t(p.integer("spacing")), turn = uint32_t(ctx.frameNumber()),
+                   outside = std::max(inside, uint32_t(p.integer("outside_spacing")));
+    const scene::Fovea fovea = scene::makeFovea(ctx.view().gaze, size, float(p.real("fovea_radius")));
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
     const Sampler sampler(frame, ctx.view(), *rays, fullMaterials(p), uint32_t(p.integer("depth")),
                           uint32_t(p.integer("paths")), turn);
@@ -138,7 +144,10 @@ class GiSamples : public Pass {
       uint64_t count = 0, found = 0;
       for (uint32_t y = next++; y < size.y; y = next++)
         for (uint32_t x = 0; x < size.x; ++x) {
-          const glm::uvec2 pixel(x, y), block = pixel / spacing;
+          const glm::uvec2 pixel(x, y);
+          const bool seen = glm::distance(glm::vec2(pixel) + 0.5f, fovea.centre) <= fovea.radius;
+          const uint32_t spacing = seen ? inside : outside;
+          const glm::uvec2 block = pixel / spacing;
           if (pixel != spacing * block + samplePixel(turn, spacing, block)) continue;
           Reservoir& reservoir = reservoirs[size_t(y) * size.x + x];
           reservoir = sampler.sampleAt(pixel, count);

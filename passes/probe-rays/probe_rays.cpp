@@ -41,6 +41,9 @@ class ProbeRays : public Pass {
                 "cells along the longest axis of the scene's bounds, with a probe in each");
     d.parameter("spacing", real(0, 0, 1e6, "m"), "least width of a cell, which makes the probes fewer");
     d.parameter("rays", integer(128, 8, 512), "rays of each probe; of one inside geometry a quarter of them");
+    d.parameter("outside_share", integer(1, 1, 16),
+                "probes that light nothing in the fovea trace one of so many of their rays");
+    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
     d.parameter(
         "bias", real(0.25, 0, 2, "spacings of the grid"),
         "how far points are moved off their surface where probes light them, as in pass probe-sample");
@@ -66,6 +69,8 @@ class ProbeRays : public Pass {
                          ctx.inputAs<scene::Probe>("probes.states")};
     settings.bias = float(p.real("bias"));
     settings.feedback = p.flag("feedback");
+    settings.outsideShare = uint32_t(p.integer("outside_share"));
+    settings.foveaRadius = float(p.real("fovea_radius"));
     settings.fullMaterials = fullMaterials(p);
     checkSize(settings.previous.states.size(), hits.size() / directions.size());
     std::ranges::fill(hits, glm::vec4(0));

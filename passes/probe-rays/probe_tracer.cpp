@@ -9,6 +9,7 @@
 #include "framework/base/threads.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/fovea.h"
 
 namespace fovea::passes {
 namespace {
@@ -58,6 +59,29 @@ class Tracer {
   uint32_t stream_;
 };
 
+// Whether a probe lights points that the eye sees in the fovea: those within a cell of it.
+class InFovea {
+ public:
+  InFovea(const View& view, float spacing, float foveaRadius)
+      : view_(view),
+        fovea_(makeFovea(view.gaze, glm::vec2(view.size), foveaRadius)),
+        reach_(std::sqrt(3.0f) * spacing) {}
+
+  bool operator()(glm::vec3 probe) const {
+    const glm::vec4 clip = view_.worldToClip * glm::vec4(probe, 1);
+    if (clip.w < reach_) return glm::distance(probe, view_.eye) < 2 * reach_;
+    const glm::vec2 size(view_.size), ndc = glm::vec2(clip) / clip.w,
+                                      pixel = size * glm::vec2(0.5f + 0.5f * ndc.x, 0.5f + 0.5f * ndc.y);
+    const float reach = 0.5f * size.x * view_.viewToClip[0][0] * reach_ / clip.w;
+    return glm::distance(pixel, fovea_.centre) <= fovea_.radius + reach;
+  }
+
+ private:
+  const View& view_;
+  Fovea fovea_;
+  float reach_;  // m
+};
+
 }  // namespace
 
 void probeDirections(uint32_t seed, uint32_t frame, std::span<glm::vec4> directions) {
@@ -74,6 +98,7 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
                                   const ProbeRaySettings& settings, std::span<const glm::vec4> directions,
                                   std::span<glm::vec4> hits) {
   const Tracer tracer(frame, view, rays, settings);
+  const InFovea inFovea(view, settings.grid.spacing, settings.foveaRadius);
   const uint32_t probes = probesOf(settings.grid), count = uint32_t(directions.size());
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0, inside = 0;
@@ -84,7 +109,8 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
       for (uint32_t probe = first; probe < std::min(first + kProbesAtOnce, probes); ++probe) {
         const Probe& state = settings.previous.states[probe];
         const glm::vec3 origin = probePosition(settings.grid, probe, state);
-        const uint32_t step = state.inside > 0 ? kInsideShare : 1;
+        const uint32_t step =
+            std::max(state.inside > 0 ? kInsideShare : 1u, inFovea(origin) ? 1u : settings.outsideShare);
         off += state.inside > 0;
         const auto of = hits.subspan(size_t(probe) * count, count);
         for (uint32_t i = 0; i < count; ++i)

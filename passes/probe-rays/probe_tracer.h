@@ -16,6 +16,9 @@ struct ProbeRaySettings {
   ProbeImages previous;  // what the probes knew after the previous frame
   bool feedback = true;  // whether surfaces reflect the light that probes know, else only that of emitters
   float bias = 0.25f;    // ProbeField
+  // Probes that light nothing in the fovea trace one of so many rays; foveaRadius: image widths.
+  uint32_t outsideShare = 1;
+  float foveaRadius = 0.25f;
   bool fullMaterials = false;  // framework/scene/materials/bounced.h
   uint32_t threads = 0;        // 0 uses one per core; the result does not depend on it
 };

@@ -121,7 +121,7 @@ TEST(RestirGi, MeanIsTheLightOfTracedPathsUnlessBiased) {
   EXPECT_LT(unbiased.error, 0.003);
   EXPECT_LT(unbiased.worstPart, 0.03);
   // These are noisier.
-  for (const char* set : {"permutation=true", "spacing=2"}) {
+  for (const char* set : {"permutation=true", "spacing=2", "gi-samples.outside_spacing=2"}) {
     const Compared c = measured(set, 4, {set});
     EXPECT_NEAR(c.ratio, 1, 0.025);
     EXPECT_LT(c.worstPart, 0.06);

@@ -212,6 +212,29 @@ TEST(GiSamples, BlocksTakeTurns) {
   for (const int n : turns) EXPECT_EQ(n, 1);
 }
 
+// Inside a fovea of a quarter of the width every pixel gets a sample in every frame, outside one of four in turn.
+TEST(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
+  const Room room = closedRoom(true, 8, kSize);
+  const glm::vec2 gaze = 0.5f * glm::vec2(kSize);
+  std::vector<int> turns(room.pixels.size());
+  for (uint32_t n = 1; n <= 4; ++n) {
+    PassTest test("gi-samples");
+    test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
+    test.param("depth", 3).param("outside_spacing", 2).param("fovea_radius", 0.25);
+    test.run(n);
+    const auto frame = test.values<Reservoir>("reservoirs");
+    for (size_t i = 0; i < frame.size(); ++i) turns[i] += frame[i].count > 0;
+  }
+  int inside = 0;
+  for (int i = 0; i < int(turns.size()); ++i) {
+    const glm::vec2 pixel(float(i % kSize.x) + 0.5f, float(i / kSize.x) + 0.5f);
+    const bool seen = glm::distance(pixel, gaze) <= 0.25f * float(kSize.x);
+    EXPECT_EQ(turns[size_t(i)], seen ? 4 : 1) << i;
+    inside += seen;
+  }
+  EXPECT_NEAR(inside, glm::pi<double>() * 7.25 * 7.25, 8);
+}
+
 TEST(GiSamples, EmptySceneHasNone) {
   PassTest test("gi-samples");
   test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y));

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "fovea/error.h"
+#include "framework/base/random.h"
 #include "passes/probe-rays/probe_tracer.h"
 #include "tests/passes/probe_reference.h"
 #include "tests/passes/ray_reference.h"
@@ -163,6 +164,39 @@ TEST(ProbeRays, AProbeInsideTracesFewer) {
   EXPECT_EQ(traced.inside, 1);
   for (int i = 0; i < kRays; ++i) EXPECT_EQ(traced.hits[size_t(i)].a == 0, i % 4 != 0) << i;
   for (int i = kRays; i < kRoom * kRays; ++i) EXPECT_GT(traced.hits[size_t(i)].a, 0) << i;
+}
+
+// Probes more than a cell away from all that the eye sees in the fovea trace a quarter of their rays. Points around each
+// probe show which must not.
+TEST(ProbeRays, OutsideOfTheFoveaProbesTraceFewer) {
+  scene::Scene s = roomWithBox();
+  s.cameras[0].position = {1.6f, 0.2f, 1.7f};
+  const scene::View view = scene::makeView(s.cameras[0], {64, 64}, scene::flatten(s));
+  PassTest test("probe-rays");
+  test.scene(s).viewSize(64, 64).param("probes", 8).param("rays", kRays);
+  test.param("outside_share", 4).param("fovea_radius", 0.05);
+  evenProbes(glm::vec3(1), 512).wire(test, "probes");
+  test.run();
+  const auto hits = test.values<glm::vec4>("rays.hits");
+  int fewer = 0;
+  for (int probe = 0; probe < 512; ++probe) {
+    const glm::vec3 at = glm::vec3(-1.75f) + 0.5f * glm::vec3(probe % 8, probe / 8 % 8, probe / 64);
+    bool seen = glm::distance(at, view.eye) < 0.8f;
+    for (uint32_t k = 0; k < 300; ++k) {
+      const auto random = [&](uint32_t axis) { return uniformFloat(hashCombine(k, axis)); };
+      const glm::vec3 corner = at + glm::vec3(random(0), random(1), random(2)) - 0.5f;  // twice a cell
+      const glm::vec4 clip = view.viewToClip * view.worldToView * glm::vec4(corner, 1);
+      const glm::vec2 pixel = 32.0f * (glm::vec2(clip) / clip.w + 1.0f);
+      seen = seen || (clip.w > 0 && glm::distance(pixel, glm::vec2(32)) < 0.05f * 64);
+    }
+    int traced = 0;
+    for (int i = 0; i < kRays; ++i) traced += hits[size_t(probe * kRays + i)].a != 0;
+    EXPECT_TRUE(traced == kRays || traced == kRays / 4) << probe;
+    if (seen) EXPECT_EQ(traced, kRays) << probe;
+    fewer += traced < kRays;
+  }
+  EXPECT_GT(fewer, 300);
+  EXPECT_LT(fewer, 500);
 }
 
 TEST(ProbeRays, TheSkyBringsItsLight) {
