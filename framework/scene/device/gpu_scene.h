@@ -23,14 +23,15 @@ inline constexpr uint32_t kMaxViews = 8;
 class GpuScene : public FrameDescriptors {
  public:
   // Uploads everything and waits for the upload. Throws Error(OutOfMemory) naming what did not fit, and
-  // Error(BadInput) if there are more than kMaxLights lights or a texture is larger than the device supports.
+  // Error(BadInput) if there are more than kMaxLights lights, if these need more than kMaxShadowLayers shadow maps, or if
+  // a texture is larger than the device supports.
   // fullMaterials: whether a pass asks for all that glTF says of materials. Surfaces from which light bounces on its
   // way to the picture are diffuse in any case, but metals are then no longer black: they keep their colour.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
            bool fullMaterials = false);
   ~GpuScene() override;
 
-  // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views or kMaxLights lights.
+  // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views, or as above.
   void update(const Frame& frame, uint32_t slot) override;
   // Records the commands that bring positions() and attributes() to that frame and write the previous frame's
   // positions of moving vertices, which binding 9 shows.
