@@ -24,6 +24,12 @@ bool same(const scene::Light& a, const scene::Light& b) {
          a.position == b.position && a.direction == b.direction;
 }
 
+// Points at which a side evaluates each light. The points of all lights together are enough of them for an average.
+int32_t tapsOfEach(int32_t taps, size_t lights) {
+  constexpr int32_t kMostOfAll = 96;
+  return std::clamp(kMostOfAll / int32_t(std::max<size_t>(lights, 1)), 1, taps);
+}
+
 class LightInject : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -57,7 +63,10 @@ class LightInject : public Pass {
         "moving object may have appeared or gone; if false, all sides are lit again in every frame");
     d.parameter("emission", flag(true), "whether the radiance includes what the surfaces emit themselves");
     ParameterSpec taps = integer(6, 1, 64);
-    d.parameter("taps", taps, "number of fixed points on each side at which light and shadow are evaluated");
+    d.parameter(
+        "taps", taps,
+        "number of fixed points on each side at which light and shadow are evaluated; of more than 16 lights "
+        "each has fewer, so that there are no more than 96, or one for each light");
     d.parameter("offset", real(0.25, 0, 2, "cells"),
                 "height above the side's plane at which shadows are evaluated, as the plane cuts through "
                 "curved surfaces and edges");
@@ -81,6 +90,10 @@ class LightInject : public Pass {
           .define("ONE_LIGHT", lights)
           .define("SHADOW_FILTER", parameter("filter"))
           .define("EMISSION", parameter("emission"))
+          .constant("taps",
+                    [](const RecordContext& ctx) {
+                      return tapsOfEach(int32_t(ctx.parameters().integer("taps")), ctx.frame().lights.size());
+                    })
           .indirect("work");
     }
     return d;

@@ -22,17 +22,18 @@ uniform usamplerBuffer work;    // see select.comp
 LARGE_TEXELS(uint, listed);
 
 layout(push_constant) uniform Constants {
-  int taps;
+  int taps;      // of each light
   float offset;  // cells
 };
 
 const uint kLightInject = 0x11c7u;  // random stream
 
 // Irradiance of a side from one light, averaged over a lattice of points (Roberts, "The Unreasonable Effectiveness of
-// Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop, as loading it is costly.
-vec3 irradianceBy(LightRecord light, VoxelSide side, Patch area, vec2 first, float cell) {
+// Quasirandom Sequences", 2018) that starts at `first`. The light is the outer loop, as loading it is costly, and each
+// of them has other points of the lattice.
+vec3 irradianceBy(LightRecord light, int index, VoxelSide side, Patch area, vec2 first, float cell) {
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < taps; ++i) {
+  for (int i = index * taps; i < (index + 1) * taps; ++i) {
     vec2 p = 2.0 * fract(first + float(i) * vec2(0.7548776662, 0.5698402910)) - 1.0;
     vec3 position = side.position + p.x * area.u + p.y * area.v;
     LightSample incoming = sampleLight(light, position);
@@ -55,9 +56,9 @@ vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
   vec2 first = vec2(uniformFloat(bits), uniformFloat(hashPcg(bits)));
   vec3 irradiance = vec3(0.0);
 #if ONE_LIGHT
-  irradiance = irradianceBy(lights[0], side, area, first, grid.cell);
+  irradiance = irradianceBy(lights[0], 0, side, area, first, grid.cell);
 #else
-  for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], side, area, first, grid.cell);
+  for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], int(i), side, area, first, grid.cell);
 #endif
   vec3 result = side.reflectance * irradiance / kPi;
 #if EMISSION

@@ -19,7 +19,7 @@ const glm::vec3 kRho(0.5f, 0.25f, 0.75f);
 
 // The point set of a side, as light_inject.comp describes it.
 std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelSide& side, uint32_t number,
-                               int taps) {
+                               int taps, int light) {
   const glm::vec3 at = grid.worldToVoxel(side.position);
   const glm::vec3 low = grid.voxelToWorld(glm::floor(at)), n = side.normal, a = glm::abs(n);
   const glm::vec3 reach = glm::max(glm::min(side.position - low, low + grid.cell - side.position), 0.0f);
@@ -29,7 +29,7 @@ std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelS
   const glm::uvec3 cell(glm::max(at, glm::vec3(0)));
   const uint32_t bits = randomStream(0x11c7, cell.x, cell.y, 2 * cell.z + (number & 1));
   std::vector<glm::dvec3> points;
-  for (int i = 0; i < taps; ++i) {
+  for (int i = light * taps; i < (light + 1) * taps; ++i) {
     glm::vec3 p(0);
     p[u] = shrink * reach[u] * (2 * glm::fract(uniformFloat(bits) + float(i) * 0.7548776662f) - 1);
     p[v] = shrink * reach[v] * (2 * glm::fract(uniformFloat(hashPcg(bits)) + float(i) * 0.5698402910f) - 1);
@@ -61,12 +61,15 @@ std::vector<scene::Light> everyLight() {
           spotLight({-0.5f, 0.8f, 0.5f}, {0.4f, -1, -0.2f}, 0.3f, 0.8f, {5, 4, 6}), ranged};
 }
 
+// Of 24 lights each is evaluated at 96 / 24 points.
 TEST(LightInject, EveryLightEqualsTheReference) {
-  for (const int taps : {1, 6}) {
+  const struct { int taps, copies, expected; } cases[] = {{1, 1, 1}, {6, 1, 6}, {6, 6, 4}};
+  for (const auto& [asked, copies, taps] : cases) {
     scene::Scene model = mixedScene();
-    model.lights = everyLight();
+    for (int i = 0; i < copies; ++i)
+      for (const scene::Light& light : everyLight()) model.lights.push_back(light);
     const VoxelScene s(model, 24);
-    const auto got = inject(s, {.taps = taps});
+    const auto got = inject(s, {.taps = asked});
     size_t compared = 0;
     for (uint32_t i = 0; i < s.sides().size(); ++i) {
       const scene::VoxelSide& side = s.sides()[i];
@@ -75,9 +78,9 @@ TEST(LightInject, EveryLightEqualsTheReference) {
         continue;
       }
       glm::dvec3 want(0);
-      for (const glm::dvec3 p : tapsOf(s.voxels.grid, side, i, taps))
-        for (const scene::Light& light : model.lights)
-          want += irradiance(light, p, side.normal) / double(taps);
+      for (size_t light = 0; light < model.lights.size(); ++light)
+        for (const glm::dvec3 p : tapsOf(s.voxels.grid, side, i, taps, int(light)))
+          want += irradiance(model.lights[light], p, side.normal) / double(taps);
       want = glm::dvec3(side.reflectance) * want / glm::pi<double>() + glm::dvec3(side.emission);
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(got[i][c], want[c], 2e-3 * want[c] + 1e-5) << "side " << i;
       ASSERT_NEAR(got[i].w, luminance(got[i]), 1e-5f + 1e-5f * got[i].w);
