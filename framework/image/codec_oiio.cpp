@@ -121,7 +121,5 @@ constexpr Library kOpenImageIO{write, read, decode8};
 
 // What codec_load.cpp asks for.
 extern "C" const fovea::image::codec::Library* fovea_image_library() {
-  // The older reader of EXR files reserves and clears what the size of an attribute claims, up to 2 GiB.
-  OIIO::attribute("openexr:core", 1);
   return &fovea::image::codec::kOpenImageIO;
 }

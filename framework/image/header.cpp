@@ -35,12 +35,57 @@ std::optional<HeaderSize> ofJpeg(std::span<const uint8_t> bytes) {
   return {};
 }
 
+uint32_t littleEndian(std::istream& in) {
+  std::array<char, 4> bytes{};
+  in.read(bytes.data(), bytes.size());
+  uint32_t value = 0;
+  for (size_t i = bytes.size(); i-- > 0;) value = value << 8 | uint8_t(bytes[i]);
+  return value;
+}
+
+// Whether what lies in an attribute of this type and size, of which the stream is at the beginning, claims more.
+bool claimsMore(std::istream& in, const std::string& type, uint64_t size) {
+  if (type == "preview") {  // width, height, and four bytes a pixel
+    const uint64_t width = littleEndian(in), height = littleEndian(in);
+    return size < 8 || (height > 0 && width > (size - 8) / 4 / height);
+  }
+  if (type == "stringvector")  // each with its length before it
+    for (uint64_t left = size; in && left > 0;) {
+      const uint64_t length = left >= 4 ? littleEndian(in) : left;
+      if (length + 4 > left) return true;
+      in.seekg(std::streamoff(length), std::ios::cur);
+      left -= length + 4;
+    }
+  return false;
+}
+
 }  // namespace
 
 std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes) {
   static constexpr std::array<uint8_t, 4> kPng = {0x89, 'P', 'N', 'G'};
   if (bytes.size() >= 4 && std::equal(kPng.begin(), kPng.end(), bytes.begin())) return ofPng(bytes);
   if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff) return ofJpeg(bytes);
+  return {};
+}
+
+// A header is a list of attributes, each with its name, type and size, and ends with an empty name. With several parts
+// there is a list of headers, which ends with an empty one ("OpenEXR File Layout").
+std::string whyForged(std::istream& exr) {
+  exr.seekg(0, std::ios::end);
+  const auto total = uint64_t(exr.tellg());
+  exr.seekg(4);
+  const bool severalParts = (littleEndian(exr) & 0x1000u) != 0;
+  do {
+    for (std::string name, type; std::getline(exr, name, '\0') && !name.empty();) {
+      std::getline(exr, type, '\0');
+      const uint64_t size = littleEndian(exr);
+      if (!exr) return {};  // it ends here
+      const auto begin = uint64_t(exr.tellg());
+      if (size > total - begin || claimsMore(exr, type, size))
+        return "its attribute `" + name + "` claims more bytes than there are";
+      exr.seekg(std::streamoff(begin + size));
+    }
+  } while (severalParts && exr.peek() > 0);
   return {};
 }
 

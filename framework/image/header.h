@@ -1,7 +1,8 @@
-// The size of a picture, read from the first bytes of a file without decoding it.
+// What the first bytes of a picture claim, read without decoding it.
 #pragma once
 
 #include <cstdint>
+#include <istream>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,5 +20,9 @@ std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes);
 // thousandfold, so that a small file can ask for gigabytes; whatever shows something has a byte for each 64 pixels, and
 // up to 2^26 pixels may be plain.
 std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
+
+// Why an EXR file is not read: an attribute of its header claims more bytes than it can have, or "". OpenEXR reserves and
+// clears what it claims, up to 2 GiB, before it notices. What else is wrong with the file is left to OpenEXR.
+std::string whyForged(std::istream& exr);
 
 }  // namespace fovea::image

@@ -275,6 +275,11 @@ void checkReadable(const fs::path& file) {
   noteRead(file);
 }
 
+bool startsAsExr(std::istream& stream) {
+  char magic[4] = {};
+  return stream.read(magic, sizeof(magic)) && std::memcmp(magic, "\x76\x2f\x31\x01", sizeof(magic)) == 0;
+}
+
 // What a header claims is refused before it is decoded.
 codec::Accept acceptor(const fs::path& file) {
   return [file](uint32_t width, uint32_t height, size_t channels) {
@@ -290,6 +295,8 @@ codec::Accept acceptor(const fs::path& file) {
 File read(const fs::path& file) {
   checkReadable(file);
   try {
+    if (std::ifstream stream(file, std::ios::binary); startsAsExr(stream))
+      if (const std::string reason = whyForged(stream); !reason.empty()) cannotRead(file.string(), reason);
     return toFile(extensionOf(file) == "pfm" ? readPfm(file) : codec::library().read(file, acceptor(file)));
   } catch (const Error&) {
     throw;

@@ -1,4 +1,5 @@
 #include "fovea/image.h"
+#include "framework/image/header.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
@@ -290,6 +292,45 @@ TEST(Colors, SrgbMatchesTheStandard) {
   EXPECT_EQ(srgbDecode(7), 1);
   for (int i = 0; i < 256; ++i)
     EXPECT_NEAR(srgbEncode(srgbDecode(float(i) / 255)), float(i) / 255, 1e-6) << i;
+}
+
+std::string littleEndian(uint32_t value) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes += char(value >> 8 * i & 0xff);
+  return bytes;
+}
+
+// An EXR header with one attribute that claims `size` bytes and has these; `flags` are those of its version field.
+std::string exrHeader(const std::string& type, uint32_t size, const std::string& value, uint32_t flags = 0) {
+  using namespace std::string_literals;
+  return "\x76\x2f\x31\x01"s + littleEndian(2 | flags) + "thing"s + '\0' + type + '\0' + littleEndian(size) +
+         value + '\0';
+}
+
+// Sizes that fit are left to OpenEXR, in files that are cut short as well.
+TEST(ImageHeaders, ForgedSizesOfExrAttributesAreFound) {
+  const auto forged = [](const std::string& bytes) {
+    std::istringstream stream(bytes);
+    return whyForged(stream);
+  };
+  const std::string eight(8, 'x');
+  EXPECT_EQ(forged(exrHeader("string", 8, eight)), "");
+  EXPECT_THAT(forged(exrHeader("string", 10, eight)), HasSubstr("`thing` claims more bytes"));
+  EXPECT_NE(forged(exrHeader("string", 0xffffffff, eight)), "");
+  const std::string preview = littleEndian(2) + littleEndian(1) + eight;
+  EXPECT_EQ(forged(exrHeader("preview", 16, preview)), "");
+  EXPECT_NE(forged(exrHeader("preview", 15, preview)), "");
+  EXPECT_NE(forged(exrHeader("preview", 16, littleEndian(1u << 31) + littleEndian(1u << 31) + eight)), "");
+  const std::string words = littleEndian(3) + "one" + littleEndian(0) + littleEndian(4) + "four";
+  EXPECT_EQ(forged(exrHeader("stringvector", 19, words)), "");
+  EXPECT_NE(forged(exrHeader("stringvector", 19, words.substr(0, 11) + littleEndian(5) + "four")), "");
+  EXPECT_NE(forged(exrHeader("stringvector", 17, words + "....")), "");
+  // A second part.
+  const std::string second = exrHeader("string", 100, eight).substr(8);
+  EXPECT_EQ(forged(exrHeader("string", 8, eight) + second), "");
+  EXPECT_NE(forged(exrHeader("string", 8, eight, 0x1000) + second), "");
+  const std::string whole = exrHeader("stringvector", 19, words, 0x1000);
+  for (size_t length = 0; length < whole.size(); ++length) forged(whole.substr(0, length));
 }
 
 }  // namespace
