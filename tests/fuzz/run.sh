@@ -18,7 +18,7 @@ targets=("$@")
 good=tests/data/hostile/good
 seeds() {
   case $1 in
-    gaze_fuzz) ls $good/*.csv samples/scenes/*.csv ;;
+    gaze_fuzz) ls $good/*.csv samples/scenes/gazes/*.csv ;;
     gltf_fuzz) ls $good/*.gl* tests/fuzz/corpus/gltf/* ;;
     image_fuzz) ls tests/fuzz/corpus/image/* ;;
     graph_fuzz) ls tests/fuzz/corpus/graph/* ;;

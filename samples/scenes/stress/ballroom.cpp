@@ -1,17 +1,16 @@
-// A ballroom lit by a hundred small lamps, all of which move: ten wheels under the ceiling with ten lamps each, of which
-// eight shine down and two to all sides.
+// A ballroom lit by a hundred small lamps, all of which move: ten wheels under the ceiling with ten lamps each, of
+// which eight shine down and two to all sides.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr Shell kHall = {.x = 7, .height = 5.5f, .back = -7, .front = 7, .thick = 0.3f};
 constexpr int kWheels = 10, kLamps = 10;

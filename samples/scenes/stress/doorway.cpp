@@ -1,15 +1,14 @@
 // Two rooms with a door between them. The lamp is in the other room, so that all light in this one comes in through the
 // door, which opens.
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 // The rooms lie along x, on both sides of a wall from -kWall / 2 to kWall / 2; this one is at x > 0.
 constexpr float kX = 4.2f, kHeight = 2.6f, kZ = 2.1f, kWall = 0.2f;

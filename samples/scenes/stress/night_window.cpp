@@ -1,15 +1,14 @@
 // A dark room at night. All light comes through one window, from a bright sign on the other side of the street and from
 // a street lamp, and what it meets first is a small part of the room.
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr float kX = 2.4f, kHeight = 2.6f, kBack = -2.2f, kFront = 2.4f, kWall = 0.25f;
 // The window in the wall at -kX, along z and y.

@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr int kTerraces = 5, kPlants = 420;
 constexpr float kStep = 1.5f, kDepth = 4, kX = 14;  // of a terrace; they run along x

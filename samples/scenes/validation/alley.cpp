@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr float kX = 1.65f, kFront = 3.2f, kBack = -10.5f, kHigh = 5.6f;
 

@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/textures.h"
 #include "samples/scenes/builtin/modelling/upholstery.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr float kSmall = 1.0f / 12;
 // Inside of one storey.

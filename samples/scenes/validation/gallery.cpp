@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 struct Palette {
   uint32_t wall, floor, red, blue, panel, frame, plinth, bronze, marble, yellow, black, leather, steel, rope,

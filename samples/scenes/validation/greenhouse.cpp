@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr float kX = 2.1f, kBack = -4.2f, kFront = 3.0f, kSill = 0.62f, kEave = 2.15f, kRidge = 3.25f;
 

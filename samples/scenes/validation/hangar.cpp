@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/textures.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 constexpr float kX = 22, kZ = 14, kEave = 8.5f, kRidge = 13, kWall = 0.3f;
 constexpr float kDoorWidth = 17, kDoorHeight = 6.8f;

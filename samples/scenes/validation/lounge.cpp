@@ -1,16 +1,15 @@
 // A lounge in the evening: a buttoned sofa and an armchair, a floor lamp whose bulb is a point light, and three spots
 // under the ceiling that light pictures and the table. The walls are dark, so that the light near the lamps counts.
 #include "fovea/scene.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"
 #include "samples/scenes/builtin/modelling/textures.h"
 #include "samples/scenes/builtin/modelling/upholstery.h"
-#include "samples/scenes/validation/parts.h"
 
 namespace fovea::scene {
 namespace {
 
 using namespace model;
-using namespace validation;
 
 struct Palette {
   uint32_t wall, ceiling, floor, paint, wood, dark, brass, shade, rug, leather, velvet, wool, ochre, rose,

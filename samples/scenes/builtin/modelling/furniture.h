@@ -1,12 +1,12 @@
-// What several validation scenes are built of. Private to this folder. Lengths are in metres; each piece stands on
-// y = 0 about the origin and looks along +z unless stated otherwise.
+// What several validation and stress scenes are built of: rooms, furniture and lamps. Lengths are in metres; each piece
+// stands on y = 0 about the origin and looks along +z unless stated otherwise.
 #pragma once
 
 #include <string>
 
 #include "samples/scenes/builtin/modelling/model.h"
 
-namespace fovea::scene::validation {
+namespace fovea::scene::model {
 
 // Textures that most of the scenes share. They are near white, for materials that multiply them by a colour.
 struct Stock {
@@ -62,4 +62,4 @@ void addPoint(model::SceneBuilder& builder, const std::string& name, glm::vec3 c
 void addSpot(model::SceneBuilder& builder, const std::string& name, glm::vec3 color, float intensity,
              glm::vec3 where, glm::vec3 direction, float inner, float outer);
 
-}  // namespace fovea::scene::validation
+}  // namespace fovea::scene::model

@@ -1,13 +1,11 @@
-#include "samples/scenes/validation/parts.h"
+#include "samples/scenes/builtin/modelling/furniture.h"
 
 #include <cmath>
 
 #include "samples/scenes/builtin/modelling/textures.h"
 #include "samples/scenes/builtin/modelling/upholstery.h"
 
-namespace fovea::scene::validation {
-
-using namespace model;
+namespace fovea::scene::model {
 
 Stock makeStock(SceneBuilder& b, uint32_t seed) {
   Stock s{};
@@ -243,4 +241,4 @@ void addSpot(SceneBuilder& b, const std::string& name, glm::vec3 color, float in
   b.scene.lights.push_back(l);
 }
 
-}  // namespace fovea::scene::validation
+}  // namespace fovea::scene::model
