@@ -112,7 +112,7 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& c
   size_t bestDistance = limit + 1;
   for (const std::string& candidate : candidates) {
     const std::string_view name = std::string_view(candidate).substr(0, 64);
-    // The difference of the lengths has to be inserted.
+    // The difference of the lengths has to be inserted or removed, so the distance is at least that.
     if (std::max(word.size(), name.size()) - std::min(word.size(), name.size()) >= bestDistance) continue;
     const size_t distance = editDistance(word, name);
     if (distance < bestDistance) {

@@ -1,7 +1,6 @@
 #include "framework/scene/lights.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace fovea::scene {
@@ -41,8 +40,8 @@ uint32_t shadowLayers(std::span<const Light> lights) {
 }
 
 uint32_t mostShadowTexels(uint32_t layers) {
-  constexpr uint64_t kTexels = uint64_t(1) << 28;
-  return std::bit_floor(uint32_t(std::sqrt(double(kTexels) / std::max(layers, 1u))));
+  constexpr uint64_t kTexels = uint64_t(1) << 27;
+  return uint32_t(std::sqrt(double(kTexels) / std::max(layers, 1u)));
 }
 
 }  // namespace fovea::scene

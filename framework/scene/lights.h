@@ -25,8 +25,8 @@ LightSample sampleLight(const Light& light, glm::vec3 position);
 uint32_t shadowLayers(const Light& light);
 uint32_t shadowLayers(std::span<const Light> lights);
 
-// Width and height to which shadow maps with so many layers are limited, texels: the largest power of two with which all
-// of them have at most 2^28 texels, which are 1 GiB.
+// Width and height to which shadow maps with so many layers are limited, texels: with it all of them have at most 2^27
+// texels, which are 512 MiB. Two images of them are kept.
 uint32_t mostShadowTexels(uint32_t layers);
 
 // Cosines of the half angles of the cone. The outer cosine is below the inner one even if a file gives equal angles.

@@ -1,5 +1,7 @@
 #include "passes/probe-rays/probe_tracer.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -59,27 +61,38 @@ class Tracer {
   uint32_t stream_;
 };
 
-// Whether a probe lights points that the eye sees in the fovea: those within a cell of it.
+// Whether a probe lights points that the eye may see in the fovea: those less than a cell away from its own cell's
+// centre, and the bias off their surface.
 class InFovea {
  public:
-  InFovea(const View& view, float spacing, float foveaRadius)
+  InFovea(const View& view, const ProbeRaySettings& settings)
       : view_(view),
-        fovea_(makeFovea(view.gaze, glm::vec2(view.size), foveaRadius)),
-        reach_(std::sqrt(3.0f) * spacing) {}
+        fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)),
+        reach_((std::sqrt(3.0f) + settings.bias) * settings.grid.spacing) {
+    for (size_t i = 0; i < rim_.size(); ++i) {
+      const float a = glm::two_pi<float>() * float(i) / float(rim_.size());
+      rim_[i] = glm::normalize(
+          view.rayDirection(fovea_.centre + fovea_.radius * glm::vec2(std::cos(a), std::sin(a))));
+    }
+  }
 
-  bool operator()(glm::vec3 probe) const {
-    const glm::vec4 clip = view_.worldToClip * glm::vec4(probe, 1);
-    if (clip.w < reach_) return glm::distance(probe, view_.eye) < 2 * reach_;
-    const glm::vec2 size(view_.size), ndc = glm::vec2(clip) / clip.w,
-                                      pixel = size * glm::vec2(0.5f + 0.5f * ndc.x, 0.5f + 0.5f * ndc.y);
-    const float reach = 0.5f * size.x * view_.viewToClip[0][0] * reach_ / clip.w;
-    return glm::distance(pixel, fovea_.centre) <= fovea_.radius + reach;
+  bool operator()(glm::vec3 centre) const {
+    const glm::vec3 to = centre - view_.eye;
+    const float distance = glm::length(to);
+    if (distance <= reach_) return true;
+    const glm::vec4 clip = view_.worldToClip * glm::vec4(centre, 1);
+    const glm::vec2 pixel = glm::vec2(view_.size) * (0.5f * glm::vec2(clip) / clip.w + 0.5f);
+    if (clip.w > 0 && glm::distance(pixel, fovea_.centre) <= fovea_.radius) return true;
+    // The sphere around the probe meets the cone of the fovea where the angle to its rim is below that of the sphere.
+    const float least = std::sqrt(distance * distance - reach_ * reach_);
+    return std::ranges::any_of(rim_, [&](glm::vec3 d) { return glm::dot(d, to) >= least; });
   }
 
  private:
   const View& view_;
   Fovea fovea_;
-  float reach_;  // m
+  float reach_;                    // m
+  std::array<glm::vec3, 64> rim_;  // unit
 };
 
 }  // namespace
@@ -98,7 +111,7 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
                                   const ProbeRaySettings& settings, std::span<const glm::vec4> directions,
                                   std::span<glm::vec4> hits) {
   const Tracer tracer(frame, view, rays, settings);
-  const InFovea inFovea(view, settings.grid.spacing, settings.foveaRadius);
+  const InFovea inFovea(view, settings);
   const uint32_t probes = probesOf(settings.grid), count = uint32_t(directions.size());
   std::atomic<uint32_t> next = 0;
   std::atomic<uint64_t> traced = 0, inside = 0;
@@ -110,7 +123,8 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
         const Probe& state = settings.previous.states[probe];
         const glm::vec3 origin = probePosition(settings.grid, probe, state);
         const uint32_t step =
-            std::max(state.inside > 0 ? kInsideShare : 1u, inFovea(origin) ? 1u : settings.outsideShare);
+            std::max(state.inside > 0 ? kInsideShare : 1u,
+                     inFovea(probePosition(settings.grid, probe, {})) ? 1u : settings.outsideShare);
         off += state.inside > 0;
         const auto of = hits.subspan(size_t(probe) * count, count);
         for (uint32_t i = 0; i < count; ++i)

@@ -33,9 +33,11 @@ class ShadowMap : public Pass {
     ParameterSpec size = integer(2048, 16, 16384);
     size.unit = "texels";
     d.parameter("size", size,
-                "width and height of a map; less if many lights need many maps, which have at most 2^28 "
+                "width and height of a map; less if many lights need many maps, which have at most 2^27 "
                 "texels together");
-    d.step("shadow-map/views.comp").constant("size", widthOf("maps.depth")).groups(1);
+    d.step("shadow-map/views.comp")
+        .constant("size", widthOf("maps.depth"))
+        .threads(int64_t{scene::kMaxLights});
     return d;
   }
 

@@ -3,7 +3,7 @@
 #include "common/paraboloid.glsl"
 #include "common/shadow.glsl"
 
-layout(local_size_x = 128) in;  // kMaxLights
+layout(local_size_x = 64) in;
 
 layout(std430) writeonly buffer MapsViews { ShadowView view[]; } mapsViews;
 
@@ -72,7 +72,7 @@ mat3 cubeAxes(uint face) {
 }
 
 void main() {
-  uint index = gl_LocalInvocationID.x;
+  uint index = gl_GlobalInvocationID.x;
   if (index >= frame.lightCount) return;
   LightRecord light = lights[index];
   uint layer = light.firstShadowLayer;

@@ -152,8 +152,10 @@ std::vector<std::string> smallSettings(const std::string& name) {
       {"reference", {"spp=2"}},
       {"ddgi", {"probes=4", "rays=16"}},
       {"ddgi_two_bounces", {"probes=4", "rays=16"}},
+      {"ddgi_foveated", {"probes=4", "rays=16", "first_rays=16"}},
       {"pt_denoised", {}},
       {"restir_gi", {}},
+      {"restir_gi_foveated", {}},
       {"vxgi", {"voxels=24"}},
   };
   std::vector<std::string> set{"vpl_count=48", "map_size=16"};

@@ -215,12 +215,13 @@ TEST(GiSamples, BlocksTakeTurns) {
 // Inside a fovea of a quarter of the width every pixel gets a sample in every frame, outside one of four in turn.
 TEST(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   const Room room = closedRoom(true, 8, kSize);
-  const glm::vec2 gaze = 0.5f * glm::vec2(kSize);
+  const glm::vec2 gaze(0.6f, 0.35f);
   std::vector<int> turns(room.pixels.size());
   for (uint32_t n = 1; n <= 4; ++n) {
     PassTest test("gi-samples");
     test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
     test.param("depth", 3).param("outside_spacing", 2).param("fovea_radius", 0.25);
+    test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
     test.run(n);
     const auto frame = test.values<Reservoir>("reservoirs");
     for (size_t i = 0; i < frame.size(); ++i) turns[i] += frame[i].count > 0;
@@ -228,7 +229,7 @@ TEST(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   int inside = 0;
   for (int i = 0; i < int(turns.size()); ++i) {
     const glm::vec2 pixel(float(i % kSize.x) + 0.5f, float(i / kSize.x) + 0.5f);
-    const bool seen = glm::distance(pixel, gaze) <= 0.25f * float(kSize.x);
+    const bool seen = glm::distance(pixel, gaze * glm::vec2(kSize)) <= 0.25f * float(kSize.x);
     EXPECT_EQ(turns[size_t(i)], seen ? 4 : 1) << i;
     inside += seen;
   }

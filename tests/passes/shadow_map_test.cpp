@@ -7,6 +7,8 @@
 
 #include "fovea/test.h"
 #include "framework/base/random.h"
+#include "framework/graph/compile/compile.h"
+#include "framework/session/graph_run.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
 #include "tests/support/raster_grid.h"
@@ -197,16 +199,41 @@ TEST(ShadowMap, WithoutLightsThereIsOneEmptyLayer) {
 TEST(ShadowMap, ManyLightsShareTheTexels) {
   scene::Scene s = litScene();
   s.lights.assign(51, s.lights[1]);
-  s.lights.back().position = {-2.5f, 2, 0.1f};
+  Diagnostics messages;
+  const auto description = graph::loadText(
+      R"({"passes": {"lights": {"type": "shadow-map"}}, "outputs": {"depth": "lights.maps.depth"}})",
+      "g.json", {}, messages);
+  const auto bound =
+      graph::bind(description, session::sceneEnvironment(nullptr, s, scene::flatten(s), {16, 16}), messages);
+  const auto depth = std::ranges::find(bound.resources, "lights.maps.depth", &graph::BoundResource::name);
+  ASSERT_NE(depth, bound.resources.end());
+  EXPECT_EQ(depth->desc.layers, 306u);
+  EXPECT_EQ(depth->desc.width, 662u);
+  EXPECT_EQ(depth->desc.height, 662u);
+}
+
+// As many lights as there may be, of which each sees what is in front of it: 80 points and 48 spots, with 528 maps.
+TEST(ShadowMap, EveryLightHasItsView) {
+  scene::Scene s = litScene();
+  const scene::Light point = s.lights[1], spot = s.lights[2];
+  s.lights.clear();
+  for (int i = 0; i < 128; ++i) {
+    s.lights.push_back(i < 80 ? point : spot);
+    s.lights.back().position = {0.01f * float(i), 2.5f, -0.3f};
+  }
   PassTest test("shadow-map");
-  test.scene(s);
+  test.param("size", 16).scene(s);
   test.run();
-  EXPECT_EQ(test.desc("maps.depth").layers, 306u);
-  EXPECT_EQ(test.desc("maps.depth").width, 512u);
   const auto views = test.values<ShadowView>("maps.views");
-  EXPECT_FLOAT_EQ(views[305].texelWidth, 2.0f / 506);  // a right angle, and three texels more on each side
-  const glm::vec4 centre = views[305].worldToClip * glm::vec4(-2.5f, 2, 1.1f, 1);
-  EXPECT_LT(glm::length(glm::vec2(centre) / centre.w), 1e-5f);
+  ASSERT_EQ(test.desc("maps.depth").layers, 528u);
+  for (size_t layer = 0; layer < 528; ++layer) {
+    const size_t light = layer < 480 ? layer / 6 : layer - 400, axis = layer % 6 / 2;
+    glm::vec3 forward = s.lights[light].direction;
+    if (light < 80) forward = glm::vec3(0), forward[int(axis)] = layer % 2 == 0 ? 1 : -1;
+    const glm::vec4 clip = views[layer].worldToClip * glm::vec4(s.lights[light].position + 2.0f * forward, 1);
+    EXPECT_NEAR(clip.w, 2, 1e-5) << layer;
+    EXPECT_LT(glm::length(glm::vec2(clip)), 1e-5f) << layer;
+  }
 }
 
 }  // namespace

@@ -104,15 +104,13 @@ TEST(Lights, ShadowLayers) {
   EXPECT_EQ(shadowLayers(std::span<const Light>()), 0u);
 }
 
-// All maps together never have more than 2^28 texels, and where these suffice the side is not halved.
+// All maps together have no more than 2^27 texels, and nearly as many.
 TEST(Lights, MostShadowTexels) {
-  EXPECT_EQ(mostShadowTexels(0), 16384u);
-  EXPECT_EQ(mostShadowTexels(1), 16384u);
-  EXPECT_EQ(mostShadowTexels(4), 8192u);
-  EXPECT_EQ(mostShadowTexels(5), 4096u);
-  EXPECT_EQ(mostShadowTexels(64), 2048u);
-  EXPECT_EQ(mostShadowTexels(65), 1024u);
-  EXPECT_EQ(mostShadowTexels(576), 512u);
+  EXPECT_EQ(mostShadowTexels(0), 11585u);
+  EXPECT_EQ(mostShadowTexels(1), 11585u);
+  EXPECT_EQ(mostShadowTexels(32), 2048u);
+  EXPECT_EQ(mostShadowTexels(33), 2016u);
+  EXPECT_EQ(mostShadowTexels(576), 482u);
 }
 
 }  // namespace

@@ -128,8 +128,8 @@ SizeExpr heightOf(std::string port);
 SizeExpr layersOf(std::string port);
 SizeExpr countOf(std::string port);
 // A number that describes the scene: "scene.triangles", "scene.static_triangles", "scene.vertices",
-// "scene.lights", "scene.shadow_layers" or "scene.shadow_texels", to which the width of shadow maps is limited. It is at
-// least 1.
+// "scene.lights", "scene.shadow_layers" or "scene.shadow_texels", the most texels that a shadow map may have on a side.
+// Each is at least 1.
 SizeExpr environment(std::string name);
 // Conditions, for steps only.
 SizeExpr wired(std::string port);   // whether an optional input is wired

@@ -5,7 +5,8 @@
 
 SHARED_BEGIN(fovea::scene)
 
-SHARED_CONSTANT uint kMaxShadowLayers = 576u;  // as many ShadowViews as fit into a uniform block of 64 KiB
+SHARED_CONSTANT uint kMaxShadowLayers =
+    576u;  // of 96 point lights; the views fit into a uniform block of 64 KiB
 
 // Projection of one layer. Depth is reversed (1: nearest to the light, 0: farthest, and where nothing is hit). With
 // near / z a 32-bit float has the same relative precision at every distance, and no far plane is needed.
