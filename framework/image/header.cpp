@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "framework/image/codec.h"
+
 namespace fovea::image {
 namespace {
 
@@ -59,6 +61,13 @@ bool claimsMore(std::istream& in, const std::string& type, uint64_t size) {
   return false;
 }
 
+// Whether a side of the rectangle at which the stream is, the corners of its first and last pixels, is too long.
+bool claimsTooLong(std::istream& in) {
+  int64_t corners[4] = {};
+  for (int64_t& corner : corners) corner = int32_t(littleEndian(in));
+  return std::max(corners[2] - corners[0], corners[3] - corners[1]) >= int64_t{codec::kMaxSide};
+}
+
 }  // namespace
 
 std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes) {
@@ -83,6 +92,7 @@ std::string whyForged(std::istream& exr) {
       const auto begin = uint64_t(exr.tellg());
       if (size > total - begin || claimsMore(exr, type, size))
         return "its attribute `" + name + "` claims more bytes than there are";
+      if (name == "dataWindow" && claimsTooLong(exr)) return "its `dataWindow` is longer than any picture";
       exr.seekg(std::streamoff(begin + size));
     }
   } while (severalParts && exr.peek() > 0);

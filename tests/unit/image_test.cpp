@@ -325,6 +325,14 @@ TEST(ImageHeaders, ForgedSizesOfExrAttributesAreFound) {
   EXPECT_EQ(forged(exrHeader("stringvector", 19, words)), "");
   EXPECT_NE(forged(exrHeader("stringvector", 19, words.substr(0, 11) + littleEndian(5) + "four")), "");
   EXPECT_NE(forged(exrHeader("stringvector", 17, words + "....")), "");
+  const auto window = [&](uint32_t first, uint32_t last) {
+    std::string bytes =
+        exrHeader("box2i", 16, littleEndian(first) + littleEndian(0) + littleEndian(last) + littleEndian(1));
+    return forged(bytes.replace(bytes.find("thing"), 5, "dataWindow"));
+  };
+  EXPECT_EQ(window(-5, 32762), "");
+  EXPECT_THAT(window(-5, 32763), HasSubstr("longer than any picture"));
+  EXPECT_NE(window(0x80000000, 0x7fffffff), "");
   // A second part.
   const std::string second = exrHeader("string", 100, eight).substr(8);
   EXPECT_EQ(forged(exrHeader("string", 8, eight) + second), "");
