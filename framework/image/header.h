@@ -22,7 +22,8 @@ std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes);
 std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 
 // Why an EXR file is not read: an attribute of its header claims more bytes than it can have, or a side of more than
-// codec::kMaxSide pixels; else "". OpenEXR reserves and clears what it claims, up to 2 GiB, before it notices. What else is wrong with the file is left to OpenEXR.
+// codec::kMaxSide pixels; else "". OpenEXR reserves and clears what a header claims, up to 2 GiB, before it notices.
+// What else is wrong with the file is left to OpenEXR.
 std::string whyForged(std::istream& exr);
 
 }  // namespace fovea::image

@@ -65,8 +65,8 @@ class LightInject : public Pass {
     ParameterSpec taps = integer(6, 1, 64);
     d.parameter(
         "taps", taps,
-        "number of fixed points on each side at which light and shadow are evaluated; of more than 16 lights "
-        "each has fewer, so that there are no more than 96, or one for each light");
+        "number of fixed points on each side at which a light and its shadow are evaluated; of more than 16 "
+        "lights each has fewer, at least one, so that all of them have about as many as 16 lights would");
     d.parameter("offset", real(0.25, 0, 2, "cells"),
                 "height above the side's plane at which shadows are evaluated, as the plane cuts through "
                 "curved surfaces and edges");

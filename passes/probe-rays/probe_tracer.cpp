@@ -122,9 +122,9 @@ ProbeRayStatistics traceProbeRays(const Frame& frame, const View& view, const Ra
       for (uint32_t probe = first; probe < std::min(first + kProbesAtOnce, probes); ++probe) {
         const Probe& state = settings.previous.states[probe];
         const glm::vec3 origin = probePosition(settings.grid, probe, state);
+        const bool outside = settings.outsideShare > 1 && !inFovea(probePosition(settings.grid, probe, {}));
         const uint32_t step =
-            std::max(state.inside > 0 ? kInsideShare : 1u,
-                     inFovea(probePosition(settings.grid, probe, {})) ? 1u : settings.outsideShare);
+            std::max(state.inside > 0 ? kInsideShare : 1u, outside ? settings.outsideShare : 1u);
         off += state.inside > 0;
         const auto of = hits.subspan(size_t(probe) * count, count);
         for (uint32_t i = 0; i < count; ++i)

@@ -58,7 +58,8 @@ vec4 radianceOf(VoxelGrid grid, VoxelSide side, Patch area, uint which) {
 #if ONE_LIGHT
   irradiance = irradianceBy(lights[0], 0, side, area, first, grid.cell);
 #else
-  for (uint i = 0u; i < frame.lightCount; ++i) irradiance += irradianceBy(lights[i], int(i), side, area, first, grid.cell);
+  for (uint i = 0u; i < frame.lightCount; ++i)
+    irradiance += irradianceBy(lights[i], int(i), side, area, first, grid.cell);
 #endif
   vec3 result = side.reflectance * irradiance / kPi;
 #if EMISSION

@@ -92,11 +92,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   m.add(roundTable(p.wood, 0.42f, 0.42f), at(2.2f, 0, -0.35f));
   m.add(pouffe(p.cushion[1], p.wood, 0.28f, 0.38f), at(1.25f, 0, 0.6f));
   m.add(p.book[1], block(0.2f, 0.025f, 0.14f, {.bevel = 0.003f}), at(2.1f, 0.42f, -0.3f) * turnY(25));
-  Outline vase({0, 0});
-  vase.line(0.05f, 0)
-      .through({{0.085f, 0.08f}, {0.05f, 0.18f}, {0.03f, 0.24f}, {0.045f, 0.28f}}, 5)
-      .line(0, 0.27f);
-  m.add(p.clay, lathe(vase, {.segments = 40}), at(2.35f, 0.42f, -0.4f));
+  m.add(p.clay, vase(), at(2.35f, 0.42f, -0.4f));
   addPot(m, p.clay, p.soil, 0.17f, 0.3f, at(0.55f, 0, -1.65f));
   const Plant bushy = bush({0.34f, 0.6f, 0.34f}, 16, 22, {.length = 0.13f, .width = 0.06f}, 2322);
   m.add(p.leaf, bushy.leaves, at(0.55f, 0.27f, -1.65f)).add(p.wood, bushy.wood, at(0.55f, 0.27f, -1.65f));

@@ -75,11 +75,7 @@ void furnish(SceneBuilder& b, const Palette& p) {
   m.add(roundTable(p.wood, 0.42f, 0.42f), at(0.2f, 0.012f, -0.35f));
   m.add(pouffe(p.cushion[1], p.wood, 0.28f, 0.38f), at(-0.95f, 0.012f, 0.35f));
   m.add(p.book[0], block(0.2f, 0.025f, 0.14f, {.bevel = 0.003f}), at(0.1f, 0.432f, -0.3f) * turnY(20));
-  Outline vase({0, 0});
-  vase.line(0.05f, 0)
-      .through({{0.085f, 0.08f}, {0.05f, 0.18f}, {0.03f, 0.24f}, {0.045f, 0.28f}}, 5)
-      .line(0, 0.27f);
-  m.add(p.clay, lathe(vase, {.segments = 40}), at(0.36f, 0.432f, -0.42f));
+  m.add(p.clay, vase(), at(0.36f, 0.432f, -0.42f));
   m.add(rectTable(p.wood, 1.1f, 0.45f, 0.75f), at(-1.6f, 0, 1.9f));
   addBooks(m, p.book, p.paper, 8, 0.26f, 2211, at(-2.0f, 0.751f, 1.95f));
   addPot(m, p.clay, p.soil, 0.17f, 0.3f, at(-2.0f, 0, -1.75f));

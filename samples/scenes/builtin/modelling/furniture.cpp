@@ -190,6 +190,14 @@ Shape shade(float lower, float upper, float height) {
                {.segments = 48, .closed = true});
 }
 
+Shape vase() {
+  Outline o({0, 0});
+  o.line(0.05f, 0)
+      .through({{0.085f, 0.08f}, {0.05f, 0.18f}, {0.03f, 0.24f}, {0.045f, 0.28f}}, 5)
+      .line(0, 0.27f);
+  return lathe(o, {.segments = 40});
+}
+
 void addPot(MeshBuilder& m, uint32_t clay, uint32_t soil, float radius, float height,
             const glm::mat4& where) {
   const float r = radius, h = height;

@@ -48,6 +48,9 @@ model::Shape railing(float width, float height, int count, float radius);
 // A lamp shade without top and bottom, which stands on y = 0. Its walls are closed solids.
 model::Shape shade(float lower, float upper, float height);
 
+// A vase of 0.28 m, which stands on y = 0.
+Shape vase();
+
 // A pot of clay with soil in it, up to 0.9 of its height.
 void addPot(model::MeshBuilder& to, uint32_t clay, uint32_t soil, float radius, float height,
             const glm::mat4& where);
