@@ -10,6 +10,7 @@
 #include "framework/scene/materials/tangents.h"
 #include "framework/scene/motion/deform.h"
 #include "framework/scene/motion/motion.h"
+#include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
 
@@ -64,6 +65,9 @@ class Flattener {
       end();
       includePath(i, out_.objects.back());
     }
+    for (uint32_t t = 0; t < out_.triangles.size(); ++t)
+      if (emits(out_.triangles[t])) out_.emissive.push_back(t);
+    out_.stillKey = stillKey(scene_, out_);
     return std::move(out_);
   }
 
@@ -247,6 +251,10 @@ class Flattener {
                   "check its keys and the scales and matrices of the nodes above it");
     out_.boundsMin = glm::min(out_.boundsMin, swept.low);
     out_.boundsMax = glm::max(out_.boundsMax, swept.high);
+  }
+
+  bool emits(const Triangle& t) const {
+    return t.material() < scene_.materials.size() && scene_.materials[t.material()].emission != glm::vec3(0);
   }
 
   void appendTriangles(const Primitive& p, uint32_t base, bool flip) {

@@ -82,10 +82,9 @@ void LightSampler::add(Source source) {
 void LightSampler::addEmissiveTriangles() {
   const Geometry& g = *frame_.geometry;
   constexpr float kPoints[4][2] = {{1 / 3.f, 1 / 3.f}, {0.15f, 0.7f}, {0.7f, 0.15f}, {0.15f, 0.15f}};
-  for (uint32_t t = 0; t < g.triangles.size(); ++t) {
+  for (const uint32_t t : g.emissive) {
     if (g.triangles[t].material() >= frame_.scene->materials.size()) continue;
     const Material& m = frame_.scene->materials[g.triangles[t].material()];
-    if (m.emission == glm::vec3(0)) continue;
     const glm::vec3 &a = g.positions[g.triangles[t].v[0]], &b = g.positions[g.triangles[t].v[1]],
                     &c = g.positions[g.triangles[t].v[2]];
     const double area = 0.5 * double(glm::length(glm::cross(b - a, c - a)));

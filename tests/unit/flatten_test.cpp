@@ -38,6 +38,23 @@ glm::vec3 geometricNormal(const Geometry& g, size_t i) {
       glm::cross(g.positions[t.v[1]] - g.positions[t.v[0]], g.positions[t.v[2]] - g.positions[t.v[0]]));
 }
 
+// Emissive triangles are listed in their order, whether they move or not.
+TEST(Flatten, ListsWhatEmits) {
+  Scene s = triangleScene();
+  s.materials.resize(2);
+  s.materials[1].emission = {0, 1, 0};
+  s.meshes.push_back(s.meshes[0]);
+  s.meshes[1].primitives[0].material = 1;
+  for (const uint32_t mesh : {1u, 0u, 1u, 1u}) {
+    s.nodes.push_back(meshNode());
+    s.nodes.back().mesh = mesh;
+  }
+  s.nodes[2].dynamic = true;
+  EXPECT_EQ(flatten(s).emissive, (std::vector<uint32_t>{0, 2, 3}));
+  s.materials[1].emission = {};
+  EXPECT_TRUE(flatten(s).emissive.empty());
+}
+
 TEST(Flatten, AppliesTheWholeChainOfTransforms) {
   Scene s = triangleScene();
   Node root;

@@ -208,10 +208,26 @@ TEST(RayScene, FewChancesTellTheShare) {
 
 TEST(RayScene, CacheKnowsWaysOfPassing) {
   Scene s = layers({});
-  const Geometry g = flatten(s);
+  Geometry g = flatten(s);
   EXPECT_EQ(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Met));  // nothing lets light through
   s.materials[1].masked = s.materials[1].blended = true;
+  g = flatten(s);
   EXPECT_NE(RayScene::cached(s, g), RayScene::cached(s, g, Passing::Met));
+}
+
+TEST(RayScene, KeyFollowsHoles) {
+  Scene s = layers({});
+  const uint64_t opaque = flatten(s).stillKey;
+  s.materials[1].alphaCutoff = 0.25f;
+  EXPECT_EQ(flatten(s).stillKey, opaque) << "it has no holes";
+  s.materials[1].masked = true;
+  const uint64_t masked = flatten(s).stillKey;
+  EXPECT_NE(masked, opaque);
+  s.materials[1].alphaCutoff = 0.75f;
+  const uint64_t wider = flatten(s).stillKey;
+  EXPECT_NE(wider, masked);
+  s.materials[1].blended = true;
+  EXPECT_NE(flatten(s).stillKey, wider);
 }
 
 TEST(RayScene, EmptySceneIsHitByNothing) {
@@ -231,10 +247,24 @@ TEST(RayScene, CacheFollowsTheContentNotTheAddress) {
   const Geometry copy = g;
   EXPECT_EQ(first, RayScene::cached(s, copy));
   for (glm::vec3& p : g.positions) p.z -= 1;  // in place: same address, other content
+  g.stillKey = 0;
   const auto moved = RayScene::cached(s, g);
   EXPECT_NE(first, moved);
   EXPECT_FLOAT_EQ(moved->intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}).distance, 2);
   EXPECT_EQ(first, RayScene::cached(s, copy));  // the two most recent are kept
+}
+
+// The triangles of a large scene are not read again for every pass of every frame.
+TEST(RayScene, CacheTrustsTheKeyOfWhatStays) {
+  Scene s;
+  addMaterial(s, glm::vec3(0.5f));
+  addQuad(s, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  Geometry g = flatten(s);
+  EXPECT_EQ(g.stillKey, stillKey(s, g));
+  const auto first = RayScene::cached(s, g);
+  g.positions[0].z -= 1;
+  EXPECT_NE(g.stillKey, stillKey(s, g));
+  EXPECT_EQ(first, RayScene::cached(s, g));
 }
 
 // Static triangles behind and in front of moving ones, with a mask among both.

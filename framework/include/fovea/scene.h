@@ -321,6 +321,10 @@ struct Geometry {
   std::vector<Triangle> triangles;
   std::vector<Object> objects;
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
+  // flatten() fills these. Whoever changes triangles, uvs, vertices that never move, or materials afterwards flattens
+  // again, or sets the hash of all that rays meet but moving vertices to 0, which stands for unknown.
+  uint64_t stillKey = 0;
+  std::vector<uint32_t> emissive;  // numbers of the triangles whose material emits, ascending
   // The triangles that voxels and VPL maps see if any part of the scene is coarser for them; static ones come first.
   // If empty, they see `triangles`.
   std::vector<Triangle> lightTriangles;

@@ -40,11 +40,10 @@ bool Emitters::Range::isLeaf() const { return last - first <= kInLeaf; }
 
 Emitters::Emitters(const Frame& frame) : frame_(frame) {
   const auto& materials = frame.scene->materials;
-  if (std::ranges::all_of(materials, [](const Material& m) { return m.emission == glm::vec3(0); })) return;
   const Geometry& g = *frame.geometry;
-  for (uint32_t t = 0; t < g.triangles.size(); ++t) {
+  for (const uint32_t t : g.emissive) {
     const uint32_t index = g.triangles[t].material();
-    if (index >= materials.size() || materials[index].emission == glm::vec3(0)) continue;
+    if (index >= materials.size()) continue;
     const glm::vec3 &a = g.positions[g.triangles[t].v[0]], &b = g.positions[g.triangles[t].v[1]],
                     &c = g.positions[g.triangles[t].v[2]];
     const glm::vec3 normal = glm::cross(b - a, c - a);
@@ -59,8 +58,16 @@ Emitters::Emitters(const Frame& frame) : frame_(frame) {
   if (emitters_.empty()) return;
   nodes_.resize(2 * std::bit_ceil(emitters_.size()));
   build(1, {0, uint32_t(emitters_.size())});
-  place_.assign(g.triangles.size(), kNoIndex);
-  for (uint32_t i = 0; i < emitters_.size(); ++i) place_[emitters_[i].triangle] = i;
+  places_.assign(g.emissive.size(), kNoIndex);
+  for (uint32_t i = 0; i < emitters_.size(); ++i)
+    places_[size_t(std::ranges::lower_bound(g.emissive, emitters_[i].triangle) - g.emissive.begin())] = i;
+}
+
+uint32_t Emitters::placeOf(uint32_t triangle) const {
+  const std::vector<uint32_t>& emissive = frame_.geometry->emissive;
+  const auto found = std::ranges::lower_bound(emissive, triangle);
+  return empty() || found == emissive.end() || *found != triangle ? kNoIndex
+                                                                  : places_[size_t(found - emissive.begin())];
 }
 
 void Emitters::build(uint32_t node, Range range) {
@@ -186,8 +193,8 @@ EmitterPoint Emitters::sample(const Receiver& receiver, float choice, float u, f
 }
 
 float Emitters::density(uint32_t triangle, const Receiver& receiver) const {
-  if (empty() || place_[triangle] == kNoIndex) return 0;
-  const uint32_t place = place_[triangle];
+  const uint32_t place = placeOf(triangle);
+  if (place == kNoIndex) return 0;
   Range range{0, uint32_t(emitters_.size())};
   float probability = 1;
   for (uint32_t node = 1; !range.isLeaf();) {

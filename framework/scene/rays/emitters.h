@@ -67,6 +67,7 @@ class Emitters {
   };
 
   void build(uint32_t node, Range range);
+  uint32_t placeOf(uint32_t triangle) const;  // index in emitters_; kNoIndex if it does not emit
   static float weight(const Node& node, const Receiver& receiver);
   static float weight(const Emitter& emitter, const Receiver& receiver);
   bool within(glm::vec3 point, float reach, uint32_t node, Range range) const;
@@ -76,7 +77,8 @@ class Emitters {
   const Frame& frame_;
   std::vector<Emitter> emitters_;  // in the order of the leaves
   std::vector<Node> nodes_;
-  std::vector<uint32_t> place_;  // index in emitters_ of every triangle of the geometry; empty if none emits
+  std::vector<uint32_t>
+      places_;  // index in emitters_ of each triangle of Geometry::emissive; kNoIndex if it is dark
 };
 
 class EnvironmentMap;

@@ -36,30 +36,6 @@ bool hasHoles(const Material& m, Passing passing) {
   return m.masked && (passing == Passing::Never || !m.blended);
 }
 
-// Hash of everything but the positions of vertices that move.
-uint64_t stillKey(const Scene& scene, const Geometry& geometry, Passing passing) {
-  Hasher hash;
-  hash.add(geometry.positions.data(), geometry.staticVertices());
-  hash.add(geometry.triangles);
-  hash.add(geometry.uvs);
-  hash.add(&geometry.staticTriangles, 1);
-  // Where nothing lets light through, all ways of passing are the same.
-  const bool passes = std::ranges::any_of(scene.materials, letsLightThrough);
-  const uint32_t way = passes ? uint32_t(passing) : 0;
-  hash.add(&way, 1);
-  for (size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    if (!hasHoles(m, passing)) continue;
-    const TextureUse& use = m.baseColorTexture;
-    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x,
-                                  use.transform[0].y, use.transform[1].x, use.transform[1].y,
-                                  use.transform[2].x, use.transform[2].y});
-    hash.add(std::array<uint32_t, 3>{use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
-    if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
-  }
-  return hash.value();
-}
-
 uint64_t movingKey(const Geometry& geometry) {
   Hasher hash;
   const size_t first = geometry.staticVertices();
@@ -193,7 +169,11 @@ std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geome
   };
   static std::mutex mutex;
   static std::array<Entry, 2> entries;  // the latest first
-  const uint64_t still = stillKey(scene, geometry, passing), moving = movingKey(geometry);
+  Hasher hash;
+  hash.add(geometry.stillKey != 0 ? geometry.stillKey : stillKey(scene, geometry));
+  // Where nothing lets light through, all ways of passing are the same.
+  hash.add(std::ranges::any_of(scene.materials, letsLightThrough) ? uint32_t(passing) : 0);
+  const uint64_t still = hash.value(), moving = movingKey(geometry);
   const auto is = [&](const Entry& e) { return e.rays && e.still == still && e.moving == moving; };
   const std::scoped_lock lock(mutex);
   if (!is(entries[0])) std::swap(entries[0], entries[1]);
@@ -206,6 +186,26 @@ std::shared_ptr<const RayScene> RayScene::cached(const Scene& scene, const Geome
     }
   entries[0] = {still, moving, std::make_shared<RayScene>(scene, geometry, passing)};
   return entries[0].rays;
+}
+
+uint64_t stillKey(const Scene& scene, const Geometry& geometry) {
+  Hasher hash;
+  hash.add(geometry.positions.data(), geometry.staticVertices());
+  hash.add(geometry.triangles);
+  hash.add(geometry.uvs);
+  hash.add(&geometry.staticTriangles, 1);
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    if (!m.masked) continue;
+    const TextureUse& use = m.baseColorTexture;
+    hash.add(std::array<float, 9>{float(i), m.baseColor.a, m.alphaCutoff, use.transform[0].x,
+                                  use.transform[0].y, use.transform[1].x, use.transform[1].y,
+                                  use.transform[2].x, use.transform[2].y});
+    hash.add(
+        std::array<uint32_t, 4>{uint32_t(m.blended), use.texture, uint32_t(use.wrapU), uint32_t(use.wrapV)});
+    if (use && use.texture < scene.textures.size()) hash.add(scene.textures[use.texture].rgba);
+  }
+  return std::max<uint64_t>(hash.value(), 1);
 }
 
 TriangleVertices triangleVertices(const Geometry& geometry, uint32_t triangle) {

@@ -60,7 +60,7 @@ class RayScene {
 
   // The acceleration structure of `geometry`, rebuilt if its content (or the holes of `scene`) differs from the
   // last requests; the two most recent structures are kept. If only dynamic objects have moved, only their part
-  // is rebuilt. Thread-safe.
+  // is rebuilt. Reads all of the geometry only if Geometry::stillKey is not known. Thread-safe.
   static std::shared_ptr<const RayScene> cached(const Scene& scene, const Geometry& geometry,
                                                 Passing passing = Passing::Never);
 
@@ -70,6 +70,9 @@ class RayScene {
   RayScene(std::shared_ptr<const Still> still, const Geometry& geometry);
   std::unique_ptr<Impl> impl_;
 };
+
+// Geometry::stillKey of `geometry`, never 0.
+uint64_t stillKey(const Scene& scene, const Geometry& geometry);
 
 // Attributes at a hit. `geometry` must be the one in which the ray was traced.
 SurfaceHit surfaceAt(const Geometry& geometry, const RayHit& hit);
