@@ -32,19 +32,33 @@ struct Difference {
   void add(const EyePathEnd& before, const EyePathEnd& now) {
     const float a = lightOf(before), b = lightOf(now);
     changed += std::abs(b - a);
+    gained += double(b) - double(a);
     larger += std::max(a, b);
   }
   Difference operator+(const Difference& other) const {
-    return {changed + other.changed, larger + other.larger};
+    return {changed + other.changed, gained + other.gained, larger + other.larger};
   }
   // In [0, 1]; 0 where there is no light, or none that is a number.
   double share() const { return changed / larger > 0 ? std::min(changed / larger, 1.0) : 0; }
 
-  double changed = 0, larger = 0;
+  double changed = 0, gained = 0, larger = 0;
 
  private:
   static float lightOf(const EyePathEnd& end) { return meanChannel(end.radiance) * end.weight; }
 };
+
+// EyePathStatistics::drift of the differences at all points. If their signs were random, the square of their sum would
+// on average be the sum of their squares.
+double driftOf(std::span<const Difference> differences) {
+  double gained = 0, squares = 0, larger = 0;
+  for (const Difference& d : differences) {
+    gained += d.gained;
+    squares += d.gained * d.gained;
+    larger += d.larger;
+  }
+  const double drift = std::sqrt(std::max(gained * gained - squares, 0.0)) / larger;
+  return drift > 0 ? std::min(drift, 1.0) : 0;
+}
 
 class Tracer {
  public:
@@ -202,6 +216,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   });
   EyePathStatistics statistics;
   statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
+  statistics.drift = driftOf(differences);
   if (const double share = kOutOfTurn * (statistics.change - settings.usualChange); share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
       if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracer.tracePaths(lists, point, count);

@@ -38,6 +38,9 @@ struct EyePathStatistics {
   // Share of the light that has changed, in [0, 1]: the differences between what the paths find that are traced again
   // from their starts and what they found before, divided by the larger of both.
   double change = 0;
+  // Share by which the light as a whole has grown or shrunk, in [0, 1]: the sum of these differences with their signs,
+  // as far as its square exceeds what it would be on average if the signs of the points were random.
+  double drift = 0;
 };
 
 struct EyePathLists {

@@ -36,8 +36,9 @@ class EyePaths : public Pass {
         "change", changeBuffer(), Usage::HostWrite,
         "x: share c of the light found by the paths traced again that differs from what they found before, "
         "in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s), j being the "
-        "part of c that exceeds the changes in the frames before; z: s / (1 + s), the share that is lost, "
-        "and a quarter less in each frame after");
+        "part of c that exceeds the changes in the frames before, or the share by which the light as a "
+        "whole has grown or shrunk if that is more; z: s / (1 + s), the share that is lost, and a quarter "
+        "less in each frame after");
     d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
                 "region in which the eye paths start, as in pass candidates");
     d.parameter("image_share", real(0.4, 0, 1),
@@ -71,6 +72,7 @@ class EyePaths : public Pass {
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
     d.counter("change", "share of the light that has changed, in [0, 1]");
+    d.counter("drift", "share by which the light as a whole has grown or shrunk, in [0, 1]");
     return d;
   }
 
@@ -110,15 +112,19 @@ class EyePaths : public Pass {
     std::ranges::copy(starts_, ctx.outputAs<EyePathStart>("paths.starts").begin());
     std::ranges::copy(ends_, ctx.outputAs<EyePathEnd>("paths.ends").begin());
     ctx.counter("rays", double(statistics.rays));
-    ctx.outputAs<glm::vec4>("change")[0] = changeOf(float(statistics.change));
+    ctx.outputAs<glm::vec4>("change")[0] = changeOf(statistics);
     ctx.counter("ends", double(statistics.ends));
     ctx.counter("change", statistics.change);
+    ctx.counter("drift", statistics.drift);
   }
 
  private:
-  // The output `change`. Running means are made for what moves all the time, so only what is sudden ages them.
-  glm::vec4 changeOf(float change) {
-    const float sudden = std::max(change - usualChange_, 0.0f), ageing = kBiasWeight * sudden * sudden;
+  // The output `change`. Running means are made for what moves all the time, so only what is sudden or goes one way ages
+  // them.
+  glm::vec4 changeOf(const EyePathStatistics& statistics) {
+    const float change = float(statistics.change),
+                unfollowed = std::max(change - usualChange_, float(statistics.drift)),
+                ageing = kBiasWeight * unfollowed * unfollowed;
     usualChange_ = std::max(change, kUsualKept * usualChange_);
     lost_ = std::max(ageing / (1 + ageing), lost_ - kRegained);
     return {change, ageing, lost_, 0};

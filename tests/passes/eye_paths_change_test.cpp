@@ -84,33 +84,82 @@ TEST(EyePathsChange, ChangedLightIsFoundAtOnce) {
   EXPECT_EQ(glm::vec2(next), glm::vec2(0)) << "it has changed before";
 }
 
-// Only the part that exceeds the changes of the frames before is sudden.
-TEST(EyePathsChange, LightThatChangesSteadilyAgesNothing) {
-  const auto after = [&](uint32_t frames) {
+// x, y and z of `change` and the counter `drift` after so many frames, of which frame i has the lights that `light`
+// makes of those of the scene.
+template <class Function>
+glm::vec4 changeAfter(uint32_t frames, const scene::Scene& scene, const Function& light, int points = 1000) {
+  PassTest test("eye-paths");
+  test.param("paths", 4000).param("points", points).param("renew_frames", 1000);
+  test.viewSize(64, 64).scene(scene);
+  test.beforeFrame([&](PassTest&, scene::Frame& f) { light(f.lights, uint32_t(f.index)); });
+  test.run(frames);
+  return {glm::vec3(test.values<glm::vec4>("change")[0]), test.counter("drift")};
+}
+
+// Light that comes to one place and goes from another: the paths find as much of the light of one lamp as of the other,
+// and in the frames 3 to 6 one becomes weaker and the other brighter by a tenth, and in frame 8 by half. Only what exceeds
+// the changes of the frames before counts, of which a quarter is forgotten in frame 7.
+TEST(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
+  scene::Scene lamps = litRoom();
+  lamps.lights = {pointLight({-0.8f, 0, 0.5f}, {5, 5, 5}), pointLight({0.8f, 0, 0.5f}, {5, 5, 5})};
+  const auto lightOf = [&](size_t lamp) {
     PassTest test("eye-paths");
-    test.param("paths", 500).param("points", 100).param("renew_frames", 1000);
-    test.viewSize(32, 32).scene(litRoom());
-    test.beforeFrame(
-        [](PassTest&, scene::Frame& f) {  // by a tenth in each of the frames 3 to 6, then by half
-          for (scene::Light& light : f.lights)
-            light.color *=
-                std::pow(0.9f, float(std::clamp(int(f.index) - 2, 0, 4))) * (f.index < 8 ? 1.0f : 0.5f);
-        });
-    test.run(frames);
-    return glm::vec3(test.values<glm::vec4>("change")[0]);
+    test.param("paths", 4000).param("points", 1000).viewSize(64, 64).scene(lamps);
+    test.beforeFrame([lamp](PassTest&, scene::Frame& f) { f.lights[1 - lamp].color = glm::vec3(0); });
+    test.run(1);
+    double sum = 0;
+    for (const EyePathEnd& e : test.values<EyePathEnd>("paths.ends"))
+      sum += double(e.radiance.r + e.radiance.g + e.radiance.b) * double(e.weight);
+    return sum;
   };
-  EXPECT_EQ(after(3), glm::vec3(0));
-  const glm::vec3 first = after(4), next = after(5), still = after(8), half = after(9);
-  EXPECT_NEAR(first.x, 0.1f, 1e-3f);
-  EXPECT_NEAR(first.y, 16 * 0.1f * 0.1f, 5e-3f);
-  EXPECT_NEAR(next.x, 0.1f, 1e-3f);
-  EXPECT_NEAR(next.y, 0, 1e-6f);
-  EXPECT_EQ(still, glm::vec3(0));
-  const float sudden = 0.5f - 0.1f * 0.75f;  // a quarter is forgotten in frame 7, in which nothing changes
+  lamps.lights[1].color *= float(lightOf(0) / lightOf(1));
+  const auto exchanged = [](std::vector<scene::Light>& lights, uint32_t frame) {
+    const float share = 0.1f * float(std::clamp(int(frame) - 2, 0, 4)) + (frame < 8 ? 0.0f : 0.5f);
+    lights[0].color *= 1 - share;
+    lights[1].color *= 1 + share;
+  };
+  EXPECT_EQ(changeAfter(3, lamps, exchanged), glm::vec4(0));
+  const glm::vec4 first = changeAfter(4, lamps, exchanged), next = changeAfter(5, lamps, exchanged),
+                  last = changeAfter(7, lamps, exchanged), much = changeAfter(9, lamps, exchanged);
+  EXPECT_GT(first.x, 0.02f);
+  EXPECT_FLOAT_EQ(first.y, 16 * first.x * first.x) << "it is sudden";
+  EXPECT_NEAR(next.x, first.x, 0.2f * first.x);
+  EXPECT_LT(next.y, 0.1f * first.y);
+  EXPECT_GT(much.x, 3 * last.x);
+  EXPECT_NEAR(much.y, 16 * std::pow(much.x - 0.75f * last.x, 2.0f), 0.03f * much.y);
+}
+
+// A single point may change by chance, so it says nothing of the light as a whole.
+TEST(EyePathsChange, OnePointIsNoDrift) {
+  const auto fading = [](std::vector<scene::Light>& lights, uint32_t frame) {
+    for (scene::Light& light : lights) light.color *= std::pow(0.9f, float(frame));
+  };
+  const glm::vec4 one = changeAfter(4, litRoom(), fading, 1), many = changeAfter(4, litRoom(), fading);
+  EXPECT_NEAR(one.x, 0.1f, 1e-3f);
+  EXPECT_EQ(one.w, 0);
+  EXPECT_NEAR(one.y, 0, 1e-6f);
+  EXPECT_NEAR(many.w, 0.1f, 1e-3f);
+}
+
+// Light that goes everywhere ages what is remembered in every frame, not just in the first one.
+TEST(EyePathsChange, LightThatGoesOneWayAges) {
+  const auto fading = [](std::vector<scene::Light>& lights, uint32_t frame) {  // then it is halved
+    for (scene::Light& light : lights)
+      light.color *= std::pow(0.9f, float(std::clamp(int(frame) - 2, 0, 4))) * (frame < 8 ? 1.0f : 0.5f);
+  };
+  const auto after = [&](uint32_t frames) { return changeAfter(frames, litRoom(), fading); };
+  EXPECT_EQ(after(3), glm::vec4(0));
+  for (const uint32_t frames : {4u, 5u}) {
+    const glm::vec4 change = after(frames);
+    EXPECT_NEAR(change.x, 0.1f, 1e-3f);
+    EXPECT_NEAR(change.y, 16 * 0.1f * 0.1f, 5e-3f) << frames;
+  }
+  EXPECT_EQ(after(8), glm::vec4(0)) << "nothing changes";
+  const glm::vec4 half = after(9);
   EXPECT_NEAR(half.x, 0.5f, 1e-3f);
-  EXPECT_NEAR(half.y, 16 * sudden * sudden, 0.05f);
+  EXPECT_NEAR(half.y, 16 * 0.5f * 0.5f, 0.2f);
   EXPECT_FLOAT_EQ(half.z, half.y / (1 + half.y));
-  EXPECT_EQ(after(10), glm::vec3(0, 0, half.z - 0.25f)) << "a quarter is regained";
+  EXPECT_EQ(after(10), glm::vec4(0, 0, half.z - 0.25f, 0)) << "a quarter is regained";
 }
 
 // What changes all the time has hardly any paths traced out of turn.
