@@ -47,16 +47,12 @@ struct Difference {
   static float lightOf(const EyePathEnd& end) { return meanChannel(end.radiance) * end.weight; }
 };
 
-// EyePathStatistics::drift of the differences at all points. If their signs were random, the square of their sum would
-// on average be the sum of their squares.
-double driftOf(std::span<const Difference> differences) {
-  double gained = 0, squares = 0, larger = 0;
-  for (const Difference& d : differences) {
-    gained += d.gained;
-    squares += d.gained * d.gained;
-    larger += d.larger;
-  }
-  const double drift = std::sqrt(std::max(gained * gained - squares, 0.0)) / larger;
+// EyePathStatistics::drift of the differences at all points and their sum. If their signs were random, the square of
+// the sum would on average be the sum of the squares.
+double driftOf(std::span<const Difference> differences, const Difference& sum) {
+  double squares = 0;
+  for (const Difference& d : differences) squares += d.gained * d.gained;
+  const double drift = std::sqrt(std::max(sum.gained * sum.gained - squares, 0.0)) / sum.larger;
   return drift > 0 ? std::min(drift, 1.0) : 0;
 }
 
@@ -215,8 +211,9 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
     if (!anew) differences[point] = difference;
   });
   EyePathStatistics statistics;
-  statistics.change = std::accumulate(differences.begin(), differences.end(), Difference{}).share();
-  statistics.drift = driftOf(differences);
+  const Difference sum = std::accumulate(differences.begin(), differences.end(), Difference{});
+  statistics.change = sum.share();
+  statistics.drift = driftOf(differences, sum);
   if (const double share = kOutOfTurn * (statistics.change - settings.usualChange); share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
       if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracer.tracePaths(lists, point, count);

@@ -119,8 +119,8 @@ class EyePaths : public Pass {
   }
 
  private:
-  // The output `change`. Running means are made for what moves all the time, so only what is sudden or goes one way ages
-  // them.
+  // The output `change`. Running means are made for what moves all the time, so only what is sudden or goes one way
+  // ages them.
   glm::vec4 changeOf(const EyePathStatistics& statistics) {
     const float change = float(statistics.change),
                 unfollowed = std::max(change - usualChange_, float(statistics.drift)),

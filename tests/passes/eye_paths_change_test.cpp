@@ -97,8 +97,8 @@ glm::vec4 changeAfter(uint32_t frames, const scene::Scene& scene, const Function
 }
 
 // Light that comes to one place and goes from another: the paths find as much of the light of one lamp as of the other,
-// and in the frames 3 to 6 one becomes weaker and the other brighter by a tenth, and in frame 8 by half. Only what exceeds
-// the changes of the frames before counts, of which a quarter is forgotten in frame 7.
+// and in the frames 3 to 6 one becomes weaker and the other brighter by a tenth, and in frame 8 by half. Only what
+// exceeds the changes of the frames before counts, of which a quarter is forgotten in frame 7.
 TEST(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
   scene::Scene lamps = litRoom();
   lamps.lights = {pointLight({-0.8f, 0, 0.5f}, {5, 5, 5}), pointLight({0.8f, 0, 0.5f}, {5, 5, 5})};
