@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 
 #include "framework/image/codec.h"
 
@@ -45,27 +47,109 @@ uint32_t littleEndian(std::istream& in) {
   return value;
 }
 
-// Whether what lies in an attribute of this type and size, of which the stream is at the beginning, claims more.
-bool claimsMore(std::istream& in, const std::string& type, uint64_t size) {
+// How many bytes OpenEXR reads of an attribute of this type and size, at whose content the stream is. It reads many types
+// by their content and does not look at the size.
+uint64_t bytesRead(std::istream& in, const std::string& type, uint64_t size) {
+  static const std::map<std::string, uint64_t, std::less<>> kSizes = {{"box2i", 16},
+                                                                      {"box2f", 16},
+                                                                      {"chromaticities", 32},
+                                                                      {"compression", 1},
+                                                                      {"deepImageState", 1},
+                                                                      {"double", 8},
+                                                                      {"envmap", 1},
+                                                                      {"float", 4},
+                                                                      {"int", 4},
+                                                                      {"keycode", 28},
+                                                                      {"lineOrder", 1},
+                                                                      {"m33f", 36},
+                                                                      {"m33d", 72},
+                                                                      {"m44f", 64},
+                                                                      {"m44d", 128},
+                                                                      {"rational", 8},
+                                                                      {"tiledesc", 9},
+                                                                      {"timecode", 8},
+                                                                      {"v2i", 8},
+                                                                      {"v2f", 8},
+                                                                      {"v2d", 16},
+                                                                      {"v3i", 12},
+                                                                      {"v3f", 12},
+                                                                      {"v3d", 24}};
+  if (const auto known = kSizes.find(type); known != kSizes.end()) return known->second;
   if (type == "preview") {  // width, height, and four bytes a pixel
     const uint64_t width = littleEndian(in), height = littleEndian(in);
-    return size < 8 || (height > 0 && width > (size - 8) / 4 / height);
+    return 8 + (width > 0 && height > size / width ? size : 4 * width * height);
   }
-  if (type == "stringvector")  // each with its length before it
-    for (uint64_t left = size; in && left > 0;) {
-      const uint64_t length = left >= 4 ? littleEndian(in) : left;
-      if (length + 4 > left) return true;
+  uint64_t bytes = 0;
+  if (type == "chlist") {  // names, and 16 bytes each, up to an empty name
+    for (std::string name; std::getline(in, name, '\0') && !name.empty(); in.ignore(16))
+      bytes += name.size() + 1 + 16;
+    return bytes + 1;
+  }
+  if (type == "stringvector") {  // each with its length before it
+    while (in && bytes < size) {
+      const uint64_t length = littleEndian(in);
+      bytes += 4 + length;
       in.seekg(std::streamoff(length), std::ios::cur);
-      left -= length + 4;
     }
-  return false;
+    return bytes;
+  }
+  return size;
 }
 
-// Whether a side of the rectangle at which the stream is, the corners of its first and last pixels, is too long.
-bool claimsTooLong(std::istream& in) {
-  int64_t corners[4] = {};
-  for (int64_t& corner : corners) corner = int32_t(littleEndian(in));
-  return std::max(corners[2] - corners[0], corners[3] - corners[1]) >= int64_t{codec::kMaxSide};
+// What decides how much memory OpenEXR reserves for one block of a part's pixels as it opens the file.
+struct Block {
+  uint64_t columns = 0, rows = 0, bytesPerPixel = 0;
+  uint64_t tileColumns = 0, tileRows = 0;  // 0 if the part has no tiles
+  uint64_t lines = 1;                      // of a compressed block
+  uint64_t bytes() const {
+    return (tileColumns > 0 ? tileColumns * tileRows : columns * lines) * bytesPerPixel;
+  }
+};
+
+constexpr uint64_t kMostOfBlock = uint64_t(1) << 27;  // bytes
+
+uint64_t bytesPerPixel(std::istream& channels) {
+  uint64_t bytes = 0;
+  for (std::string name; std::getline(channels, name, '\0') && !name.empty();) {
+    constexpr uint32_t kHalf = 1;
+    bytes += littleEndian(channels) == kHalf ? 2 : 4;
+    channels.ignore(12);  // flags, and how sparse its samples are
+  }
+  return bytes;
+}
+
+// By the number that a header gives to a compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+uint64_t linesOfBlock(int compression) {
+  static constexpr std::array<uint64_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return kLines[size_t(std::clamp(compression, 0, int(kLines.size()) - 1))];
+}
+
+// Takes from an attribute, at whose content the stream is, what it says of the blocks.
+void addTo(Block& block, const std::string& name, std::istream& in) {
+  if (name == "dataWindow") {  // the corners of its first and last pixels
+    int64_t corners[4] = {};
+    for (int64_t& corner : corners) corner = int32_t(littleEndian(in));
+    block.columns = uint64_t(std::max<int64_t>(corners[2] - corners[0] + 1, 0));
+    block.rows = uint64_t(std::max<int64_t>(corners[3] - corners[1] + 1, 0));
+  } else if (name == "channels") {
+    block.bytesPerPixel = bytesPerPixel(in);
+  } else if (name == "compression") {
+    block.lines = linesOfBlock(in.get());
+  } else if (name == "tiles") {
+    block.tileColumns = littleEndian(in);
+    block.tileRows = littleEndian(in);
+  }
+}
+
+std::string whyTooLarge(const Block& block) {
+  if (std::max(block.columns, block.rows) > codec::kMaxSide)
+    return "its `dataWindow` is longer than any picture";
+  if (std::max(block.tileColumns, block.tileRows) > codec::kMaxSide)
+    return "its tiles are longer than any picture";
+  if (block.bytes() > kMostOfBlock)
+    return "one block of its pixels claims " + std::to_string(block.bytes() >> 20) + " MiB of at most " +
+           std::to_string(kMostOfBlock >> 20);
+  return {};
 }
 
 }  // namespace
@@ -85,16 +169,19 @@ std::string whyForged(std::istream& exr) {
   exr.seekg(4);
   const bool severalParts = (littleEndian(exr) & 0x1000u) != 0;
   do {
+    Block block;
     for (std::string name, type; std::getline(exr, name, '\0') && !name.empty();) {
       std::getline(exr, type, '\0');
       const uint64_t size = littleEndian(exr);
       if (!exr) return {};  // it ends here
       const auto begin = uint64_t(exr.tellg());
-      if (size > total - begin || claimsMore(exr, type, size))
-        return "its attribute `" + name + "` claims more bytes than there are";
-      if (name == "dataWindow" && claimsTooLong(exr)) return "its `dataWindow` is longer than any picture";
+      if (size > total - begin || bytesRead(exr, type, size) != size)
+        return "its attribute `" + name + "` has another size than it claims";
+      exr.seekg(std::streamoff(begin));
+      addTo(block, name, exr);
       exr.seekg(std::streamoff(begin + size));
     }
+    if (const std::string reason = whyTooLarge(block); !reason.empty()) return reason;
   } while (severalParts && exr.peek() > 0);
   return {};
 }

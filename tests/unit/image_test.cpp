@@ -307,6 +307,43 @@ std::string exrHeader(const std::string& type, uint32_t size, const std::string&
          value + '\0';
 }
 
+std::string exrAttribute(const std::string& name, const std::string& value) {
+  return name + '\0' + "any" + '\0' + littleEndian(uint32_t(value.size())) + value;
+}
+
+// An EXR header of a picture with so many channels of 32 bits; `more` are further attributes.
+std::string exrPicture(uint32_t width, uint32_t height, size_t channels, char compression,
+                       const std::string& more = "") {
+  std::string list;
+  for (size_t c = 0; c < channels; ++c)
+    list += "c" + std::string(1, '\0') + littleEndian(2) + std::string(12, '\0');
+  return "\x76\x2f\x31\x01" + littleEndian(2) + exrAttribute("channels", list + '\0') +
+         exrAttribute("compression", std::string(1, compression)) +
+         exrAttribute("dataWindow", littleEndian(0) + littleEndian(0) + littleEndian(width - 1) +
+                                        littleEndian(height - 1)) +
+         more + '\0';
+}
+
+// OpenEXR reserves memory for whole blocks as it opens a file.
+TEST(ImageHeaders, HugeBlocksOfExrPixelsAreFound) {
+  const auto forged = [](const std::string& bytes) {
+    std::istringstream stream(bytes);
+    return whyForged(stream);
+  };
+  constexpr char kNone = 0, kZip = 3, kDwab = 9;
+  EXPECT_EQ(forged(exrPicture(32768, 32768, 4, kDwab)), "");
+  EXPECT_THAT(forged(exrPicture(32768, 1, 5, kDwab)), HasSubstr("claims 160 MiB of at most 128"));
+  EXPECT_EQ(forged(exrPicture(32768, 1, 64, kZip)), "");
+  EXPECT_NE(forged(exrPicture(32768, 1, 65, kZip)), "");
+  EXPECT_EQ(forged(exrPicture(32768, 1, 1024, kNone)), "");
+  const auto tiles = [](uint32_t side) {
+    return exrAttribute("tiles", littleEndian(side) + littleEndian(side) + std::string(1, '\0'));
+  };
+  EXPECT_EQ(forged(exrPicture(64, 64, 4, kZip, tiles(2048))), "");
+  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(4096))), "");
+  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(0xffffffff))), "");
+}
+
 // Sizes that fit are left to OpenEXR, in files that are cut short as well.
 TEST(ImageHeaders, ForgedSizesOfExrAttributesAreFound) {
   const auto forged = [](const std::string& bytes) {
@@ -315,9 +352,15 @@ TEST(ImageHeaders, ForgedSizesOfExrAttributesAreFound) {
   };
   const std::string eight(8, 'x');
   EXPECT_EQ(forged(exrHeader("string", 8, eight)), "");
-  EXPECT_THAT(forged(exrHeader("string", 10, eight)), HasSubstr("`thing` claims more bytes"));
+  EXPECT_THAT(forged(exrHeader("string", 10, eight)), HasSubstr("`thing` has another size"));
   EXPECT_NE(forged(exrHeader("string", 0xffffffff, eight)), "");
   const std::string preview = littleEndian(2) + littleEndian(1) + eight;
+  EXPECT_EQ(forged(exrHeader("int", 4, "four")), "");
+  EXPECT_NE(forged(exrHeader("int", 8, eight)), "");
+  const std::string channel = "c" + std::string(1, '\0') + eight + eight;
+  EXPECT_EQ(forged(exrHeader("chlist", 19, channel + '\0')), "");
+  EXPECT_NE(forged(exrHeader("chlist", 20, channel + '\0' + "x")),
+            "");  // OpenEXR goes on behind the empty name
   EXPECT_EQ(forged(exrHeader("preview", 16, preview)), "");
   EXPECT_NE(forged(exrHeader("preview", 15, preview)), "");
   EXPECT_NE(forged(exrHeader("preview", 16, littleEndian(1u << 31) + littleEndian(1u << 31) + eight)), "");
