@@ -31,7 +31,7 @@ using Accept = std::function<void(uint32_t, uint32_t, size_t)>;
 struct Library {
   void (*write)(const std::filesystem::path& file, const Pixels& pixels);
   Pixels (*read)(const std::filesystem::path& file, const Accept& accept);
-  Image8 (*decode8)(const uint8_t* bytes, size_t size);
+  Image8 (*decode8)(const uint8_t* bytes, size_t size, const Accept& accept);
 };
 
 // The implementation there is. Throws Error(BadInput) if it cannot be loaded.

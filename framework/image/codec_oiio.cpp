@@ -91,7 +91,7 @@ Pixels read(const std::filesystem::path& file, const Accept& accept) {
   return pixels;
 }
 
-Image8 decode8(const uint8_t* bytes, size_t size) {
+Image8 decode8(const uint8_t* bytes, size_t size, const Accept& accept) {
   OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes), size);
   OIIO::ImageSpec config = readConfig();
   void* proxy = &memory;
@@ -101,6 +101,7 @@ Image8 decode8(const uint8_t* bytes, size_t size) {
   checkSize(spec);
   const size_t count = size_t(spec.width) * spec.height;
   const size_t channels = size_t(spec.nchannels);
+  accept(uint32_t(spec.width), uint32_t(spec.height), channels);
   std::vector<uint8_t> stored(count * channels);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data()))
     fail(input->geterror());

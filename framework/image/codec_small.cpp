@@ -224,11 +224,12 @@ void write(const std::filesystem::path& file, const Pixels& pixels) {
   file.extension() == ".png" ? writePng(file, pixels) : writeExr(file, pixels);
 }
 
-Image8 decode8(const uint8_t* bytes, size_t size) {
+Image8 decode8(const uint8_t* bytes, size_t size, const Accept& accept) {
   int width = 0, height = 0, channels = 0;
   if (size > size_t(INT32_MAX)) fail("it has more than 2 GiB");
   if (!stbi_info_from_memory(bytes, int(size), &width, &height, &channels)) fail(stbi_failure_reason());
   checkSize(width, height);
+  accept(uint32_t(width), uint32_t(height), size_t(channels));
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
       stbi_load_from_memory(bytes, int(size), &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) fail(stbi_failure_reason());
@@ -242,7 +243,7 @@ Pixels read(const std::filesystem::path& file, const Accept& accept) {
   if (png_sig_cmp(magic, 0, sizeof(magic)) == 0) return readPng(file, accept);
   if (magic[0] == 0x76 && magic[1] == 0x2f) return readExr(file, accept);
   const std::vector<uint8_t> bytes = readBytes(file);
-  const Image8 image = decode8(bytes.data(), bytes.size());
+  const Image8 image = decode8(bytes.data(), bytes.size(), accept);
   Pixels pixels{image.width, image.height, {"R", "G", "B", "A"}, std::vector<float>(image.rgba.size()), {}};
   std::transform(image.rgba.begin(), image.rgba.end(), pixels.data.begin(),
                  [](uint8_t v) { return float(v) / 255; });

@@ -23,13 +23,18 @@ std::optional<HeaderSize> ofPng(std::span<const uint8_t> bytes) {
 }
 
 // A JPEG is a list of segments: 0xff, a marker, and a length that counts itself. A frame header (ITU-T T.81, B.2.2) has
-// one of the markers 0xc0 to 0xcf but for three others, then the precision, the height and the width.
+// one of the markers 0xc0 to 0xcf but for three others, then the precision, the height and the width. Decoders skip what
+// is between the segments.
 std::optional<HeaderSize> ofJpeg(std::span<const uint8_t> bytes) {
   for (size_t at = 2; at + 9 <= bytes.size();) {
-    if (bytes[at] != 0xff) return {};
     const uint8_t marker = bytes[at + 1];
-    if (marker == 0xff) {  // padding
+    if (bytes[at] != 0xff || marker == 0x00 || marker == 0xff) {
       ++at;
+      continue;
+    }
+    const bool alone = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7);  // without a length
+    if (alone) {
+      at += 2;
       continue;
     }
     const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;

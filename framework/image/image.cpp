@@ -318,8 +318,13 @@ Image8 decode8(const uint8_t* bytes, size_t size, const std::string& name) {
   const bool png = size >= 8 && std::memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0;
   const bool jpeg = size >= 3 && std::memcmp(bytes, "\xff\xd8\xff", 3) == 0;
   if (!png && !jpeg) cannotRead(name, size == 0 ? "it is empty" : "it is neither PNG nor JPEG");
+  // Those who decode many pictures have counted what their headers claim.
+  const HeaderSize claimed = headerSize({bytes, size}).value_or(HeaderSize{});
+  const auto accept = [&](uint32_t width, uint32_t height, size_t) {
+    if (width != claimed.width || height != claimed.height) cannotRead(name, "its header is broken");
+  };
   try {
-    return codec::library().decode8(bytes, size);
+    return codec::library().decode8(bytes, size, accept);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -210,6 +210,13 @@ TEST_F(ImageFiles, JpegInMemory) {
     EXPECT_EQ(image.rgba[i * 4 + 3], 255);
   }
   expectError(ExitCode::BadInput, {"cut.jpg"}, [&] { decode8(kJpeg, 40, "cut.jpg"); });
+  // Decoders skip what is between two segments, and so does the check of what a header claims.
+  std::vector<uint8_t> padded(std::begin(kJpeg), std::end(kJpeg));
+  const std::vector<uint8_t> junk = {0, 7, 0xff, 0, 0xff, 0xd3, 0xff, 0xff};
+  padded.insert(padded.begin() + 20, junk.begin(), junk.end());
+  ASSERT_TRUE(headerSize(padded));
+  EXPECT_EQ(headerSize(padded)->width, image.width);
+  EXPECT_EQ(decode8(padded.data(), padded.size(), "padded.jpg").rgba, image.rgba);
 }
 
 TEST_F(ImageFiles, BrokenFilesAreNamed) {
