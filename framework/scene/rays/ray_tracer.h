@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "framework/scene/rays/bvh.h"
 #include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::scene {
@@ -19,11 +20,6 @@ class RayTracer {
   virtual ~RayTracer() = default;
   virtual RayHit intersect(const Ray& ray) const = 0;
   virtual bool occluded(const Ray& ray) const = 0;
-};
-
-// Triangles [first, end) of a geometry.
-struct TriangleRange {
-  uint32_t first = 0, end = ~0u;
 };
 
 // Positions and indices are copied. Both throw Error(OutOfMemory).

@@ -1,0 +1,135 @@
+#include "framework/scene/rays/bvh.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace fovea::scene {
+namespace {
+
+constexpr uint32_t kBins = 16;
+// Below it, halves: with the 26 levels that 2^28 triangles then need, the tree stays below kBvhDepth.
+constexpr uint32_t kMaxHeuristicDepth = 40;
+static_assert(kMaxHeuristicDepth + 28 - std::bit_width(kBvhLeaf) < kBvhDepth);
+
+struct Box {
+  glm::vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};
+  void grow(glm::vec3 p) { lo = glm::min(lo, p), hi = glm::max(hi, p); }
+  void grow(const Box& b) { lo = glm::min(lo, b.lo), hi = glm::max(hi, b.hi); }
+  float area() const {
+    const glm::vec3 d = glm::max(hi - lo, glm::vec3(0));
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+  }
+};
+
+class Builder {
+ public:
+  Builder(const Geometry& geometry, TriangleRange range) {
+    const uint32_t end = std::min(range.end, uint32_t(geometry.triangles.size()));
+    first_ = std::min(range.first, end);
+    boxes_.resize(end - first_);
+    for (uint32_t t = first_; t < end; ++t)
+      for (const uint32_t v : geometry.triangles[t].v) boxes_[t - first_].grow(geometry.positions[v]);
+    order_.resize(boxes_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+  }
+
+  Bvh build() {
+    Bvh bvh;
+    bvh.nodes.push_back(leaf(0, uint32_t(order_.size())));
+    bvh.levels.push_back(0);
+    for (uint32_t begin = 0, depth = 0; begin < bvh.nodes.size(); begin = bvh.levels.back(), ++depth) {
+      const uint32_t end = uint32_t(bvh.nodes.size());
+      for (uint32_t i = begin; i < end; ++i) divide(bvh.nodes, i, depth);
+      bvh.levels.push_back(end);
+    }
+    for (uint32_t& t : order_) t += first_;
+    bvh.order = std::move(order_);
+    return bvh;
+  }
+
+ private:
+  // A node begins as a leaf of a part of the order. If that is too long, two nodes with a part of it each are added.
+  void divide(std::vector<BvhNode>& nodes, uint32_t index, uint32_t depth) {
+    const uint32_t begin = nodes[index].first, end = begin + nodes[index].count;
+    if (end - begin <= kBvhLeaf) return;
+    const uint32_t middle = split(begin, end, depth);
+    nodes[index].first = uint32_t(nodes.size());
+    nodes[index].count = 0;
+    nodes.push_back(leaf(begin, middle));
+    nodes.push_back(leaf(middle, end));
+  }
+
+  BvhNode leaf(uint32_t begin, uint32_t end) const {
+    Box box;
+    for (uint32_t i = begin; i < end; ++i) box.grow(boxes_[order_[i]]);
+    return {box.lo, begin, box.hi, end - begin};
+  }
+
+  glm::vec3 centre(uint32_t t) const { return 0.5f * (boxes_[t].lo + boxes_[t].hi); }
+
+  // Partitions [begin, end) into two parts and returns the start of the second.
+  uint32_t split(uint32_t begin, uint32_t end, uint32_t depth) {
+    Box centres;
+    for (uint32_t i = begin; i < end; ++i) centres.grow(centre(order_[i]));
+    const glm::vec3 extent = centres.hi - centres.lo;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const float scale = kBins / extent[axis];
+    const auto first = order_.begin() + begin, last = order_.begin() + end;
+    if (depth < kMaxHeuristicDepth && extent[axis] > 0 && std::isfinite(scale)) {
+      const auto bin = [&](uint32_t t) {
+        return std::min(uint32_t((centre(t)[axis] - centres.lo[axis]) * scale), kBins - 1);
+      };
+      const uint32_t best = bestPlane(begin, end, bin);
+      const auto middle = std::partition(first, last, [&](uint32_t t) { return bin(t) < best; });
+      if (middle != first && middle != last) return uint32_t(middle - order_.begin());
+    }
+    const auto middle = first + (end - begin) / 2;
+    std::nth_element(first, middle, last,
+                     [&](uint32_t a, uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
+    return uint32_t(middle - order_.begin());
+  }
+
+  // The plane before bin b, 0 < b < kBins, with the least sum of area times count over both sides.
+  template <class Bin>
+  uint32_t bestPlane(uint32_t begin, uint32_t end, const Bin& bin) const {
+    std::array<Box, kBins> boxes;
+    std::array<uint32_t, kBins> counts{};
+    for (uint32_t i = begin; i < end; ++i) {
+      const uint32_t b = bin(order_[i]);
+      boxes[b].grow(boxes_[order_[i]]);
+      ++counts[b];
+    }
+    std::array<float, kBins> cost{};  // of the bins from b on
+    Box right, left;
+    uint32_t rightCount = 0, leftCount = 0, best = kBins / 2;
+    for (uint32_t b = kBins - 1; b > 0; --b) {
+      right.grow(boxes[b]);
+      rightCount += counts[b];
+      cost[b] = rightCount ? right.area() * float(rightCount) : 0;
+    }
+    float least = std::numeric_limits<float>::infinity();
+    for (uint32_t b = 1; b < kBins; ++b) {
+      left.grow(boxes[b - 1]);
+      leftCount += counts[b - 1];
+      const float total = cost[b] + (leftCount ? left.area() * float(leftCount) : 0);
+      if (leftCount == 0 || leftCount == end - begin || total >= least) continue;
+      least = total;
+      best = b;
+    }
+    return best;
+  }
+
+  uint32_t first_ = 0;           // of the range
+  std::vector<Box> boxes_;       // of its triangles
+  std::vector<uint32_t> order_;  // indices of the range
+};
+
+}  // namespace
+
+Bvh buildBvh(const Geometry& geometry, TriangleRange range) { return Builder(geometry, range).build(); }
+
+}  // namespace fovea::scene

@@ -1,0 +1,29 @@
+// The bounding volume hierarchies of a scene, as rays meet them on the host (framework/scene/rays/bvh.h) and on the
+// device (common/rays/trace.glsl).
+#pragma once
+
+#include "shared.h"
+
+SHARED_BEGIN(fovea::scene)
+
+// A node of a binary tree. Two texels of `rayNodes`.
+struct BvhNode {
+  vec3 low SHARED_ZERO;  // corners of its box, world space, m
+  uint first
+      SHARED_ZERO;  // leaf: its first entry in the order of triangles; inner node: the first of its two children
+  vec3 high SHARED_ZERO;
+  uint count SHARED_ZERO;  // number of triangles of a leaf; 0 for an inner node
+};
+SHARED_SIZE(BvhNode, 32)
+SHARED_OFFSET(BvhNode, high, 16)
+
+SHARED_CONSTANT uint kBvhLeaf = 4u;    // most triangles of a leaf
+SHARED_CONSTANT uint kBvhDepth = 72u;  // more levels than any tree has
+
+// On the device two trees hang below one root: that of the triangles that never move, and that of all others.
+SHARED_CONSTANT uint kBvhStill = 1u, kBvhMoving = 2u, kBvhTops = 3u;
+
+// In the last component of an entry of `rayTriangles`, beside the triangle: it may have holes.
+SHARED_CONSTANT uint kRayHoles = 0x80000000u;
+
+SHARED_END
