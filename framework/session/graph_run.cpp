@@ -58,6 +58,14 @@ bool wantsFullMaterials(const graph::Plan& plan) {
   return false;
 }
 
+// Whether the scene on the device has to have what rays meet.
+bool wantsRays(const graph::Plan& plan) {
+  const std::vector<graph::BoundPass>& passes = plan.graph->passes;
+  for (size_t i = 0; i < passes.size(); ++i)
+    if (plan.passLive[i] && passes[i].declaration->tracesRays) return true;
+  return false;
+}
+
 // Parts of graphs have inputs that the graph around them wires.
 void refuseInputs(const graph::Description& description) {
   Diagnostics messages;
@@ -97,10 +105,12 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
 void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
   if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
-  const bool full = wantsFullMaterials(*plan_);
-  const bool sameScene = before && before->gpuScene_->fullMaterials() == full;
-  gpuScene_ = sameScene ? before->gpuScene_
-                        : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_, full);
+  const bool full = wantsFullMaterials(*plan_), rays = wantsRays(*plan_);
+  const bool sameScene =
+      before && before->gpuScene_->fullMaterials() == full && before->gpuScene_->rays() == rays;
+  gpuScene_ = sameScene
+                  ? before->gpuScene_
+                  : std::make_shared<scene::GpuScene>(device_, scene_, geometry_, inFlight_, full, rays);
   graph::ExecutorOptions executorOptions;
   executorOptions.framesInFlight = inFlight_;
   executorOptions.readback = readback_;

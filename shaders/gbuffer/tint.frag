@@ -15,7 +15,6 @@ void main() {
 #if CULL
   if (!gl_FrontFacing && (flags & kMaterialDoubleSided) == 0u) discard;
 #endif
-  vec3 color = max(glassColor(material, uv), kDarkestGlass);
   bool glass = (flags & kMaterialTransmits) != 0u;
-  tint = vec4(glass ? log(color / dot(color, vec3(1.0 / 3.0))) : vec3(0.0), 1.0);
+  tint = vec4(glass ? log(glassTint(material, uv)) : vec3(0.0), 1.0);
 }

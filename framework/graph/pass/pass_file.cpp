@@ -49,6 +49,7 @@ class Reader {
     reader.text("$schema");
     if (const json::Value* doc = reader.require("doc")) readDoc(d, *doc);
     d.usesView = reader.boolean("view", false);
+    d.tracesRays = reader.boolean("rays", false);
     readPorts(d, reader.object("inputs"), "inputs", Direction::Input);
     readPorts(d, reader.object("updated"), "updated", Direction::InOut);
     readPorts(d, reader.object("outputs"), "outputs", Direction::Output);

@@ -9,6 +9,7 @@
 #include "fovea/error.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/execute_state.h"
+#include "framework/scene/frame.h"
 
 namespace fovea::graph {
 
@@ -163,6 +164,15 @@ std::string keyOf(const gpu::GraphicsPipelineDesc& d) {
   return key;
 }
 
+// Rays would meet nothing, as the scene keeps no tree of its triangles on the device that no pass asks for.
+void checkRays(const PassInstance& pass, const gpu::CompiledShader& shader, const std::string& name) {
+  if (pass.bound->declaration->tracesRays) return;
+  for (const gpu::ReflectedBinding& b : shader.reflection.bindings)
+    if (b.set == 1 && b.name.starts_with(scene::kRayBinding))
+      bindingError(pass, name, "it traces rays, which the pass does not declare",
+                   "write `\"rays\": true` in the pass's file, or `declaration.rays()`");
+}
+
 template <class Desc>
 KernelState& makeKernel(PassInstance& pass, std::string name, const std::string& label, const Desc& desc) {
   KernelState& kernel = pass.kernels.emplace_back();
@@ -193,6 +203,7 @@ gpu::Device& PrepareContext::device() const { return *pass_.state->device; }
 Kernel PrepareContext::compute(const std::string& shader, gpu::Defines defines) {
   gpu::ComputePipelineDesc desc;
   desc.shader = device().shaders().compile(shader, defines);
+  checkRays(pass_, *desc.shader, shader);
   desc.sharedSet = pass_.state->sharedLayout;
   Kernel kernel;
   kernel.state_ = &makeKernel(pass_, shader, stemOf(shader), desc);
@@ -203,6 +214,7 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   gpu::GraphicsPipelineDesc desc;
   desc.vertex = device().shaders().compile(d.vertex, d.defines);
   if (!d.fragment.empty()) desc.fragment = device().shaders().compile(d.fragment, d.defines);
+  if (desc.fragment) checkRays(pass_, *desc.fragment, d.fragment);
   desc.sharedSet = pass_.state->sharedLayout;
   for (const std::string& color : d.colors)
     desc.colorFormats.push_back(pass_.desc(pass_.access(color)).format);

@@ -12,6 +12,7 @@
 #include "framework/scene/device/environment_image.h"
 #include "framework/scene/device/full_materials.h"
 #include "framework/scene/device/gpu_textures.h"
+#include "framework/scene/device/ray_tables.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
 #include "shaders/common/records/shadow.h"
@@ -153,12 +154,13 @@ struct GpuScene::Impl {
   glm::vec3 boundsMin{0}, boundsMax{0}, environment;
   float environmentTurn;
   uint32_t staticVertices, firstMovingLight;
-  bool fullMaterials;
+  bool fullMaterials, rays;
   FullMaterials full;
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one per slot
   std::unique_ptr<Animator> animator;  // null if nothing moves
+  RayTables rayTables;
   GpuTextures textures;
   gpu::Image environmentMap;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
@@ -167,7 +169,7 @@ struct GpuScene::Impl {
   std::vector<VkDescriptorSet> sets;
   std::vector<DrawRun> runs;
 
-  Impl(gpu::Device& d, const Scene& scene, const Geometry& g, bool fullMaterials_)
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& g, bool fullMaterials_, bool rays_)
       : device(d),
         triangleCount(uint32_t(g.triangles.size())),
         staticTriangles(g.staticTriangles),
@@ -177,7 +179,9 @@ struct GpuScene::Impl {
         staticVertices(g.staticVertices()),
         firstMovingLight(g.light().firstMoving),
         fullMaterials(fullMaterials_),
+        rays(rays_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
+        rayTables(d, scene, g, rays_),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
@@ -305,8 +309,12 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 10 environment map
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays meet
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 12 triangles that rays meet
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
+constexpr uint32_t kTexelBindings =
+    uint32_t(std::ranges::count(kBindings, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER));
 
 // Storage buffers take the place of texel buffers where these are too small (common/device/texels.glsl).
 VkDescriptorType typeOf(uint32_t binding, const gpu::Device& device) {
@@ -329,7 +337,7 @@ void GpuScene::Impl::makeLayout() {
 void GpuScene::Impl::makeSets(uint32_t slots) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * slots},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, slots},
-                                        {typeOf(3, device), 6 * slots},
+                                        {typeOf(3, device), kTexelBindings * slots},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = slots;
@@ -353,16 +361,22 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
   const VkDescriptorBufferInfo blocks[3] = {{uniforms.handle(), base, sizeof(FrameBlock)},
                                             {uniforms.handle(), base + viewOffset, sizeof(ViewBlock)},
                                             {uniforms.handle(), base + lightOffset, sizeof(LightBlock)}};
-  gpu::Buffer* const buffers[6] = {&triangles, &positions,     &attributes,
-                                   &materials, &objects[slot], &previous};
-  VkBufferView views[6] = {};
-  VkDescriptorBufferInfo wholes[6];
-  const bool texels = !device.lacks("maxTexelBufferElements");
-  for (uint32_t i = 0; i < 6; ++i) {
-    wholes[i] = {buffers[i]->handle(), 0, VK_WHOLE_SIZE};
-    if (texels)
-      views[i] = buffers[i]->texelView(i == 0 ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT);
-  }
+  struct Texels {
+    uint32_t binding;
+    gpu::Buffer* buffer;
+    VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  };
+  constexpr VkFormat kWords = VK_FORMAT_R32G32B32A32_UINT;
+  const Texels texels[kTexelBindings] = {{3, &triangles, kWords},
+                                         {4, &positions},
+                                         {5, &attributes},
+                                         {6, &materials},
+                                         {8, &objects[slot]},
+                                         {9, &previous},
+                                         {11, &rayTables.nodes(), kWords},
+                                         {12, &rayTables.triangles(), kWords}};
+  VkBufferView views[kTexelBindings] = {};
+  VkDescriptorBufferInfo wholes[kTexelBindings];
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorImageInfo image{nearest, textures.image().view(),
                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
@@ -374,23 +388,24 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
     writes[i].descriptorType = typeOf(i, device);
-    if (i < 3)
-      writes[i].pBufferInfo = &blocks[i];
-    else if (i == 7)
-      writes[i].pImageInfo = &image;
-    else if (i == 10)
-      writes[i].pImageInfo = &environmentInfo;
-    else {
-      writes[i].pTexelBufferView = &views[i < 7 ? i - 3 : i - 4];
-      writes[i].pBufferInfo = &wholes[i < 7 ? i - 3 : i - 4];
-    }
   }
+  for (uint32_t i = 0; i < 3; ++i) writes[i].pBufferInfo = &blocks[i];
+  for (uint32_t i = 0; i < kTexelBindings; ++i) {
+    const Texels& t = texels[i];
+    wholes[i] = {t.buffer->handle(), 0, VK_WHOLE_SIZE};
+    writes[t.binding].pBufferInfo = &wholes[i];
+    if (writes[t.binding].descriptorType != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) continue;
+    views[i] = t.buffer->texelView(t.format);
+    writes[t.binding].pTexelBufferView = &views[i];
+  }
+  writes[7].pImageInfo = &image;
+  writes[10].pImageInfo = &environmentInfo;
   vkUpdateDescriptorSets(device.handle(), kBindingCount, writes, 0, nullptr);
 }
 
 GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
-                   bool fullMaterials)
-    : impl_(std::make_unique<Impl>(device, scene, geometry, fullMaterials)) {
+                   bool fullMaterials, bool rays)
+    : impl_(std::make_unique<Impl>(device, scene, geometry, fullMaterials, rays)) {
   const uint32_t slots = std::max(1u, framesInFlight);
   impl_->makeUniforms(slots);
   impl_->makeMoves(scene, geometry, slots);
@@ -439,7 +454,9 @@ void GpuScene::update(const Frame& frame, uint32_t slot) {
 
 void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
   Impl& s = *impl_;
-  if (s.animator) s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
+  if (!s.animator) return;
+  s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
+  s.rayTables.record(cmd, s.positions);
 }
 
 bool GpuScene::moves() const { return impl_->animator != nullptr; }
@@ -454,6 +471,7 @@ gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
 gpu::Buffer& GpuScene::previous() const { return impl_->previous; }
 gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
 bool GpuScene::fullMaterials() const { return impl_->fullMaterials; }
+bool GpuScene::rays() const { return impl_->rays; }
 const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
 uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }
 uint32_t GpuScene::vertexCount() const { return impl_->vertexCount; }

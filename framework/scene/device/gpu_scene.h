@@ -27,8 +27,9 @@ class GpuScene : public FrameDescriptors {
   // a texture is larger than the device supports.
   // fullMaterials: whether a pass asks for all that glTF says of materials. Surfaces from which light bounces on its
   // way to the picture are diffuse in any case, but metals are then no longer black: they keep their colour.
+  // rays: whether a pass traces rays on the device; otherwise they meet nothing.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
-           bool fullMaterials = false);
+           bool fullMaterials = false, bool rays = false);
   ~GpuScene() override;
 
   // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views, or as above.
@@ -53,6 +54,7 @@ class GpuScene : public FrameDescriptors {
   gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
   gpu::Buffer& materials() const;   // MaterialRecord each, then what full materials need
   bool fullMaterials() const;
+  bool rays() const;
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;

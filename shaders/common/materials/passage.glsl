@@ -31,6 +31,20 @@ float passage(uint material, vec2 uv, float cosine) {
   return clamp(dot(glassColor(material, uv), vec3(1.0 / 3.0)) * enters * (1.0 - reflects), 0.0, kMostPassed);
 }
 
+// The colour that light takes on in glass, relative to the mean of its channels.
+vec3 glassTint(uint material, vec2 uv) {
+  vec3 color = max(glassColor(material, uv), kDarkestGlass);
+  return color / dot(color, vec3(1.0 / 3.0));
+}
+
+// The share of light that the surface stops before any of it enters glass: alpha of BLEND, 0 or 1 of MASK, else 1.
+float coverage(uint material, vec2 uv, uint flags, float cutoff) {
+  if (cutoff == 0.0) return 1.0;
+  int first = int(material) * kMaterialTexels;
+  float alpha = texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
+  return (flags & kMaterialBlended) != 0u ? clamp(alpha, 0.0, 1.0) : float(alpha >= cutoff);
+}
+
 // Whether a surface stops a ray at uv. chance: uniform in [0, 1); rays that pass with half the probability or more do
 // at one half.
 bool stops(uint material, vec2 uv, float cosine, float chance) {
@@ -38,12 +52,22 @@ bool stops(uint material, vec2 uv, float cosine, float chance) {
   float cutoff = texelOf(sceneMaterials, first + 1).a;
   if (cutoff == 0.0) return true;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
-  float alpha = texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
-  float stopped = (flags & kMaterialBlended) != 0u ? alpha : float(alpha >= cutoff);
+  float stopped = coverage(material, uv, flags, cutoff);
   // A CPU device skips a loop of zero turns, but not a branch. Few materials are glass.
   for (int turns = (flags & kMaterialTransmits) != 0u ? 1 : 0; turns > 0; --turns)
     stopped *= 1.0 - passage(material, uv, cosine);
   return stopped > chance;
+}
+
+// The share of light that passes the surface in either way, by channels; materials are full.
+vec3 transmittance(uint material, vec2 uv, float cosine) {
+  int first = int(material) * kMaterialTexels;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  float covered = coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+  vec3 share = vec3(1.0 - covered);
+  if ((flags & kMaterialTransmits) != 0u)
+    share += covered * passage(material, uv, cosine) * glassTint(material, uv);
+  return share;
 }
 
 // Whether a ray passes, see framework/scene/materials/passage.h.

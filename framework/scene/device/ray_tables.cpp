@@ -1,0 +1,131 @@
+#include "framework/scene/device/ray_tables.h"
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fovea/error.h"
+#include "framework/gpu/barrier.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/rays/bvh.h"
+
+namespace fovea::scene {
+namespace {
+
+// Push constants of refit.comp.
+struct Constants {
+  uint32_t first, count;
+};
+
+struct Tables {
+  std::vector<BvhNode> nodes = std::vector<BvhNode>(kBvhTops);
+  std::vector<glm::uvec4> triangles;
+
+  // The root of the tree takes the place `top`; all other nodes follow those that are there. Returns the place that its
+  // second node would have if the first were not elsewhere.
+  uint32_t add(const Bvh& bvh, uint32_t top, const Scene& scene, const Geometry& geometry) {
+    const uint32_t base = uint32_t(nodes.size()) - 1, firstTriangle = uint32_t(triangles.size());
+    const auto placed = [&](BvhNode node) {
+      node.first += node.count > 0 ? firstTriangle : base;
+      return node;
+    };
+    nodes[top] = bvh.order.empty() ? bvh.nodes[0] : placed(bvh.nodes[0]);
+    for (size_t i = 1; i < bvh.nodes.size(); ++i) nodes.push_back(placed(bvh.nodes[i]));
+    for (const uint32_t t : bvh.order) {
+      const Triangle& triangle = geometry.triangles[t];
+      const bool holes =
+          triangle.material() < scene.materials.size() && scene.materials[triangle.material()].masked;
+      triangles.emplace_back(triangle.v[0], triangle.v[1], triangle.v[2], holes ? t | kRayHoles : t);
+    }
+    return base;
+  }
+};
+
+template <class T>
+gpu::Buffer table(gpu::Device& device, const char* name, std::vector<T> data) {
+  if (data.empty()) data.emplace_back();  // Vulkan has no empty buffers
+  const uint64_t bytes = data.size() * sizeof(T), limit = device.limits().maxTexelBufferElements;
+  if (bytes / sizeof(glm::uvec4) > limit && !device.lacks("maxTexelBufferElements"))
+    throw Error(ExitCode::OutOfMemory,
+                std::string(name) + ": " + std::to_string(bytes / sizeof(glm::uvec4)) +
+                    " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
+                "trace rays on the host");
+  gpu::Buffer buffer(
+      device, {name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+               gpu::MemoryKind::Device});
+  gpu::upload(device, buffer, std::as_bytes(std::span(data)));
+  return buffer;
+}
+
+}  // namespace
+
+struct RayTables::Impl {
+  gpu::Device& device;
+  gpu::Buffer nodes, triangles;
+  std::vector<Constants> levels;  // of the tree of what moves, the deepest first
+  gpu::Pipeline refit;
+
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& geometry, bool wanted) : device(d) {
+    const uint32_t all = wanted ? uint32_t(geometry.triangles.size()) : 0;
+    const uint32_t still = std::min(geometry.staticTriangles, all);
+    const Bvh moving = buildBvh(geometry, {still, all});
+    Tables tables;
+    tables.nodes[0].first = kBvhStill;
+    tables.add(buildBvh(geometry, {0, still}), kBvhStill, scene, geometry);
+    const uint32_t base = tables.add(moving, kBvhMoving, scene, geometry);
+    nodes = table(device, "nodes that rays meet", std::move(tables.nodes));
+    triangles = table(device, "triangles that rays meet", std::move(tables.triangles));
+    if (moving.order.empty()) return;
+    refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("animate/refit.comp")});
+    for (size_t i = moving.levels.size() - 1; i-- > 1;)
+      levels.push_back({base + moving.levels[i], moving.levels[i + 1] - moving.levels[i]});
+    levels.push_back({kBvhMoving, 1});
+  }
+};
+
+RayTables::RayTables(gpu::Device& device, const Scene& scene, const Geometry& geometry, bool wanted)
+    : impl_(std::make_unique<Impl>(device, scene, geometry, wanted)) {}
+RayTables::~RayTables() = default;
+
+void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
+  if (impl_->levels.empty()) return;
+  constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT, kWords = VK_FORMAT_R32G32B32A32_UINT;
+  const VkBufferView positionView = positions.texelView(kFloats),
+                     triangleView = impl_->triangles.texelView(kWords);
+  const VkDescriptorBufferInfo nodeInfo{impl_->nodes.handle(), 0, VK_WHOLE_SIZE};
+  std::array<VkWriteDescriptorSet, 3> writes{};
+  const gpu::Pipeline& pipeline = impl_->refit;
+  size_t count = 0;
+  for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
+    VkWriteDescriptorSet& w = writes.at(count++);
+    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    w.dstBinding = b.binding;
+    w.descriptorCount = 1;
+    w.descriptorType = gpu::descriptorType(b.kind);
+    if (b.name == "positions") w.pTexelBufferView = &positionView;
+    if (b.name == "triangles") w.pTexelBufferView = &triangleView;
+    if (b.name == "Nodes") w.pBufferInfo = &nodeInfo;
+  }
+  vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+  impl_->device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0,
+                                  std::span(writes).first(count));
+  const uint32_t group = pipeline.interface().localSize[0];
+  for (const Constants& level : impl_->levels) {
+    constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
+                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                           VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
+    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof level, &level);
+    vkCmdDispatch(cmd, (level.count + group - 1) / group, 1, 1);
+  }
+}
+
+gpu::Buffer& RayTables::nodes() const { return impl_->nodes; }
+gpu::Buffer& RayTables::triangles() const { return impl_->triangles; }
+
+}  // namespace fovea::scene

@@ -1,0 +1,36 @@
+// The boxes of one level of a bounding volume hierarchy from this frame's vertices, one node per invocation; the boxes
+// of the level below are those of this frame already.
+#include "common/records/rays.h"
+
+layout(local_size_x = 64) in;
+
+uniform textureBuffer positions;
+uniform utextureBuffer triangles;  // `rayTriangles` of common/rays/trace.glsl
+layout(std430) buffer Nodes { BvhNode nodes[]; };
+
+layout(push_constant) uniform Constants {
+  uint first;
+  uint count;
+};
+
+const float kFarthest = 3.4e38;
+
+void main() {
+  if (gl_GlobalInvocationID.x >= count) return;
+  BvhNode node = nodes[first + gl_GlobalInvocationID.x];
+  vec3 low = vec3(kFarthest), high = vec3(-kFarthest);
+  for (uint i = node.first; i < node.first + node.count; ++i) {
+    uvec4 triangle = texelFetch(triangles, int(i));
+    for (int k = 0; k < 3; ++k) {
+      vec3 p = texelFetch(positions, int(triangle[k])).xyz;
+      low = min(low, p);
+      high = max(high, p);
+    }
+  }
+  if (node.count == 0u) {
+    low = min(nodes[node.first].low, nodes[node.first + 1u].low);
+    high = max(nodes[node.first].high, nodes[node.first + 1u].high);
+  }
+  nodes[first + gl_GlobalInvocationID.x].low = low;
+  nodes[first + gl_GlobalInvocationID.x].high = high;
+}

@@ -1,0 +1,34 @@
+// How much light passes along a ray. Define: RAY_PASSAGE 0/1, as in common/rays/trace.glsl.
+#ifndef FOVEA_RAYS_VISIBILITY_GLSL
+#define FOVEA_RAYS_VISIBILITY_GLSL
+
+#include "common/materials/passage.glsl"
+#include "common/rays/trace.glsl"
+
+const uint kMaxPanes = 64u;  // surfaces that light passes on its way
+
+// The share of light that passes along the ray, by channels; the same as scene::visibility
+// (framework/scene/rays/visibility.h).
+vec3 visibility(Ray ray) {
+#if RAY_PASSAGE
+  vec3 share = vec3(1.0), direction = normalize(ray.direction);
+  for (uint pane = 0u; pane < kMaxPanes; ++pane) {
+    RayHit hit = intersect(ray);
+    if (hit.triangle == kNoTriangle) return share;
+    uvec4 triangle = sceneTriangle(hit.triangle);
+    uint material = materialOf(triangle);
+    uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
+    if ((flags & (kMaterialBlended | kMaterialTransmits)) == 0u) break;
+    vec3 weights = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
+    vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
+    share *= transmittance(material, uvAt(triangle, hit.weights), abs(dot(normalize(normal), direction)));
+    if (share == vec3(0.0)) break;
+    ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
+  }
+  return vec3(0.0);
+#else
+  return vec3(occluded(ray) ? 0.0 : 1.0);
+#endif
+}
+
+#endif

@@ -1,0 +1,245 @@
+// Compares rays through the triangles on the device (shaders/common/rays/trace.glsl) with RayScene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "framework/base/random.h"
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/gpu_scene.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/load.h"
+#include "framework/scene/materials/passage.h"
+#include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/rays/visibility.h"
+#include "framework/session/test_device.h"
+#include "tests/gpu/command_helpers.h"
+
+namespace fovea::scene {
+namespace {
+
+using test::testDevice;
+
+// As in the shader below.
+struct Query {
+  glm::vec3 origin;
+  float near;
+  glm::vec3 direction;
+  float far;
+};
+struct Answer {
+  uint32_t triangle;
+  float distance, u, v;
+  glm::vec3 share;  // of the light that passes
+  uint32_t occluded;
+};
+
+std::vector<Answer> traceOnDevice(GpuScene& scene, const Frame& frame, const std::vector<Query>& queries,
+                                  bool passage) {
+  gpu::Device& device = testDevice();
+  const std::string source = std::string("#version 460\n") +
+                             "#extension GL_GOOGLE_include_directive : require\n#define RAY_PASSAGE " +
+                             (passage ? "1" : "0") + R"(
+#include "common/rays/visibility.glsl"
+layout(local_size_x = 64) in;
+struct Query { vec3 origin; float near; vec3 direction; float far; };
+struct Answer { uint triangle; float distance, u, v; vec3 share; uint occluded; };
+layout(std430) readonly buffer Queries { Query queries[]; };
+layout(std430) writeonly buffer Answers { Answer answers[]; };
+layout(push_constant) uniform Constants { uint count; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  Query q = queries[i];
+  Ray ray = Ray(q.origin, q.direction, q.near, q.far);
+  RayHit hit = intersect(ray);
+  answers[i] = Answer(hit.triangle, hit.distance, hit.weights.x, hit.weights.y, visibility(ray),
+                      occluded(ray) ? 1u : 0u);
+}
+)";
+  gpu::Buffer in(device, {"queries", queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::Buffer out(device, {"answers", queries.size() * sizeof(Answer), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::upload(device, in, std::as_bytes(std::span(queries)));
+  const gpu::Pipeline pipeline(
+      device,
+      gpu::ComputePipelineDesc{device.shaders().compileSource("rays.comp", source), scene.setLayout()});
+  scene.update(frame, 0);
+  device.runOnce([&](VkCommandBuffer cmd) {
+    scene.recordMoves(cmd, 0);
+    constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    test::barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
+                  VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
+                                             {out.handle(), 0, VK_WHOLE_SIZE}};
+    VkWriteDescriptorSet writes[2] = {test::write(pipeline, "Queries"), test::write(pipeline, "Answers")};
+    writes[0].pBufferInfo = &infos[0];
+    writes[1].pBufferInfo = &infos[1];
+    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+    const VkDescriptorSet set = scene.set(0);
+    const uint32_t offset = scene.viewOffset(0), count = uint32_t(queries.size());
+    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
+    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
+    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
+  });
+  return test::as<Answer>(gpu::download(device, out));
+}
+
+glm::vec3 randomVector(uint32_t i, uint32_t what) {
+  const auto u = [&](uint32_t k) { return 2 * uniformFloat(randomStream(3, what, k, i)) - 1; };
+  return {u(0), u(1), u(2)};
+}
+
+// Rays from everywhere within the scene's box; some within planes of the axes, some cut short.
+std::vector<Query> raysThrough(const Geometry& g, uint32_t count) {
+  const glm::vec3 middle = 0.5f * (g.boundsMin + g.boundsMax), size = g.boundsMax - g.boundsMin;
+  std::vector<Query> list(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    Query& q = list[i];
+    q = {middle + 0.5f * size * randomVector(i, 10), 0, randomVector(i, 11), 1e30f};
+    if (i % 4 == 0) q.direction[int(i / 4 % 3)] = 0;
+    if (i % 16 == 0) q.direction = {0, i % 32 == 0 ? 1 : -1, 0};
+    if (i % 5 == 0) q.near = 0.1f * glm::length(size);
+    if (i % 7 == 0) q.far = 0.3f * glm::length(size);
+  }
+  return list;
+}
+
+// At edges, and where two triangles meet, either answer is right.
+void compare(const Scene& scene, Geometry& geometry, GpuScene& device, const Frame& frame, uint32_t count,
+             uint32_t fewestHits, bool passage = false) {
+  moveObjects(frame, geometry);
+  const std::vector<Query> queries = raysThrough(geometry, count);
+  const std::vector<Answer> answers = traceOnDevice(device, frame, queries, passage);
+  const RayScene rays(scene, geometry, passage ? Passing::Met : Passing::Never);
+  Frame hostFrame = frame;
+  hostFrame.geometry = &geometry;
+  uint32_t hits = 0, different = 0, passed = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const Query& q = queries[i];
+    const Ray ray{q.origin, q.direction, q.near, q.far};
+    const RayHit want = rays.intersect(ray);
+    const Answer& got = answers[i];
+    uint64_t traced = 0;
+    const glm::vec3 share = visibility(hostFrame, rays, ray, traced);
+    hits += bool(want);
+    passed += want && share != glm::vec3(0);
+    EXPECT_EQ(got.occluded == 1, got.triangle != kNoIndex) << "ray " << i;
+    const bool same = bool(want) == (got.triangle != kNoIndex) &&
+                      (!want || std::abs(want.distance - got.distance) < 1e-4f * (1 + want.distance));
+    const glm::vec3 error = glm::abs(share - got.share);
+    if (!same || std::max({error.x, error.y, error.z}) > 2e-3f) {
+      ++different;
+      continue;
+    }
+    if (!want || want.triangle != got.triangle) continue;
+    const Triangle& t = geometry.triangles[want.triangle];
+    const glm::vec3 a = geometry.positions[t.v[0]];
+    const glm::vec3 off = (got.u - want.u) * (geometry.positions[t.v[1]] - a) +
+                          (got.v - want.v) * (geometry.positions[t.v[2]] - a);
+    EXPECT_LT(glm::length(off), 1e-3f * (1 + want.distance)) << "ray " << i;
+  }
+  EXPECT_GT(hits, fewestHits);
+  EXPECT_LE(different, count / 1000);
+  if (passage) {
+    EXPECT_GT(passed, fewestHits / 20);
+  }
+}
+
+// Triangles from tiny to large, with vertices on a grid, so that rays meet edges, corners and flat boxes.
+Geometry soup(uint32_t count) {
+  Geometry g;
+  for (uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 centre = 5.0f * randomVector(i, 0);
+    const float size = i % 10 == 0 ? 2.0f : 0.3f;
+    for (uint32_t k = 0; k < 3; ++k) {
+      glm::vec3 p = centre + size * randomVector(i, 1 + k);
+      if (i % 3 == 0) p = glm::round(p * 2.0f) / 2.0f;
+      g.positions.push_back(p);
+      g.normals.emplace_back(0, 1, 0);
+      g.uvs.emplace_back(k == 1, k == 2);
+    }
+    g.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i % 3});
+  }
+  g.boundsMin = glm::vec3(-6);
+  g.boundsMax = glm::vec3(6);
+  g.staticTriangles = count;
+  return g;
+}
+
+Texture holes() {
+  Texture t{"holes", 8, 8, true, std::vector<uint8_t>(8 * 8 * 4, 255)};
+  for (uint32_t i = 0; i < 64; ++i) t.rgba[4 * i + 3] = uint8_t(hashCombine(5, i));
+  return t;
+}
+
+Scene threeMaterials() {
+  Scene scene;
+  scene.cameras.emplace_back();
+  scene.textures.push_back(holes());
+  scene.materials.resize(3);
+  return scene;
+}
+
+TEST(DeviceRays, MeetWhatRaysOnTheHostMeet) {
+  const Scene scene = threeMaterials();
+  for (const uint32_t count : {1u, 4u, 5u, 3000u}) {
+    Geometry g = soup(count);
+    GpuScene device(testDevice(), scene, g, 1, false, true);
+    compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, count == 3000 ? 8000 : 0);
+  }
+}
+
+TEST(DeviceRays, PassHolesOfMasks) {
+  Scene scene = threeMaterials();
+  for (int i : {1, 2}) {
+    scene.materials[size_t(i)].masked = true;
+    scene.materials[size_t(i)].alphaCutoff = 0.3f * float(i);
+    scene.materials[size_t(i)].baseColorTexture = {0};
+  }
+  Geometry g = soup(3000);
+  GpuScene device(testDevice(), scene, g, 1, false, true);
+  compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 7000);
+}
+
+TEST(DeviceRays, LightPassesGlassAndBlending) {
+  Scene scene = threeMaterials();
+  scene.fullMaterials = true;
+  scene.materials[1].masked = scene.materials[1].blended = true;
+  scene.materials[1].baseColor.a = 0.7f;
+  scene.materials[1].baseColorTexture = {0};
+  scene.materials[2].transmission = 0.9f;
+  scene.materials[2].baseColor = {0.9f, 0.5f, 0.2f, 1};
+  Geometry g = soup(400);
+  GpuScene device(testDevice(), scene, g, 1, true, true);
+  compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 3000, true);
+}
+
+// The tree of what moves follows it: rigid objects here, and one that no longer shows.
+TEST(DeviceRays, FollowWhatMoves) {
+  const Scene scene = builtin("cornellbox_moving");
+  Geometry g = flatten(scene);
+  GpuScene device(testDevice(), scene, g, 1, false, true);
+  for (const uint64_t frame : {0, 25, 90})
+    compare(scene, g, device, makeFrame(scene, g, {16, 16}, frame, 1), 20000, 5000);
+  Frame hidden = makeFrame(scene, g, {16, 16}, 120, 1);
+  for (ObjectTransform& o : hidden.objects) o.visible = false;
+  compare(scene, g, device, hidden, 20000, 5000);
+}
+
+TEST(DeviceRays, MeetNothingUnlessAskedFor) {
+  const Scene scene = threeMaterials();
+  const Geometry g = soup(100);
+  GpuScene device(testDevice(), scene, g, 1);
+  for (const Answer& a :
+       traceOnDevice(device, makeFrame(scene, g, {16, 16}, 0, 1), raysThrough(g, 500), false)) {
+    EXPECT_EQ(a.triangle, kNoIndex);
+    EXPECT_EQ(a.share, glm::vec3(1));
+  }
+}
+
+}  // namespace
+}  // namespace fovea::scene
