@@ -56,7 +56,8 @@ TEST(Without, TheSamePictures) {
     SCOPED_TRACE(feature);
     expectTheSame("direct", scene, {feature}, {"materials=full"});
   }
-  expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32"});
+  for (const char* rays : {"rays=host", "rays=device"})
+    expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32", rays});
 }
 
 }  // namespace

@@ -11,6 +11,11 @@
 namespace fovea::test {
 namespace {
 
+// Rays on the host and on the device.
+class ContactRays : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, ContactRays, testing::Values("contact-rays-host", "contact-rays-device"),
+                         [](const auto& test) { return std::string(test.param).substr(13); });
+
 constexpr float kArea = 0.5f;
 constexpr int kSubsets = 4;  // of which a frame uses one for each pixel
 
@@ -60,11 +65,11 @@ struct Settings {
   bool (*contact)(size_t) = everyThird;
 };
 
-Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings = {}) {
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings, const char* type) {
   const int rays = settings.rays;
   std::vector<glm::vec2> history = settings.history;
   history.resize(vpls.size());
-  PassTest test("contact-rays");
+  PassTest test(type);
   test.param("filter", settings.filter);
   test.param("longer", kLonger);
   test.param("rays", rays);
@@ -80,6 +85,10 @@ Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& 
   EXPECT_EQ(result.pixels, double(inContact));
   EXPECT_EQ(test.counter("rays"), rays * result.pixels);
   return result;
+}
+
+Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings = {}) {
+  return run(eye, vpls, settings, ContactRays::GetParam());
 }
 
 // Compares all pixels in contact with rays to all VPLs.
@@ -110,14 +119,14 @@ void expectLightOfAllVpls(const Eye& eye, const std::vector<scene::Vpl>& vpls, c
   EXPECT_GT(hidden, 20);
 }
 
-TEST(ContactRays, LightOfAllVplsThatRaysReach) {
+TEST_P(ContactRays, LightOfAllVplsThatRaysReach) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();
   expectLightOfAllVpls(eye, vpls, run(eye, vpls));
 }
 
 // What rays of former frames have met changes which VPLs are chosen, but not the light on average.
-TEST(ContactRays, AnyHistoryGivesTheSameLight) {
+TEST_P(ContactRays, AnyHistoryGivesTheSameLight) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();
   std::vector<glm::vec2> history;
@@ -136,7 +145,7 @@ TEST(ContactRays, AnyHistoryGivesTheSameLight) {
 }
 
 // The box hides part of the wall, so that many windows show both, and pixels that are not in contact.
-TEST(ContactRays, FilterAveragesPixelsOnTheSamePlane) {
+TEST_P(ContactRays, FilterAveragesPixelsOnTheSamePlane) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();
   const Result single = run(eye, vpls, {.rays = 2, .contact = mostPixels}),
@@ -174,8 +183,27 @@ TEST(ContactRays, FilterAveragesPixelsOnTheSamePlane) {
   EXPECT_GT(others, 100);
 }
 
+// Both take the same random numbers, so that they differ by rounding alone.
+TEST(ContactRaysBoth, GiveTheSameLight) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  std::vector<glm::vec2> history;
+  for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, 40 * (i % 3));
+  const Settings settings{.rays = 3, .history = history, .filter = true, .contact = mostPixels};
+  const Result host = run(eye, vpls, settings, "contact-rays-host"),
+               device = run(eye, vpls, settings, "contact-rays-device");
+  int different = 0;
+  for (size_t i = 0; i < host.light.size(); ++i) {
+    const glm::vec4 a = glm::unpackHalf4x16(host.light[i]), b = glm::unpackHalf4x16(device.light[i]);
+    different += glm::length(a - b) > 2e-3f * glm::length(a);
+  }
+  EXPECT_LE(different, int(host.light.size()) / 200);
+  for (size_t i = 0; i < vpls.size(); ++i)
+    EXPECT_LE(glm::length(host.tallies[i] - device.tallies[i]), 0.01f * host.tallies[i].x + 2) << i;
+}
+
 // In each frame one subset stands for all.
-TEST(ContactRays, SubsetsTakeTurns) {
+TEST_P(ContactRays, SubsetsTakeTurns) {
   const Eye eye({0.3f, 0.2f, 0});
   std::vector<scene::Vpl> vpls = lamps();
   const auto litShare = [&] {
@@ -190,9 +218,9 @@ TEST(ContactRays, SubsetsTakeTurns) {
   EXPECT_NEAR(litShare(), 0.9 / kSubsets, 0.1);
 }
 
-TEST(ContactRays, WithoutVplsThereIsNoLight) {
+TEST_P(ContactRays, WithoutVplsThereIsNoLight) {
   const Eye eye({0.3f, 0.2f, 0});
-  PassTest test("contact-rays");
+  PassTest test(ContactRays::GetParam());
   test.param("longer", kLonger);
   test.viewSize(kWidth, kHeight).scene(eye.scene);
   test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, everyThird));
@@ -204,8 +232,8 @@ TEST(ContactRays, WithoutVplsThereIsNoLight) {
   for (const glm::vec2 tally : test.values<glm::vec2>("tallies")) EXPECT_EQ(tally, glm::vec2(75, 37.5f));
 }
 
-TEST(ContactRays, SizeIsTheViews) {
-  PassTest test("contact-rays");
+TEST(ContactRaysHost, SizeIsTheViews) {
+  PassTest test("contact-rays-host");
   test.param("longer", kLonger);
   test.viewSize(16, 8).scene(Eye({0, 0, 0}).scene);
   test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));

@@ -11,11 +11,20 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/surface_materials.h"
 #include "framework/shader_twins/paraboloid.h"
+#include "tests/passes/candidates_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
 namespace {
+
+// Rays on the host and on the device.
+class ShadowRays : public testing::TestWithParam<const char*> {
+ protected:
+  static bool onDevice() { return std::string(GetParam()) == "shadow-rays-device"; }
+};
+INSTANTIATE_TEST_SUITE_P(Tracers, ShadowRays, testing::Values("shadow-rays-host", "shadow-rays-device"),
+                         [](const auto& test) { return std::string(test.param).substr(12); });
 
 constexpr glm::ivec2 kSize(80, 60);
 const glm::vec3 kRho(0.5f, 0.25f, 0.75f), kEmission(0.125f, 0, 0.25f);
@@ -40,6 +49,31 @@ Room litBoxes() {
   return lookInto(std::move(s), 8, kSize);
 }
 
+// What the rays on the device read of the surfaces.
+void wireSurfaces(PassTest& test, const Room& room) {
+  SeenImage surfaces(kSize);
+  std::vector<uint64_t> albedo, emission;
+  for (size_t i = 0; i < room.pixels.size(); ++i) {
+    const Seen& seen = room.pixels[i];
+    if (seen.there)
+      surfaces.pixels[i] = {seen.position, glm::length(seen.position), seen.normal, seen.normal};
+    albedo.push_back(glm::packHalf4x16(glm::vec4(kRho, 0)));
+    emission.push_back(glm::packHalf4x16(glm::vec4(kEmission, 0)));
+  }
+  surfaces.wire(test);
+  constexpr VkFormat kHalves = VK_FORMAT_R16G16B16A16_SFLOAT;
+  test.image("gbuffer.albedo", kHalves, uint32_t(kSize.x), uint32_t(kSize.y), 1, albedo);
+  test.image("gbuffer.emission", kHalves, uint32_t(kSize.x), uint32_t(kSize.y), 1, emission);
+  test.image("gbuffer.specular", kHalves, 1, 1, 1, std::vector<uint64_t>(1));
+}
+
+// Over the room, whose direct light is `direct`.
+void wire(PassTest& test, const Room& room, bool surfaces, const std::vector<uint64_t>& direct) {
+  test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x), uint32_t(kSize.y), 1, direct);
+  if (surfaces) wireSurfaces(test, room);
+}
+
 glm::dvec3 radiance(const Room& room, const Seen& seen) {
   glm::dvec3 e(0);
   for (const scene::Light& light : room.scene.lights) {
@@ -55,15 +89,14 @@ glm::dvec3 radiance(const Room& room, const Seen& seen) {
   return glm::dvec3(kEmission) + glm::dvec3(kRho) / glm::pi<double>() * e;
 }
 
-TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
+TEST_P(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   const Room room = litBoxes();
   std::vector<uint64_t> before;
   for (uint32_t i = 0; i < room.pixels.size(); ++i)
     before.push_back(glm::packHalf4x16(
         {uniformFloat(hashPcg(i)), uniformFloat(hashPcg(i + 10000)), 7, i % 3 == 0 ? 0.0f : 1.0f}));
-  PassTest test("shadow-rays");
-  test.viewSize(kSize.x, kSize.y).scene(room.scene);
-  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1, before);
+  PassTest test(GetParam());
+  wire(test, room, onDevice(), before);
   test.run();
   const auto after = test.values<uint64_t>("direct");
   int lit = 0, shadowed = 0, background = 0;
@@ -91,12 +124,12 @@ TEST(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
 }
 
 // With full materials a pixel in doubt becomes what the BSDF of the path tracer says, as its neighbours in pass direct.
-TEST(ShadowRays, FullMaterialsAreThoseOfTheBsdf) {
+TEST(ShadowRaysHost, FullMaterialsAreThoseOfTheBsdf) {
   Room room = litBoxes();
   room.scene.materials[0].metallic = 0.5f;
   room.scene.materials[0].roughness = 0.4f;
   room.scene.materials[0].clearcoat = 0.5f;
-  PassTest test("shadow-rays");
+  PassTest test("shadow-rays-host");
   test.viewSize(kSize.x, kSize.y).scene(room.scene).param("materials", "full");
   test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1,
              std::vector<uint64_t>(room.pixels.size(), glm::packHalf4x16({1, 2, 3, 0})));
@@ -130,14 +163,12 @@ TEST(ShadowRays, FullMaterialsAreThoseOfTheBsdf) {
 }
 
 // Where the eye resolves little, the shadow map's answer stays.
-TEST(ShadowRays, LeavesThePeripheryOut) {
+TEST_P(ShadowRays, LeavesThePeripheryOut) {
   const Room room = litBoxes();
   const uint64_t doubt = glm::packHalf4x16({1, 2, 3, 0});
-  PassTest test("shadow-rays");
-  test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
+  PassTest test(GetParam());
+  wire(test, room, onDevice(), std::vector<uint64_t>(room.pixels.size(), doubt));
   test.param("periphery", 2).param("fovea_radius", 0.1).param("pixels_per_degree", 200.0);
-  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
-             std::vector<uint64_t>(room.pixels.size(), doubt));
   test.run();
   const auto after = test.values<uint64_t>("direct");
   for (int y = 0; y < kSize.y; ++y)
@@ -148,8 +179,8 @@ TEST(ShadowRays, LeavesThePeripheryOut) {
   EXPECT_EQ(test.counter("pixels"), 16 * 16);
 }
 
-TEST(ShadowRays, SizeIsTheViews) {
-  PassTest test("shadow-rays");
+TEST(ShadowRaysHost, SizeIsTheViews) {
+  PassTest test("shadow-rays-host");
   test.viewSize(16, 8).scene(litBoxes().scene);
   test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, std::vector<uint64_t>(64));
   try {
@@ -161,9 +192,9 @@ TEST(ShadowRays, SizeIsTheViews) {
   }
 }
 
-TEST(ShadowRays, AnEmptySceneIsLeftAsItIs) {
+TEST(ShadowRaysHost, AnEmptySceneIsLeftAsItIs) {
   const std::vector<uint64_t> before(64, glm::packHalf4x16({1, 2, 3, 0}));
-  PassTest test("shadow-rays");
+  PassTest test("shadow-rays-host");
   test.viewSize(8, 8);
   test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, before);
   test.run();

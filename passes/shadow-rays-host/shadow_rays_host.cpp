@@ -1,4 +1,4 @@
-// Sharp shadow edges: rays decide where shadow maps cannot.
+// Sharp shadow edges: rays on the host decide where shadow maps cannot.
 #include <algorithm>
 #include <atomic>
 #include <glm/gtc/packing.hpp>
@@ -11,6 +11,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "passes/acuity.h"
+#include "passes/bundles.h"
 #include "passes/materials.h"
 
 namespace fovea::passes {
@@ -18,14 +19,20 @@ namespace {
 
 using namespace graph;
 
-class ShadowRays : public Pass {
+class ShadowRaysHost : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("shadow-rays",
+    PassDeclaration d("shadow-rays-host",
                       "direct light by rays through the triangles, at the edges of shadows, which shadow "
                       "maps widen and shift in steps of their texels",
                       PassKind::Host);
     d.view();
+    d.input(
+         "gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"id"}),
+         "not read, as rays from the eye find the surfaces; there so that `shadow-rays-device` has no input "
+         "that this pass lacks")
+        .makeOptional()
+        .when(0);
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
             "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
             "where rays decide");
@@ -48,8 +55,9 @@ class ShadowRays : public Pass {
     const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
-                  "pass `shadow-rays`: `direct` has " + std::to_string(width) + "x" + std::to_string(height) +
-                      " pixels, its view " + std::to_string(size.x) + "x" + std::to_string(size.y),
+                  "pass `shadow-rays-host`: `direct` has " + std::to_string(width) + "x" +
+                      std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
+                      std::to_string(size.y),
                   "wire direct light of the view that the pass looks through");
     const Square fine = fineSquare(ctx.view(), ctx.parameters(), 1).within(ctx.extent("direct"));
     const uint32_t first = uint32_t(fine.low.x), last = uint32_t(fine.high.x), end = uint32_t(fine.high.y);
@@ -81,7 +89,7 @@ class ShadowRays : public Pass {
   static constexpr uint64_t kSure = 0x3c00;  // 1 as a half
 };
 
-FOVEA_PASS(ShadowRays);
+FOVEA_PASS(ShadowRaysHost);
 
 }  // namespace
 }  // namespace fovea::passes

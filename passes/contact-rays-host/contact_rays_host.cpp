@@ -193,11 +193,11 @@ class Sampler {
   std::vector<float> unhidden_, blocks_;  // light of each VPL if nothing hides it, and sums of kBlock of them
 };
 
-class ContactRays : public Pass {
+class ContactRaysHost : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
-        "contact-rays",
+        "contact-rays-host",
         "the light of VPLs by rays where surfaces meet in the fovea, in grooves and at the feet "
         "of things: shadow maps are too coarse for what hides light there, and the filter of "
         "pass deferred carries light across",
@@ -239,7 +239,7 @@ class ContactRays : public Pass {
     const uint32_t width = ctx.extent("contacts").width, height = ctx.extent("contacts").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
-                  "pass `contact-rays`: `contacts` has " + std::to_string(width) + "x" +
+                  "pass `contact-rays-host`: `contacts` has " + std::to_string(width) + "x" +
                       std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
                       std::to_string(size.y),
                   "wire contacts of the view that the pass looks through");
@@ -300,7 +300,7 @@ class ContactRays : public Pass {
   std::vector<glm::vec3> unfiltered_;  // light at each pixel in contact
 };
 
-FOVEA_PASS(ContactRays);
+FOVEA_PASS(ContactRaysHost);
 
 }  // namespace
 }  // namespace fovea::passes

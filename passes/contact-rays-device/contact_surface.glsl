@@ -1,0 +1,17 @@
+// The surfaces of pixels in contact (pass contacts).
+#include "common/octahedral.glsl"
+#include "common/pixel_ray.glsl"
+
+layout(rg32ui) uniform readonly uimage2D contacts;
+
+struct ContactSurface {
+  vec3 position, normal;  // world space, m; unit
+};
+
+bool inContact(ivec2 pixel) { return imageLoad(contacts, pixel).x != 0u; }
+
+ContactSurface surfaceAt(ivec2 pixel) {
+  uvec2 contact = imageLoad(contacts, pixel).xy;
+  return ContactSurface(view.eye + uintBitsToFloat(contact.x) * normalize(pixelRay(pixel)),
+                        octDecode(unpackSnorm2x16(contact.y)));
+}

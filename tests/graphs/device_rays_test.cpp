@@ -1,0 +1,54 @@
+// Rays that are traced on the device give the pictures of those on the host.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/scene.h"
+#include "framework/scene/load.h"
+#include "tests/support/graph_run.h"
+
+namespace fovea::test {
+namespace {
+
+// The moving Cornell box with a cube that has holes or, with full materials, lets light through, and a ring of glass.
+scene::Scene movingScene() {
+  Diagnostics warnings;
+  scene::Scene scene = scene::load("cornellbox_moving", warnings);
+  for (scene::Material& material : scene.materials) {
+    if (material.name == "yellow") material.masked = material.blended = true, material.baseColor.a = 0.6f;
+    if (material.name == "blue") material.transmission = 0.7f;
+  }
+  return scene;
+}
+
+class DeviceRaysInGraphs : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Materials, DeviceRaysInGraphs, testing::Values("diffuse", "full"));
+
+int countDifferent(const graph::OutputData& wanted, const graph::OutputData& given) {
+  const std::vector<float> want = toFloats(wanted), got = toFloats(given);
+  EXPECT_EQ(want.size(), got.size());
+  int different = 0;
+  for (size_t i = 0; i < want.size(); ++i)
+    different += std::abs(want[i] - got[i]) > 5e-3f * std::max(std::abs(want[i]), 0.02f);
+  return different;
+}
+
+// With full materials the G-buffer, from which the device takes its surfaces, has rounded what the host looks up.
+TEST_P(DeviceRaysInGraphs, GiveThePicturesOfTheHost) {
+  const scene::Scene scene = movingScene();
+  const auto render = [&](const char* name, std::vector<std::string> set) {
+    set.push_back(std::string("materials=") + GetParam());
+    set.push_back("vpl_count=200");
+    return runGraph(name, scene, {.size = {96, 72}, .frames = 4, .set = std::move(set)});
+  };
+  const GraphRun host = render("foveal", {"rays=host"}), device = render("foveal", {"rays=device"}),
+                 maps = render("foveal_no_shadow_rays", {});
+  const int byRays = countDifferent(maps.outputs.at("direct"), host.outputs.at("direct"));
+  EXPECT_GT(byRays, 20);
+  for (const char* name : {"direct", "radiance"})
+    EXPECT_LE(countDifferent(host.outputs.at(name), device.outputs.at(name)), byRays / 4) << name;
+}
+
+}  // namespace
+}  // namespace fovea::test
