@@ -108,6 +108,21 @@ TEST(RayTracer, ClosedBoxLetsNothingOut) {
   }
 }
 
+// A ray along the plane in which two boxes of the tree touch is in both, whatever the sign of its zero.
+TEST(RayTracer, NoRaySlipsBetweenTwoBoxes) {
+  Geometry floor;  // strips that share the edges x = -3, -2, ..., 3
+  for (int x = -4; x < 4; ++x) {
+    const uint32_t v = uint32_t(floor.positions.size());
+    for (int k = 0; k < 4; ++k) floor.positions.push_back({x + k % 2, 0, k / 2});
+    floor.triangles.push_back({{v, v + 1, v + 2}, 0});
+    floor.triangles.push_back({{v + 1, v + 3, v + 2}, 0});
+  }
+  const auto own = makeBvhTracer(floor, {});
+  for (int x = -3; x <= 3; ++x)
+    for (const float zero : {0.0f, -0.0f})
+      EXPECT_TRUE(own->occluded({{x, 1, 0.25f}, {zero, -1, zero}})) << x << " " << std::signbit(zero);
+}
+
 TEST(RayTracer, DegenerateInputIsMissed) {
   Geometry g;
   g.positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};

@@ -11,14 +11,19 @@
 namespace fovea::scene {
 namespace {
 
+constexpr float kLeast = 1e-30f;  // of a component of a direction
+
 // A ray prepared for both tests.
 struct PreparedRay {
   glm::vec3 origin, inverse;
   float near, far;
   int kx, ky, kz;    // kz: the axis along which the ray is longest
   float sx, sy, sz;  // shear that maps the direction to +z
-  explicit PreparedRay(const Ray& r)
-      : origin(r.origin), inverse(1.0f / r.direction), near(r.near), far(r.far) {
+  explicit PreparedRay(const Ray& r) : origin(r.origin), near(r.near), far(r.far) {
+    // No component is 0, so that a ray within a face of a box is inside.
+    for (int k = 0; k < 3; ++k)
+      inverse[k] =
+          1.0f / (std::abs(r.direction[k]) > kLeast ? r.direction[k] : std::copysign(kLeast, r.direction[k]));
     const glm::vec3 a = glm::abs(r.direction);
     kz = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     kx = (kz + 1) % 3;
@@ -29,8 +34,7 @@ struct PreparedRay {
     sz = 1.0f / r.direction[kz];
   }
 
-  // Entry distance, or infinity. Comparisons are written so that NaN (a ray within a face of the box) counts
-  // as inside; the far side is widened by the rounding error of the products (Ize, JCGT 2013).
+  // Entry distance, or infinity. The far side is widened by the rounding error of the products (Ize, JCGT 2013).
   float enter(const BvhNode& node) const {
     float t0 = near, t1 = far;
     for (int k = 0; k < 3; ++k) {
