@@ -1,13 +1,14 @@
 // Irradiance of probes: a cosine-weighted mean of the rays' radiance for each direction, blended with that of the
 // previous frames (Majercik et al., "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", JCGT 8(2),
 // 2019, section 4.2).
+#include "common/device/texels.glsl"
 #include "common/probes.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform RaysGridBlock { ProbeGrid value; } raysGrid;
 uniform samplerBuffer raysDirections;  // xyz: unit
-uniform samplerBuffer raysHits;        // rgb: radiance; a: distance, below 0 at backs, 0 if there is no ray
+LARGE_TEXELS(vec4, raysHits);  // rgb: radiance; a: distance, below 0 at backs, 0 if there is no ray
 uniform texture2D historyIrradiance;
 uniform samplerBuffer historyStates;
 layout(rgba32f) uniform writeonly image2D probesIrradiance;
@@ -31,7 +32,7 @@ void main() {
   vec3 before = texelFetch(historyIrradiance, p, 0).rgb, direction = probeDirection(p, kIrradianceSide);
   vec4 sum = vec4(0.0);
   for (int ray = probe < probesOf(raysGrid.value) ? 0 : rays; ray < rays; ++ray) {
-    vec4 hit = texelFetch(raysHits, probe * rays + ray);
+    vec4 hit = texelOf(raysHits, probe * rays + ray);
     float weight = hit.a > 0.0 ? max(dot(texelFetch(raysDirections, ray).xyz, direction), 0.0) : 0.0;
     sum += weight * vec4(hit.rgb, 1.0);
   }

@@ -1,12 +1,13 @@
 // Where each probe shall stand, and whether it is inside geometry (Majercik et al., "Scaling Probe-Based Real-Time
 // Dynamic Global Illumination for Production", JCGT 10(2), 2021, sections 4 and 5).
+#include "common/device/texels.glsl"
 #include "common/probes.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std140) uniform RaysGridBlock { ProbeGrid value; } raysGrid;
 uniform samplerBuffer raysDirections;  // xyz: unit
-uniform samplerBuffer raysHits;        // a: distance, below 0 at backs, 0 if there is no ray
+LARGE_TEXELS(vec4, raysHits);  // a: distance, below 0 at backs, 0 if there is no ray
 uniform samplerBuffer historyStates;
 layout(std430) writeonly buffer ProbesStatesBlock { Probe value[]; } probesStates;
 
@@ -25,7 +26,7 @@ void main() {
   float backs = 0.0, traced = 0.0;
   vec4 back = vec4(vec3(0.0), 1e30), front = back, farthest = vec4(0.0);  // direction and distance
   for (int ray = probe < probesOf(raysGrid.value) ? 0 : rays; ray < rays; ++ray) {
-    float hit = texelFetch(raysHits, probe * rays + ray).a;
+    float hit = texelOf(raysHits, probe * rays + ray).a;
     vec4 seen = vec4(texelFetch(raysDirections, ray).xyz, hit < 0.0 ? -hit / kBackShortened : hit);
     if (hit < 0.0 && seen.w < back.w) back = seen;
     if (hit > 0.0 && seen.w < front.w) front = seen;

@@ -4,8 +4,8 @@
 
 layout(local_size_x = 64) in;
 
-uniform textureBuffer positions;
-uniform utextureBuffer triangles;  // `rayTriangles` of common/rays/trace.glsl
+layout(std430) readonly buffer Positions { vec4 positions[]; };
+layout(std430) readonly buffer Triangles { uvec4 triangles[]; };  // `rayTriangles` of common/rays/trace.glsl
 layout(std430) buffer Nodes { BvhNode nodes[]; };
 
 layout(push_constant) uniform Constants {
@@ -20,9 +20,9 @@ void main() {
   BvhNode node = nodes[first + gl_GlobalInvocationID.x];
   vec3 low = vec3(kFarthest), high = vec3(-kFarthest);
   for (uint i = node.first; i < node.first + node.count; ++i) {
-    uvec4 triangle = texelFetch(triangles, int(i));
+    uvec4 triangle = triangles[i];
     for (int k = 0; k < 3; ++k) {
-      vec3 p = texelFetch(positions, int(triangle[k])).xyz;
+      vec3 p = positions[triangle[k]].xyz;
       low = min(low, p);
       high = max(high, p);
     }

@@ -32,11 +32,11 @@ MOST = 1e-4  # relative mean squared error of the others
 
 # Where VPLs are chosen at random in proportion to what pixels show, one such pixel moves every choice after it. The
 # pictures then show other VPLs, and only their light can be compared.
-SAME_VPLS = ("direct", "ir_1000", "ir_fixed_seed", "ir_accumulated", "ir_eq", "ir_stereo", "reference")
+SAME_VPLS = ("direct", "ddgi", "ir_1000", "ir_fixed_seed", "ir_accumulated", "ir_eq", "ir_stereo", "reference")
 LIGHT = 0.02
 
 # Suites of device_tests of which each has kernels of its own kind and takes a few seconds.
-SUITES = ("Animate Attach Candidates Compose Compute Cones Contacts Demodulate Direct GBuffer Graphics Mipmap "
+SUITES = ("Animate Attach Candidates Compose Compute Cones Contacts Demodulate DeviceRays Direct GBuffer Graphics Mipmap "
           "Mirrors Reproject ReservoirsVisibility Transfer WeightMap").split()
 CASES = ("Deferred.RandomGBuffersEqualTheReference", "DeferredMask.RandomMasksEqualTheReference",
          "Manage.LightAndTurnoverEqualTheSerialAlgorithm", "Voxelize.ThinWallsKeepBothSides",
@@ -46,7 +46,7 @@ LEFT_OUT = ("GBuffer.EqualsRaysThroughPixelCentres",)
 
 
 def graphs():
-    named = os.environ.get("FOVEA_DRIVER_GRAPHS", "direct foveal ours ir_1000").split()
+    named = os.environ.get("FOVEA_DRIVER_GRAPHS", "direct foveal ours ir_1000 alternatives/ddgi").split()
     if named != ["all"]:
         return named
     folders = [SOURCE / "graphs" / folder for folder in ("", "debug", "alternatives")]

@@ -1,12 +1,16 @@
 // The sample passes that are nothing but files: outline, bilateral-blur and trail.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
+#include "fovea/error.h"
 #include "fovea/test.h"
 #include "places.h"
+#include "tests/support/shapes.h"
 
 namespace fovea::test {
 namespace {
@@ -101,6 +105,51 @@ TEST(OwnFiles, TrailKeepsTheBrighterAndFades) {
   test.set("before", dark);
   test.run();
   EXPECT_EQ(test.floats("image")[0], 0.25f);
+}
+
+// A pass of one step that asks at each pixel whether a ray along -z is stopped. The declaration may have `more`.
+void writeRays(const std::filesystem::path& folder, const std::string& type, const std::string& more) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / (type + ".pass.json")) << R"({ "doc": "shadows",)" << more << R"(
+    "outputs": { "stopped": { "doc": "1 where a ray is stopped", "format": "r32f", "width": 4, "height": 4 } },
+    "steps": [{ "shader": "stopped.frag", "colors": ["stopped"] }] })";
+  std::ofstream(folder / "stopped.frag") << R"(
+#define RAY_PASSAGE 0
+#include "common/rays/trace.glsl"
+layout(location = 0) out float stopped;
+void main() {
+  vec3 origin = vec3(gl_FragCoord.xy - 2.0, 0.0);
+  stopped = occluded(Ray(origin, vec3(0.0, 0.0, -1.0), 0.0, 100.0)) ? 1.0 : 0.0;
+}
+)";
+}
+
+TEST(OwnFiles, TraceRaysIfTheySaySo) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "own_rays";
+  writeRays(folder, "own-rays", R"("rays": true,)");
+  writeRays(folder / "undeclared", "own-undeclared-rays", "");
+  graph::addPasses(folder);
+  graph::addPasses(folder / "undeclared");
+  scene::Scene scene;
+  const uint32_t material = addMaterial(scene, glm::vec3(0.5f));
+  addQuad(scene, material, {-2, -2, -3}, {2, 0, 0}, {0, 4, 0});  // before the left half of the pixels
+  PassTest test("own-rays");
+  test.scene(scene).run();
+  const std::vector<float> stopped = test.floats("stopped");
+  for (uint32_t i = 0; i < 16; ++i) EXPECT_EQ(stopped[i], i % 4 < 2 ? 1 : 0) << "pixel " << i;
+
+  PassTest undeclared("own-undeclared-rays");
+  undeclared.scene(scene);
+  try {
+    undeclared.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("it traces rays, which the pass does not declare"),
+              std::string::npos)
+        << e.what();
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fovea/error.h"
@@ -94,11 +95,11 @@ RayTables::~RayTables() = default;
 
 void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
   if (impl_->levels.empty()) return;
-  constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT, kWords = VK_FORMAT_R32G32B32A32_UINT;
-  const VkBufferView positionView = positions.texelView(kFloats),
-                     triangleView = impl_->triangles.texelView(kWords);
-  const VkDescriptorBufferInfo nodeInfo{impl_->nodes.handle(), 0, VK_WHOLE_SIZE};
-  std::array<VkWriteDescriptorSet, 3> writes{};
+  const std::pair<const char*, VkDescriptorBufferInfo> buffers[] = {
+      {"Positions", {positions.handle(), 0, VK_WHOLE_SIZE}},
+      {"Triangles", {impl_->triangles.handle(), 0, VK_WHOLE_SIZE}},
+      {"Nodes", {impl_->nodes.handle(), 0, VK_WHOLE_SIZE}}};
+  std::array<VkWriteDescriptorSet, std::size(buffers)> writes{};
   const gpu::Pipeline& pipeline = impl_->refit;
   size_t count = 0;
   for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
@@ -107,9 +108,8 @@ void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
     w.dstBinding = b.binding;
     w.descriptorCount = 1;
     w.descriptorType = gpu::descriptorType(b.kind);
-    if (b.name == "positions") w.pTexelBufferView = &positionView;
-    if (b.name == "triangles") w.pTexelBufferView = &triangleView;
-    if (b.name == "Nodes") w.pBufferInfo = &nodeInfo;
+    for (const auto& [name, info] : buffers)
+      if (b.name == name) w.pBufferInfo = &info;
   }
   vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
   impl_->device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0,
@@ -118,8 +118,7 @@ void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
   for (const Constants& level : impl_->levels) {
     constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
-                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-                           VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
+                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof level, &level);
     vkCmdDispatch(cmd, (level.count + group - 1) / group, 1, 1);
   }
