@@ -22,7 +22,7 @@ graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scen
   graph::Environment environment = graph::deviceEnvironment(device);
   environment.views = scene::frameViews({size.x, size.y});
   environment.quantities = scene::quantities(scene, geometry);
-  environment.texts = {{"scene.materials", scene.fullMaterials ? "full" : "diffuse"}};
+  environment.texts.emplace_back("scene.materials", scene.fullMaterials ? "full" : "diffuse");
   return environment;
 }
 

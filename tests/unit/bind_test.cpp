@@ -191,6 +191,28 @@ TEST(Bind, TextsOfTheScene) {
               HasSubstr("parameter `kernel`: expected one of disc, clamp, found `$scene.kernel`"));
 }
 
+// The device says which of several types a pass has, unless --set does.
+TEST(Bind, TypesByTextsOfTheDevice) {
+  auto registry = basicRegistry();
+  for (const char* type : {"trace-host", "trace-device"}) {
+    PassDeclaration d(type, "Traces");
+    d.output("hits", buffer("Hit", 4), Usage::StorageWrite, "made");
+    registry->add(d, nullptr);
+  }
+  Environment env = basicEnvironment(*registry);
+  const auto typeOf = [&](const std::string& device, const LoadOptions& options) {
+    env.texts = {{"device.rays", device}};
+    Diagnostics messages;
+    const std::string text = R"({"parameters": {"rays": "$device.rays"},
+        "passes": {"t": {"type": "trace-$rays"}}, "outputs": {"o": "t"}})";
+    return bind(loadText(text, "g.json", options, messages), env, messages).passes[0].declaration->type;
+  };
+  EXPECT_EQ(typeOf("host", {}), "trace-host");
+  EXPECT_EQ(typeOf("device", {}), "trace-device");
+  EXPECT_EQ(typeOf("device", {{{"rays", "host"}}, {}}), "trace-host");
+  EXPECT_THROW(typeOf("moon", {}), Error);
+}
+
 TEST(Bind, AccessesSayWhatIsReadAndWritten) {
   const Compiled c = bound(R"({"passes": {
     "a": {"type": "source"}, "u": {"type": "update", "inputs": {"image": "a"}},

@@ -88,12 +88,19 @@ std::string describeGiven(const json::Value& given) {
   return given.isNumber() ? fmt::format("{}", given.real) : fmt::format("`{}`", given.string);
 }
 
+// A text in which what stands for one of the environment's, from its '$' on, is that text.
+std::string fromEnvironment(const Binding& b, const std::string& text) {
+  const size_t dollar = text.find('$');
+  if (dollar == std::string::npos) return text;
+  for (const auto& [name, value] : b.environment.texts)
+    if (std::string_view(text).substr(dollar + 1) == name) return text.substr(0, dollar) + value;
+  return text;
+}
+
 void readParameter(Binding& b, uint32_t pass, const ParameterSpec& spec, const ParameterDescription& given,
                    Value& out) {
   json::Value value = *given.value;
-  if (given.fromEnvironment)
-    for (const auto& [name, text] : b.environment.texts)
-      if (std::string_view(value.string).substr(1) == name) value.string = text;
+  if (given.fromEnvironment) value.string = fromEnvironment(b, value.string);
   if (assign(spec, value, out)) return;
   using Type = ParameterSpec::Type;
   if (given.fromCommandLine && value.isString() && spec.type != Type::Choice && spec.type != Type::Text) {
@@ -181,10 +188,11 @@ void bindView(Binding& b, uint32_t p) {
 const PassDeclaration* findType(Binding& b, const Registry& registry, uint32_t p) {
   const json::Value* type = b.description.passes[p].type;
   if (!type) return nullptr;
-  const PassDeclaration* declaration = registry.find(type->string);
+  const std::string name = fromEnvironment(b, type->string);
+  const PassDeclaration* declaration = registry.find(name);
   if (declaration) return declaration;
-  const std::string nearest = nearestName(type->string, registry.types());
-  report(b, type->where, passPath(b, p, "type"), fmt::format("no pass type `{}`", type->string),
+  const std::string nearest = nearestName(name, registry.types());
+  report(b, type->where, passPath(b, p, "type"), fmt::format("no pass type `{}`", name),
          nearest.empty() ? std::string("`fovea passes` lists them")
                          : fmt::format("did you mean `{}`?", nearest));
   return nullptr;

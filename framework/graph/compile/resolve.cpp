@@ -70,7 +70,9 @@ bool isName(std::string_view name) {
 }
 
 // Whether a text stands for what the environment gives, to which the graph is bound later.
-static bool isOfScene(std::string_view text) { return text.starts_with("$scene."); }
+static bool isOfEnvironment(std::string_view text) {
+  return text.starts_with("$scene.") || text.starts_with("$device.");
+}
 
 bool readScalar(Expansion& all, Scope& scope, const json::Value& value, ParameterDescription& out) {
   if (value.isNull() || value.isArray() || value.isObject()) {
@@ -88,7 +90,7 @@ bool readScalar(Expansion& all, Scope& scope, const json::Value& value, Paramete
     out.value = &all.description.made.emplace_back(std::make_shared<Member>(std::move(plain)))->value;
     return true;
   }
-  if (isOfScene(text)) return out.fromEnvironment = true;
+  if (isOfEnvironment(text)) return out.fromEnvironment = true;
   Scope::Parameter* parameter = scope.findParameter(text.substr(1));
   if (!parameter) {
     std::vector<std::string> names;
@@ -162,7 +164,7 @@ void declareParameters(Expansion& all, Scope& scope) {
              fmt::format("`{}` is no name for a parameter", member.key), "letters, digits, _ and -");
     const std::string& text = member.value.string;
     Scope::Parameter parameter{&member, {}};
-    if (text.size() > 1 && text[0] == '$' && text[1] != '$' && !isOfScene(text))
+    if (text.size() > 1 && text[0] == '$' && text[1] != '$' && !isOfEnvironment(text))
       report(all, scope, member.value, "a parameter's default cannot be another parameter",
              "write the value itself");
     else if (readScalar(all, scope, member.value, parameter.value))

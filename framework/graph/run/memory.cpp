@@ -182,6 +182,8 @@ void replaceFormats(const gpu::Device& device, BoundGraph& graph) {
 
 Environment deviceEnvironment(const gpu::Device* device) {
   Environment environment;
+  // A CPU traces rays much faster by itself.
+  environment.texts = {{"device.rays", device && !device->isCpu() ? "device" : "host"}};
   if (device) {
     const VkPhysicalDeviceLimits& limits = device->limits();
     environment.maxImageDimension2D = limits.maxImageDimension2D;
