@@ -104,14 +104,13 @@ uint64_t bytesRead(std::istream& in, const std::string& type, uint64_t size) {
 // What decides how much memory OpenEXR reserves for one block of a part's pixels as it opens the file.
 struct Block {
   uint64_t columns = 0, rows = 0, bytesPerPixel = 0;
-  uint64_t tileColumns = 0, tileRows = 0;  // 0 if the part has no tiles
-  uint64_t lines = 1;                      // of a compressed block
-  uint64_t bytes() const {
-    return (tileColumns > 0 ? tileColumns * tileRows : columns * lines) * bytesPerPixel;
-  }
+  bool tiled = false;
+  uint64_t tileColumns = 0, tileRows = 0;
+  uint64_t lines = 1;  // of a compressed block without tiles
+  uint64_t bytes() const { return (tiled ? tileColumns * tileRows : columns * lines) * bytesPerPixel; }
 };
 
-constexpr uint64_t kMostOfBlock = uint64_t(1) << 27;  // bytes
+constexpr uint64_t kMostOfBlock = uint64_t(1) << 25;  // bytes; OpenEXR has two blocks for each thread
 
 uint64_t bytesPerPixel(std::istream& channels) {
   uint64_t bytes = 0;
@@ -140,6 +139,10 @@ void addTo(Block& block, const std::string& name, std::istream& in) {
     block.bytesPerPixel = bytesPerPixel(in);
   } else if (name == "compression") {
     block.lines = linesOfBlock(in.get());
+  } else if (name == "type") {  // of one of several parts; a single part has a flag instead
+    std::string type(5, ' ');
+    in.read(type.data(), std::streamsize(type.size()));
+    block.tiled = type == "tiled" || type == "deept";
   } else if (name == "tiles") {
     block.tileColumns = littleEndian(in);
     block.tileRows = littleEndian(in);
@@ -172,7 +175,8 @@ std::string whyForged(std::istream& exr) {
   exr.seekg(0, std::ios::end);
   const auto total = uint64_t(exr.tellg());
   exr.seekg(4);
-  const bool severalParts = (littleEndian(exr) & 0x1000u) != 0;
+  const uint32_t flags = littleEndian(exr);
+  const bool severalParts = (flags & 0x1000u) != 0, tiled = (flags & 0x200u) != 0;
   do {
     Block block;
     for (std::string name, type; std::getline(exr, name, '\0') && !name.empty();) {
@@ -186,6 +190,7 @@ std::string whyForged(std::istream& exr) {
       addTo(block, name, exr);
       exr.seekg(std::streamoff(begin + size));
     }
+    if (!severalParts) block.tiled = tiled;
     if (const std::string reason = whyTooLarge(block); !reason.empty()) return reason;
   } while (severalParts && exr.peek() > 0);
   return {};

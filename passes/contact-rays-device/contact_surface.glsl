@@ -10,7 +10,7 @@ struct ContactSurface {
 
 bool inContact(ivec2 pixel) { return imageLoad(contacts, pixel).x != 0u; }
 
-ContactSurface surfaceAt(ivec2 pixel) {
+ContactSurface contactSurface(ivec2 pixel) {
   uvec2 contact = imageLoad(contacts, pixel).xy;
   return ContactSurface(view.eye + uintBitsToFloat(contact.x) * normalize(pixelRay(pixel)),
                         octDecode(unpackSnorm2x16(contact.y)));

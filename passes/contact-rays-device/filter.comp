@@ -1,6 +1,7 @@
 // The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
-// surface. Two rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define: FILTER 0/1,
-// 0 takes the pixel alone.
+// surface. Two rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define:
+// FILTER 0/1, 0 takes the pixel alone.
+#include "common/records/contact.h"
 #include "contact_surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -10,13 +11,13 @@ layout(rgba16f) uniform writeonly image2D light;
 
 layout(push_constant) uniform Constants { float longer; };
 
-const float kRowWeights[2] = float[](2.0, 1.0);  // of a pixel in a row of three, by its distance from the middle
+// Of a pixel in a row of three, by its distance from the middle.
+float rowWeight(int steps) { return steps == 0 ? kMiddleWeight : 1.0; }
 
-// Whether two surfaces lie nearly on one plane: their normals differ by less than 26 degrees, and the other is off the
-// tangent plane by at most a tenth of their distance (passes/same_plane.h).
+// The same as in passes/same_plane.h.
 bool onSamePlane(ContactSurface a, ContactSurface b) {
   vec3 to = b.position - a.position;
-  return dot(a.normal, b.normal) > 0.9 && abs(dot(to, a.normal)) <= 0.1 * length(to);
+  return dot(a.normal, b.normal) > kSamePlaneCos && abs(dot(to, a.normal)) <= kSamePlaneSlope * length(to);
 }
 
 void main() {
@@ -27,14 +28,14 @@ void main() {
     return;
   }
 #if FILTER
-  ContactSurface at = surfaceAt(p);
+  ContactSurface at = contactSurface(p);
   ivec2 low = max(p - 1, 0), high = min(p + 1, size - 1);
   vec4 sum = vec4(0.0);
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 q = ivec2(x, y), steps = abs(q - p);
-      if (!inContact(q) || (q != p && !onSamePlane(at, surfaceAt(q)))) continue;
-      sum += kRowWeights[steps.x] * kRowWeights[steps.y] * vec4(imageLoad(unfiltered, q).rgb, 1.0);
+      if (!inContact(q) || (q != p && !onSamePlane(at, contactSurface(q)))) continue;
+      sum += rowWeight(steps.x) * rowWeight(steps.y) * vec4(imageLoad(unfiltered, q).rgb, 1.0);
     }
   vec3 mean = sum.rgb / sum.a;
 #else

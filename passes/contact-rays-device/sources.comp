@@ -1,4 +1,5 @@
 // The weights of VPLs: what they send, times the chance that a ray reaches them.
+#include "common/records/contact.h"
 #include "common/records/vpl.h"
 #include "common/scene.glsl"
 #include "contact_sources.glsl"
@@ -8,8 +9,6 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer VplsBlock { Vpl list[]; } vpls;
 layout(std430) readonly buffer HistoryBlock { vec2 list[]; } history;
 layout(std430) writeonly buffer SourcesBlock { ContactSource list[]; } sources;
-
-const float kLeastChance = 0.1;  // of a VPL that no ray has reached, relative to one that all reach
 
 void main() {
   uint i = gl_GlobalInvocationID.x;

@@ -2,6 +2,7 @@
 // nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence (Roberts 2018). Define:
 // RAY_PASSAGE 0/1 (common/rays/trace.glsl).
 #include "common/random.glsl"
+#include "common/records/contact.h"
 #include "common/rays/visibility.glsl"
 #include "contact_sources.glsl"
 #include "contact_surface.glsl"
@@ -18,10 +19,6 @@ layout(push_constant) uniform Constants {
   uint frameIndex;
 };
 
-const uint kContactStream = 0x636f6e74u;
-const uint kSubsets = 4u;      // a pixel looks at one of so many subsets of the VPLs in a frame
-const float kRayEnd = 0.999;   // rays end just before the VPL's surface
-
 // cos_s cos_l / (d^2 + A / pi) / d^2, in the form in which pass deferred has it, times the weight.
 float unhidden(ContactSource light, ContactSurface s) {
   vec3 d = s.position - light.position;
@@ -30,14 +27,14 @@ float unhidden(ContactSource light, ContactSurface s) {
 }
 
 vec3 lightAt(ivec2 p) {
-  ContactSurface s = surfaceAt(p);
+  ContactSurface s = contactSurface(p);
   vec3 away = normalize(s.position - view.eye), origin = s.position + (s.normal - away) * rayEpsilon();
   uint stream = randomStream(frame.seed, uint(p.x), kContactStream, uint(p.y));
   vec2 u = vec2(uniformFloat(hashCombine(stream, 0u) + frameIndex * 3242174889u),
                 uniformFloat(hashCombine(stream, 1u) + frameIndex * 2447445414u));
-  uint subset = min(uint(u.y * float(kSubsets)), kSubsets - 1u), end = uint(sources.list.length());
+  uint subset = min(uint(u.y * float(kContactSubsets)), kContactSubsets - 1u), end = uint(sources.list.length());
   float sum = 0.0;
-  for (uint i = subset; i < end; i += kSubsets) sum += unhidden(sources.list[i], s);
+  for (uint i = subset; i < end; i += kContactSubsets) sum += unhidden(sources.list[i], s);
   if (!(sum > 0.0)) return vec3(0.0);
   // The places of the rays in the sum grow, so that one way through the list passes all of them.
   vec3 light = vec3(0.0);
@@ -45,20 +42,20 @@ vec3 lightAt(ivec2 p) {
   float before = 0.0, own = unhidden(sources.list[subset], s);
   for (uint k = 0u; k < rays; ++k) {
     float place = (float(k) + u.x) / float(rays) * sum;
-    for (uint i = chosen + kSubsets; i < end && before + own <= place; i += kSubsets) {
+    for (uint i = chosen + kContactSubsets; i < end && before + own <= place; i += kContactSubsets) {
       float next = unhidden(sources.list[i], s);
       if (!(next > 0.0)) continue;
       before += own;
       own = next;
       chosen = i;
     }
-    vec3 to = sources.list[chosen].position - origin, share = visibility(Ray(origin, to, 0.0, kRayEnd));
+    vec3 to = sources.list[chosen].position - origin, share = visibility(Ray(origin, to, 0.0, kContactRayEnd));
     atomicAdd(counts.list[chosen].x, 1u);
     if (share == vec3(0.0)) continue;
     atomicAdd(counts.list[chosen].y, 1u);
     light += share * sources.list[chosen].color;
   }
-  return light * (sum * float(kSubsets) / (float(rays) * kPi));
+  return light * (sum * float(kContactSubsets) / (float(rays) * kPi));
 }
 
 void main() {

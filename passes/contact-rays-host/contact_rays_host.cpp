@@ -20,6 +20,7 @@
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/same_plane.h"
+#include "shaders/common/records/contact.h"
 #include "shaders/common/records/vpl.h"
 
 namespace fovea::passes {
@@ -27,13 +28,11 @@ namespace {
 
 using namespace graph;
 
-constexpr uint32_t kContactStream = 0x636f6e74u;
-constexpr size_t kSubsets = 4;           // a pixel looks at one of so many subsets of the VPLs in a frame
-constexpr size_t kBlock = 16;            // VPLs whose light is summed before one of them is chosen
-constexpr float kLeastChance = 0.1f;     // of a VPL that no ray has reached, relative to one that all reach
-constexpr float kKept = 0.75f;           // share of the tallies that is kept from frame to frame
-constexpr float kRayEnd = 0.999f;        // rays end just before the VPL's surface
-constexpr float kRowWeights[] = {2, 1};  // of a pixel in a row of three, by its distance from the middle
+constexpr size_t kSubsets = kContactSubsets;
+constexpr size_t kBlock = 16;  // VPLs whose light is summed before one of them is chosen
+
+// Of a pixel in a row of three, by its distance from the middle.
+float rowWeight(int steps) { return steps == 0 ? kMiddleWeight : 1; }
 
 // How many rays went to the VPL in a slot, and how many of them reached it.
 struct Tally {
@@ -132,7 +131,7 @@ glm::vec3 meanAround(const scene::View& view, glm::ivec2 size, std::span<const g
       const Surface other = surfaceAt(view, p, contacts[i]);
       const bool same = p == pixel || onSamePlane(at.position, at.normal, other.position, other.normal);
       const glm::ivec2 steps = glm::abs(p - pixel);
-      if (same) sum += kRowWeights[steps.x] * kRowWeights[steps.y] * glm::vec4(found[i], 1);
+      if (same) sum += rowWeight(steps.x) * rowWeight(steps.y) * glm::vec4(found[i], 1);
     }
   return glm::vec3(sum) / sum.w;
 }
@@ -175,8 +174,8 @@ class Sampler {
       Tally& tally = tallies[lights.slots[i]];
       ++tally.rays;
       uint64_t surfaces = 0;
-      const glm::vec3 visibility =
-          scene::visibility(frame_, rays_, {origin, lights.position(i) - origin, 0, kRayEnd}, surfaces);
+      const glm::vec3 visibility = scene::visibility(
+          frame_, rays_, {origin, lights.position(i) - origin, 0, kContactRayEnd}, surfaces);
       if (visibility == glm::vec3(0)) continue;
       ++tally.reached;
       light += visibility * lights.colors[i];
@@ -288,8 +287,8 @@ class ContactRaysHost : public Pass {
         }
     });
     for (size_t i = 0; i < tallies.size(); ++i) {
-      tallies[i].rays += kKept * history[i].rays;
-      tallies[i].reached += kKept * history[i].reached;
+      tallies[i].rays += kTallyKept * history[i].rays;
+      tallies[i].reached += kTallyKept * history[i].reached;
     }
     ctx.counter("pixels", double(pixels));
     ctx.counter("rays", double(pixels * count));

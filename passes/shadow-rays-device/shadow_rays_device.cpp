@@ -1,4 +1,7 @@
 // Sharp shadow edges: rays on the device decide where shadow maps cannot.
+#include <string>
+
+#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/acuity.h"
@@ -41,7 +44,16 @@ class ShadowRaysDevice : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkMaterials(ctx, "shadow-rays-device"); }
+  void prepare(PrepareContext& ctx) override {
+    checkMaterials(ctx, "shadow-rays-device");
+    const VkExtent3D direct = ctx.extent("direct"), seen = ctx.extent("gbuffer.position");
+    if (direct.width == seen.width && direct.height == seen.height) return;
+    const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
+    throw Error(
+        ExitCode::BadInput,
+        "pass `shadow-rays-device`: `direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),
+        "wire direct light of the view that the G-buffer shows");
+  }
 };
 
 FOVEA_PASS(ShadowRaysDevice);

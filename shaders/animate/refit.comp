@@ -16,11 +16,12 @@ layout(push_constant) uniform Constants {
 const float kFarthest = 3.4e38;
 
 void main() {
-  if (gl_GlobalInvocationID.x >= count) return;
-  BvhNode node = nodes[first + gl_GlobalInvocationID.x];
+  uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  BvhNode node = nodes[first + i];
   vec3 low = vec3(kFarthest), high = vec3(-kFarthest);
-  for (uint i = node.first; i < node.first + node.count; ++i) {
-    uvec4 triangle = triangles[i];
+  for (uint t = node.first; t < node.first + node.count; ++t) {
+    uvec4 triangle = triangles[t];
     for (int k = 0; k < 3; ++k) {
       vec3 p = positions[triangle[k]].xyz;
       low = min(low, p);
@@ -31,6 +32,6 @@ void main() {
     low = min(nodes[node.first].low, nodes[node.first + 1u].low);
     high = max(nodes[node.first].high, nodes[node.first + 1u].high);
   }
-  nodes[first + gl_GlobalInvocationID.x].low = low;
-  nodes[first + gl_GlobalInvocationID.x].high = high;
+  nodes[first + i].low = low;
+  nodes[first + i].high = high;
 }

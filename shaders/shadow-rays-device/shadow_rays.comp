@@ -12,8 +12,6 @@ layout(push_constant) uniform Constants {
   ivec4 fine;  // corners of the part of the picture where pixels are decided
 };
 
-const float kShadowEnd = 0.9999;  // rays end just before the light
-
 vec3 lightFrom(LightRecord light, Receiver r, vec3 origin) {
   LightSample e = sampleLight(light, r.place.xyz);
   if (dot(r.normal, e.direction) <= 0.0 || dot(r.face, e.direction) <= 0.0 || e.irradiance == vec3(0.0))

@@ -1,6 +1,7 @@
 // Compares rays through the triangles on the device (shaders/common/rays/trace.glsl) with RayScene.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -93,7 +94,8 @@ glm::vec3 randomVector(uint32_t i, uint32_t what) {
   return {u(0), u(1), u(2)};
 }
 
-// Rays from everywhere within the scene's box; some within planes of the axes, some cut short.
+// Rays from everywhere within the scene's box; some within planes of the axes, some cut short, and every second one
+// towards a point of a triangle, each of which has its turn.
 std::vector<Query> raysThrough(const Geometry& g, uint32_t count) {
   const glm::vec3 middle = 0.5f * (g.boundsMin + g.boundsMax), size = g.boundsMax - g.boundsMin;
   std::vector<Query> list(count);
@@ -104,6 +106,14 @@ std::vector<Query> raysThrough(const Geometry& g, uint32_t count) {
     if (i % 16 == 0) q.direction = {0, i % 32 == 0 ? 1 : -1, 0};
     if (i % 5 == 0) q.near = 0.1f * glm::length(size);
     if (i % 7 == 0) q.far = 0.3f * glm::length(size);
+    if (i % 2 == 1) {
+      const Triangle& t = g.triangles[i / 2 % g.triangles.size()];
+      const glm::vec3 w = glm::abs(randomVector(i, 12)) + 1e-3f;
+      const glm::vec3 at =
+          (w.x * g.positions[t.v[0]] + w.y * g.positions[t.v[1]] + w.z * g.positions[t.v[2]]) /
+          (w.x + w.y + w.z);
+      q = {q.origin, 0, at - q.origin, 1e30f};
+    }
   }
   return list;
 }
@@ -131,7 +141,7 @@ void compare(const Scene& scene, Geometry& geometry, GpuScene& device, const Fra
     const bool same = bool(want) == (got.triangle != kNoIndex) &&
                       (!want || std::abs(want.distance - got.distance) < 1e-4f * (1 + want.distance));
     const glm::vec3 error = glm::abs(share - got.share);
-    if (!same || std::max({error.x, error.y, error.z}) > 2e-3f) {
+    if (!same || !(std::max({error.x, error.y, error.z}) <= 2e-3f)) {
       ++different;
       continue;
     }
@@ -143,7 +153,7 @@ void compare(const Scene& scene, Geometry& geometry, GpuScene& device, const Fra
     EXPECT_LT(glm::length(off), 1e-3f * (1 + want.distance)) << "ray " << i;
   }
   EXPECT_GT(hits, fewestHits);
-  EXPECT_LE(different, count / 1000);
+  EXPECT_LE(different, hits / 1000);
   if (passage) {
     EXPECT_GT(passed, fewestHits / 20);
   }
@@ -189,8 +199,72 @@ TEST(DeviceRays, MeetWhatRaysOnTheHostMeet) {
   for (const uint32_t count : {1u, 4u, 5u, 3000u}) {
     Geometry g = soup(count);
     GpuScene device(testDevice(), scene, g, 1, false, true);
-    compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, count == 3000 ? 8000 : 0);
+    compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 5000);
   }
+}
+
+// A box around the origin, and strips of a floor that share the edges x = -3, -2, ..., 3.
+Geometry boxAndFloor() {
+  Geometry g;
+  const auto quad = [&](glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
+    const uint32_t v = uint32_t(g.positions.size());
+    g.positions.insert(g.positions.end(), {a, b, c, d});
+    g.triangles.push_back({{v, v + 1, v + 2}, 0});
+    g.triangles.push_back({{v + 1, v + 3, v + 2}, 0});
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-5.0f, 5.0f}) {
+      const auto at = [&](float u, float v) {
+        glm::vec3 p(side);
+        p[(axis + 1) % 3] = u, p[(axis + 2) % 3] = v;
+        return p;
+      };
+      quad(at(-5, -5), at(5, -5), at(-5, 5), at(5, 5));
+    }
+  for (int x = -4; x < 4; ++x) quad({x, -2, -1}, {x + 1, -2, -1}, {x, -2, 1}, {x + 1, -2, 1});
+  g.normals.assign(g.positions.size(), {0, 1, 0});
+  g.uvs.assign(g.positions.size(), {0, 0});
+  g.boundsMin = glm::vec3(-5);
+  g.boundsMax = glm::vec3(5);
+  g.staticTriangles = uint32_t(g.triangles.size());
+  return g;
+}
+
+TEST(DeviceRays, SlipThroughNoSharedEdge) {
+  const Scene scene = threeMaterials();
+  const Geometry g = boxAndFloor();
+  GpuScene device(testDevice(), scene, g, 1, false, true);
+  std::vector<Query> queries;
+  for (uint32_t i = 0; i < 20000; ++i) {
+    glm::vec3 direction = randomVector(i, 4);
+    if (i % 2 == 0) direction = glm::round(direction * 2.0f);  // straight at edges, corners and diagonals
+    if (direction != glm::vec3(0)) queries.push_back({glm::vec3(0), 0, direction, 1e30f});
+  }
+  for (int x = -3; x <= 3; ++x)  // at the floor alone, whose box they touch from within a face
+    for (const float zero : {0.0f, -0.0f}) queries.push_back({{x, 0, 0.25f}, 0, {zero, -1, zero}, 3});
+  const std::vector<Answer> answers =
+      traceOnDevice(device, makeFrame(scene, g, {16, 16}, 0, 1), queries, false);
+  for (size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i].occluded, 1u) << "ray " << i;
+}
+
+// Normals of length 0 give way to those of the triangles.
+TEST(DeviceRays, LightPassesGlassWithoutNormals) {
+  Scene scene = threeMaterials();
+  scene.fullMaterials = true;
+  for (Material& material : scene.materials) material.transmission = 0.8f;
+  Geometry g = soup(200);
+  g.normals.assign(g.normals.size(), glm::vec3(1, 0, 0));
+  for (size_t i = 1; i < g.normals.size(); i += 3) g.normals[i] = {-1, 0, 0};
+  for (size_t i = 2; i < g.normals.size(); i += 3) g.normals[i] = {0, 0, 0};
+  std::vector<Query> queries;
+  for (const Triangle& t : g.triangles) {
+    const glm::vec3 edge = 0.5f * (g.positions[t.v[0]] + g.positions[t.v[1]]),
+                    at = edge + 1e-3f * (g.positions[t.v[2]] - edge);
+    queries.push_back({at + glm::vec3(0.1f, 0.2f, 0.05f), 0, -glm::vec3(0.1f, 0.2f, 0.05f), 2});
+  }
+  GpuScene device(testDevice(), scene, g, 1, true, true);
+  for (const Answer& a : traceOnDevice(device, makeFrame(scene, g, {16, 16}, 0, 1), queries, true))
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(a.share[c] >= 0 && a.share[c] <= 1) << a.share[c];
 }
 
 TEST(DeviceRays, PassHolesOfMasks) {
@@ -218,7 +292,7 @@ TEST(DeviceRays, LightPassesGlassAndBlending) {
   compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 3000, true);
 }
 
-// The tree of what moves follows it: rigid objects here, and one that no longer shows.
+// The tree of what moves follows it: rigid objects here, which at the end no longer show.
 TEST(DeviceRays, FollowWhatMoves) {
   const Scene scene = builtin("cornellbox_moving");
   Geometry g = flatten(scene);

@@ -30,7 +30,7 @@ int countDifferent(const graph::OutputData& wanted, const graph::OutputData& giv
   EXPECT_EQ(want.size(), got.size());
   int different = 0;
   for (size_t i = 0; i < want.size(); ++i)
-    different += std::abs(want[i] - got[i]) > 5e-3f * std::max(std::abs(want[i]), 0.02f);
+    different += !(std::abs(want[i] - got[i]) <= 5e-3f * std::max(std::abs(want[i]), 0.02f));
   return different;
 }
 

@@ -192,6 +192,21 @@ TEST(ShadowRaysHost, SizeIsTheViews) {
   }
 }
 
+TEST(ShadowRaysDevice, SizeIsThatOfTheGBuffer) {
+  const Room room = litBoxes();
+  PassTest test("shadow-rays-device");
+  test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
+  test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, std::vector<uint64_t>(64));
+  wireSurfaces(test, room);
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("8x8 pixels, its G-buffer 80x60"), std::string::npos) << e.what();
+  }
+}
+
 TEST(ShadowRaysHost, AnEmptySceneIsLeftAsItIs) {
   const std::vector<uint64_t> before(64, glm::packHalf4x16({1, 2, 3, 0}));
   PassTest test("shadow-rays-host");

@@ -320,11 +320,11 @@ std::string exrAttribute(const std::string& name, const std::string& value) {
 
 // An EXR header of a picture with so many channels of 32 bits; `more` are further attributes.
 std::string exrPicture(uint32_t width, uint32_t height, size_t channels, char compression,
-                       const std::string& more = "") {
+                       const std::string& more = "", uint32_t flags = 0) {
   std::string list;
   for (size_t c = 0; c < channels; ++c)
     list += "c" + std::string(1, '\0') + littleEndian(2) + std::string(12, '\0');
-  return "\x76\x2f\x31\x01" + littleEndian(2) + exrAttribute("channels", list + '\0') +
+  return "\x76\x2f\x31\x01" + littleEndian(2 | flags) + exrAttribute("channels", list + '\0') +
          exrAttribute("compression", std::string(1, compression)) +
          exrAttribute("dataWindow", littleEndian(0) + littleEndian(0) + littleEndian(width - 1) +
                                         littleEndian(height - 1)) +
@@ -338,17 +338,24 @@ TEST(ImageHeaders, HugeBlocksOfExrPixelsAreFound) {
     return whyForged(stream);
   };
   constexpr char kNone = 0, kZip = 3, kDwab = 9;
-  EXPECT_EQ(forged(exrPicture(32768, 32768, 4, kDwab)), "");
-  EXPECT_THAT(forged(exrPicture(32768, 1, 5, kDwab)), HasSubstr("claims 160 MiB of at most 128"));
-  EXPECT_EQ(forged(exrPicture(32768, 1, 64, kZip)), "");
-  EXPECT_NE(forged(exrPicture(32768, 1, 65, kZip)), "");
-  EXPECT_EQ(forged(exrPicture(32768, 1, 1024, kNone)), "");
+  EXPECT_EQ(forged(exrPicture(8192, 32768, 4, kDwab)), "");
+  EXPECT_THAT(forged(exrPicture(8192, 1, 5, kDwab)), HasSubstr("claims 40 MiB of at most 32"));
+  EXPECT_EQ(forged(exrPicture(32768, 1, 16, kZip)), "");
+  EXPECT_NE(forged(exrPicture(32768, 1, 17, kZip)), "");
+  EXPECT_EQ(forged(exrPicture(32768, 1, 256, kNone)), "");
   const auto tiles = [](uint32_t side) {
     return exrAttribute("tiles", littleEndian(side) + littleEndian(side) + std::string(1, '\0'));
   };
-  EXPECT_EQ(forged(exrPicture(64, 64, 4, kZip, tiles(2048))), "");
-  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(4096))), "");
-  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(0xffffffff))), "");
+  constexpr uint32_t kTiled = 0x200, kParts = 0x1000;
+  EXPECT_EQ(forged(exrPicture(64, 64, 4, kZip, tiles(1024), kTiled)), "");
+  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(2048), kTiled)), "");
+  EXPECT_NE(forged(exrPicture(64, 64, 4, kZip, tiles(0xffffffff), kTiled)), "");
+  // A file without tiles may have the attribute all the same.
+  EXPECT_NE(forged(exrPicture(32768, 1, 5, kDwab, tiles(1))), "");
+  EXPECT_EQ(forged(exrPicture(32768, 1, 5, kDwab, tiles(1), kTiled)), "");
+  const auto part = [&](const char* type) { return exrAttribute("type", type) + tiles(1); };
+  EXPECT_NE(forged(exrPicture(32768, 1, 5, kDwab, part("scanlineimage"), kParts)), "");
+  EXPECT_EQ(forged(exrPicture(32768, 1, 5, kDwab, part("tiledimage"), kParts)), "");
 }
 
 // Sizes that fit are left to OpenEXR, in files that are cut short as well.

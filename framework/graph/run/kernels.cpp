@@ -214,6 +214,7 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
   gpu::GraphicsPipelineDesc desc;
   desc.vertex = device().shaders().compile(d.vertex, d.defines);
   if (!d.fragment.empty()) desc.fragment = device().shaders().compile(d.fragment, d.defines);
+  checkRays(pass_, *desc.vertex, d.vertex);
   if (desc.fragment) checkRays(pass_, *desc.fragment, d.fragment);
   desc.sharedSet = pass_.state->sharedLayout;
   for (const std::string& color : d.colors)

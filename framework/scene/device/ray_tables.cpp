@@ -1,5 +1,6 @@
 #include "framework/scene/device/ray_tables.h"
 
+#include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
 #include <span>
@@ -17,6 +18,8 @@
 
 namespace fovea::scene {
 namespace {
+
+constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
 
 // Push constants of refit.comp.
 struct Constants {
@@ -50,12 +53,14 @@ struct Tables {
 template <class T>
 gpu::Buffer table(gpu::Device& device, const char* name, std::vector<T> data) {
   if (data.empty()) data.emplace_back();  // Vulkan has no empty buffers
-  const uint64_t bytes = data.size() * sizeof(T), limit = device.limits().maxTexelBufferElements;
-  if (bytes / sizeof(glm::uvec4) > limit && !device.lacks("maxTexelBufferElements"))
+  const uint64_t bytes = data.size() * sizeof(T), range = device.limits().maxStorageBufferRange,
+                 texels = uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::uvec4);
+  const uint64_t limit = device.lacks("maxTexelBufferElements") ? range : std::min(range, texels);
+  if (bytes > limit)
     throw Error(ExitCode::OutOfMemory,
-                std::string(name) + ": " + std::to_string(bytes / sizeof(glm::uvec4)) +
-                    " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
-                "trace rays on the host");
+                std::string(name) + ": " + std::to_string(bytes) +
+                    " bytes are more than a shader can read on this device, " + std::to_string(limit),
+                "trace rays on the host, as `foveal` does with `--set rays=host`");
   gpu::Buffer buffer(
       device, {name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                gpu::MemoryKind::Device});
@@ -120,7 +125,8 @@ void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
     gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
                        VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof level, &level);
-    vkCmdDispatch(cmd, (level.count + group - 1) / group, 1, 1);
+    const uint32_t groups = (level.count + group - 1) / group;
+    vkCmdDispatch(cmd, std::min(groups, kMostGroups), (groups + kMostGroups - 1) / kMostGroups, 1);
   }
 }
 

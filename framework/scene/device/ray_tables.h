@@ -1,5 +1,5 @@
-// The scene's bounding volume hierarchies on the device, where shaders trace rays (shaders/common/rays/trace.glsl): one of the
-// triangles that never move, and one of all others. Private to framework/scene.
+// The scene's bounding volume hierarchies on the device, where shaders trace rays (shaders/common/rays/trace.glsl): one
+// of the triangles that never move, and one of all others. Private to framework/scene.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -28,8 +28,8 @@ class RayTables {
   void record(VkCommandBuffer cmd, gpu::Buffer& positions);
 
   gpu::Buffer& nodes() const;  // BvhNode each
-  gpu::Buffer& triangles()
-      const;  // uvec4 in the order of leaves: three vertices, then the triangle and kRayHoles
+  // uvec4 in the order of leaves: three vertices, then the triangle and kRayHoles.
+  gpu::Buffer& triangles() const;
 
  private:
   struct Impl;

@@ -11,9 +11,9 @@ namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kBins = 16;
-// Below it, halves: with the 26 levels that 2^28 triangles then need, the tree stays below kBvhDepth.
+// Below it, halves: with the 24 levels that flatten()'s 2^26 triangles then need, the tree stays below kBvhDepth.
 constexpr uint32_t kMaxHeuristicDepth = 40;
-static_assert(kMaxHeuristicDepth + 28 - std::bit_width(kBvhLeaf) < kBvhDepth);
+static_assert(kMaxHeuristicDepth + 26 - std::countr_zero(kBvhLeaf) < kBvhDepth);
 
 struct Box {
   glm::vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};

@@ -10,6 +10,7 @@
 #include "framework/base/hash.h"
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_tracer.h"
+#include "shaders/common/records/rays.h"
 
 namespace fovea::scene {
 namespace {
@@ -135,7 +136,7 @@ RayScene::RayScene(std::shared_ptr<const Still> still, const Geometry& geometry)
   i.still = std::move(still);
   i.area = i.still->area;
   if (geometry.empty()) return;
-  i.epsilon = 1e-5f * std::max(glm::length(geometry.boundsMax - geometry.boundsMin), 1e-3f);
+  i.epsilon = kRayEpsilon * std::max(glm::length(geometry.boundsMax - geometry.boundsMin), kLeastDiagonal);
   const uint32_t end = uint32_t(geometry.triangles.size());
   if (geometry.staticTriangles >= end) return;
   i.moving = makeTracer(geometry, i.still->accepts(), {geometry.staticTriangles, end});

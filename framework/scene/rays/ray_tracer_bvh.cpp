@@ -11,8 +11,6 @@
 namespace fovea::scene {
 namespace {
 
-constexpr float kLeast = 1e-30f;  // of a component of a direction
-
 // A ray prepared for both tests.
 struct PreparedRay {
   glm::vec3 origin, inverse;
@@ -22,8 +20,9 @@ struct PreparedRay {
   explicit PreparedRay(const Ray& r) : origin(r.origin), near(r.near), far(r.far) {
     // No component is 0, so that a ray within a face of a box is inside.
     for (int k = 0; k < 3; ++k)
-      inverse[k] =
-          1.0f / (std::abs(r.direction[k]) > kLeast ? r.direction[k] : std::copysign(kLeast, r.direction[k]));
+      inverse[k] = 1.0f / (std::abs(r.direction[k]) > kLeastDirection
+                               ? r.direction[k]
+                               : std::copysign(kLeastDirection, r.direction[k]));
     const glm::vec3 a = glm::abs(r.direction);
     kz = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     kx = (kz + 1) % 3;

@@ -12,12 +12,12 @@
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/visibility.h"
 #include "framework/shader_twins/paraboloid.h"
+#include "shaders/common/records/rays.h"
 #include "shaders/common/records/scene.h"
 
 namespace fovea::scene {
 
 namespace {
-constexpr float kShadowEnd = 0.9999f;  // shadow rays end just before the light
 constexpr uint32_t kEmitterStream = 0x656d6974u, kRayStream = 0x72617973u;
 }  // namespace
 

@@ -3,12 +3,9 @@
 #include <cmath>
 
 #include "framework/scene/materials/passage.h"
+#include "shaders/common/records/rays.h"
 
 namespace fovea::scene {
-
-namespace {
-constexpr uint32_t kMaxPanes = 64;  // surfaces that light passes on its way
-}  // namespace
 
 glm::vec3 visibility(const Frame& frame, const RayScene& rays, Ray ray, uint64_t& count) {
   if (!rays.meetsTransparency()) {

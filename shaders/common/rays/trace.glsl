@@ -4,6 +4,10 @@
 #ifndef FOVEA_RAYS_TRACE_GLSL
 #define FOVEA_RAYS_TRACE_GLSL
 
+#ifndef RAY_PASSAGE
+#error "define RAY_PASSAGE as 0, or as 1 for full materials"
+#endif
+
 #include "common/device/texels.glsl"
 #include "common/records/rays.h"
 #include "common/scene.glsl"
@@ -26,7 +30,7 @@ struct RayHit {
 };
 
 // Smallest distance that keeps a ray that leaves a surface from hitting it again.
-float rayEpsilon() { return 1e-5 * max(distance(frame.boundsMin, frame.boundsMax), 1e-3); }
+float rayEpsilon() { return kRayEpsilon * max(distance(frame.boundsMin, frame.boundsMax), kLeastDiagonal); }
 
 // ---- Boxes and triangles -----------------------------------------------------------------------------------------
 
@@ -43,7 +47,7 @@ PreparedRay prepare(Ray ray) {
   PreparedRay r;
   r.origin = ray.origin;
   // No component is 0, so that a ray within a face of a box is inside.
-  vec3 d = ray.direction, least = vec3(1e-30);
+  vec3 d = ray.direction, least = vec3(kLeastDirection);
   r.inverse = 1.0 / mix(mix(least, -least, lessThan(d, vec3(0.0))), d, greaterThan(abs(d), least));
   r.near = ray.near;
   r.far = ray.far;
@@ -54,10 +58,11 @@ PreparedRay prepare(Ray ray) {
   return r;
 }
 
-// Whether the ray meets the box, and where it enters. The far side is wider by the rounding errors (Ize, JCGT 2013).
+// Whether the ray meets the box, and where it enters. The far side is wider by the rounding errors (Ize, JCGT 2013), of
+// which there are more than on the host: a device may be off by 2.5 ulp as it divides.
 bool enters(PreparedRay r, vec3 low, vec3 high, out float entry) {
   vec3 a = (low - r.origin) * r.inverse, b = (high - r.origin) * r.inverse;
-  vec3 nearer = min(a, b), farther = max(a, b) * (1.0 + 4.0 * 1.1920929e-7);
+  vec3 nearer = min(a, b), farther = max(a, b) * (1.0 + 8.0 * 1.1920929e-7);
   entry = max(max(nearer.x, nearer.y), max(nearer.z, r.near));
   return entry <= min(min(farther.x, farther.y), min(farther.z, r.far));
 }

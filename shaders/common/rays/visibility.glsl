@@ -5,7 +5,10 @@
 #include "common/materials/passage.glsl"
 #include "common/rays/trace.glsl"
 
-const uint kMaxPanes = 64u;  // surfaces that light passes on its way
+vec3 faceNormal(uvec4 triangle) {
+  vec3 a = scenePosition(triangle.x);
+  return cross(scenePosition(triangle.y) - a, scenePosition(triangle.z) - a);
+}
 
 // The share of light that passes along the ray, by channels; the same as scene::visibility
 // (framework/scene/rays/visibility.h).
@@ -21,6 +24,7 @@ vec3 visibility(Ray ray) {
     if ((flags & (kMaterialBlended | kMaterialTransmits)) == 0u) break;
     vec3 weights = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
     vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
+    if (!(dot(normal, normal) > 1e-24)) normal = faceNormal(triangle);
     share *= transmittance(material, uvAt(triangle, hit.weights), abs(dot(normalize(normal), direction)));
     if (share == vec3(0.0)) break;
     ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
