@@ -50,7 +50,7 @@ struct Environment {
   std::vector<std::pair<std::string, VkExtent2D>> views;
   const Registry* registry = nullptr;                       // Registry::global() if nullptr
   std::vector<std::pair<std::string, int64_t>> quantities;  // "scene.triangles", ...; at least 1 each
-  std::vector<std::pair<std::string, std::string>> texts;   // what "$scene.materials", "$device.rays" stand for
+  std::vector<std::pair<std::string, std::string>> texts;   // what "$scene.materials" and the like stand for
   uint32_t maxImageDimension2D = 0, maxImageDimension3D = 0, maxImageArrayLayers = 0;
   uint64_t maxStorageBufferRange = 0;
   uint64_t maxUniformBufferRange = 0;  // not checked: larger uniform buffers are bound page by page
