@@ -11,6 +11,7 @@
 #include "framework/gpu/shader/shader.h"
 #include "places.h"
 #include "shaders/common/records/eye_paths.h"
+#include "shaders/common/records/rays.h"
 #include "shaders/common/records/reservoir.h"
 #include "shaders/common/records/scene.h"
 #include "shaders/common/records/shadow.h"
@@ -181,6 +182,12 @@ TEST(SharedRecords, EyePaths) {
   expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
                {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
                 AT(EyePathEnd, weight), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+}
+
+TEST(SharedRecords, Rays) {
+  using namespace scene;
+  expectLayout("common/records/rays.h", "BvhNode", sizeof(BvhNode),
+               {AT(BvhNode, low), AT(BvhNode, first), AT(BvhNode, high), AT(BvhNode, count)});
 }
 
 TEST(SharedRecords, Reservoirs) {
