@@ -1,7 +1,6 @@
 #include "framework/scene/device/animator.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/named_buffers.h"
 #include "framework/scene/device/subdivider.h"
 #include "framework/scene/device/texel_table.h"
 #include "framework/scene/motion/deform.h"
@@ -200,32 +200,14 @@ void Animator::Impl::storePoses(glm::vec4* texels, const Frame& frame, bool befo
 void Animator::Impl::push(VkCommandBuffer cmd, uint32_t slot, gpu::Buffer& positions,
                           gpu::Buffer& attributes) {
   constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
-  const std::pair<const char*, VkBufferView> views[] = {
-      {"rest", rest.texelView(kFloats)},
-      {"shapes", shapes.texelView(VK_FORMAT_R32G32B32A32_UINT)},
-      {"skinJoints", skinJoints.texelView(VK_FORMAT_R16G16B16A16_UINT)},
-      {"skinWeights", skinWeights.texelView(kFloats)},
-      {"targets", targets.texelView(kFloats)},
-      {"poses", poses[slot].texelView(kFloats)}};
-  const std::pair<const char*, VkDescriptorBufferInfo> buffers[] = {
-      {"Positions", {positions.handle(), 0, VK_WHOLE_SIZE}},
-      {"Attributes", {attributes.handle(), 0, VK_WHOLE_SIZE}},
-      {"Points", {points.handle(), 0, VK_WHOLE_SIZE}}};
-  std::array<VkWriteDescriptorSet, 9> writes{};
-  size_t count = 0;
-  for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
-    VkWriteDescriptorSet& w = writes.at(count++);
-    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    w.dstBinding = b.binding;
-    w.descriptorCount = 1;
-    w.descriptorType = gpu::descriptorType(b.kind);
-    for (const auto& [name, view] : views)
-      if (b.name == name) w.pTexelBufferView = &view;
-    for (const auto& [name, info] : buffers)
-      if (b.name == name) w.pBufferInfo = &info;
-  }
-  vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-  device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, std::span(writes).first(count));
+  bindNamed(device, cmd, pipeline,
+            {{"rest", rest.texelView(kFloats)},
+             {"shapes", shapes.texelView(VK_FORMAT_R32G32B32A32_UINT)},
+             {"skinJoints", skinJoints.texelView(VK_FORMAT_R16G16B16A16_UINT)},
+             {"skinWeights", skinWeights.texelView(kFloats)},
+             {"targets", targets.texelView(kFloats)},
+             {"poses", poses[slot].texelView(kFloats)}},
+            {{"Positions", &positions}, {"Attributes", &attributes}, {"Points", &points}});
 }
 
 void Animator::Impl::evaluate(VkCommandBuffer cmd, uint32_t slot, gpu::Buffer& positions,

@@ -1,11 +1,9 @@
 #include "framework/scene/device/ray_tables.h"
 
 #include <algorithm>
-#include <array>
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fovea/error.h"
@@ -14,6 +12,7 @@
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/named_buffers.h"
 #include "framework/scene/rays/bvh.h"
 
 namespace fovea::scene {
@@ -100,25 +99,9 @@ RayTables::~RayTables() = default;
 
 void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
   if (impl_->levels.empty()) return;
-  const std::pair<const char*, VkDescriptorBufferInfo> buffers[] = {
-      {"Positions", {positions.handle(), 0, VK_WHOLE_SIZE}},
-      {"Triangles", {impl_->triangles.handle(), 0, VK_WHOLE_SIZE}},
-      {"Nodes", {impl_->nodes.handle(), 0, VK_WHOLE_SIZE}}};
-  std::array<VkWriteDescriptorSet, std::size(buffers)> writes{};
   const gpu::Pipeline& pipeline = impl_->refit;
-  size_t count = 0;
-  for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
-    VkWriteDescriptorSet& w = writes.at(count++);
-    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    w.dstBinding = b.binding;
-    w.descriptorCount = 1;
-    w.descriptorType = gpu::descriptorType(b.kind);
-    for (const auto& [name, info] : buffers)
-      if (b.name == name) w.pBufferInfo = &info;
-  }
-  vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-  impl_->device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0,
-                                  std::span(writes).first(count));
+  bindNamed(impl_->device, cmd, pipeline, {},
+            {{"Positions", &positions}, {"Triangles", &impl_->triangles}, {"Nodes", &impl_->nodes}});
   const uint32_t group = pipeline.interface().localSize[0];
   for (const Constants& level : impl_->levels) {
     constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

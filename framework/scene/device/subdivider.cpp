@@ -1,6 +1,5 @@
 #include "framework/scene/device/subdivider.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/named_buffers.h"
 #include "framework/scene/device/texel_table.h"
 
 namespace fovea::scene {
@@ -59,28 +59,11 @@ void Subdivider::record(VkCommandBuffer cmd, gpu::Buffer& points, gpu::Buffer& p
                         gpu::Buffer& attributes, std::span<const Surface> surfaces) const {
   if (surfaces.empty()) return;
   const gpu::Pipeline& pipeline = impl_->pipeline;
-  const VkBufferView rangeView = impl_->ranges.texelView(VK_FORMAT_R32G32_UINT);
-  const VkBufferView entryView = impl_->entries.texelView(VK_FORMAT_R32G32B32A32_UINT);
-  const VkBufferView pointView = points.texelView(VK_FORMAT_R32G32B32A32_SFLOAT);
-  const VkDescriptorBufferInfo positionInfo{positions.handle(), 0, VK_WHOLE_SIZE};
-  const VkDescriptorBufferInfo attributeInfo{attributes.handle(), 0, VK_WHOLE_SIZE};
-  std::array<VkWriteDescriptorSet, 5> writes{};
-  size_t count = 0;
-  for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
-    VkWriteDescriptorSet& w = writes.at(count++);
-    w.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    w.dstBinding = b.binding;
-    w.descriptorCount = 1;
-    w.descriptorType = gpu::descriptorType(b.kind);
-    if (b.name == "ranges") w.pTexelBufferView = &rangeView;
-    if (b.name == "entries") w.pTexelBufferView = &entryView;
-    if (b.name == "points") w.pTexelBufferView = &pointView;
-    if (b.name == "Positions") w.pBufferInfo = &positionInfo;
-    if (b.name == "Attributes") w.pBufferInfo = &attributeInfo;
-  }
-  vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-  impl_->device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0,
-                                  std::span(writes).first(count));
+  bindNamed(impl_->device, cmd, pipeline,
+            {{"ranges", impl_->ranges.texelView(VK_FORMAT_R32G32_UINT)},
+             {"entries", impl_->entries.texelView(VK_FORMAT_R32G32B32A32_UINT)},
+             {"points", points.texelView(VK_FORMAT_R32G32B32A32_SFLOAT)}},
+            {{"Positions", &positions}, {"Attributes", &attributes}});
   const uint32_t group = pipeline.interface().localSize[0];
   for (const Surface& s : surfaces) {
     const Impl::Table& t = impl_->tables.at(s.table);
