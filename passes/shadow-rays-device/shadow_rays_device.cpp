@@ -7,6 +7,7 @@
 #include "passes/acuity.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/shadow_edges.h"
 
 namespace fovea::passes {
 namespace {
@@ -24,15 +25,7 @@ class ShadowRaysDevice : public Pass {
         "gbuffer", "gbuffer",
         gbufferMembers(Usage::StorageRead, {"position", "normal", "face", "albedo", "emission", "specular"}),
         "surfaces seen by the eye");
-    d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::StorageWrite,
-            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
-            "where rays decide");
-    declareMaterials(d, "`full` takes everything that glTF says of them");
-    declarePeriphery(
-        d,
-        "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves no more "
-        "than every second pixel");
-    d.counter("pixels", "pixels that were in doubt and traced");
+    declareShadowEdges(d, Usage::StorageRead | Usage::StorageWrite);
     d.counter("rays", "lights towards which such pixels have traced");
     d.step("shadow-rays-device/shadow_rays.comp")
         .define("GLOSS", fullMaterials())

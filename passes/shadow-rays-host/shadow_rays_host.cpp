@@ -13,6 +13,7 @@
 #include "passes/acuity.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/shadow_edges.h"
 
 namespace fovea::passes {
 namespace {
@@ -33,15 +34,7 @@ class ShadowRaysHost : public Pass {
          "that this pass lacks")
         .makeOptional()
         .when(0);
-    d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
-            "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
-            "where rays decide");
-    declareMaterials(d, "`full` takes everything that glTF says of them");
-    declarePeriphery(
-        d,
-        "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves no more "
-        "than every second pixel");
-    d.counter("pixels", "pixels that were in doubt and traced");
+    declareShadowEdges(d, Usage::HostRead | Usage::HostWrite);
     d.counter("rays", "rays traced, from the eye and towards lights");
     return d;
   }

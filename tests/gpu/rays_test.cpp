@@ -18,9 +18,13 @@
 #include "framework/scene/rays/visibility.h"
 #include "framework/session/test_device.h"
 #include "tests/gpu/command_helpers.h"
+#include "tests/support/ray_soup.h"
 
 namespace fovea::scene {
 namespace {
+
+using test::randomVector;
+using test::raySoup;
 
 using test::testDevice;
 
@@ -89,11 +93,6 @@ void main() {
   return test::as<Answer>(gpu::download(device, out));
 }
 
-glm::vec3 randomVector(uint32_t i, uint32_t what) {
-  const auto u = [&](uint32_t k) { return 2 * uniformFloat(randomStream(3, what, k, i)) - 1; };
-  return {u(0), u(1), u(2)};
-}
-
 // Rays from everywhere within the scene's box; some within planes of the axes, some cut short, and every second one
 // towards a point of a triangle, each of which has its turn.
 std::vector<Query> raysThrough(const Geometry& g, uint32_t count) {
@@ -159,27 +158,6 @@ void compare(const Scene& scene, Geometry& geometry, GpuScene& device, const Fra
   }
 }
 
-// Triangles from tiny to large, with vertices on a grid, so that rays meet edges, corners and flat boxes.
-Geometry soup(uint32_t count) {
-  Geometry g;
-  for (uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 centre = 5.0f * randomVector(i, 0);
-    const float size = i % 10 == 0 ? 2.0f : 0.3f;
-    for (uint32_t k = 0; k < 3; ++k) {
-      glm::vec3 p = centre + size * randomVector(i, 1 + k);
-      if (i % 3 == 0) p = glm::round(p * 2.0f) / 2.0f;
-      g.positions.push_back(p);
-      g.normals.emplace_back(0, 1, 0);
-      g.uvs.emplace_back(k == 1, k == 2);
-    }
-    g.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i % 3});
-  }
-  g.boundsMin = glm::vec3(-6);
-  g.boundsMax = glm::vec3(6);
-  g.staticTriangles = count;
-  return g;
-}
-
 Texture holes() {
   Texture t{"holes", 8, 8, true, std::vector<uint8_t>(8 * 8 * 4, 255)};
   for (uint32_t i = 0; i < 64; ++i) t.rgba[4 * i + 3] = uint8_t(hashCombine(5, i));
@@ -197,7 +175,7 @@ Scene threeMaterials() {
 TEST(DeviceRays, MeetWhatRaysOnTheHostMeet) {
   const Scene scene = threeMaterials();
   for (const uint32_t count : {1u, 4u, 5u, 3000u}) {
-    Geometry g = soup(count);
+    Geometry g = raySoup(count);
     GpuScene device(testDevice(), scene, g, 1, false, true);
     compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 5000);
   }
@@ -277,7 +255,7 @@ TEST(DeviceRays, PassHolesOfMasks) {
     scene.materials[size_t(i)].alphaCutoff = 0.3f * float(i);
     scene.materials[size_t(i)].baseColorTexture = {0};
   }
-  Geometry g = soup(3000);
+  Geometry g = raySoup(3000);
   GpuScene device(testDevice(), scene, g, 1, false, true);
   compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 7000);
 }
@@ -290,7 +268,7 @@ TEST(DeviceRays, LightPassesGlassAndBlending) {
   scene.materials[1].baseColorTexture = {0};
   scene.materials[2].transmission = 0.9f;
   scene.materials[2].baseColor = {0.9f, 0.5f, 0.2f, 1};
-  Geometry g = soup(400);
+  Geometry g = raySoup(400);
   GpuScene device(testDevice(), scene, g, 1, true, true);
   compare(scene, g, device, makeFrame(scene, g, {16, 16}, 0, 1), 20000, 3000, true);
 }
@@ -309,7 +287,7 @@ TEST(DeviceRays, FollowWhatMoves) {
 
 TEST(DeviceRays, MeetNothingUnlessAskedFor) {
   const Scene scene = threeMaterials();
-  const Geometry g = soup(100);
+  const Geometry g = raySoup(100);
   GpuScene device(testDevice(), scene, g, 1);
   for (const Answer& a :
        traceOnDevice(device, makeFrame(scene, g, {16, 16}, 0, 1), raysThrough(g, 500), false)) {

@@ -9,30 +9,13 @@
 #include "fovea/scene.h"
 #include "framework/base/random.h"
 #include "framework/scene/load.h"
+#include "tests/support/ray_soup.h"
 
 namespace fovea::scene {
 namespace {
 
-glm::vec3 randomVector(uint32_t i, uint32_t what) {
-  const auto u = [&](uint32_t k) { return 2 * uniformFloat(randomStream(3, what, k, i)) - 1; };
-  return {u(0), u(1), u(2)};
-}
-
-// A soup of triangles from tiny to large, with vertices on a grid, so that rays meet edges, corners and flat boxes.
-Geometry soup(uint32_t count) {
-  Geometry g;
-  for (uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 centre = 5.0f * randomVector(i, 0);
-    const float size = i % 10 == 0 ? 2.0f : 0.3f;
-    for (uint32_t k = 0; k < 3; ++k) {
-      glm::vec3 p = centre + size * randomVector(i, 1 + k);
-      if (i % 3 == 0) p = glm::round(p * 2.0f) / 2.0f;
-      g.positions.push_back(p);
-    }
-    g.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, 0});
-  }
-  return g;
-}
+using test::randomVector;
+using test::raySoup;
 
 Ray randomRay(uint32_t i) {
   Ray ray{6.0f * randomVector(i, 10), randomVector(i, 11)};
@@ -72,13 +55,13 @@ void compare(const Geometry& g, const RayTracer::Accepts& accepts, uint32_t rays
 }
 
 TEST(RayTracer, OwnTracerAgreesWithEmbree) {
-  compare(soup(1), {}, 100000, 100);
-  compare(soup(3000), {}, 30000, 10000);
+  compare(raySoup(1), {}, 100000, 100);
+  compare(raySoup(3000), {}, 30000, 10000);
 }
 
 TEST(RayTracer, OwnTracerAsksTheMaskLikeEmbree) {
   compare(
-      soup(3000), [](uint32_t t, float u, float v) { return t % 2 == 0 && u < 0.5f && v > 0.1f; }, 30000,
+      raySoup(3000), [](uint32_t t, float u, float v) { return t % 2 == 0 && u < 0.5f && v > 0.1f; }, 30000,
       8000);
 }
 
