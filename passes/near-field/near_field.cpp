@@ -25,6 +25,9 @@ uint32_t raysAfterChange(uint32_t most, float lost) {
   return uint32_t(std::lround(glm::mix(1.0f, float(most), lost)));
 }
 
+// Stands for the mean length of rays where no surface sees another: what the sky sends is found all the same.
+double diagonal(const scene::Geometry& g) { return double(glm::distance(g.boundsMin, g.boundsMax)); }
+
 class NearField : public Pass {
  public:
   static PassDeclaration declaration() {
@@ -107,7 +110,7 @@ class NearField : public Pass {
         length_ = 0;
         cache_.clear();
         statistics = trace();
-        length_ = statistics.hits > 0 ? statistics.length / statistics.hits : 0;
+        length_ = statistics.hits > 0 ? statistics.length / statistics.hits : diagonal(*frame.geometry);
         settings.samples = uint32_t(p.integer("first_samples"));
         trace();
       } else {

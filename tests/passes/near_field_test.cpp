@@ -450,6 +450,26 @@ TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
   }
 }
 
+// A floor that is alone under the sky: no ray from it meets a surface that could say how long rays are.
+TEST(NearField, WhatIsAloneIsLitByTheEnvironment) {
+  scene::Scene s;
+  addQuad(s, addMaterial(s, glm::vec3(0.5f)), {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
+  s.environmentMap = skyWithSun();
+  scene::Camera& camera = s.cameras.emplace_back();
+  camera.position = {0, 3, 0};
+  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
+  PassTest test("near-field");
+  test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
+  test.run();
+  const std::vector<float> light = test.floats("samples");
+  const glm::dvec3 want = irradianceFrom(*s.environmentMap, {0, 1, 0}) / glm::pi<double>();
+  for (size_t c = 0; c < 3; ++c) {
+    double mean = 0;
+    for (size_t i = c; i < light.size(); i += 4) mean += 4.0 * double(light[i]) / double(light.size());
+    EXPECT_NEAR(mean, want[c], 0.02 * want[c]);
+  }
+}
+
 TEST(NearField, SpacingIsAPowerOfTwo) {
   PassTest test("near-field");
   test.viewSize(16, 16).scene(shiningRoom(false)).param("spacing", 6);
