@@ -36,7 +36,7 @@ scene::Material metal(glm::vec3 color, float roughness) {
 // holds for every material and roughness.
 TEST(PathTraceFull, WhiteBallInAWhiteFurnaceVanishes) {
   for (const float metallic : {0.0f, 0.6f, 1.0f})
-    for (const float roughness : {0.1f, 0.4f, 1.0f}) {
+    for (const float roughness : {0.05f, 0.1f, 0.4f, 1.0f}) {
       scene::Scene s;
       addMaterial(s, glm::vec3(0));
       s.materials[0].ior = 1;  // no reflection from the surface either
