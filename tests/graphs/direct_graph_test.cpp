@@ -19,7 +19,9 @@
 namespace fovea::test {
 namespace {
 
-constexpr glm::uvec2 kSize(96, 96);
+// The seams of the Cornell box are diagonals of its picture. No centre of a pixel lies on them, as width and height are
+// not both even: which surface is seen there would be chance.
+constexpr glm::uvec2 kSize(95, 96);
 
 // Radiance towards the eye along a ray: emission plus one reflection.
 glm::vec3 directRadiance(const scene::Scene& scene, const scene::Geometry& geometry,
@@ -55,8 +57,9 @@ struct Agreement {
   }
 };
 
-Agreement compare(const scene::Scene& scene, const char* graph = "direct") {
-  const GraphRun run = runGraph(graph, scene, {.size = kSize, .outputs = {"direct"}});
+Agreement compare(const scene::Scene& scene, const char* graph = "direct",
+                  const std::vector<std::string>& set = {}) {
+  const GraphRun run = runGraph(graph, scene, {.size = kSize, .set = set, .outputs = {"direct"}});
   const std::vector<float> got = toFloats(run.outputs.at("direct"));
   const scene::Geometry geometry = scene::flatten(scene);
   const scene::RayScene rays(scene, geometry);
@@ -98,11 +101,15 @@ TEST(DirectGraph, ShadowRaysSharpenTheRims) {
   for (const char* name : {"cornellbox", "balcony"}) {
     SCOPED_TRACE(name);
     const scene::Scene scene = scene::builtin(name);
-    const Agreement maps = compare(scene, "foveal_no_shadow_rays"), rays = compare(scene, "foveal");
-    EXPECT_LT(rays.wrong, 0.006);  // measured: 0.004, and 0.10 with the maps alone
-    EXPECT_LT(rays.error, 0.5 * maps.error);
-    EXPECT_NEAR(rays.energy, 1, 0.005);
-    if (HasFailure()) ADD_FAILURE() << failurePictures(rays.picture, rays.rays, kSize.x, scene.exposure);
+    const Agreement maps = compare(scene, "foveal_no_shadow_rays");
+    for (const char* tracer : {"rays=host", "rays=device"}) {
+      SCOPED_TRACE(tracer);
+      const Agreement rays = compare(scene, "foveal", {tracer});
+      EXPECT_LT(rays.wrong, 0.006);  // measured: 0.004, and 0.10 with the maps alone
+      EXPECT_LT(rays.error, 0.5 * maps.error);
+      EXPECT_NEAR(rays.energy, 1, 0.005);
+      if (HasFailure()) ADD_FAILURE() << failurePictures(rays.picture, rays.rays, kSize.x, scene.exposure);
+    }
   }
 }
 
