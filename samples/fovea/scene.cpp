@@ -87,21 +87,26 @@ Json sceneFileOf(const Scene& s, const std::string& environment) {
                     {"near", rounded(c.zNear)}};
   if (s.assumedFloor) {
     const scene::Node& floor = s.nodes.back();
-    file["floor"] = {{"position", toJson(floor.translation)}, {"radius", rounded(floor.scale.x)}};
+    const uint32_t material = s.meshes[floor.mesh].primitives[0].material;
+    file["floor"] = {{"position", toJson(floor.translation)},
+                     {"radius", rounded(floor.scale.x)},
+                     {"color", toJson(glm::vec3(s.materials[material].baseColor))}};
   }
-  for (size_t i = s.lights.size() - s.assumedLights; i < s.lights.size(); ++i) {
-    const scene::Light& light = s.lights[i];
-    const bool sun = light.type == scene::LightType::Directional;
-    file["lights"].push_back(
-        {{"type", sun ? "directional" : "point"},
-         {"name", light.name},
-         {"intensity", rounded(light.intensity)},
-         {"color", toJson(light.color)},
-         {sun ? "direction" : "position", toJson(sun ? light.direction : light.position)}});
+  if (s.assumedLamp) {
+    const scene::Light& lamp = s.lights.back();
+    file["lights"] = {{{"type", "point"},
+                       {"name", lamp.name},
+                       {"intensity", rounded(lamp.intensity)},
+                       {"color", toJson(lamp.color)},
+                       {"position", toJson(lamp.position)}}};
   }
   if (s.fullMaterials) file["materials"] = "full";
   file["exposure"] = rounded(s.exposure);
-  if (s.environmentMap)
+  if (s.assumedSky)
+    file["environment"]["sky"] = {{"sun_elevation_deg", rounded(glm::degrees(s.assumedSky->sunElevation))},
+                                  {"sun_azimuth_deg", rounded(glm::degrees(s.assumedSky->sunAzimuth))},
+                                  {"ground", toJson(s.assumedSky->ground)}};
+  else if (s.environmentMap)
     file["environment"] = {{"file", environment}};
   else
     file["environment"] = toJson(s.environment);

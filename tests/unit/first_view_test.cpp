@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "fovea/image.h"
+#include "framework/scene/environment/sky.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "tests/support/shapes.h"
@@ -57,7 +58,8 @@ Displayed display(const scene::Scene& s) {
   for (uint32_t y = 0; y < kSize; ++y)
     for (uint32_t x = 0; x < kSize; ++x) {
       const scene::TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
-      glm::vec3 light = s.environment;
+      const glm::vec3 direction = glm::normalize(frame.views[0].rayDirection(glm::vec2(x, y) + 0.5f));
+      glm::vec3 light = s.environmentMap ? s.environmentMap->radiance(direction) : s.environment;
       if (seen.there) {
         const glm::vec3 rho = tracer.reflectance(seen);
         light = tracer.emitted(seen) + tracer.direct(seen, rho, count) +
@@ -214,6 +216,50 @@ TEST(FirstView, LightOfTheModelStaysAloneIfItIsEnough) {
     EXPECT_EQ(s.lights.size(), 1u);
     expectGoodPicture(s);
   }
+}
+
+// The sky stands where its sun does, and its ground looks like the floor that is added: of what the eye sees of both, in
+// the sun and far from the thing, one is as bright as the other.
+TEST(FirstView, TheGroundContinuesTheFloor) {
+  scene::Scene s = box({0.02f, 1, 0.02f});
+  EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
+  ASSERT_TRUE(s.assumedSky && s.environmentMap && s.lights.size() == 1);
+  EXPECT_LT(glm::distance(s.lights[0].direction, -scene::towardsSun(*s.assumedSky)), 1e-6f);
+  EXPECT_LE(std::abs(s.assumedSky->sunAzimuth), glm::pi<float>() + 1e-6f);
+  const scene::Geometry g = scene::flatten(s);
+  const scene::Frame frame = scene::makeFrame(s, g, {8, 8}, 0, 1);
+  const auto rays = scene::RayScene::cached(s, g);
+  const scene::SurfaceTracer tracer(frame, frame.views[0], *rays);
+  const scene::Node& floor = s.nodes.back();
+  const glm::vec3 above =
+      floor.translation +
+      0.9f * floor.scale.x * glm::vec3(-s.lights[0].direction.x, 0, -s.lights[0].direction.z);
+  uint64_t count = 0;
+  const scene::TracedSurface seen = tracer.arrive(above + glm::vec3(0, 1, 0), {0, -1, 0}, 1e6f, count);
+  ASSERT_TRUE(seen.there);
+  const glm::vec3 rho = tracer.reflectance(seen),
+                  light = tracer.direct(seen, rho, count) + rho * tracer.gather(seen, 1, 4096, 1, count),
+                  ground = s.environmentMap->radiance({0, -1, 0});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
+}
+
+// Where the environment is given and yet does not light what is seen, a sky would not, either.
+TEST(FirstView, AGivenEnvironmentStays) {
+  scene::Scene s = box(glm::vec3(1));
+  s.environmentMap = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector<glm::vec3>(8, glm::vec3(0)));
+  const auto given = s.environmentMap;
+  EXPECT_EQ(scene::addFirstView(s).light, "a lamp");
+  EXPECT_EQ(s.environmentMap, given);
+  EXPECT_FALSE(s.assumedSky);
+}
+
+// A metal shows the sky, which a diffuse material of its colour stands for.
+TEST(FirstView, MetalsAreNotTakenForBlack) {
+  scene::Scene matt = box(glm::vec3(1)), metal = box(glm::vec3(1));
+  for (scene::Material& m : metal.materials) m.metallic = 1;
+  scene::addFirstView(matt);
+  scene::addFirstView(metal);
+  EXPECT_EQ(metal.exposure, matt.exposure);
 }
 
 // A garden at night, with a lantern that lights next to nothing of it.

@@ -384,8 +384,9 @@ TEST(Load, BareModelsGetAViewAndASun) {
   Diagnostics warnings;
   const Scene s = load(file.string(), warnings);
   ASSERT_EQ(s.cameras.size(), 1u);
-  ASSERT_EQ(s.lights.size(), 2u);
-  EXPECT_EQ(s.assumedLights, 2u);
+  ASSERT_EQ(s.lights.size(), 1u);
+  EXPECT_FALSE(s.assumedLamp);
+  EXPECT_TRUE(s.environmentMap);  // the sky around that sun
   EXPECT_EQ(s.lights[0].type, LightType::Directional);
   EXPECT_THAT(warnings.format(),
               AllOf(HasSubstr("is assumed: a camera"), HasSubstr("a floor, a sun and a sky"),

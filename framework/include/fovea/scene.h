@@ -173,6 +173,15 @@ struct Lens {
 // Degrees. Beyond 80, nearly all of a flat image lies at its edge.
 inline constexpr double kLeastLensAngle = 1, kMostLensAngle = 80;
 
+// Clear daylight (framework/scene/environment/sky.h).
+struct Sky {
+  float turbidity = 3;
+  float sunElevation = 0.7f;  // radians above the horizon, from 0 to pi / 2
+  float sunAzimuth = 0;       // radians about +Y, counter-clockwise seen from above; 0 has the sun above -Z
+  float illuminance = 3;      // lux on level ground, from sun and sky together, mean of the channels
+  glm::vec3 ground{0.2f};     // reflectance of the ground below the horizon
+};
+
 struct CameraKey {
   float time = 0;
   Camera camera;
@@ -272,10 +281,10 @@ struct Scene {
   // What graphs take `$scene.materials` for: `full`, all that the materials say, or else `diffuse`.
   bool fullMaterials = false;
   uint64_t hash = 0;  // hash of all content, for caches and reports
-  // What a model does not say and load() has assumed: camera, exposure and environment, full materials, and the last of
-  // the lights. The floor, if there is one, is the last of the nodes.
-  bool assumed = false, assumedFloor = false;
-  uint32_t assumedLights = 0;
+  // What a model does not say and load() has assumed: camera, exposure and environment, and full materials. The floor, if
+  // there is one, is the last of the nodes, and the lamp, or the sun in that sky, the last of the lights.
+  bool assumed = false, assumedFloor = false, assumedLamp = false;
+  std::optional<Sky> assumedSky;
 };
 
 // A range of the triangles in Geometry. Object 0 holds all static geometry. An object that is invisible at the time

@@ -127,4 +127,15 @@ Daylight daylight(const Sky& sky) {
   return light;
 }
 
+void addDaylight(Scene& scene, const Sky& sky, bool withSun) {
+  const Daylight light = daylight(sky);
+  scene.environmentMap = light.map;
+  if (!withSun) return;
+  Light sun;
+  sun.name = "sun";
+  sun.color = light.sun;
+  sun.direction = -towardsSun(sky);
+  scene.lights.push_back(sun);
+}
+
 }  // namespace fovea::scene

@@ -6,19 +6,12 @@
 #include <memory>
 
 #include "framework/scene/environment/environment_map.h"
+#include "framework/scene/scene.h"
 
 namespace fovea::scene {
 
 // The range for which the paper gives the model: haze from the clearest sky up.
 inline constexpr double kLeastTurbidity = 2, kMostTurbidity = 10;
-
-struct Sky {
-  float turbidity = 3;
-  float sunElevation = 0.7f;  // radians above the horizon, from 0 to pi / 2
-  float sunAzimuth = 0;       // radians about +Y, counter-clockwise seen from above; 0 has the sun above -Z
-  float illuminance = 3;      // lux on level ground, from sun and sky together, mean of the channels
-  glm::vec3 ground{0.2f};     // reflectance of the ground below the horizon
-};
 
 // CIE xyY of the zenith (the paper's appendix A.2). sunAngle: radians between sun and zenith.
 glm::vec3 zenithColor(float turbidity, float sunAngle);
@@ -38,5 +31,8 @@ struct Daylight {
   glm::vec3 sun{0};  // W/m^2 in each channel, on a surface that faces it
 };
 Daylight daylight(const Sky& sky);
+
+// Makes it the environment of a scene, and its sun, if wanted, one of the lights.
+void addDaylight(Scene& scene, const Sky& sky, bool withSun = true);
 
 }  // namespace fovea::scene

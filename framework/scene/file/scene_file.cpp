@@ -95,7 +95,7 @@ class Parser {
     if (environment_)
       out.environmentMap =
           loadEnvironment(findFile(environment_->file, folder), environment_->intensity, environment_->turn);
-    if (sky_) addSky(out);
+    if (sky_) addDaylight(out, *sky_, hasSun_);
     motion_.apply(out, folder, warnings);
     return out;
   }
@@ -106,17 +106,6 @@ class Parser {
             std::to_string(count) + " models; a scene file may have " + std::to_string(kMaxModels),
             "put parts that belong together into one glTF model, whose nodes share meshes");
     errors_.throwIfErrors();
-  }
-
-  void addSky(Scene& scene) const {
-    const Daylight light = daylight(*sky_);
-    scene.environmentMap = light.map;
-    if (!hasSun_) return;
-    Light sun;
-    sun.name = "sun";
-    sun.color = light.sun;
-    sun.direction = -towardsSun(*sky_);
-    scene.lights.push_back(sun);
   }
 
   void model(const Value& v, const std::string& path) {

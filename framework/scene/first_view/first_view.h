@@ -7,6 +7,9 @@
 
 namespace fovea::scene {
 
+// Reflectance of a floor that is added, and of the ground below a sky that is added, which continues it.
+inline constexpr float kGround = 0.3f;
+
 // What has been added to a scene, in words; empty where nothing was.
 struct FirstView {
   std::string camera, floor, light, exposure;

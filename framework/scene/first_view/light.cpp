@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <optional>
 #include <vector>
 
 #include "fovea/image.h"
 #include "framework/base/random.h"
+#include "framework/scene/environment/sky.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/rays/surface_tracer.h"
 
@@ -20,21 +23,20 @@ constexpr float kDisplay = 0.45f;          // mean display value
 constexpr float kClipped = 0.015f;         // most of the surfaces' pixels that may be clipped
 constexpr float kDisplayInDark = 0.27f;    // the same where most of the picture stays dark with that,
 constexpr float kClippedInDark = 0.04f;    // and more may be clipped
-constexpr float kSunlight = 3.0f;          // lux, on a surface that faces it
-constexpr float kSkylight = 0.35f;         // of the sunlight
-const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything, as displayed before sRGB
+constexpr float kLamplight = 3.0f;         // lux, at the median distance
+const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything without a sky, as displayed before sRGB
 
 struct Picture {
   std::vector<glm::vec3> pixels;        // radiance, W/(sr m^2)
   std::vector<TracedSurface> surfaces;  // what they show; there: false in the background
 };
 
-// The first camera's picture as a path tracer with few samples sees it.
+// The first camera's picture as a path tracer with few samples sees it, if metals are rough.
 Picture trace(const Scene& scene, const Geometry& geometry) {
   const Frame frame = makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
   const View& view = frame.views.front();
-  const auto rays = RayScene::cached(scene, geometry);
-  const SurfaceTracer tracer(frame, view, *rays);
+  const auto rays = RayScene::cached(scene, geometry, Passing::Met);
+  const SurfaceTracer tracer(frame, view, *rays, true);
   Picture picture;
   uint64_t count = 0;
   for (uint32_t y = 0; y < kWidth; ++y)
@@ -78,35 +80,23 @@ float sunlit(const Picture& picture, const RayScene& rays, glm::vec3 towardsSun)
   return surfaces > 0 ? float(lit) / float(surfaces) : 0;
 }
 
-void addDirectional(Scene& scene, const char* name, glm::vec3 from, float lux, glm::vec3 color) {
-  Light light;
-  light.name = name;
-  light.color = color;
-  light.intensity = lux;
-  light.direction = -glm::normalize(from);
-  scene.lights.push_back(light);
-}
-
-// The sun that leaves about half of the picture in shadow, of those that stand high enough and not behind the scene.
-// Returns false if none reaches anything.
-bool addSun(Scene& scene, const Picture& picture, const RayScene& rays) {
+// The sky whose sun leaves about half of the picture in shadow, of those that stand high enough and not behind the scene.
+// None if no sun reaches anything. Its ground looks like an assumed floor, which it continues.
+std::optional<Sky> findSky(const Scene& scene, const Picture& picture, const RayScene& rays) {
   const glm::vec3 right = scene.cameras[0].orientation * glm::vec3(1, 0, 0);
   const float facing = std::atan2(-right.z, right.x);
-  glm::vec3 best(0);
+  std::optional<Sky> best;
   float most = 0.02f;
   for (const float height : {0.7f, 1.0f, 1.3f})
-    for (int i = -4; i <= 4; ++i) {
-      const float yaw = facing + 0.35f * float(i);  // 0: behind the camera
-      const glm::vec3 from(std::sin(yaw) * std::cos(height), std::sin(height),
-                           std::cos(yaw) * std::cos(height));
-      const float lit = sunlit(picture, rays, from), balance = lit * (1.2f - lit);
-      if (balance > most) most = balance, best = from;
+    for (int i = -4; i <= 4; ++i) {  // in the middle behind the camera
+      Sky sky;
+      sky.sunElevation = height;
+      sky.sunAzimuth = std::remainder(facing + glm::pi<float>() + 0.35f * float(i), glm::two_pi<float>());
+      sky.ground = glm::vec3(kGround);
+      const float lit = sunlit(picture, rays, towardsSun(sky)), balance = lit * (1.2f - lit);
+      if (balance > most) most = balance, best = sky;
     }
-  if (best == glm::vec3(0)) return false;
-  addDirectional(scene, "default sun", best, kSunlight, {1, 0.96f, 0.88f});
-  addDirectional(scene, "default sky", {-0.5f * best.x, 1, -0.5f * best.z}, kSkylight * kSunlight,
-                 {0.8f, 0.9f, 1});
-  return true;
+  return best;
 }
 
 // A lamp below the ceiling, a little ahead of the camera.
@@ -126,7 +116,7 @@ void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
   lamp.type = LightType::Point;
   lamp.color = {1, 0.93f, 0.82f};
   lamp.position = below + glm::vec3(0, 0.6f * std::min(ceiling ? ceiling.distance : far, far), 0);
-  lamp.intensity = kSunlight * far * far;
+  lamp.intensity = kLamplight * far * far;
   scene.lights.push_back(lamp);
 }
 
@@ -137,8 +127,13 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry) {
   const Picture picture = trace(scene, geometry);
   if (isLit(picture)) return {};
   const auto rays = RayScene::cached(scene, geometry);
-  if (addSun(scene, picture, *rays)) return "a sun and a sky";
+  if (!scene.environmentMap) scene.assumedSky = findSky(scene, picture, *rays);
+  if (scene.assumedSky) {
+    addDaylight(scene, *scene.assumedSky);
+    return "a sun and a sky";
+  }
   addLamp(scene, picture, *rays);
+  scene.assumedLamp = true;
   return "a lamp";
 }
 
@@ -174,7 +169,6 @@ float firstExposure(const Scene& scene, const Geometry& geometry) {
 }
 
 FirstView addFirstView(Scene& scene) {
-  const size_t lights = scene.lights.size();
   Geometry geometry = flatten(scene);
   FirstView added;
   added.camera = addFirstCamera(scene, geometry);
@@ -183,10 +177,9 @@ FirstView addFirstView(Scene& scene) {
   added.light = addFirstLight(scene, geometry);
   scene.assumed = true;
   scene.assumedFloor = !added.floor.empty();
-  scene.assumedLights = uint32_t(scene.lights.size() - lights);
   scene.exposure = firstExposure(scene, geometry);
   if (scene.exposure != 1) added.exposure = fmt::format("the exposure {:.2g}", scene.exposure);
-  if (scene.environment == glm::vec3(0)) scene.environment = kSky / scene.exposure;
+  if (!scene.environmentMap && scene.environment == glm::vec3(0)) scene.environment = kSky / scene.exposure;
   return added;
 }
 
