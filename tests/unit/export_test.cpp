@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fovea/image.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/export/gltf.h"
 #include "framework/scene/export/mitsuba.h"
 #include "framework/scene/frame.h"
@@ -141,7 +142,17 @@ void expectSameScene(const Scene& a, const Scene& b, float normalError) {
     expectSameView(fa.views[1], fb.views[1]);
     EXPECT_FLOAT_EQ(fa.exposure, fb.exposure);
   }
-  EXPECT_LT(distance(a.environment, b.environment), 1e-6f);
+  ASSERT_EQ(bool(a.environmentMap), bool(b.environmentMap));
+  if (!a.environmentMap) {
+    EXPECT_LT(distance(a.environment, b.environment), 1e-6f);
+    return;
+  }
+  EXPECT_FLOAT_EQ(a.environmentMap->turn(), b.environmentMap->turn());
+  ASSERT_EQ(a.environmentMap->texels().size(), b.environmentMap->texels().size());
+  for (size_t i = 0; i < a.environmentMap->texels().size(); ++i) {
+    const glm::vec3 texel = a.environmentMap->texels()[i];
+    EXPECT_LT(distance(texel, b.environmentMap->texels()[i]), 1e-3f * glm::length(texel)) << i;
+  }
 }
 
 void roundTrip(const Scene& scene, float normalError = 1e-5f) {
@@ -261,6 +272,14 @@ Scene everything() {
 }
 
 TEST(ExportGltf, EverythingComesBack) { roundTrip(everything()); }
+
+TEST(ExportGltf, AnEnvironmentComesBack) {
+  Scene s = everything();
+  std::vector<glm::vec3> texels;
+  for (int i = 0; i < 8; ++i) texels.emplace_back(0.1f + float(i), 2, 1e-3f * float(1 + i));
+  s.environmentMap = std::make_shared<EnvironmentMap>(4, 2, std::move(texels), glm::radians(30.0f));
+  roundTrip(s);
+}
 
 TEST(ExportGltf, ACameraPathComesBack) {
   Scene s = everything();

@@ -42,6 +42,12 @@ void makeFolder(const fs::path& folder) {
         "choose another place");
 }
 
+void writeEnvironment(const fs::path& file, const EnvironmentMap& map) {
+  image::Image picture{map.width(), map.height(), 3, {}};
+  for (const glm::vec3& t : map.texels()) picture.data.insert(picture.data.end(), {t.r, t.g, t.b});
+  image::write(file, {{"", std::move(picture)}});
+}
+
 image::Image texelImage(const Texture& texture, uint32_t channels) {
   image::Image image{texture.width, texture.height, channels, {}};
   const size_t count = size_t(texture.width) * texture.height;

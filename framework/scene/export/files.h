@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fovea/image.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/scene.h"
 
 namespace fovea::scene {
@@ -32,6 +33,9 @@ double shortest(float value);
 
 // Creates the folder if it is missing. Throws Error(CannotWrite).
 void makeFolder(const std::filesystem::path& folder);
+
+// Writes the texels of an environment, which its turn does not change. Throws Error(CannotWrite).
+void writeEnvironment(const std::filesystem::path& file, const EnvironmentMap& map);
 
 // Converts 8-bit texels to an image of 3 or 4 channels; a PNG of it gives them back bit for bit.
 image::Image texelImage(const Texture& texture, uint32_t channels);

@@ -51,7 +51,9 @@ class GltfWriter {
     animations();
     root_["scenes"][0]["nodes"] = roots_;
     finish();
-    const SceneFileNames names{name_ + ".gltf", nodeNames_, lightNames_, animationNames_};
+    const std::string environment = scene_.environmentMap ? name_ + "_environment.exr" : "";
+    if (scene_.environmentMap) writeEnvironment(folder_ / environment, *scene_.environmentMap);
+    const SceneFileNames names{name_ + ".gltf", environment, nodeNames_, lightNames_, animationNames_};
     const fs::path file = folder_ / (name_ + ".json");
     writeText(file, sceneFileText(scene_, names, warnings_));
     return file;

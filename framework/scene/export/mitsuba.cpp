@@ -149,9 +149,7 @@ class MitsubaWriter {
 
   // Mitsuba sees the middle of the picture along +Z.
   void environmentMap(const EnvironmentMap& map) {
-    image::Image picture{map.width(), map.height(), 3, {}};
-    for (const glm::vec3& t : map.texels()) picture.data.insert(picture.data.end(), {t.r, t.g, t.b});
-    image::write(folder_ / "environment.exr", {{"", std::move(picture)}});
+    writeEnvironment(folder_ / "environment.exr", map);
     line("<emitter type=\"envmap\">");
     line("  <string name=\"filename\" value=\"environment.exr\"/>");
     line(fmt::format("  <transform name=\"to_world\"><rotate y=\"1\" angle=\"{}\"/></transform>",

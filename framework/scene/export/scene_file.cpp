@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/export/files.h"
 #include "framework/scene/motion/motion.h"
 
@@ -132,6 +133,9 @@ std::string sceneFileText(const Scene& scene, const SceneFileNames& names, Diagn
                {"exposure", shortest(scene.exposure)},
                {"environment", vector(scene.environment)},
                {"ipd", shortest(scene.ipd)}};
+  if (scene.environmentMap)
+    root["environment"] = {{"file", names.environment},
+                           {"turn_deg", shortest(glm::degrees(scene.environmentMap->turn()))}};
   if (scene.fullMaterials) root["materials"] = "full";
   if (scene.lens)
     root["lens"] = {{"outward_deg", shortest(glm::degrees(scene.lens->outward))},

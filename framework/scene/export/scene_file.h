@@ -11,7 +11,7 @@
 namespace fovea::scene {
 
 struct SceneFileNames {
-  std::string model;                            // relative to the scene file
+  std::string model, environment;               // files, relative to the scene file; "" without a map
   std::vector<std::string> nodes;               // names in the model, all different
   std::vector<std::string> lights, animations;  // likewise; "" for an animation that is not in the model
 };
