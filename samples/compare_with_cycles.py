@@ -9,11 +9,12 @@ diffuse layer below a rough surface. Exit code 1 when a scene disagrees.
   samples/compare_with_cycles.py --fovea build/release/bin/fovea model.glb scene.json
 
 Lights of the sun's kind, point lights and surfaces that shine are compared; Cycles has another falloff of spot lights,
-and environment maps and skies are left out.
+and environment maps and skies are left out on both sides.
 """
 
 import argparse
 import contextlib
+import json
 import math
 import os
 import pathlib
@@ -104,11 +105,14 @@ def main():
         with tempfile.TemporaryDirectory(prefix="fovea-cycles-") as name:
             folder = pathlib.Path(name)
             run(options.fovea, "scene", "export", scene, "-o", folder, "--format", "gltf")
+            exported = next(folder.glob("*.json"))
+            description = {**json.loads(exported.read_text()), "environment": [0, 0, 0]}
+            exported.write_text(json.dumps(description))
             with silence():
                 theirs, covered = render_cycles(next(folder.glob("*.gl*")), folder / "cycles.exr", options)
-            run(options.fovea, "render", "reference", "--scene", scene, "--size", options.size, "--set", "filter=box",
-                "--set", f"depth={options.depth}", "--set", f"spp={options.spp}", "--set", "materials=full",
-                "-o", f"radiance={folder / 'ours.pfm'}")
+            run(options.fovea, "render", "reference", "--scene", exported, "--size", options.size,
+                "--set", "filter=box", "--set", f"depth={options.depth}", "--set", f"spp={options.spp}",
+                "--set", "materials=full", "-o", f"radiance={folder / 'ours.pfm'}")
             ours = read_pfm(folder / "ours.pfm")
         where = covered > 0.999
         difference = ours[where].mean(0) / theirs[where].mean(0) - 1

@@ -45,8 +45,9 @@ def run(program, *arguments):
 
 
 def environment(program, scene):
-    sky = re.search(r"^sky +(\S+) (\S+) (\S+)", run(program, "scene", "info", scene), re.MULTILINE)
-    return np.array([float(v) for v in sky.groups()])
+    """The colour behind the scene; black if there is a map, which is exported with the scene."""
+    sky = re.search(r"^sky +([-\d.e]+) ([-\d.e]+) ([-\d.e]+)", run(program, "scene", "info", scene), re.MULTILINE)
+    return np.array([float(v) for v in sky.groups()]) if sky else np.zeros(3)
 
 
 def render_mitsuba(xml, sky, options):

@@ -25,7 +25,7 @@ uint32_t raysAfterChange(uint32_t most, float lost) {
   return uint32_t(std::lround(glm::mix(1.0f, float(most), lost)));
 }
 
-// Stands for the mean length of rays where no surface sees another: what the sky sends is found all the same.
+// Stands for the mean length of rays as long as no surface sees another: what the sky sends is found all the same.
 double diagonal(const scene::Geometry& g) { return double(glm::distance(g.boundsMin, g.boundsMax)); }
 
 class NearField : public Pass {
@@ -56,7 +56,7 @@ class NearField : public Pass {
     d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
     d.parameter("share", real(50, 0.01, 1e6),
                 "total area of all discs, in squares of the mean distance between visible surfaces and the "
-                "surfaces seen from them");
+                "surfaces seen from them; where none is, of the diagonal of the scene");
     d.parameter(
         "bounces", integer(2, 1, 64),
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
@@ -100,26 +100,25 @@ class NearField : public Pass {
       const glm::vec4 change = ctx.has("change") ? ctx.inputAs<glm::vec4>("change")[0] : glm::vec4(0);
       settings.cache = &cache_;
       cache_.age(change.y);
-      const auto trace = [&] {
-        area = p.real("share") * length_ * length_ / double(p.integer("vpls"));
+      const auto trace = [&](double length) {
+        area = p.real("share") * length * length / double(p.integer("vpls"));
         settings.area = float(area);
-        cache_.setCellWidth(float(kCellWidth * length_));
+        cache_.setCellWidth(float(kCellWidth * length));
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
+      const auto knownLength = [&] { return length_ > 0 ? length_ : diagonal(*frame.geometry); };
       if (first) {  // first the length alone, then the cache
         length_ = 0;
         cache_.clear();
-        statistics = trace();
-        length_ = statistics.hits > 0 ? statistics.length / statistics.hits : diagonal(*frame.geometry);
+        learnLength(trace(0));
         settings.samples = uint32_t(p.integer("first_samples"));
-        trace();
+        trace(knownLength());
       } else {
         settings.foveaFactor =
             raysAfterChange(uint32_t(p.integer("saccade_samples")), frame.saccade > 0 ? 1 : change.z);
       }
-      statistics = trace();
-      if (statistics.hits > 0)
-        length_ = kLengthKept * length_ + (1 - kLengthKept) * statistics.length / statistics.hits;
+      statistics = trace(knownLength());
+      learnLength(statistics);
     } else {
       std::ranges::fill(image_, glm::vec4(0));
     }
@@ -133,7 +132,13 @@ class NearField : public Pass {
   }
 
  private:
-  double length_ = 0;  // m, mean ray length of the frames so far
+  void learnLength(const NearFieldStatistics& statistics) {
+    if (!(statistics.hits > 0)) return;
+    const double length = statistics.length / statistics.hits;
+    length_ = length_ > 0 ? kLengthKept * length_ + (1 - kLengthKept) * length : length;
+  }
+
+  double length_ = 0;  // m, mean ray length of the frames so far; 0 as long as no ray has met anything
   GatherCache cache_;  // of the frames so far
   std::vector<glm::vec4> image_;
 };

@@ -151,6 +151,9 @@ class Inputs(CliTest):
         self.assertIn("is assumed: a camera that shows the whole of it, a floor, a sun", run.stderr)
         values, scene_file = run.stdout.split("as a scene file, to be changed:\n")
         self.write("own.json", scene_file)
+        ground = json.loads(scene_file)["environment"]["sky"]["ground"]
+        self.assertEqual(json.loads(scene_file)["floor"]["color"], ground)  # which continues the floor
+        self.assertNotIn(ground, ([0.2, 0.2, 0.2], [0.5, 0.5, 0.5]))        # the defaults of the two
         again = self.succeeds("scene", "info", "own.json")
         self.assertEqual(again.stderr, "")
         self.assertNotIn("scene file", again.stdout)

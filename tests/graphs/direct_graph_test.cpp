@@ -19,8 +19,8 @@
 namespace fovea::test {
 namespace {
 
-// The seams of the Cornell box are diagonals of its picture. No centre of a pixel lies on them, as width and height are
-// not both even: which surface is seen there would be chance.
+// The seams of the Cornell box run at 45 degrees through the middle of the picture. As one of width and height is odd
+// and the other even, no pixel's centre lies on them, where chance would decide which surface is seen.
 constexpr glm::uvec2 kSize(95, 96);
 
 // Radiance towards the eye along a ray: emission plus one reflection.

@@ -218,8 +218,8 @@ TEST(FirstView, LightOfTheModelStaysAloneIfItIsEnough) {
   }
 }
 
-// The sky stands where its sun does, and its ground looks like the floor that is added: of what the eye sees of both, in
-// the sun and far from the thing, one is as bright as the other.
+// The sky stands where its sun does, and its ground looks like the floor that is added: of what the eye sees of both,
+// in the sun and far from the thing, one is as bright as the other.
 TEST(FirstView, TheGroundContinuesTheFloor) {
   scene::Scene s = box({0.02f, 1, 0.02f});
   EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
@@ -243,7 +243,7 @@ TEST(FirstView, TheGroundContinuesTheFloor) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
 }
 
-// Where the environment is given and yet does not light what is seen, a sky would not, either.
+// A given environment is never replaced. If it does not suffice, as this black one, there is a lamp.
 TEST(FirstView, AGivenEnvironmentStays) {
   scene::Scene s = box(glm::vec3(1));
   s.environmentMap = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector<glm::vec3>(8, glm::vec3(0)));
@@ -253,13 +253,29 @@ TEST(FirstView, AGivenEnvironmentStays) {
   EXPECT_FALSE(s.assumedSky);
 }
 
-// A metal shows the sky, which a diffuse material of its colour stands for.
-TEST(FirstView, MetalsAreNotTakenForBlack) {
-  scene::Scene matt = box(glm::vec3(1)), metal = box(glm::vec3(1));
+// Metals reflect the sky, and unlit materials show their colour as it is: neither is black.
+TEST(FirstView, MetalsAndUnlitMaterialsAreExposedForWhatTheyShow) {
+  scene::Scene matt = box(glm::vec3(1)), metal = box(glm::vec3(1)), unlit = box(glm::vec3(1));
   for (scene::Material& m : metal.materials) m.metallic = 1;
+  for (scene::Material& m : unlit.materials) m.unlit = true;
   scene::addFirstView(matt);
   scene::addFirstView(metal);
-  EXPECT_EQ(metal.exposure, matt.exposure);
+  EXPECT_NEAR(metal.exposure / matt.exposure, 1, 0.3);
+  EXPECT_EQ(scene::addFirstView(unlit).light, "");
+  EXPECT_LT(unlit.exposure, 1);  // a radiance of 0.5 needs no more
+  EXPECT_GT(unlit.exposure, 0.2f);
+}
+
+// A sun reaches what stands under glass.
+TEST(FirstView, GlassDoesNotHideTheSun) {
+  scene::Scene s = room();
+  scene::Material glass;
+  glass.transmission = 1;
+  s.materials.push_back(glass);
+  for (const scene::Node& node : s.nodes)
+    for (scene::Primitive& p : s.meshes[node.mesh].primitives)
+      if (std::ranges::all_of(p.positions, [](glm::vec3 v) { return v.y > 1.9f; })) p.material = 2;
+  EXPECT_EQ(scene::addFirstView(s).light, "a sun and a sky");
 }
 
 // A garden at night, with a lantern that lights next to nothing of it.

@@ -281,8 +281,8 @@ struct Scene {
   // What graphs take `$scene.materials` for: `full`, all that the materials say, or else `diffuse`.
   bool fullMaterials = false;
   uint64_t hash = 0;  // hash of all content, for caches and reports
-  // What a model does not say and load() has assumed: camera, exposure and environment, and full materials. The floor, if
-  // there is one, is the last of the nodes, and the lamp, or the sun in that sky, the last of the lights.
+  // What a model does not say and load() has assumed: camera, exposure, background and full materials. An assumed floor
+  // is the last of the nodes; an assumed lamp, or the sun of an assumed sky, the last of the lights.
   bool assumed = false, assumedFloor = false, assumedLamp = false;
   std::optional<Sky> assumedSky;
 };

@@ -9,10 +9,10 @@
 
 namespace fovea::scene {
 
-// NAME is the name of the scene as safeFileName() returns it. load() of the scene file gives the same picture at any
-// time. Names of nodes, lights and animations that occur twice get a number. Control cages become the triangles that
-// are visible, with their morph targets; a cage that follows joints stays at rest, with a warning. Returns the path
-// of NAME.json. Throws Error(CannotWrite).
+// NAME is the name of the scene as safeFileName() returns it; an environment that lights it is in NAME_environment.exr.
+// load() of the scene file gives the same picture at any time. Names of nodes, lights and animations that occur twice
+// get a number. Control cages become the triangles that are visible, with their morph targets; a cage that follows
+// joints stays at rest, with a warning. Returns the path of NAME.json. Throws Error(CannotWrite).
 std::filesystem::path exportGltf(const Scene& scene, const std::filesystem::path& folder,
                                  Diagnostics& warnings);
 

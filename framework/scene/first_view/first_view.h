@@ -8,7 +8,7 @@
 namespace fovea::scene {
 
 // Reflectance of a floor that is added, and of the ground below a sky that is added, which continues it.
-inline constexpr float kGround = 0.3f;
+inline constexpr float kGroundReflectance = 0.3f;
 
 // What has been added to a scene, in words; empty where nothing was.
 struct FirstView {

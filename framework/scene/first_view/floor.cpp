@@ -23,7 +23,7 @@ std::string addFirstFloor(Scene& scene, const Geometry& geometry) {
   if (geometry.empty()) return {};
   const glm::vec3 size = geometry.boundsMax - geometry.boundsMin;
   Floor floor;
-  floor.color = glm::vec3(kGround);
+  floor.color = glm::vec3(kGroundReflectance);
   floor.position = 0.5f * (geometry.boundsMin + geometry.boundsMax);
   floor.position.y = geometry.boundsMin.y - kGap * glm::length(size);
   const auto rays = RayScene::cached(scene, geometry);

@@ -12,46 +12,51 @@
 #include "framework/scene/environment/sky.h"
 #include "framework/scene/first_view/first_view.h"
 #include "framework/scene/rays/surface_tracer.h"
+#include "framework/scene/rays/visibility.h"
 
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kWidth = 48;            // of the picture, pixels
-constexpr uint32_t kGathered = 4;          // rays for further bounces at each of them
-constexpr float kDark = 0.02f;             // of the light of what is brightest: less is not seen beside it
-constexpr float kDisplay = 0.45f;          // mean display value
-constexpr float kClipped = 0.015f;         // most of the surfaces' pixels that may be clipped
-constexpr float kDisplayInDark = 0.27f;    // the same where most of the picture stays dark with that,
-constexpr float kClippedInDark = 0.04f;    // and more may be clipped
-constexpr float kLamplight = 3.0f;         // lux, at the median distance
-const glm::vec3 kSky(0.22f, 0.33f, 0.5f);  // behind everything without a sky, as displayed before sRGB
+constexpr uint32_t kWidth = 48;          // of the picture, pixels
+constexpr uint32_t kGathered = 4;        // rays for further bounces at each of them
+constexpr float kDark = 0.02f;           // of the light of what is brightest: less is not seen beside it
+constexpr float kDisplay = 0.45f;        // mean display value
+constexpr float kClipped = 0.015f;       // most of the surfaces' pixels that may be clipped
+constexpr float kDisplayInDark = 0.27f;  // the same where most of the picture stays dark with that,
+constexpr float kClippedInDark = 0.04f;  // and more may be clipped
+constexpr float kLamplight = 3.0f;       // lux, at the median distance
+const glm::vec3 kBackground(0.22f, 0.33f, 0.5f);  // where there is no sky, as displayed before sRGB
 
 struct Picture {
   std::vector<glm::vec3> pixels;        // radiance, W/(sr m^2)
   std::vector<TracedSurface> surfaces;  // what they show; there: false in the background
 };
 
-// The first camera's picture as a path tracer with few samples sees it, if metals are rough.
-Picture trace(const Scene& scene, const Geometry& geometry) {
-  const Frame frame = makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
+Frame firstFrame(const Scene& scene, const Geometry& geometry) {
+  return makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
+}
+
+// The first camera's picture as a path tracer with few samples sees it, if surfaces reflect indirect light as diffuse
+// ones of their colour, metals too.
+Picture trace(const Frame& frame, const RayScene& rays) {
+  const Scene& scene = *frame.scene;
   const View& view = frame.views.front();
-  const auto rays = RayScene::cached(scene, geometry, Passing::Met);
-  const SurfaceTracer tracer(frame, view, *rays, true);
+  const SurfaceTracer tracer(frame, view, rays, true);
   Picture picture;
   uint64_t count = 0;
   for (uint32_t y = 0; y < kWidth; ++y)
     for (uint32_t x = 0; x < kWidth; ++x) {
+      const glm::vec3 direction = glm::normalize(view.rayDirection(glm::vec2(x, y) + 0.5f));
       const TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
       picture.surfaces.push_back(seen);
       if (!seen.there) {
-        const glm::vec3 direction = glm::normalize(view.rayDirection(glm::vec2(x, y) + 0.5f));
         picture.pixels.push_back(scene.environmentMap ? tracer.outside(direction).radiance
                                                       : scene.environment);
         continue;
       }
-      const glm::vec3 rho = tracer.reflectance(seen);
-      picture.pixels.push_back(tracer.emitted(seen) + tracer.direct(seen, rho, count) +
-                               rho * tracer.gather(seen, 2, kGathered, randomStream(1, x, 0, y), count));
+      picture.pixels.push_back(tracer.seen(seen, -direction, count) +
+                               tracer.reflectance(seen) *
+                                   tracer.gather(seen, 2, kGathered, randomStream(1, x, 0, y), count));
     }
   return picture;
 }
@@ -70,20 +75,23 @@ bool isLit(const Picture& picture) {
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
-float sunlit(const Picture& picture, const RayScene& rays, glm::vec3 towardsSun) {
+float sunlit(const Picture& picture, const Frame& frame, const RayScene& rays, glm::vec3 towardsSun) {
+  constexpr float kEnough = 0.5f;  // of the light, where glass stands before the sun
   uint32_t surfaces = 0, lit = 0;
+  uint64_t count = 0;
   for (const TracedSurface& s : picture.surfaces) {
     if (!s.there) continue;
     ++surfaces;
-    lit += glm::dot(s.normal, towardsSun) > 0.1f && !rays.occluded({s.origin, towardsSun});
+    lit += glm::dot(s.normal, towardsSun) > 0.1f &&
+           brightest(visibility(frame, rays, {s.origin, towardsSun}, count)) > kEnough;
   }
   return surfaces > 0 ? float(lit) / float(surfaces) : 0;
 }
 
-// The sky whose sun leaves about half of the picture in shadow, of those that stand high enough and not behind the scene.
-// None if no sun reaches anything. Its ground looks like an assumed floor, which it continues.
-std::optional<Sky> findSky(const Scene& scene, const Picture& picture, const RayScene& rays) {
-  const glm::vec3 right = scene.cameras[0].orientation * glm::vec3(1, 0, 0);
+// The sky whose sun leaves about half of the picture in shadow, of those that stand high enough and not behind the
+// scene. None if no sun reaches anything. Its ground looks like an assumed floor, which it continues.
+std::optional<Sky> findSky(const Picture& picture, const Frame& frame, const RayScene& rays) {
+  const glm::vec3 right = frame.scene->cameras[0].orientation * glm::vec3(1, 0, 0);
   const float facing = std::atan2(-right.z, right.x);
   std::optional<Sky> best;
   float most = 0.02f;
@@ -92,8 +100,8 @@ std::optional<Sky> findSky(const Scene& scene, const Picture& picture, const Ray
       Sky sky;
       sky.sunElevation = height;
       sky.sunAzimuth = std::remainder(facing + glm::pi<float>() + 0.35f * float(i), glm::two_pi<float>());
-      sky.ground = glm::vec3(kGround);
-      const float lit = sunlit(picture, rays, towardsSun(sky)), balance = lit * (1.2f - lit);
+      sky.ground = glm::vec3(kGroundReflectance);
+      const float lit = sunlit(picture, frame, rays, towardsSun(sky)), balance = lit * (1.2f - lit);
       if (balance > most) most = balance, best = sky;
     }
   return best;
@@ -124,10 +132,11 @@ void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
 
 std::string addFirstLight(Scene& scene, const Geometry& geometry) {
   if (geometry.empty()) return {};
-  const Picture picture = trace(scene, geometry);
+  const auto rays = RayScene::cached(scene, geometry, Passing::Met);
+  const Frame frame = firstFrame(scene, geometry);
+  const Picture picture = trace(frame, *rays);
   if (isLit(picture)) return {};
-  const auto rays = RayScene::cached(scene, geometry);
-  if (!scene.environmentMap) scene.assumedSky = findSky(scene, picture, *rays);
+  if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame, *rays);
   if (scene.assumedSky) {
     addDaylight(scene, *scene.assumedSky);
     return "a sun and a sky";
@@ -139,7 +148,8 @@ std::string addFirstLight(Scene& scene, const Geometry& geometry) {
 
 float firstExposure(const Scene& scene, const Geometry& geometry) {
   if (geometry.empty()) return 1;
-  const Picture picture = trace(scene, geometry);
+  const Picture picture =
+      trace(firstFrame(scene, geometry), *RayScene::cached(scene, geometry, Passing::Met));
   std::vector<glm::vec3> pixels;
   for (size_t i = 0; i < picture.pixels.size(); ++i)
     if (picture.surfaces[i].there) pixels.push_back(picture.pixels[i]);
@@ -179,7 +189,8 @@ FirstView addFirstView(Scene& scene) {
   scene.assumedFloor = !added.floor.empty();
   scene.exposure = firstExposure(scene, geometry);
   if (scene.exposure != 1) added.exposure = fmt::format("the exposure {:.2g}", scene.exposure);
-  if (!scene.environmentMap && scene.environment == glm::vec3(0)) scene.environment = kSky / scene.exposure;
+  if (!scene.environmentMap && scene.environment == glm::vec3(0))
+    scene.environment = kBackground / scene.exposure;
   return added;
 }
 
