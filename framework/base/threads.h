@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "fovea/error.h"
 
@@ -34,16 +35,10 @@ inline uint32_t threadCount(uint32_t wanted) {
   return std::max(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u);
 }
 
-// Calls work() `count` times concurrently, including once on this thread, and returns when all calls have returned.
-template <class Work>
-void onThreads(uint32_t count, const Work& work) {
-  std::vector<std::jthread> helpers;
-  try {
-    for (uint32_t i = 1; i < count; ++i) helpers.emplace_back(work);
-  } catch (const std::system_error& e) {
-    throw noThread(e);
-  }
-  work();
-}
+// Calls work() on this thread and on up to `count` - 1 others, and returns when all calls have returned. Each call takes
+// from what there is to do until nothing is left, as one that does not begin in time is left out. The other threads are
+// kept for later calls, as making them costs more than many a pass. Throws what work() throws, and Error(OutOfMemory) if
+// the system makes no more threads.
+void onThreads(uint32_t count, const std::function<void()>& work);
 
 }  // namespace fovea
