@@ -56,7 +56,7 @@ class NearField : public Pass {
     d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
     d.parameter("share", real(50, 0.01, 1e6),
                 "total area of all discs, in squares of the mean distance between visible surfaces and the "
-                "surfaces seen from them; where none is, of the diagonal of the scene");
+                "surfaces seen from them, or of the diagonal of the scene where no surface sees another");
     d.parameter(
         "bounces", integer(2, 1, 64),
         "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
