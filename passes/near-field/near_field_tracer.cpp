@@ -167,14 +167,15 @@ class Tracer {
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
-    const bool tracesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
       light = fromEmitters(v, hashCombine(stream, kAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
+    const bool tracesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     const TracedSurface hit =
         surfaces_.arrive(v.origin, direction, tracesOutside ? kFarAway : reach, statistics.rays);
-    if (tracesOutside && hit.isOutside()) return light + hit.brighter * fromOutside(v, direction);
+    if (tracesOutside && hit.isOutside())
+      return light + hit.brighter * sharedLight(v, surfaces_.towardsOutside(v, direction));
     if (!hit.there) return light;
     const float distance = glm::distance(hit.position, v.position);
     if (tracesOutside && distance > reach) return light;
@@ -199,35 +200,42 @@ class Tracer {
   // The part of a ray aimed at emissive surfaces, in the balance heuristic beside the cosine-weighted one, which may
   // hit them by chance. The ray goes to one of several points, chosen by the light that they send if nothing hides them
   // (Talbot et al., "Importance Resampling for Global Illumination", EGSR 2005). The points share out the emitters, and
-  // those of consecutive samples follow low-discrepancy sequences.
+  // those of consecutive samples follow low-discrepancy sequences. For the environment there are as many
+  // cosine-weighted points beside them.
   glm::vec3 fromEmitters(const TracedSurface& v, uint32_t stream, uint32_t index, Row& statistics) const {
     const uint32_t points = settings_.emitterPoints;
     const float place = uniformFloat(hashCombine(stream, 0) + index * kGoldenRatio);
     WeightedChoice choice(uniformFloat(hashCombine(stream, 1) + index * kSilverRatio));
     SurfaceTracer::EmitterRay chosen;
     glm::vec3 light(0);
-    for (uint32_t i = 0; i < points; ++i) {
-      const glm::vec2 u = streamSequence(hashCombine(stream, i + 2), index);
-      const SurfaceTracer::EmitterRay to =
-          surfaces_.towardsEmitter(v, {(float(i) + place) / float(points), u.x, u.y});
-      if (!to.there) continue;
-      const float cosine = cosineDensity(v, to.direction);
-      const float chance = to.triangle == kNoIndex ? 1.0f : probabilityAt(to.distance);
-      const glm::vec3 its = to.radiance * (cosine / (cosine * chance + float(points) * to.density));
+    const auto consider = [&](const SurfaceTracer::EmitterRay& to) {
+      if (!to.there) return;
+      const glm::vec3 its = sharedLight(v, to) / float(points);
       const float part = its.r + its.g + its.b;
-      if (!(part > 0) || !choice.takes(part)) continue;
+      if (!(part > 0) || !choice.takes(part)) return;
       chosen = to;
       light = its;
+    };
+    const auto pointOf = [&](uint32_t i) { return streamSequence(hashCombine(stream, i + 2), index); };
+    for (uint32_t i = 0; i < points; ++i) {
+      const glm::vec2 u = pointOf(i);
+      consider(surfaces_.towardsEmitter(v, {(float(i) + place) / float(points), u.x, u.y}));
     }
+    for (uint32_t i = points; surfaces_.hasEnvironment() && i < 2 * points; ++i)
+      consider(surfaces_.towardsOutside(v, cosineDirection(v.normal, pointOf(i))));
     if (!choice.any()) return glm::vec3(0);
     return light * surfaces_.visibility(v, chosen, statistics.rays) * choice.inverseProbability();
   }
 
-  // The part of a cosine-weighted ray that meets nothing but the environment, beside those aimed at it.
-  glm::vec3 fromOutside(const TracedSurface& v, glm::vec3 direction) const {
-    const SurfaceTracer::Outside outside = surfaces_.outside(direction);
-    const float cosine = cosineDensity(v, direction);
-    return outside.radiance * (cosine / (cosine + float(settings_.emitterPoints) * outside.density));
+  // The light along a ray over the densities of all ways to choose it, as far as each counts. A cosine-weighted ray
+  // counts once beside the points on emitters. Beside all points in the environment it counts half: what hides the sky
+  // makes more noise than its colours do, and two rays see more of that than one.
+  glm::vec3 sharedLight(const TracedSurface& v, const SurfaceTracer::EmitterRay& to) const {
+    if (!to.there) return glm::vec3(0);
+    const float cosine = cosineDensity(v, to.direction);
+    const float cosineWeighted =
+        to.triangle == kNoIndex ? 2 : probabilityAt(to.distance) / float(settings_.emitterPoints);
+    return to.radiance * (cosine / (cosine * cosineWeighted + to.density));
   }
 
   // The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted

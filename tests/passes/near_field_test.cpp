@@ -137,6 +137,34 @@ TEST(NearField, AllLightOfTheEnvironment) {
   }
 }
 
+// Single samples of an open sky hardly differ, though its colours do, as each is a choice among several directions.
+TEST(NearField, OpenSkyHasLittleNoise) {
+  scene::Scene s;
+  addQuad(s, addMaterial(s, glm::vec3(0)), {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
+  std::vector<glm::vec3> texels;  // bright towards one side, and at the horizon
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 32; ++x)
+      texels.emplace_back(float(1 + y) / 8 * (1.2f + std::sin(glm::two_pi<float>() * float(x) / 32)));
+  s.environmentMap = std::make_shared<scene::EnvironmentMap>(32, 16, texels);
+  scene::Camera& camera = s.cameras.emplace_back();
+  camera.position = {0, 3, 0};
+  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
+  const scene::Geometry geometry = scene::flatten(s);
+  const scene::RayScene rays(s, geometry);
+  const scene::Frame frame = scene::makeFrame(s, geometry, {64, 64}, 0, 1);
+  NearFieldSettings settings;
+  settings.foveaRadius = 2;
+  std::vector<glm::vec4> image(1024);
+  passes::traceNearField(frame, frame.views[0], rays, settings, image);
+  double mean = 0, square = 0;
+  for (const glm::vec4& texel : image) {
+    mean += double(texel.r) / double(image.size());
+    square += double(texel.r) * double(texel.r) / double(image.size());
+  }
+  EXPECT_NEAR(mean, irradianceFrom(*s.environmentMap, {0, 1, 0}).r / glm::pi<double>(), 0.02 * mean);
+  EXPECT_LT(std::sqrt(square / (mean * mean) - 1), 0.4);
+}
+
 // Irradiance / pi at a plane, from a parallel rectangle of the given half widths at the distance h that emits L = 1, at
 // (x, y) from its middle: its configuration factor, a sum over its corners.
 double fromRectangle(glm::dvec2 half, double h, double x, double y) {

@@ -195,6 +195,13 @@ SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, 
   return ray;
 }
 
+SurfaceTracer::EmitterRay SurfaceTracer::towardsOutside(const TracedSurface& v, glm::vec3 direction) const {
+  if (environment_ == nullptr || glm::dot(v.normal, direction) <= 0 || glm::dot(v.face, direction) <= 0)
+    return {};
+  const Outside light = outside(direction);
+  return {true, direction, kFarAway, light.density, kNoIndex, light.radiance};
+}
+
 glm::vec3 SurfaceTracer::visibility(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const {
   return scene::visibility(frame_, rays_, {v.origin, to.direction, 0, to.distance * kShadowEnd}, rays);
 }

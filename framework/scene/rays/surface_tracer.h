@@ -76,6 +76,8 @@ class SurfaceTracer {
   EmitterRay towardsEmitter(const TracedSurface& v, uint32_t stream) const;
   // u: uniform in [0, 1); x chooses the emitter.
   EmitterRay towardsEmitter(const TracedSurface& v, glm::vec3 u) const;
+  // The ray to the environment in a given direction, which is unit.
+  EmitterRay towardsOutside(const TracedSurface& v, glm::vec3 direction) const;
   // The share of its light that reaches v.
   glm::vec3 visibility(const TracedSurface& v, const EmitterRay& to, uint64_t& rays) const;
   // Density with which towardsEmitter() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not
