@@ -69,6 +69,8 @@ std::vector<MemberSpec> gbufferOutput() {
           "mean of the channels of `specular` for the dielectric part"),
       member("id", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment,
              "material | object << 16; background 0xffffffff"),
+      member("triangle", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
+             "number of the triangle in the scene; background 0xffffffff"),
       member("depth", image2D(VK_FORMAT_D32_SFLOAT), Usage::DepthAttachment, "0: near plane, 1: far plane"),
       member("specular",
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1)),

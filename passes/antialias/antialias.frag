@@ -17,6 +17,7 @@ layout(rgba16f) uniform readonly image2D radiance;
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
+layout(r32ui) uniform readonly uimage2D gbufferTriangle;
 layout(rgba32f) uniform readonly image2D previousPosition;
 layout(r32ui) uniform readonly uimage2D previousId;
 layout(r32ui) uniform readonly uimage2D origin;
@@ -101,8 +102,8 @@ Around around(ivec2 p, ivec2 size, bool veiled) {
 // nearer, so all pixels beside it do (Karis). The jitter moves what is seen, but not the picture.
 vec3 placeBefore(ivec2 p, Around a, vec2 size) {
   bool surface = a.position.w > 0.0;
-  vec4 point = surface ? vec4(positionBefore(a.position.xyz, imageLoad(gbufferId, a.nearest).r), 1.0)
-                       : vec4(pixelRay(p), 0.0);
+  uint id = imageLoad(gbufferId, a.nearest).r, triangle = imageLoad(gbufferTriangle, a.nearest).r;
+  vec4 point = surface ? vec4(positionBefore(a.position.xyz, id, triangle), 1.0) : vec4(pixelRay(p), 0.0);
   vec4 clip = view.previousWorldToClip * point;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * size - 0.5 - view.jitterStep;  // texel centres at whole numbers
   at += vec2(surface ? p - a.nearest : ivec2(0));

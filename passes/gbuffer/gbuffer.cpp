@@ -39,8 +39,6 @@ class GBuffer : public Pass {
     d.view();
     const SizeExpr full = fullMaterials();
     d.output("gbuffer", "gbuffer", gbufferOutput(), "one surface per pixel");
-    d.scratch("seen", image2D(VK_FORMAT_R32_UINT), Usage::ColorAttachment | Usage::Sampled,
-              "triangle visible at each pixel, 0xffffffff if none");
     const ResourceSpec tint =
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1));
     d.scratch("tint", tint, Usage::ColorAttachment | Usage::Sampled,
@@ -85,7 +83,7 @@ class GBuffer : public Pass {
                                           .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"},
                                                       {"CULL", cull ? "1" : "0"},
                                                       {"PASSAGE", full_ ? "1" : "0"}},
-                                          .colors = {"seen"},
+                                          .colors = {"gbuffer.triangle"},
                                           .depth = "gbuffer.depth",
                                           .cull = cull && kind == scene::DrawKind::SingleSided
                                                       ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
@@ -119,7 +117,7 @@ class GBuffer : public Pass {
     ctx.counter("triangles", double(drawn));
     const auto clear = Attachment::Load::Clear;
     const Attachment depth{"gbuffer.depth", clear, {.depthStencil = {1.0f, 0}}};
-    ctx.render({{"seen", clear, {.color = {.uint32 = {~0u}}}}}, &depth, draw_, [&] {
+    ctx.render({{"gbuffer.triangle", clear, {.color = {.uint32 = {~0u}}}}}, &depth, draw_, [&] {
       for (const scene::DrawRun& run : visible_)
         ctx.use(draw_[size_t(run.kind)])
             .drawTriangles(gpu.indices().handle(), run.firstTriangle, run.triangleCount);

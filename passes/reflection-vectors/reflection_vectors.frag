@@ -9,6 +9,7 @@
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(r32ui) uniform readonly uimage2D gbufferId;
+layout(r32ui) uniform readonly uimage2D gbufferTriangle;
 layout(rgba32f) uniform readonly image2D previousPosition;
 layout(rgba16f) uniform readonly image2D previousNormal;
 layout(r32ui) uniform readonly uimage2D surface;
@@ -42,15 +43,15 @@ uint originOf(ivec2 p, float thing, uint otherwise) {
   ivec2 size = imageSize(gbufferPosition);
   vec4 position = imageLoad(gbufferPosition, p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
-  uint id = imageLoad(gbufferId, p).r;
+  uint id = imageLoad(gbufferId, p).r, triangle = imageLoad(gbufferTriangle, p).r;
   float behind = thing / (1.0 + 2.0 * curvatureAt(p, position, normal, size) * thing);
   vec3 image = position.xyz + behind * normalize(position.xyz - view.eye);
-  vec4 clip = view.previousWorldToClip * vec4(positionBefore(image, id), 1.0);
+  vec4 clip = view.previousWorldToClip * vec4(pointBefore(image, position.xyz, id, triangle), 1.0);
   if (!(clip.w > 0.0)) return otherwise;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5 - view.jitterStep;  // texel centres at whole numbers
   ivec2 q = oneOfFour(at, randomStream(uint(p.x), frameIndex, kReflectionStream, uint(p.y)));
   ivec2 inside = clamp(q, ivec2(0), size - 1);
-  bool same = sameSurface(positionBefore(position.xyz, id), normal, normal, imageLoad(previousPosition, inside),
+  bool same = sameSurface(positionBefore(position.xyz, id, triangle), normal, normal, imageLoad(previousPosition, inside),
                           imageLoad(previousNormal, inside).xyz, planeTolerance * position.w, leastCosine);
   return q == inside && same ? packPixel(q) : otherwise;
 }

@@ -9,7 +9,7 @@
 #include "common/pixel_ray.glsl"
 #include "common/scene.glsl"
 
-uniform utexture2D seen;
+uniform utexture2D gbufferTriangle;
 #if TINT
 uniform texture2D tint;
 #endif
@@ -44,7 +44,7 @@ vec2 barycentrics(vec3 ray, vec3 a, vec3 edgeB, vec3 edgeC) {
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
-  uint index = texelFetch(seen, p, 0).r;
+  uint index = texelFetch(gbufferTriangle, p, 0).r;
   bool background = index == kNothing;  // computed as if it were triangle 0: a CPU device runs both sides of a branch
   uvec4 triangle = sceneTriangle(background ? 0u : index);
   vec3 a = scenePosition(triangle.x), edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;

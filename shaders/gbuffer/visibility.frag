@@ -13,7 +13,7 @@ layout(location = 2) in vec3 toEye;
 #endif
 #endif
 
-layout(location = 0) out uint seen;
+layout(location = 0) out uint visible;
 
 void main() {
   uint triangle = drawnTriangle();
@@ -32,5 +32,5 @@ void main() {
 #endif
   if (!stops(material, uv, cosine, chance)) discard;
 #endif
-  seen = triangle;
+  visible = triangle;
 }

@@ -75,6 +75,7 @@ void run(PassTest& test, const Input& in) {
   for (const bool veiled : in.veiled) normal.emplace_back(0, 0, 1, veiled ? -0.5f : 0.5f);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, w, h, 1, halves(normal));
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, w, h, 1, in.id);
+  test.image("gbuffer.triangle", VK_FORMAT_R32_UINT, w, h, 1, std::vector<uint32_t>(size_t(w) * h));
   test.image("previous.position", VK_FORMAT_R32G32B32A32_SFLOAT, w, h, 1, positions(in.before.seen));
   test.image("previous.id", VK_FORMAT_R32_UINT, w, h, 1, in.previousId);
   test.image("origin", VK_FORMAT_R32_UINT, w, h, 1, in.origin);

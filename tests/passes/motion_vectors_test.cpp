@@ -21,6 +21,8 @@ std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, uint32_t obje
   before.seen.wire(test, "previous");
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              std::vector<uint32_t>(size_t(kSize.x * kSize.y), object << 16));
+  test.image("gbuffer.triangle", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
+             std::vector<uint32_t>(size_t(kSize.x * kSize.y)));
   test.scene(now.scene).beforeFrame([&](PassTest&, scene::Frame& frame) {
     frame.views[0] = now.view;
     frame.views[0].previousWorldToClip = before.view.worldToClip;

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <optional>
 #include <set>
 
 #include "fovea/test.h"
@@ -119,6 +121,92 @@ TEST_P(Movers, GBuffer) {
     counts.insert(box);
   });
   EXPECT_GE(counts.size(), 4u);  // the object has moved
+}
+
+// What the eye sees through the centres of the pixels, found with rays.
+struct Seen {
+  Seen(const scene::Scene& s, const scene::Frame& frame) : geometry(*frame.geometry), view(frame.views[0]) {
+    scene::moveObjects(frame, geometry);
+    for (int i = 0; i < kSize * kSize; ++i) {
+      const glm::dvec3 ray(view.rayDirection({float(i % kSize) + 0.5f, float(i / kSize) + 0.5f}));
+      const RayHit hit = castRay(s, geometry, glm::dvec3(view.eye), ray, {.cullSingleSided = true});
+      const glm::dvec3 at = hit ? glm::dvec3(view.eye) + hit.t * ray : glm::dvec3(0);
+      const glm::dvec3 n = hit ? faceNormal(geometry, hit.triangle) : glm::dvec3(0);
+      position.emplace_back(at, hit ? glm::distance(at, glm::dvec3(view.eye)) : 0);
+      normal.push_back(glm::packHalf4x16(glm::vec4(glm::dot(n, ray) > 0 ? -n : n, 1)));
+      triangle.push_back(hit ? hit.triangle : ~0u);
+      id.push_back(hit ? geometry.triangles[hit.triangle].materialAndObject : ~0u);
+    }
+  }
+
+  scene::Geometry geometry;
+  scene::View view;
+  std::vector<glm::vec4> position;
+  std::vector<uint64_t> normal;
+  std::vector<uint32_t> triangle, id;
+};
+
+// The pixel, between whole numbers, that showed a point of `now` before.
+glm::dvec2 placeBefore(const Seen& now, const Seen& before, size_t pixel) {
+  const uint32_t* v = now.geometry.triangles[now.triangle[pixel]].v;
+  const auto corner = [&](const Seen& seen, int i) { return glm::dvec3(seen.geometry.positions[v[i]]); };
+  const glm::dvec3 a = corner(now, 0), b = corner(now, 1) - a, c = corner(now, 2) - a,
+                   p = glm::dvec3(now.position[pixel]) - a;
+  const glm::dvec3 n = glm::cross(b, c);
+  const double second = glm::dot(glm::cross(p, c), n) / glm::dot(n, n),
+               third = glm::dot(glm::cross(b, p), n) / glm::dot(n, n);
+  const glm::dvec3 point =
+      (1 - second - third) * corner(before, 0) + second * corner(before, 1) + third * corner(before, 2);
+  const glm::dvec4 clip = glm::dmat4(before.view.worldToClip) * glm::dvec4(point, 1);
+  return (0.5 * glm::dvec2(clip) / clip.w + 0.5) * double(kSize) - 0.5;
+}
+
+TEST_P(Movers, MotionVectors) {
+  const scene::Scene s = movingScene(GetParam());
+  std::optional<Seen> now, before;
+  PassTest test("motion-vectors");
+  test.scene(s).viewSize(kSize, kSize);
+  const std::vector<uint64_t> normals(kSize * kSize);
+  const std::vector<uint32_t> numbers(kSize * kSize);
+  const std::vector<glm::vec4> positions(kSize * kSize);
+  for (const std::string bundle : {"gbuffer", "previous"}) {
+    test.image(bundle + ".position", VK_FORMAT_R32G32B32A32_SFLOAT, kSize, kSize, 1, positions);
+    test.image(bundle + ".normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSize, kSize, 1, normals);
+  }
+  test.image("gbuffer.id", VK_FORMAT_R32_UINT, kSize, kSize, 1, numbers);
+  test.image("gbuffer.triangle", VK_FORMAT_R32_UINT, kSize, kSize, 1, numbers);
+  test.beforeFrame([&](PassTest& t, scene::Frame& frame) {
+    before = now;
+    now.emplace(s, frame);
+    if (!before) before = now;
+    t.set("gbuffer.position", now->position);
+    t.set("gbuffer.normal", now->normal);
+    t.set("gbuffer.id", now->id);
+    t.set("gbuffer.triangle", now->triangle);
+    t.set("previous.position", before->position);
+    t.set("previous.normal", before->normal);
+  });
+  atFrames(test, [&](uint32_t index) {
+    const auto origin = test.values<uint32_t>("origin");
+    int box = 0, lost = 0;
+    double moved = 0;
+    for (size_t i = 0; i < origin.size(); ++i) {
+      if (now->triangle[i] == ~0u || !isBox(now->geometry, now->triangle[i])) continue;
+      ++box;
+      if (origin[i] == ~0u) {
+        ++lost;
+        continue;
+      }
+      const glm::dvec2 place = placeBefore(*now, *before, i), from(origin[i] & 0xffff, origin[i] >> 16);
+      EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(from - place), glm::dvec2(1.01))))
+          << "frame " << index << ", pixel " << i % kSize << ", " << i / kSize;
+      moved = std::max(moved, glm::distance(place, glm::dvec2(i % kSize, i / kSize)));
+    }
+    if (index == kAway) return;
+    EXPECT_GT(box, 30) << index;
+    EXPECT_LT(lost, box / 4) << index;  // edges that the box has uncovered
+    if (index > kAway) EXPECT_GT(moved, 0.5) << index;
+  });
 }
 
 TEST_P(Movers, ShadowMap) {

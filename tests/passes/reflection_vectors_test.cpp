@@ -19,6 +19,8 @@ std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, float thing,
   before.seen.wire(test, "previous");
   test.image("gbuffer.id", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              std::vector<uint32_t>(pixels, 0));
+  test.image("gbuffer.triangle", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
+             std::vector<uint32_t>(size_t(kSize.x * kSize.y)));
   test.image("surface", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1,
              std::vector<uint32_t>(pixels, surface));
   test.image("distances", VK_FORMAT_R32_SFLOAT, uint32_t(kSize.x / 2), uint32_t(kSize.y / 2), 1,
