@@ -23,6 +23,7 @@ graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scen
   environment.views = scene::frameViews({size.x, size.y});
   environment.quantities = scene::quantities(scene, geometry);
   environment.texts.emplace_back("scene.materials", scene.fullMaterials ? "full" : "diffuse");
+  environment.texts.emplace_back("scene.environment", scene.environmentMap ? "map" : "none");
   return environment;
 }
 

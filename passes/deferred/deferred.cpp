@@ -59,7 +59,8 @@ class Deferred : public Pass {
     d.input("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi of each pixel from nearby surfaces (pass near-field), filtered together "
             "with that of the VPLs")
-        .makeOptional();
+        .makeOptional()
+        .when(parameter("near_light"));
     d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi from VPLs where rays have found it (pass contact-rays), to which "
             "`near_field` is added as it is; a: above 0 there, and written to `irradiance`; not used where "
@@ -183,6 +184,8 @@ class Deferred : public Pass {
     d.parameter("kernel", choice("clamp", {"clamp", "disc"}),
                 "replacement of 1 / d^2 near a VPL: `clamp` uses at least clamp_distance for d (the paper), "
                 "`disc` uses 1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
+    d.parameter("near_light", choice("all", {"none", "map", "all"}),
+                "what `near_field` holds, as `light` of pass near-field; with `none` it is left out");
     d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"),
                 "least distance for the kernel `clamp`; 0 disables the clamp");
     d.parameter("interleave", integer(4, 1, 8),

@@ -67,6 +67,8 @@ class NearField : public Pass {
                 "fovea is that of wide blocks, and up to so many when light changes");
     d.parameter("emitter_points", integer(4, 1, 64),
                 "points on surfaces that shine, of which the ray aimed at them chooses one");
+    d.parameter("light", choice("all", {"none", "map", "all"}),
+                "`map` brings the light of the scene's environment map alone, `none` nothing");
     declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
@@ -93,6 +95,7 @@ class NearField : public Pass {
     settings.turn = uint32_t(ctx.frameNumber());
     settings.seed = frame.seed;
     settings.fullMaterials = fullMaterials(p);
+    settings.surfaces = p.text("light") == "all";
     NearFieldStatistics statistics;
     double area = 0;
     if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {

@@ -176,7 +176,7 @@ class Tracer {
         surfaces_.arrive(v.origin, direction, tracesOutside ? kFarAway : reach, statistics.rays);
     if (tracesOutside && hit.isOutside())
       return light + hit.brighter * sharedLight(v, surfaces_.towardsOutside(v, direction));
-    if (!hit.there) return light;
+    if (!hit.there || !settings_.surfaces) return light;
     const float distance = glm::distance(hit.position, v.position);
     if (tracesOutside && distance > reach) return light;
     const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
@@ -209,7 +209,7 @@ class Tracer {
     SurfaceTracer::EmitterRay chosen;
     glm::vec3 light(0);
     const auto consider = [&](const SurfaceTracer::EmitterRay& to) {
-      if (!to.there) return;
+      if (!to.there || (!settings_.surfaces && to.triangle != kNoIndex)) return;
       const glm::vec3 its = sharedLight(v, to) / float(points);
       const float part = its.r + its.g + its.b;
       if (!(part > 0) || !choice.takes(part)) return;

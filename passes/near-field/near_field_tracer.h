@@ -22,6 +22,7 @@ struct NearFieldSettings {
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
   uint32_t foveaFactor = 1;        // rays per sample in blocks of 2 x 2 pixels; they use up as many turns
   bool fullMaterials = false;      // framework/scene/materials/bounced.h
+  bool surfaces = true;            // if false, only the light of the environment map is found
   uint32_t seed = 0;
   uint32_t threads = 0;  // 0 uses one per core; the result does not depend on it
   // If given, light of further bounces comes from here where it is known, and what is gathered is added.

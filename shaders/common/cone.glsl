@@ -113,6 +113,15 @@ const float kHeightPerCell = 3.0;
 
 LARGE_TEXELS(vec4, radiance);
 
+// What a cone brings back: the light that it meets, and that of an environment map as far as nothing hides it.
+vec3 lightOf(vec4 met, vec3 direction) {
+  vec3 light = met.rgb;
+  // A CPU device skips a loop of zero turns, but not a branch.
+  for (int turns = hasEnvironmentMap() && met.a < 1.0 ? 1 : 0; turns > 0; --turns)
+    light += (1.0 - met.a) * environmentRadiance(direction);
+  return light;
+}
+
 // Irradiance on a surface from its surroundings (Eq. 3 of the paper; passes/README.md, radiance), with six
 // cones over the hemisphere:
 //   E = pi sum(L_i c_i) / sum(c_i),   c_i: cosine of the cone's axis.
@@ -130,8 +139,9 @@ vec3 gatherHemisphere(VoxelGrid grid, vec3 position, vec3 normal, float turn) {
     vec3 direction = normalize(frame_ * vec3(c * local.x - s * local.y, s * local.x + c * local.y, local.z));
     float start = kOwnReach / local.z;
     VoxelHit hit = traceVoxels(grid, position, direction, normal, (start + 2.0 * kOwnReach) * mips.cell);
-    sum += local.z * (hit.side != kNoSide ? texelOf(radiance, int(hit.side)).rgb
-                                          : coneTrace(mips, origin, direction, start, local.z / kHeightPerCell).color.rgb);
+    vec4 met = hit.side != kNoSide ? vec4(texelOf(radiance, int(hit.side)).rgb, 1.0)
+                                   : coneTrace(mips, origin, direction, start, local.z / kHeightPerCell).color;
+    sum += local.z * lightOf(met, direction);
   }
   return kPi * sum / kHemisphereCosines;
 }

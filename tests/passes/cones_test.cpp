@@ -1,7 +1,10 @@
 // Compares the irradiance of pixels by cones with the gather on the CPU.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "framework/base/random.h"
+#include "framework/scene/environment/environment_map.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
@@ -90,6 +93,20 @@ TEST(Cones, Furnace) {
   double mean = 0;
   for (size_t i = 0; i < got.size(); i += 4) mean += double(got[i + 1]) / (kSize * kSize - 16);
   EXPECT_NEAR(mean, light.g, 0.01 * light.g);
+}
+
+// Cones that nothing stops find the environment map: on a lone floor they bring back its mean light.
+TEST(Cones, SeeTheEnvironment) {
+  scene::Scene open;
+  addQuad(open, addMaterial(open, glm::vec3(0.5f)), {-2, -1, 2}, {4, 0, 0}, {0, 0, -4});
+  const glm::vec3 light(2, 1, 0.5f);
+  open.environmentMap = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, light));
+  const VoxelScene s{open, 32};
+  const auto radiance = radianceOf(s, [](auto&) { return glm::vec3(0); });
+  const auto got = cones(s, radiance, runMips(s, radiance, true), floorOf(), 1);
+  double mean = 0;
+  for (size_t i = 0; i < got.size(); i += 4) mean += double(got[i + 1]) / (kSize * kSize - 16);
+  EXPECT_NEAR(mean, light.g, 0.02 * light.g);
 }
 
 }  // namespace

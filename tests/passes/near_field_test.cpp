@@ -11,7 +11,6 @@
 #include "framework/scene/frame.h"
 #include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/vpl_intensity_reference.h"
-#include "tests/support/sky.h"
 
 namespace fovea::test {
 namespace {
@@ -109,60 +108,6 @@ TEST(NearField, ThePartThatDiscsLeaveOut) {
     EXPECT_NEAR(all / wantAll, 1, bound(area / (area + 12), 16))
         << "area " << area << ", bounces " << bounces;
   }
-}
-
-// A black floor in the open, under a sky with a sun.
-TEST(NearField, AllLightOfTheEnvironment) {
-  scene::Scene s;
-  const uint32_t black = addMaterial(s, glm::vec3(0));
-  addQuad(s, black, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
-  s.environmentMap = skyWithSun();
-  scene::Camera& camera = s.cameras.emplace_back();
-  camera.position = {0, 3, 0};
-  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
-  const scene::Geometry geometry = scene::flatten(s);
-  const scene::RayScene rays(s, geometry);
-  const scene::Frame frame = scene::makeFrame(s, geometry, {16, 16}, 0, 1);
-  const glm::dvec3 want = irradianceFrom(*s.environmentMap, {0, 1, 0}) / glm::pi<double>();
-  for (const float area : {0.05f, 5.0f}) {
-    NearFieldSettings settings;
-    settings.foveaRadius = 2;
-    settings.area = area;
-    settings.samples = 1024;
-    std::vector<glm::vec4> image(64);
-    passes::traceNearField(frame, frame.views[0], rays, settings, image);
-    glm::dvec3 mean(0);
-    for (const glm::vec4& texel : image) mean += glm::dvec3(texel) / double(image.size());
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], want[c], 0.01 * want[c]) << area;
-  }
-}
-
-// Single samples of an open sky hardly differ, though its colours do, as each is a choice among several directions.
-TEST(NearField, OpenSkyHasLittleNoise) {
-  scene::Scene s;
-  addQuad(s, addMaterial(s, glm::vec3(0)), {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
-  std::vector<glm::vec3> texels;  // bright towards one side, and at the horizon
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 32; ++x)
-      texels.emplace_back(float(1 + y) / 8 * (1.2f + std::sin(glm::two_pi<float>() * float(x) / 32)));
-  s.environmentMap = std::make_shared<scene::EnvironmentMap>(32, 16, texels);
-  scene::Camera& camera = s.cameras.emplace_back();
-  camera.position = {0, 3, 0};
-  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
-  const scene::Geometry geometry = scene::flatten(s);
-  const scene::RayScene rays(s, geometry);
-  const scene::Frame frame = scene::makeFrame(s, geometry, {64, 64}, 0, 1);
-  NearFieldSettings settings;
-  settings.foveaRadius = 2;
-  std::vector<glm::vec4> image(1024);
-  passes::traceNearField(frame, frame.views[0], rays, settings, image);
-  double mean = 0, square = 0;
-  for (const glm::vec4& texel : image) {
-    mean += double(texel.r) / double(image.size());
-    square += double(texel.r) * double(texel.r) / double(image.size());
-  }
-  EXPECT_NEAR(mean, irradianceFrom(*s.environmentMap, {0, 1, 0}).r / glm::pi<double>(), 0.02 * mean);
-  EXPECT_LT(std::sqrt(square / (mean * mean) - 1), 0.4);
 }
 
 // Irradiance / pi at a plane, from a parallel rectangle of the given half widths at the distance h that emits L = 1, at
@@ -475,28 +420,6 @@ TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
     test.run(3);
     const double want = 50 * length * length / vpls;
     EXPECT_NEAR(test.values<glm::vec4>("spread")[0].x, want, 0.1 * want);
-  }
-}
-
-// A floor that is alone under the sky: no ray from it meets a surface that could say how long rays are.
-TEST(NearField, WhatIsAloneIsLitByTheEnvironment) {
-  scene::Scene s;
-  addQuad(s, addMaterial(s, glm::vec3(0.5f)), {-50, 0, 50}, {100, 0, 0}, {0, 0, -100});
-  s.environmentMap = skyWithSun();
-  scene::Camera& camera = s.cameras.emplace_back();
-  camera.position = {0, 3, 0};
-  camera.orientation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0));
-  PassTest test("near-field");
-  test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
-  const glm::dvec3 want = irradianceFrom(*s.environmentMap, {0, 1, 0}) / glm::pi<double>();
-  for (const uint32_t frames : {1, 2}) {  // the second has a ray a sample
-    test.run(frames);
-    const std::vector<float> light = test.floats("samples");
-    for (size_t c = 0; c < 3; ++c) {
-      double mean = 0;
-      for (size_t i = c; i < light.size(); i += 4) mean += 4.0 * double(light[i]) / double(light.size());
-      EXPECT_NEAR(mean, want[c], (frames == 1 ? 0.02 : 0.3) * want[c]) << frames;
-    }
   }
 }
 
