@@ -21,6 +21,7 @@ void addFloor(Scene& scene, const Floor& floor) {
   Material& material = scene.materials.emplace_back();
   material.name = "floor";
   material.baseColor = glm::vec4(floor.color, 1);
+  material.specular = 0;  // matte, as the ground of a sky that continues it
   Node& node = scene.nodes.emplace_back();
   node.name = "floor";
   node.translation = floor.position;

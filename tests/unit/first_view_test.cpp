@@ -241,6 +241,11 @@ TEST(FirstView, TheGroundContinuesTheFloor) {
                   light = tracer.direct(seen, rho, count) + rho * tracer.gather(seen, 1, 4096, 1, count),
                   ground = s.environmentMap->radiance({0, -1, 0});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
+  // Full materials do not shine, not even where the sun would be mirrored.
+  const scene::SurfaceTracer full(frame, frame.views[0], *rays, true);
+  const glm::vec3 mirrored = glm::reflect(s.lights[0].direction, glm::vec3(0, 1, 0));
+  const glm::vec3 sunlit = tracer.direct(seen, rho, count), shown = full.seen(seen, mirrored, count);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], sunlit[c], 0.01f * sunlit[c]);
 }
 
 // A given environment is never replaced. If it does not suffice, as this black one, there is a lamp.
