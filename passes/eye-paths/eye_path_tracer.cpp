@@ -21,6 +21,7 @@ using namespace scene;
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // random streams
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
+constexpr float kStill = 0.25f;         // of a ray's epsilon: how far rounding may move a surface
 constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
 constexpr double kOutOfTurn = 2;  // share of points traced out of turn, in shares of light that has changed
 constexpr uint32_t kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
@@ -69,7 +70,7 @@ class Tracer {
     const TracedSurface v = surfaces_.look(pixel, rays);
     return v.there ? EyePathStart{v.position, 1, v.normal, 0, v.face, 0} : EyePathStart{};
   }
-  bool stands(const EyePathStart& start, uint64_t& rays) const;
+  bool stands(EyePathStart& start, uint64_t& rays) const;
   bool belongs(const EyePathStart& start, glm::vec2 pixel, uint64_t& rays) const;
   // Traces all paths of a point anew.
   Difference tracePaths(const EyePathLists& lists, uint32_t point, uint64_t& rays) const;
@@ -86,8 +87,9 @@ class Tracer {
   SurfaceTracer surfaces_;
 };
 
-// Whether the surface (or the background) is still where the start was found, as objects may have moved.
-bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
+// Whether the surface (or the background) is still where the start was found, as objects may have moved. The start
+// follows one that moves slowly: paths from below it would meet its inside.
+bool Tracer::stands(EyePathStart& start, uint64_t& rays) const {
   if (start.there == 0) return true;
   const float reach = 4 * rays_.epsilon();
   Ray ray;
@@ -95,7 +97,11 @@ bool Tracer::stands(const EyePathStart& start, uint64_t& rays) const {
   ray.direction = -start.face;
   ray.far = 2 * reach;
   ++rays;
-  return bool(rays_.intersect(ray));
+  const RayHit hit = rays_.intersect(ray);
+  if (!hit) return false;
+  const float risen = reach - hit.distance;
+  if (std::abs(risen) > kStill * rays_.epsilon()) start.position += risen * start.face;
+  return true;
 }
 
 // Whether the eye still sees the start, and close to `pixel`, where it belongs.

@@ -178,6 +178,28 @@ TEST(EyePathsChange, SteadyChangesCostLittle) {
   EXPECT_LT(rays(0.9f), 1.15 * rays(1)) << "the quarters of the points lose not quite the same share";
 }
 
+// Starts on a wall that comes slowly nearer stay on it: from inside of it their paths would lose their light.
+TEST(EyePathsChange, SlowSurfacesKeepTheirStarts) {
+  scene::Scene s = litRoom();
+  scene::Mover mover;
+  mover.node = uint32_t(s.nodes.size());
+  mover.keys = {{0, {0, 0, 0}}, {1, {0, 0, 42 * 1e-4f}}};  // 0.1 mm a frame; rays start 0.07 mm off surfaces
+  const uint32_t white = addMaterial(s, glm::vec3(0.5f));
+  addQuad(s, white, {-1.9f, -1.9f, -1.5f}, {3.8f, 0, 0}, {0, 3.8f, 0});
+  s.nodes[mover.node].dynamic = true;
+  s.movers = {mover};
+  PassTest test("eye-paths");
+  test.param("paths", 2000).param("points", 500).param("renew_frames", 1000).viewSize(32, 32).scene(s);
+  test.run(1);
+  const double ends = test.counter("ends");
+  EXPECT_GT(ends, 1900);
+  for (int frame = 1; frame < 12; ++frame) {
+    test.run(1);
+    EXPECT_NEAR(test.values<glm::vec4>("change")[0].y, 0, 1e-3f) << frame;
+    EXPECT_GT(test.counter("ends"), 0.98 * ends) << frame;
+  }
+}
+
 // What the eye sees anew by looking elsewhere has not changed.
 TEST(EyePathsChange, OtherStartsAreNoChange) {
   PassTest test("eye-paths");
