@@ -1,5 +1,5 @@
 // The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
-// surface. Two rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define:
+// surface. A few rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define:
 // FILTER 0/1, 0 takes the pixel alone.
 #include "common/records/contact.h"
 #include "contact_surface.glsl"

@@ -117,7 +117,7 @@ Surface surfaceAt(const scene::View& view, glm::uvec2 pixel, glm::uvec2 contact)
 }
 
 // The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
-// surface. Two rays are a poor estimate, and a narrow window hardly widens the shadow of what is close.
+// surface. A few rays are a poor estimate, and a narrow window hardly widens the shadow of what is close.
 glm::vec3 meanAround(const scene::View& view, glm::ivec2 size, std::span<const glm::uvec2> contacts,
                      std::span<const glm::vec3> found, glm::ivec2 pixel) {
   const auto indexOf = [&](glm::ivec2 p) { return size_t(p.y) * size_t(size.x) + size_t(p.x); };
@@ -211,7 +211,7 @@ class ContactRaysHost : public Pass {
              "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
-    d.parameter("rays", integer(2, 1, 1024), "rays per pixel");
+    d.parameter("rays", integer(4, 1, 1024), "rays per pixel");
     d.parameter(
         "filter", flag(true),
         "whether the light of a pixel is averaged with that of the eight around it, as far as they are in "
