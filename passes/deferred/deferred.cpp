@@ -56,9 +56,10 @@ class Deferred : public Pass {
     d.input("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: radiance to which the indirect light is added")
         .makeOptional();
-    d.input("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: irradiance / pi of each pixel from nearby surfaces (pass near-field), filtered together "
-            "with that of the VPLs")
+    d.input(
+         "near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+         "rgb: irradiance / pi of each pixel that VPLs leave out (pass near-field), filtered together with "
+         "that of the VPLs")
         .makeOptional()
         .when(parameter("near_light"));
     d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,

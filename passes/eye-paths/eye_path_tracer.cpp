@@ -21,6 +21,7 @@ using namespace scene;
 constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // random streams
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
 constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
+constexpr float kSameFace = 0.9f;       // least cosine between the normals of one surface, a frame apart
 constexpr float kStill = 0.25f;         // of a ray's epsilon: how far rounding may move a surface
 constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
 constexpr double kOutOfTurn = 2;  // share of points traced out of turn, in shares of light that has changed
@@ -61,6 +62,7 @@ class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const EyePathSettings& settings)
       : view_(view),
+        geometry_(*frame.geometry),
         rays_(rays),
         settings_(settings),
         seed_(frame.seed),
@@ -81,6 +83,7 @@ class Tracer {
                  uint64_t& rays) const;
 
   const View& view_;
+  const Geometry& geometry_;
   const RayScene& rays_;
   const EyePathSettings& settings_;
   uint32_t seed_;
@@ -88,7 +91,7 @@ class Tracer {
 };
 
 // Whether the surface (or the background) is still where the start was found, as objects may have moved. The start
-// follows one that moves slowly: paths from below it would meet its inside.
+// follows one that moves or turns slowly: paths from below it would meet its inside.
 bool Tracer::stands(EyePathStart& start, uint64_t& rays) const {
   if (start.there == 0) return true;
   const float reach = 4 * rays_.epsilon();
@@ -99,9 +102,13 @@ bool Tracer::stands(EyePathStart& start, uint64_t& rays) const {
   ++rays;
   const RayHit hit = rays_.intersect(ray);
   if (!hit) return false;
+  const SurfaceHit found = surfaceAt(geometry_, hit);
+  const float side = glm::dot(found.geometricNormal, start.face) < 0 ? -1.0f : 1.0f;
+  const glm::vec3 face = side * found.geometricNormal;
   const float risen = reach - hit.distance;
-  if (std::abs(risen) > kStill * rays_.epsilon()) start.position += risen * start.face;
-  return true;
+  if (face == start.face && std::abs(risen) <= kStill * rays_.epsilon()) return true;
+  start = {start.position + risen * start.face, 1, side * found.shadingNormal, 0, face, 0};
+  return glm::dot(face, ray.direction) < -kSameFace;
 }
 
 // Whether the eye still sees the start, and close to `pixel`, where it belongs.

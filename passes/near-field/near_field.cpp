@@ -34,8 +34,8 @@ class NearField : public Pass {
     PassDeclaration d(
         "near-field",
         "light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all "
-        "light that comes straight from surfaces that shine, found with a few rays per frame "
-        "through the triangles",
+        "light that comes straight from surfaces that shine and from an environment map, found with a "
+        "few rays per frame through the triangles",
         PassKind::Host);
     d.view();
     d.input(
@@ -65,8 +65,10 @@ class NearField : public Pass {
     d.parameter("saccade_samples", integer(1, 1, 16),
                 "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
                 "fovea is that of wide blocks, and up to so many when light changes");
-    d.parameter("emitter_points", integer(4, 1, 64),
-                "points on surfaces that shine, of which the ray aimed at them chooses one");
+    d.parameter(
+        "emitter_points", integer(4, 1, 64),
+        "points on surfaces that shine and in an environment map, of which the ray aimed at them chooses "
+        "one; for a map there are as many cosine-weighted ones beside them");
     d.parameter("light", choice("all", {"none", "map", "all"}),
                 "`map` brings the light of the scene's environment map alone, `none` nothing");
     declareMaterials(d, "`full` lets metals keep their colour");
@@ -95,10 +97,11 @@ class NearField : public Pass {
     settings.turn = uint32_t(ctx.frameNumber());
     settings.seed = frame.seed;
     settings.fullMaterials = fullMaterials(p);
-    settings.surfaces = p.text("light") == "all";
+    settings.mapAlone = p.text("light") == "map";
     NearFieldStatistics statistics;
     double area = 0;
-    if (frame.scene != nullptr && frame.geometry != nullptr && !frame.geometry->empty()) {
+    if (p.text("light") != "none" && frame.scene != nullptr && frame.geometry != nullptr &&
+        !frame.geometry->empty()) {
       const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
       const glm::vec4 change = ctx.has("change") ? ctx.inputAs<glm::vec4>("change")[0] : glm::vec4(0);
       settings.cache = &cache_;
@@ -113,9 +116,9 @@ class NearField : public Pass {
       if (first) {  // first the length alone, then the cache
         length_ = 0;
         cache_.clear();
-        learnLength(trace(0));
+        if (!settings.mapAlone) learnLength(trace(0));
         settings.samples = uint32_t(p.integer("first_samples"));
-        trace(knownLength());
+        if (!settings.mapAlone) trace(knownLength());
       } else {
         settings.foveaFactor =
             raysAfterChange(uint32_t(p.integer("saccade_samples")), frame.saccade > 0 ? 1 : change.z);

@@ -109,7 +109,7 @@ class Tracer {
 
   // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
   bool isCloseToEmitter(glm::uvec2 corner, Row& statistics) const {
-    if (surfaces_.emitters().empty()) return false;
+    if (settings_.mapAlone || surfaces_.emitters().empty()) return false;
     const glm::vec2 middle =
         glm::min(glm::vec2(corner) + 0.5f * float(settings_.spacing), glm::vec2(view_.size) - 0.5f);
     const TracedSurface v = surfaces_.look(middle, statistics.rays);
@@ -176,7 +176,7 @@ class Tracer {
         surfaces_.arrive(v.origin, direction, tracesOutside ? kFarAway : reach, statistics.rays);
     if (tracesOutside && hit.isOutside())
       return light + hit.brighter * sharedLight(v, surfaces_.towardsOutside(v, direction));
-    if (!hit.there || !settings_.surfaces) return light;
+    if (!hit.there || settings_.mapAlone) return light;
     const float distance = glm::distance(hit.position, v.position);
     if (tracesOutside && distance > reach) return light;
     const float probability = radius2 > 0 ? probabilityAt(distance) : 1.0f;
@@ -209,7 +209,7 @@ class Tracer {
     SurfaceTracer::EmitterRay chosen;
     glm::vec3 light(0);
     const auto consider = [&](const SurfaceTracer::EmitterRay& to) {
-      if (!to.there || (!settings_.surfaces && to.triangle != kNoIndex)) return;
+      if (!to.there || (settings_.mapAlone && to.triangle != kNoIndex)) return;
       const glm::vec3 its = sharedLight(v, to) / float(points);
       const float part = its.r + its.g + its.b;
       if (!(part > 0) || !choice.takes(part)) return;
@@ -227,9 +227,9 @@ class Tracer {
     return light * surfaces_.visibility(v, chosen, statistics.rays) * choice.inverseProbability();
   }
 
-  // The light along a ray over the densities of all ways to choose it, as far as each counts. A cosine-weighted ray
-  // counts once beside the points on emitters. Beside all points in the environment it counts half: what hides the sky
-  // makes more noise than its colours do, and two rays see more of that than one.
+  // The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on
+  // surfaces a cosine-weighted ray counts once. In the environment it counts as much as all cosine-weighted points
+  // together: most noise comes from what hides the sky, and two rays find out more about that than one.
   glm::vec3 sharedLight(const TracedSurface& v, const SurfaceTracer::EmitterRay& to) const {
     if (!to.there) return glm::vec3(0);
     const float cosine = cosineDensity(v, to.direction);

@@ -1,5 +1,5 @@
 // Light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all light that comes straight
-// from emissive surfaces, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space
+// from emissive surfaces and from an environment map, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space
 // bias compensation for interactive high-quality global illumination with virtual point lights", I3D 2011).
 #pragma once
 
@@ -14,15 +14,16 @@
 namespace fovea::passes {
 
 struct NearFieldSettings {
-  float foveaRadius = 0.25f;   // image widths
-  uint32_t spacing = 4;        // outside the fovea one pixel of each block of this width has a ray: 2, 4 or 8
-  uint32_t bounces = 2;        // reflections of light on its way to the visible surface
-  float area = 1;              // area of the discs, m^2; if 0, only `length` is found, no light
-  uint32_t emitterPoints = 4;  // of which the ray aimed at emissive surfaces chooses one
+  float foveaRadius = 0.25f;  // image widths
+  uint32_t spacing = 4;       // outside the fovea one pixel of each block of this width has a ray: 2, 4 or 8
+  uint32_t bounces = 2;       // reflections of light on its way to the visible surface
+  float area = 1;             // area of the discs, m^2; if 0, only `length` is found, no light
+  // On emissive surfaces and in an environment map; the ray aimed at these chooses one of them.
+  uint32_t emitterPoints = 4;
   uint32_t turn = 0, samples = 1;  // of all samples a pixel ever gets, the first one taken now and how many
   uint32_t foveaFactor = 1;        // rays per sample in blocks of 2 x 2 pixels; they use up as many turns
   bool fullMaterials = false;      // framework/scene/materials/bounced.h
-  bool surfaces = true;            // if false, only the light of the environment map is found
+  bool mapAlone = false;           // whether only the light of the environment map is found
   uint32_t seed = 0;
   uint32_t threads = 0;  // 0 uses one per core; the result does not depend on it
   // If given, light of further bounces comes from here where it is known, and what is gathered is added.

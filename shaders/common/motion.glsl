@@ -20,9 +20,11 @@ vec3 movedSince(vec3 position, uvec4 triangle) {
 // G-buffer there.
 vec3 pointBefore(vec3 point, vec3 position, uint id, uint triangle) {
   uint object = id >> 16;
-  for (int turn_ = 0; turn_ < int(object != 0u); ++turn_)  // a loop, as a CPU device runs unused branches
-    point = objectDeforms(object) ? point - movedSince(position, sceneTriangle(triangle))
-                                  : previousObjectTransform(object) * vec4(toObject(object, point), 1.0);
+  bool deforms = object != 0u && objectDeforms(object);
+  // Loops, as a CPU device runs unused branches.
+  for (int turns = deforms ? 1 : 0; turns > 0; --turns) point -= movedSince(position, sceneTriangle(triangle));
+  for (int turns = object != 0u && !deforms ? 1 : 0; turns > 0; --turns)
+    point = previousObjectTransform(object) * vec4(toObject(object, point), 1.0);
   return point;
 }
 

@@ -28,14 +28,15 @@ scene::Scene tableInTheOpen() {
 }
 
 // The mean of a channel in the whole picture, and in the rows that show what is below the table.
-std::pair<double, double> meansOf(const std::string& graph, uint32_t frames, std::vector<std::string> set) {
+std::pair<double, double> meansOf(const std::string& graph, uint32_t frames, std::vector<std::string> set,
+                                  const std::string& output = "radiance") {
   constexpr uint32_t kSide = 48;
   GraphRunOptions o;
   o.size = glm::uvec2(kSide);
   o.frames = frames;
   o.set = std::move(set);
-  o.outputs = {"radiance"};
-  const std::vector<float> image = toFloats(runGraph(graph, tableInTheOpen(), o).outputs.at("radiance"));
+  o.outputs = {output};
+  const std::vector<float> image = toFloats(runGraph(graph, tableInTheOpen(), o).outputs.at(output));
   double all = 0, below = 0;
   for (size_t i = 0; i < image.size(); i += 4) {
     const size_t x = i / 4 % kSide, y = i / 4 / kSide;
@@ -52,6 +53,14 @@ TEST(Sky, LightsWhatVplsDoNot) {
     const auto [gotAll, gotBelow] = meansOf(graph, 8, {"vpl_count=200", "map_size=32", "shadow_map_size=64"});
     EXPECT_NEAR(gotAll, all, 0.04 * all) << graph;
     EXPECT_NEAR(gotBelow, below, 0.1 * below) << graph;
+  }
+  // The other eye sees more of what is below the table than it can take from the first.
+  for (const char* graph : {"stereo", "ir_stereo"}) {
+    const std::vector<std::string> set{"vpl_count=200", "map_size=32", "shadow_map_size=64"};
+    const auto [left, leftBelow] = meansOf(graph, 8, set);
+    const auto [right, rightBelow] = meansOf(graph, 8, set, "radiance_right");
+    EXPECT_NEAR(right, left, 0.04 * left) << graph;
+    EXPECT_NEAR(rightBelow, leftBelow, 0.1 * leftBelow) << graph;
   }
   const auto [cones, conesBelow] = meansOf("alternatives/vxgi", 8, {"voxels=96", "shadow_map_size=64"});
   EXPECT_NEAR(cones, all, 0.04 * all);

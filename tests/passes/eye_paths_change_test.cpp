@@ -178,12 +178,13 @@ TEST(EyePathsChange, SteadyChangesCostLittle) {
   EXPECT_LT(rays(0.9f), 1.15 * rays(1)) << "the quarters of the points lose not quite the same share";
 }
 
-// Starts on a wall that comes slowly nearer stay on it: from inside of it their paths would lose their light.
+// Starts on a wall that comes slowly nearer, and turns, stay on it: from inside of it their paths would lose their light.
 TEST(EyePathsChange, SlowSurfacesKeepTheirStarts) {
   scene::Scene s = litRoom();
   scene::Mover mover;
   mover.node = uint32_t(s.nodes.size());
-  mover.keys = {{0, {0, 0, 0}}, {1, {0, 0, 42 * 1e-4f}}};  // 0.1 mm a frame; rays start 0.07 mm off surfaces
+  // 0.1 mm a frame, while rays start 0.07 mm off surfaces.
+  mover.keys = {{0}, {1, {0, 0, 42 * 1e-4f}, glm::angleAxis(0.002f, glm::vec3(0, 1, 0))}};
   const uint32_t white = addMaterial(s, glm::vec3(0.5f));
   addQuad(s, white, {-1.9f, -1.9f, -1.5f}, {3.8f, 0, 0}, {0, 3.8f, 0});
   s.nodes[mover.node].dynamic = true;

@@ -94,6 +94,20 @@ TEST(NearFieldEnvironment, LightsWhatIsAlone) {
   }
 }
 
+// A panel that shines beside the floor, and a map: rays are aimed at both.
+TEST(NearFieldEnvironment, SharesRaysWithSurfacesThatShine) {
+  const Map map = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1, 0, 0)));
+  scene::Scene s = floorUnder(map, 0);
+  const uint32_t panel = addMaterial(s, glm::vec3(0));
+  s.materials[panel].emission = {0, 1, 0};
+  addQuad(s, panel, {-400, 0, -2}, {800, 0, 0}, {0, 800, 0});
+  PassTest test("near-field");
+  test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
+  const glm::dvec3 mean = lightOf(test, 1);
+  EXPECT_NEAR(mean.r, 0.5, 0.01);  // each fills half of the hemisphere
+  EXPECT_NEAR(mean.g, 0.5, 0.01);
+}
+
 // With `light` map, surfaces add nothing: neither the light of a panel beside the floor nor what a lamp leaves on it.
 TEST(NearFieldEnvironment, ComesAlone) {
   const Map map = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1, 2, 3)));
@@ -110,6 +124,9 @@ TEST(NearFieldEnvironment, ComesAlone) {
   EXPECT_LT(mean.r, 1.0);
   EXPECT_NEAR(mean.g / mean.r, 2, 0.01);
   EXPECT_NEAR(mean.b / mean.r, 3, 0.015);
+  PassTest none("near-field");
+  none.viewSize(16, 16).scene(s).param("light", "none");
+  EXPECT_EQ(lightOf(none, 1), glm::dvec3(0));
 }
 
 }  // namespace
