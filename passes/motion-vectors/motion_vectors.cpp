@@ -17,7 +17,8 @@ class MotionVectors : public Pass {
                       "for every pixel, the pixel of the previous frame that showed the same surface",
                       PassKind::Graphics);
     d.view();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal", "id", "triangle"}),
+    d.input("gbuffer", "gbuffer",
+            gbufferMembers(Usage::StorageRead, {"position", "normal", "id", "triangle"}),
             "surfaces seen by the eye");
     d.input("previous", "gbuffer", gbufferMembers(Usage::StorageRead, {"position", "normal"}),
             "surfaces seen by the eye in the previous frame");

@@ -121,7 +121,9 @@ Json fieldsJson(const std::vector<gpu::ReflectedMember>& members) {
   return list;
 }
 
-Json portsJson(const graph::Plan& plan, const BoundPass& pass, const graph::ElementTypes& types) {
+Json portsJson(const graph::Plan& plan, size_t number, const graph::ElementTypes& types) {
+  const BoundPass& pass = plan.graph->passes[number];
+  const bool runs = plan.passLive[number] != 0;
   Json list = Json::array();
   for (const graph::Access& access : pass.accesses) {
     const graph::BoundResource& resource = plan.graph->resources[access.resource];
@@ -133,7 +135,7 @@ Json portsJson(const graph::Plan& plan, const BoundPass& pass, const graph::Elem
               {"doc", doc.empty() ? port.doc : doc},
               {"is", graph::describe(resource.desc)},
               {"buffer", resource.desc.kind == graph::ResourceKind::Buffer},
-              {"made", plan.resourceLive[access.resource] != 0}};
+              {"made", runs && plan.resourceLive[access.resource] != 0}};
     if (resource.desc.kind == graph::ResourceKind::Image) {
       json["mips"] = resource.desc.mips;
       json["layers"] = std::max(resource.desc.depth, resource.desc.layers);
@@ -167,7 +169,7 @@ Json passesJson(const graph::Plan& plan, const graph::Description& description, 
               {"view", plan.graph->views[pass.view]},
               {"level", levels[p] == graph::kNone ? Json(nullptr) : Json(levels[p])},
               {"parameters", parametersJson(pass, description, changes)},
-              {"ports", portsJson(plan, pass, types)}};
+              {"ports", portsJson(plan, p, types)}};
     list.push_back(std::move(json));
   }
   return list;
