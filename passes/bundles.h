@@ -33,7 +33,8 @@ graph::ResourceSpec changeBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 
-// The bundle `gbuffer`: position, normal, face, albedo, emission, id, triangle, depth, specular (needs a parameter `materials`).
+// The bundle `gbuffer`: position, normal, face, albedo, emission, id, triangle, depth, specular (needs a parameter
+// `materials`).
 std::vector<graph::MemberSpec> gbufferOutput();
 std::vector<graph::MemberSpec> gbufferMembers(graph::Usage usage,
                                               std::initializer_list<std::string_view> names);

@@ -1,6 +1,7 @@
 // Light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all light that comes straight
-// from emissive surfaces and from an environment map, found with rays through the triangles. This is bias compensation (Novak et al., "Screen-space
-// bias compensation for interactive high-quality global illumination with virtual point lights", I3D 2011).
+// from emissive surfaces and from an environment map, found with rays through the triangles. This is bias compensation
+// (Novak et al., "Screen-space bias compensation for interactive high-quality global illumination with virtual point
+// lights", I3D 2011).
 #pragma once
 
 #include <cstdint>
