@@ -18,8 +18,9 @@ struct GatheredLight {
 };
 
 // The mean radiance that reaches v after at most `bounces` reflections, and from emissive surfaces. stream: of random
-// numbers. cache: if given, it comes from there where it is known; the caller adds the samples to it.
+// numbers. cache: if given, it comes from there where it is known; the caller adds the samples to it. cellWidth: of its
+// cells, m.
 glm::vec3 gatheredLight(const scene::SurfaceTracer& surfaces, const scene::TracedSurface& v, uint32_t bounces,
-                        uint32_t stream, const GatherCache* cache, GatheredLight& sum);
+                        uint32_t stream, const GatherCache* cache, float cellWidth, GatheredLight& sum);
 
 }  // namespace fovea::passes

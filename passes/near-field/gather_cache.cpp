@@ -5,21 +5,18 @@
 
 namespace fovea::passes {
 
-void GatherCache::setCellWidth(float width) {
-  level_ = width > 0 ? std::clamp(int(std::floor(std::log2(width))), -30, 30) : 0;
-}
-
-uint64_t GatherCache::cellOf(glm::vec3 position, glm::vec3 normal, glm::vec3 jitter) const {
+uint64_t GatherCache::cellOf(glm::vec3 position, glm::vec3 normal, glm::vec3 jitter, float width) {
   const glm::vec3 size = glm::abs(normal);
   const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
   const int side = 2 * axis + (normal[axis] < 0 ? 1 : 0);
-  const glm::vec3 place = glm::floor(position * std::ldexp(1.0f, -level_) + jitter);
+  const int level = width > 0 ? std::clamp(int(std::floor(std::log2(width))), -30, 30) : 0;
+  const glm::vec3 place = glm::floor(position * std::ldexp(1.0f, -level) + jitter);
   const auto coordinate = [](float x) { return uint64_t(int64_t(std::clamp(x, -5e5f, 5e5f)) + 524288); };
-  // 20 bits for each coordinate and 3 for the side. Another width means other cells, so a change of the level empties
-  // nothing, but old cells must not be mistaken for new ones.
+  // 20 bits for each coordinate and 3 for the side. Cells of
+  // different widths must not be mistaken for each other.
   const uint64_t cell =
       coordinate(place.x) | coordinate(place.y) << 20 | coordinate(place.z) << 40 | uint64_t(side) << 60;
-  return cell ^ uint64_t(level_ + 64) * 0x9e3779b97f4a7c15u;
+  return cell ^ uint64_t(level + 64) * 0x9e3779b97f4a7c15u;
 }
 
 size_t GatherCache::placeOf(uint64_t cell) const {

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "shaders/common/records/gather_cache.h"
+
 namespace fovea::passes {
 
 class GatherCache {
@@ -21,11 +23,10 @@ class GatherCache {
     glm::vec3 light{0};  // mean radiance over the hemisphere, W/(sr m^2)
   };
 
-  // Cells have about the given width, m. It is rounded to a power of two, so that small changes keep the cells.
-  void setCellWidth(float width);
-  // The cell of a point on a surface. jitter: in [-0.5, 0.5) for each axis, by which the point is moved in widths of
-  // a cell, so that the borders of cells do not show. Sides that face different ways have different cells.
-  uint64_t cellOf(glm::vec3 position, glm::vec3 normal, glm::vec3 jitter) const;
+  // The cell of a point on a surface. Cells are about `width` metres wide; that is rounded to a power of two, so that
+  // small changes keep the cells. jitter: in [-0.5, 0.5) for each axis, by which the point is moved in widths of a cell,
+  // so that the borders of cells do not show. Sides that face different ways have different cells.
+  static uint64_t cellOf(glm::vec3 position, glm::vec3 normal, glm::vec3 jitter, float width);
   // The mean of a cell, if it has enough samples. Threads may call it at the same time.
   std::optional<glm::vec3> find(uint64_t cell) const;
   // Adds the samples in their order, so the same samples always give the same cache. Old samples fade, at least half
@@ -35,7 +36,7 @@ class GatherCache {
   void age(float ageing);
   void clear() { cells_.assign(kCells, {}); }
 
-  static constexpr float kEnough = 16, kMost = 256;  // samples in a cell
+  static constexpr float kEnough = scene::kEnoughGathered, kMost = scene::kMostGathered;  // samples in a cell
   static constexpr size_t kCells = 1 << 17;  // in the cache; if they do not suffice, the poorest are replaced
 
  private:
@@ -47,7 +48,6 @@ class GatherCache {
   // Where a cell is, or where it would be put.
   size_t placeOf(uint64_t cell) const;
 
-  int level_ = 0;  // cells are 2^level_ m wide
   std::vector<Cell> cells_;
 };
 

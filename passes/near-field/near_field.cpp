@@ -109,7 +109,7 @@ class NearField : public Pass {
       const auto trace = [&](double length) {
         area = p.real("share") * length * length / double(p.integer("vpls"));
         settings.area = float(area);
-        cache_.setCellWidth(float(kCellWidth * length));
+        settings.cellWidth = float(kCellWidth * length);
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
       const auto knownLength = [&] { return length_ > 0 ? length_ : diagonal(*frame.geometry); };

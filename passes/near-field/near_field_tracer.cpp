@@ -186,9 +186,9 @@ class Tracer {
     ++statistics.shaded;
     const glm::vec3 rho = surfaces_.reflectance(hit);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
-    radiance +=
-        rho * gatheredLight(surfaces_, hit, settings_.bounces - 1,
-                            randomStream(stream, turn, kGatherStream, order), settings_.cache, statistics);
+    radiance += rho * gatheredLight(surfaces_, hit, settings_.bounces - 1,
+                                    randomStream(stream, turn, kGatherStream, order), settings_.cache,
+                                    settings_.cellWidth, statistics);
     if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
       const float cosine = cosineDensity(v, direction);
       light += emitted * (cosine / (cosine * probability +

@@ -29,6 +29,7 @@ struct NearFieldSettings {
   uint32_t threads = 0;  // 0 uses one per core; the result does not depend on it
   // If given, light of further bounces comes from here where it is known, and what is gathered is added.
   GatherCache* cache = nullptr;
+  float cellWidth = 0;  // of its cells, m
 };
 
 struct NearFieldStatistics {

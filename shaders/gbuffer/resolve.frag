@@ -22,9 +22,6 @@ layout(location = 5) out uint gbufferId;
 #if FULL
 layout(location = 6) out vec4 gbufferSpecular;
 
-// Least cosine between the normal of shading and the direction to the eye. A normal map, or interpolation on a coarse
-// mesh, may turn the normal away from an eye that sees the surface; the normal is then bent back.
-const float kLeastCosine = 0.01;
 const float kLeastGrazing = 1e-4;  // so that its sign is kept
 #endif
 
@@ -66,8 +63,7 @@ void main() {
   int record = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   normal = mappedNormal(record, index, weights, edgeB, edgeC, normal, side, at);
   vec3 toEye = normalize(view.eye - position);
-  float cosine = dot(normal, toEye);
-  if (cosine < kLeastCosine) normal = normalize(normal + (kLeastCosine - cosine) * toEye);
+  normal = normalTowards(normal, toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
   // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
   uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);

@@ -17,8 +17,7 @@ std::vector<GatherCache::Sample> samplesOf(uint64_t cell, int count, glm::vec3 l
 
 TEST(GatherCache, MeanOfEnoughSamples) {
   GatherCache cache;
-  cache.setCellWidth(0.25f);
-  const uint64_t cell = cache.cellOf({1, 2, 3}, {0, 1, 0}, kStill);
+  const uint64_t cell = GatherCache::cellOf({1, 2, 3}, {0, 1, 0}, kStill, 0.25f);
   EXPECT_FALSE(cache.find(cell));
   cache.add(samplesOf(cell, 8, glm::vec3(1)));
   cache.add(samplesOf(cell, 7, glm::vec3(1)));
@@ -56,10 +55,8 @@ TEST(GatherCache, ChangedLightAgesSamples) {
 
 // Points of one cell share it, others do not; nor do the two sides of a thin wall, and cells of another width.
 TEST(GatherCache, CellsOfSpace) {
-  GatherCache cache;
-  cache.setCellWidth(0.3f);  // rounded to 0.25
-  const auto cell = [&](glm::vec3 p, glm::vec3 n = {0, 1, 0}, glm::vec3 jitter = kStill) {
-    return cache.cellOf(p, n, jitter);
+  const auto cell = [&](glm::vec3 p, glm::vec3 n = {0, 1, 0}, glm::vec3 jitter = kStill, float width = 0.3f) {
+    return GatherCache::cellOf(p, n, jitter, width);  // 0.3 is rounded to 0.25
   };
   EXPECT_EQ(cell({0.01f, 0.01f, 0.01f}), cell({0.24f, 0.24f, 0.24f}));
   EXPECT_NE(cell({0.01f, 0.01f, 0.01f}), cell({0.26f, 0.01f, 0.01f}));
@@ -67,11 +64,9 @@ TEST(GatherCache, CellsOfSpace) {
   EXPECT_EQ(cell({0.26f, 0.01f, 0.01f}, {0, 1, 0}, {-0.1f, 0, 0}), cell({0.01f, 0.01f, 0.01f}));
   EXPECT_NE(cell({0, 0, 0}, {0, 1, 0}), cell({0, 0, 0}, {0, -1, 0}));
   EXPECT_EQ(cell({0, 0, 0}, {0.1f, 0.9f, 0.1f}), cell({0, 0, 0}, {-0.1f, 0.9f, 0.2f}));
-  const uint64_t before = cell({5, 5, 5});
-  cache.setCellWidth(0.27f);
-  EXPECT_EQ(cell({5, 5, 5}), before);
-  cache.setCellWidth(0.6f);
-  EXPECT_NE(cell({5, 5, 5}), before);
+  const glm::vec3 up(0, 1, 0);
+  EXPECT_EQ(cell({5, 5, 5}, up, kStill, 0.27f), cell({5, 5, 5}, up, kStill, 0.3f));
+  EXPECT_NE(cell({5, 5, 5}, up, kStill, 0.6f), cell({5, 5, 5}, up, kStill, 0.3f));
 }
 
 // With more cells than there are places, those with few samples give way, and no cell returns what belongs to another.

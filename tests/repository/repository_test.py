@@ -40,7 +40,7 @@ EXCEPTIONS = {("framework/graph", "framework/scene/frame.h")}
 # Words that are also plain English count only where they are quoted.
 PLAIN_WORDS = {"room", "yard", "balcony", "direct", "radiance", "importance", "candidates", "manage", "emit", "bounce",
                "accumulate", "compose", "deferred", "reproject", "mipmap", "gbuffer", "voxelize", "tonemap",
-               "mirrors", "reflections", "cones"}
+               "mirrors", "cones"}
 # Words of glTF, which the framework must say.
 OTHER_MEANINGS = {"weights", "radiance"}
 

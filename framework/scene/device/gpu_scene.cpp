@@ -12,7 +12,8 @@
 #include "framework/scene/device/environment_image.h"
 #include "framework/scene/device/full_materials.h"
 #include "framework/scene/device/gpu_textures.h"
-#include "framework/scene/device/ray_tables.h"
+#include "framework/scene/device/rays/emitter_tables.h"
+#include "framework/scene/device/rays/ray_tables.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
 #include "shaders/common/records/shadow.h"
@@ -161,6 +162,7 @@ struct GpuScene::Impl {
   std::vector<gpu::Buffer> objects;    // one per slot
   std::unique_ptr<Animator> animator;  // null if nothing moves
   RayTables rayTables;
+  EmitterTables emitterTables;
   GpuTextures textures;
   gpu::Image environmentMap;
   uint64_t lightOffset = 0, viewOffset = 0, viewStride = 0, slotStride = 0;  // bytes within `uniforms`
@@ -182,6 +184,7 @@ struct GpuScene::Impl {
         rays(rays_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
         rayTables(d, scene, g, rays_),
+        emitterTables(d, scene, g, rays_),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
@@ -311,6 +314,7 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 10 environment map
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays meet
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 12 triangles that rays meet
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 13 light sources that rays are aimed at
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 constexpr uint32_t kTexelBindings =
@@ -374,7 +378,8 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
                                          {8, &objects[slot]},
                                          {9, &previous},
                                          {11, &rayTables.nodes(), kWords},
-                                         {12, &rayTables.triangles(), kWords}};
+                                         {12, &rayTables.triangles(), kWords},
+                                         {13, &emitterTables.texels(), kWords}};
   VkBufferView views[kTexelBindings] = {};
   VkDescriptorBufferInfo wholes[kTexelBindings];
   const VkSampler nearest = gpu::sampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
@@ -457,6 +462,7 @@ void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
   if (!s.animator) return;
   s.animator->record(cmd, slot, s.positions, s.attributes, s.previous);
   s.rayTables.record(cmd, s.positions);
+  s.emitterTables.record(cmd, s.positions, s.triangles);
 }
 
 bool GpuScene::moves() const { return impl_->animator != nullptr; }

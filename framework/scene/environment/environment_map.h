@@ -35,6 +35,10 @@ class EnvironmentMap {
   uint32_t height() const { return height_; }
   const std::vector<glm::vec3>& texels() const { return texels_; }
   float turn() const { return turn_; }
+  // What sample() goes by, and shaders that choose the same directions: cumulative shares of the light of each row, a
+  // row of the map after the other, and of the rows. All are 0 where the map is black.
+  const std::vector<float>& columns() const { return columns_; }
+  const std::vector<float>& rows() const { return rows_; }
 
  private:
   struct Place {  // in texels, from the upper left corner
@@ -48,7 +52,7 @@ class EnvironmentMap {
   uint32_t width_, height_;
   std::vector<glm::vec3> texels_;
   float turn_;
-  // Cumulative: columns_ has a row for each row of texels, which ends with 1; rows_ has an entry for each.
+  // Each row of columns_ ends with 1, and so does rows_.
   std::vector<float> columns_, rows_;
 };
 

@@ -8,9 +8,8 @@ namespace fovea::scene {
 
 namespace {
 
-constexpr uint32_t kInLeaf = 4;        // most emitters in a leaf
-constexpr float kRounding = 1e-5f;     // by which cones are wider than the normals in them
-constexpr float kLeastCosine = 1e-3f;  // of a bound, so that rounding leaves nothing out
+constexpr uint32_t kInLeaf = kEmittersInLeaf;
+constexpr float kRounding = kConeRounding, kLeastCosine = kLeastEmitterCosine;
 
 // Mean over the channels and a few points. It only affects how often the triangle is chosen; the radiance of
 // a point is exact.
@@ -48,12 +47,14 @@ Emitters::Emitters(const Frame& frame) : frame_(frame) {
                     &c = g.positions[g.triangles[t].v[2]];
     const glm::vec3 normal = glm::cross(b - a, c - a);
     const float twice = glm::length(normal);
-    const double power = estimatedRadiance(frame, t, materials[index]) * 0.5 * double(twice);
-    if (!(power > 0) || !std::isfinite(power)) continue;
+    const double radiance = estimatedRadiance(frame, t, materials[index]);
+    const double power = radiance * 0.5 * double(twice);
+    if (!(radiance > 0) || !std::isfinite(power)) continue;
     const glm::vec3 centre = (a + b + c) / 3.0f, p = a - centre, q = b - centre, r = c - centre;
     const float radius2 = std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)});
-    emitters_.push_back(
-        {t, materials[index].doubleSided, float(power), 0.5f * twice, radius2, centre, normal / twice});
+    // What is hidden has no area, but a place in the tree all the same, as it may be shown later.
+    emitters_.push_back({t, materials[index].doubleSided, float(radiance), float(power), 0.5f * twice,
+                         radius2, centre, twice > 0 ? normal / twice : glm::vec3(0)});
   }
   if (emitters_.empty()) return;
   nodes_.resize(2 * std::bit_ceil(emitters_.size()));
@@ -68,6 +69,19 @@ uint32_t Emitters::placeOf(uint32_t triangle) const {
   const auto found = std::ranges::lower_bound(emissive, triangle);
   return empty() || found == emissive.end() || *found != triangle ? kNoIndex
                                                                   : places_[size_t(found - emissive.begin())];
+}
+
+std::vector<EmitterRecord> Emitters::records() const {
+  std::vector<EmitterRecord> records;
+  std::vector<std::pair<uint32_t, uint32_t>> sorted;
+  for (uint32_t i = 0; i < emitters_.size(); ++i) sorted.emplace_back(emitters_[i].triangle, i);
+  std::ranges::sort(sorted);
+  for (uint32_t i = 0; i < emitters_.size(); ++i) {
+    const Emitter& e = emitters_[i];
+    records.push_back({e.triangle | (e.doubleSided ? kEmitterBothSides : 0), e.radiance, sorted[i].first,
+                       sorted[i].second});
+  }
+  return records;
 }
 
 void Emitters::build(uint32_t node, Range range) {
@@ -93,7 +107,7 @@ void Emitters::build(uint32_t node, Range range) {
     spread = std::max(spread - kRounding, -1.0f);
   }
   const glm::vec3 size = high - low;
-  nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), axis, spread, float(power)};
+  nodes_[node] = {0.5f * (low + high), 0.25f * glm::dot(size, size), axis, spread, float(power), 0, 0, 0};
   if (range.isLeaf()) return;
   const int longest = size.x > std::max(size.y, size.z) ? 0 : size.y > size.z ? 1 : 2;
   std::nth_element(
@@ -104,7 +118,7 @@ void Emitters::build(uint32_t node, Range range) {
   build(2 * node + 1, {range.middle(), range.last});
 }
 
-float Emitters::weight(const Node& node, const Receiver& receiver) {
+float Emitters::weight(const EmitterNode& node, const Receiver& receiver) {
   const glm::vec3 to = receiver.position - node.centre;
   const float d2 = glm::dot(to, to);
   if (d2 <= node.radius2) return node.power / std::max(node.radius2, 1e-20f);
@@ -207,7 +221,8 @@ float Emitters::density(uint32_t triangle, const Receiver& receiver) const {
   }
   float total = 0;
   for (uint32_t i = range.first; i < range.last; ++i) total += weight(emitters_[i], receiver);
-  return total > 0 ? probability * weight(emitters_[place], receiver) / (total * emitters_[place].area) : 0;
+  const float own = weight(emitters_[place], receiver);
+  return own > 0 ? probability * own / (total * emitters_[place].area) : 0;
 }
 
 }  // namespace fovea::scene

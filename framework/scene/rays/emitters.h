@@ -9,6 +9,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "shaders/common/records/emitters.h"
 
 namespace fovea::scene {
 
@@ -42,23 +43,20 @@ class Emitters {
   // emit towards it.
   float density(uint32_t triangle, const Receiver& receiver) const;
 
+  // What shaders need to choose the same points (shaders/common/rays/emitters.glsl).
+  std::vector<EmitterRecord> records() const;
+  std::span<const EmitterNode> nodes() const { return nodes_; }
+
  private:
   struct Emitter {
     uint32_t triangle = kNoIndex;
     bool doubleSided = false;
+    float radiance = 0;   // estimate of its mean, over the channels, W/(sr m^2)
     float power = 0;      // mean of the channels, W / pi
     float area = 0;       // m^2
     float radius2 = 0;    // square of the distance between the centre and the farthest corner, m^2
     glm::vec3 centre{0};  // world space, m
     glm::vec3 normal{0};  // geometric, unit
-  };
-  // Node i of the tree has the children 2 i and 2 i + 1, each with half of its emitters; the root is node 1.
-  struct Node {
-    glm::vec3 centre{0};
-    float radius2 = 0;  // squared half diagonal of its box, m^2
-    glm::vec3 axis{0};  // of the cone of its normals, unit
-    float spread = -1;  // cosine of half its angle, -1 if it holds all directions
-    float power = 0;
   };
   struct Range {
     uint32_t first, last;  // of emitters_
@@ -68,7 +66,7 @@ class Emitters {
 
   void build(uint32_t node, Range range);
   uint32_t placeOf(uint32_t triangle) const;  // index in emitters_; kNoIndex if it does not emit
-  static float weight(const Node& node, const Receiver& receiver);
+  static float weight(const EmitterNode& node, const Receiver& receiver);
   static float weight(const Emitter& emitter, const Receiver& receiver);
   bool within(glm::vec3 point, float reach, uint32_t node, Range range) const;
   // The probability of turning to the first half of a node, below 0 if neither half sends light.
@@ -76,7 +74,7 @@ class Emitters {
 
   const Frame& frame_;
   std::vector<Emitter> emitters_;  // in the order of the leaves
-  std::vector<Node> nodes_;
+  std::vector<EmitterNode> nodes_;
   std::vector<uint32_t>
       places_;  // index in emitters_ of each triangle of Geometry::emissive; kNoIndex if it is dark
 };

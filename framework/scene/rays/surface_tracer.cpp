@@ -17,10 +17,6 @@
 
 namespace fovea::scene {
 
-namespace {
-constexpr uint32_t kEmitterStream = 0x656d6974u, kRayStream = 0x72617973u;
-}  // namespace
-
 glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u) {
   const float r = std::sqrt(u.x), phi = glm::two_pi<float>() * u.y;
   return toWorld(orthonormalFrame(normal), {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - u.x)});
@@ -73,7 +69,7 @@ bool SurfaceTracer::passes(const TracedSurface& v, glm::vec3 direction, float ch
 
 uint32_t SurfaceTracer::keyOf(glm::vec3 origin, glm::vec3 direction) const {
   if (!rays_.meetsTransparency()) return 0;
-  uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kRayStream, 0);
+  uint32_t key = randomStream(frame_.seed, uint32_t(frame_.index), kPassedRayStream, 0);
   for (const float x : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
     key = hashCombine(key, std::bit_cast<uint32_t>(x));
   return key;
@@ -165,7 +161,7 @@ glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t&
 }
 
 SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, uint32_t stream) const {
-  const uint32_t own = hashCombine(stream, kEmitterStream);
+  const uint32_t own = hashCombine(stream, kAimedRayStream);
   const glm::vec2 u = streamSequence(own, 0);
   return towardsEmitter(v, {uniformFloat(hashCombine(own, 2u)), u.x, u.y});
 }

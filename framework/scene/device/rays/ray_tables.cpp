@@ -1,18 +1,16 @@
-#include "framework/scene/device/ray_tables.h"
+#include "framework/scene/device/rays/ray_tables.h"
 
 #include <algorithm>
 #include <glm/glm.hpp>
-#include <span>
-#include <string>
 #include <vector>
 
-#include "fovea/error.h"
 #include "framework/gpu/barrier.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/pipeline.h"
 #include "framework/gpu/resources.h"
 #include "framework/gpu/shader/shader.h"
 #include "framework/scene/device/named_buffers.h"
+#include "framework/scene/device/rays/long_table.h"
 #include "framework/scene/rays/bvh.h"
 
 namespace fovea::scene {
@@ -49,24 +47,6 @@ struct Tables {
   }
 };
 
-template <class T>
-gpu::Buffer table(gpu::Device& device, const char* name, std::vector<T> data) {
-  if (data.empty()) data.emplace_back();  // Vulkan has no empty buffers
-  const uint64_t bytes = data.size() * sizeof(T), range = device.limits().maxStorageBufferRange,
-                 texels = uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::uvec4);
-  const uint64_t limit = device.lacks("maxTexelBufferElements") ? range : std::min(range, texels);
-  if (bytes > limit)
-    throw Error(ExitCode::OutOfMemory,
-                std::string(name) + ": " + std::to_string(bytes) +
-                    " bytes are more than a shader can read on this device, " + std::to_string(limit),
-                "trace rays on the host, as `foveal` does with `--set rays=host`");
-  gpu::Buffer buffer(
-      device, {name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-               gpu::MemoryKind::Device});
-  gpu::upload(device, buffer, std::as_bytes(std::span(data)));
-  return buffer;
-}
-
 }  // namespace
 
 struct RayTables::Impl {
@@ -83,8 +63,8 @@ struct RayTables::Impl {
     tables.nodes[0].first = kBvhStill;
     tables.add(buildBvh(geometry, {0, still}), kBvhStill, scene, geometry);
     const uint32_t base = tables.add(moving, kBvhMoving, scene, geometry);
-    nodes = table(device, "nodes that rays meet", std::move(tables.nodes));
-    triangles = table(device, "triangles that rays meet", std::move(tables.triangles));
+    nodes = longTable(device, "nodes that rays meet", std::move(tables.nodes));
+    triangles = longTable(device, "triangles that rays meet", std::move(tables.triangles));
     if (moving.order.empty()) return;
     refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("animate/refit.comp")});
     for (size_t i = moving.levels.size() - 1; i-- > 1;)

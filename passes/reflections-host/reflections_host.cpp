@@ -17,17 +17,12 @@
 #include "framework/shader_twins/octahedral.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "passes/near-field/cached_light.h"
+#include "shaders/common/records/mirror.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
-
-constexpr uint32_t kMirrorStream = 0x6d697272u, kLightStream = 0x6d696c69u;
-constexpr float kCellWidth = 0.02f;  // of the cache's cells, in mean distances of the mirrors from the eye
-constexpr float kSharp = 0.04f;      // GGX's alpha from which neighbours share all of their light
-constexpr float kOutside = 1e5f;     // m: stands for the distance of the environment
-constexpr float kSameSlope = 0.1f;   // most of a line between two points of one surface, against its plane
 
 // A texel of pass mirrors, and the light that was found for it. If it reflects nothing, only its code is known.
 struct Mirror {
@@ -40,15 +35,17 @@ struct Mirror {
     face = scene::octDecode(glm::unpackSnorm2x16(texel.z));
     const glm::uvec2 pixel = 2u * block + glm::uvec2(code >> 4 & 7u, code >> 7 & 7u);
     away = glm::normalize(view.rayDirection(glm::vec2(pixel) + 0.5f));
-    position = view.eye + std::bit_cast<float>(texel.x) * away;
+    distance = std::bit_cast<float>(texel.x);
+    position = view.eye + distance * away;
   }
 
   bool there;
   uint32_t code;
   float roughness = 0, alpha = 0;
   glm::vec3 normal{0}, face{0}, away{0}, position{0};  // away: from the eye
+  float distance = 0;                                  // from the eye, m
   glm::vec3 light{0};                                  // mean under the lobe, W/(sr m^2)
-  float distance = 0;                                  // mean of what it shows, m
+  float reach = 0;                                     // mean distance of what it shows, m
 };
 
 // The light that mirrors reflect, for one thread or more.
@@ -61,16 +58,16 @@ class Tracer {
   void look(Mirror& m, uint32_t stream, uint32_t turn, uint32_t count, GatheredLight& sum) const {
     const glm::mat3 frame = scene::orthonormalFrame(m.normal);
     glm::vec3 out = scene::toLocal(frame, -m.away);
-    out.z = std::max(out.z, 1e-3f);  // a bent normal may face away from the eye
+    out.z = std::max(out.z, kLeastLobe);  // a bent normal may face away from the eye
     out = glm::normalize(out);
     for (uint32_t i = turn; i < turn + count; ++i) {
       const glm::vec4 seen = underLobe(m, frame, out, scene::streamSequence(stream, i),
-                                       randomStream(stream, i, kLightStream, 0), sum);
+                                       randomStream(stream, i, kMirrorLightStream, 0), sum);
       m.light += glm::vec3(seen);
-      m.distance += seen.a / float(count);
+      m.reach += seen.a / float(count);
     }
     const float albedo = scene::AlbedoTable::schlick().at(out.z, m.roughness).total();
-    m.light /= float(count) * std::max(albedo, 1e-3f);
+    m.light /= float(count) * std::max(albedo, kLeastLobe);
   }
 
  private:
@@ -87,7 +84,8 @@ class Tracer {
     const scene::TracedSurface hit = surfaces_.arrive(origin, direction, scene::kFarAway, sum.rays);
     if (hit.isOutside()) return {weight * hit.brighter * surfaces_.outside(direction).radiance, kOutside};
     if (!hit.there) return {0, 0, 0, glm::distance(hit.position, origin)};
-    const glm::vec3 gathered = gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, sum);
+    const glm::vec3 gathered =
+        gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, kMirrorCellWidth * m.distance, sum);
     return {weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered),
             glm::distance(hit.position, origin)};
   }
@@ -109,13 +107,13 @@ float overlap(const Mirror& m, const Mirror& neighbour) {
   return blurred * blurred * std::exp(-glm::dot(turned, turned) / (m.alpha * m.alpha));
 }
 
-class Reflections : public Pass {
+class ReflectionsHost : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
-        "reflections",
+        "reflections-host",
         "indirect light under the narrow lobes of smooth surfaces, found with a ray per block of "
-        "pixels and frame: VPLs would show as blurred discs there",
+        "pixels and frame on the CPU: VPLs would show as blurred discs there",
         PassKind::Host);
     d.view();
     d.input("mirrors", image2D(VK_FORMAT_R32G32B32A32_UINT), Usage::HostRead,
@@ -148,7 +146,7 @@ class Reflections : public Pass {
     const uint32_t width = ctx.extent("mirrors").width, height = ctx.extent("mirrors").height;
     if (const glm::uvec2 size = (ctx.view().size + 1u) / 2u; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
-                  "pass `reflections`: `mirrors` has " + std::to_string(width) + "x" +
+                  "pass `reflections-host`: `mirrors` has " + std::to_string(width) + "x" +
                       std::to_string(height) + " texels, half its view has " + std::to_string(size.x) + "x" +
                       std::to_string(size.y),
                   "wire mirrors of the view that the pass looks through");
@@ -165,7 +163,7 @@ class Reflections : public Pass {
         const Mirror& m = mirrors_[size_t(y) * width + x];
         const float code = m.there ? float(m.code) : -float(m.code);
         samples[size_t(y) * width + x] = glm::packHalf4x16(glm::vec4(light, code));
-        distances[size_t(y) * width + x] = m.distance;
+        distances[size_t(y) * width + x] = m.reach;
       }
     });
     ctx.counter("mirrors", double(sum.mirrors));
@@ -189,15 +187,8 @@ class Reflections : public Pass {
 
   // Finds the light of all mirrors.
   Row trace(HostContext& ctx, glm::uvec2 size) {
-    double distance = 0, count = 0;
-    for (const Mirror& m : mirrors_) {
-      if (!m.there) continue;
-      distance += double(glm::distance(m.position, ctx.view().eye));
-      ++count;
-    }
     Row sum;
-    if (count == 0) return sum;
-    cache_.setCellWidth(kCellWidth * float(distance / count));
+    if (std::ranges::none_of(mirrors_, &Mirror::there)) return sum;
     const scene::Frame& frame = ctx.frame();
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, scene::Passing::Met);
     const scene::SurfaceTracer surfaces(frame, ctx.view(), *rays, true);
@@ -238,7 +229,7 @@ class Reflections : public Pass {
   GatherCache cache_;  // of the frames so far
 };
 
-FOVEA_PASS(Reflections);
+FOVEA_PASS(ReflectionsHost);
 
 }  // namespace
 }  // namespace fovea::passes

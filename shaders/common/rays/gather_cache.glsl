@@ -1,0 +1,110 @@
+// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path space
+// filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a frame
+// become part of the cells at its end (mergeSamples()), so that it does not matter which of them comes first. Only where the
+// table is so full that a cell finds none of its places free do results depend on that. Needs RAY_PASSAGE
+// (common/rays/trace.glsl) and a port `cells` that is kept.
+#ifndef FOVEA_RAYS_GATHER_CACHE_GLSL
+#define FOVEA_RAYS_GATHER_CACHE_GLSL
+
+#include "common/rays/surfaces.glsl"
+#include "common/records/gather_cache.h"
+
+layout(std430) buffer CellsBlock { GatherCell list[]; } cells;
+
+uint gatherCount = 0u;  // how often this invocation has gathered light
+
+struct CellName {
+  uint key;    // never 0
+  uint first;  // its places in the table follow this one
+};
+
+// The cell of a point on a surface; cells are about `width` metres wide, a power of two. jitter: in [-0.5, 0.5) for each
+// axis, by which the point is moved in widths of a cell, so that the borders of cells do not show. Sides that face
+// different ways have different cells.
+CellName cellOf(vec3 position, vec3 normal, vec3 jitter, float width) {
+  vec3 size = abs(normal);
+  int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+  int side = 2 * axis + int(normal[axis] < 0.0), level = int(clamp(floor(log2(width)), -30.0, 30.0));
+  ivec3 place = ivec3(clamp(floor(position * exp2(float(-level)) + jitter), -1e9, 1e9));
+  uint name = hashCombine(hashCombine(hashCombine(uint(side | (level + 32) << 3), uint(place.x)), uint(place.y)),
+                          uint(place.z));
+  return CellName(max(hashPcg(name), 1u), hashCombine(name, 1u));
+}
+
+// The place of a cell, or kGatherCells if it has none.
+uint findCell(CellName cell) {
+  for (uint i = 0u; i < kGatherPlaces; ++i) {
+    uint place = (cell.first + i) % kGatherCells;
+    if (cells.list[place].key == cell.key) return place;
+  }
+  return kGatherCells;
+}
+
+// The same, where the cell gets a place if one is free. While samples are added, no place becomes free: invocations that
+// want the same cell at the same time agree on the first one.
+uint claimCell(CellName cell) {
+  uint found = findCell(cell);
+  for (uint i = 0u; i < kGatherPlaces && found == kGatherCells; ++i) {
+    uint place = (cell.first + i) % kGatherCells;
+    uint before = atomicCompSwap(cells.list[place].key, 0u, cell.key);
+    if (before == 0u || before == cell.key) found = place;
+  }
+  return found;
+}
+
+// In 2^-32; x: low word. Light beyond 2^31 is cut off.
+uvec2 wholeNumber(float light) {
+  float x = clamp(light, 0.0, 2147483648.0), whole = floor(x);
+  return uvec2(uint(min((x - whole) * 4294967296.0, 4294967040.0)), uint(whole));
+}
+
+void addToCell(CellName cell, vec3 light) {
+  uint place = claimCell(cell);
+  if (place == kGatherCells) return;
+  uvec2 r = wholeNumber(light.r), g = wholeNumber(light.g), b = wholeNumber(light.b);
+  atomicAdd(cells.list[place].samples, 1u);
+  // A low word that has become smaller than what was added has overflowed.
+  atomicAdd(cells.list[place].redHigh, r.y + uint(atomicAdd(cells.list[place].red, r.x) + r.x < r.x));
+  atomicAdd(cells.list[place].greenHigh, g.y + uint(atomicAdd(cells.list[place].green, g.x) + g.x < g.x));
+  atomicAdd(cells.list[place].blueHigh, b.y + uint(atomicAdd(cells.list[place].blue, b.x) + b.x < b.x));
+}
+
+float fromWholeNumber(uint low, uint high) { return float(high) + float(low) * (1.0 / 4294967296.0); }
+
+// Makes the samples of this frame part of a cell and lets cells go that have had none for long. ageing: n samples of
+// former frames count as n / (1 + n ageing) of now, as light has changed.
+void mergeSamples(uint place, float ageing) {
+  GatherCell cell = cells.list[place];
+  if (cell.key == 0u) return;
+  float now = float(cell.samples);
+  float before = min(cell.weight / (1.0 + cell.weight * ageing), max(kMostGathered - now, 0.0));
+  if (cell.samples > 0u) {
+    vec3 sum = vec3(fromWholeNumber(cell.red, cell.redHigh), fromWholeNumber(cell.green, cell.greenHigh),
+                    fromWholeNumber(cell.blue, cell.blueHigh));
+    cell.light = (cell.light * before + sum) / (before + now);
+  }
+  uint idle = cell.samples > 0u ? 0u : cell.idle + 1u;
+  GatherCell merged = GatherCell(cell.light, min(before + now, kMostGathered), cell.key, idle, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
+                                 0u, 0u, 0u);
+  if (idle >= kMostIdle) merged.key = 0u, merged.weight = 0.0;
+  cells.list[place] = merged;
+}
+
+// The mean radiance that reaches v after at most `bounces` reflections, and from emissive surfaces. stream: of random
+// numbers; width: of the cells.
+vec3 gatheredLight(TracedSurface v, uint bounces, uint stream, float width) {
+  vec3 jitter = vec3(uniformFloat(randomStream(stream, 0u, kCellStream, 0u)),
+                     uniformFloat(randomStream(stream, 1u, kCellStream, 0u)),
+                     uniformFloat(randomStream(stream, 2u, kCellStream, 0u))) - 0.5;
+  CellName cell = cellOf(v.position, v.face, jitter, width);
+  uint place = findCell(cell);
+  bool known = place != kGatherCells && cells.list[place].weight >= kEnoughGathered;
+  vec3 light = known ? cells.list[place].light : vec3(0.0);
+  if (known && uniformFloat(randomStream(stream, 3u, kCellStream, 0u)) >= kGatheredAnew) return light;
+  ++gatherCount;
+  vec3 gathered = gather(v, bounces, stream);
+  addToCell(cell, gathered);
+  return known ? light : gathered;
+}
+
+#endif
