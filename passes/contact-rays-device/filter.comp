@@ -1,7 +1,7 @@
 // The mean of what was found at a pixel and at the eight around it, as far as they are in contact and show the same
 // surface. A few rays are a poor estimate, and a narrow window hardly widens the shadow of what is close. Define:
 // FILTER 0/1, 0 takes the pixel alone.
-#include "common/records/contact.h"
+#include "common/same_surface.glsl"
 #include "contact_surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -13,12 +13,6 @@ layout(push_constant) uniform Constants { float longer; };
 
 // Of a pixel in a row of three, by its distance from the middle.
 float rowWeight(int steps) { return steps == 0 ? kMiddleWeight : 1.0; }
-
-// The same as in passes/same_plane.h.
-bool onSamePlane(ContactSurface a, ContactSurface b) {
-  vec3 to = b.position - a.position;
-  return dot(a.normal, b.normal) > kSamePlaneCos && abs(dot(to, a.normal)) <= kSamePlaneSlope * length(to);
-}
 
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(light);
@@ -34,7 +28,9 @@ void main() {
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 q = ivec2(x, y), steps = abs(q - p);
-      if (!inContact(q) || (q != p && !onSamePlane(at, contactSurface(q)))) continue;
+      if (!inContact(q)) continue;
+      ContactSurface other = contactSurface(q);
+      if (q != p && !onSamePlane(at.position, at.normal, other.position, other.normal)) continue;
       sum += rowWeight(steps.x) * rowWeight(steps.y) * vec4(imageLoad(unfiltered, q).rgb, 1.0);
     }
   vec3 mean = sum.rgb / sum.a;

@@ -13,7 +13,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/materials.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 #include "shaders/common/records/reservoir.h"
 
 namespace fovea::passes {

@@ -9,7 +9,7 @@ layout(location = 0) out uvec4 points;
 
 layout(push_constant) uniform Constants { uint frameIndex; };
 
-// samplePixel(turn, 2, block) of passes/near-field/near_field_tracer.h.
+// samplePixel(turn, 2, block) of passes/near-field-host/near_field_tracer.h.
 ivec2 samplePixel(ivec2 block) {
   int turn_ = int(frameIndex & 3u) + ((block.x & 1) * 2 ^ (block.y & 1) * 3);
   return ivec2(turn_ & 1, (turn_ ^ turn_ >> 1) & 1);

@@ -9,7 +9,7 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 
 namespace fovea::passes {
 namespace {

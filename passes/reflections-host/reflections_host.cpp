@@ -16,7 +16,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/octahedral.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "passes/near-field/cached_light.h"
+#include "passes/near-field-host/cached_light.h"
 #include "shaders/common/records/mirror.h"
 
 namespace fovea::passes {

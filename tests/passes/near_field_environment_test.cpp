@@ -8,7 +8,7 @@
 #include "fovea/test.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/frame.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 #include "tests/support/shapes.h"
 #include "tests/support/sky.h"
 
@@ -73,6 +73,11 @@ TEST(NearFieldEnvironment, OpenSkyHasLittleNoise) {
   EXPECT_LT(std::sqrt(square / (mean * mean) - 1), 0.4);
 }
 
+// Rays on the host and on the device.
+class NearFieldMaps : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, NearFieldMaps, testing::Values("near-field-host", "near-field-device"),
+                         [](const auto& test) { return std::string(test.param).substr(11); });
+
 glm::dvec3 lightOf(PassTest& test, uint32_t frames) {
   test.run(frames);
   const std::vector<float> light = test.floats("samples");
@@ -83,9 +88,9 @@ glm::dvec3 lightOf(PassTest& test, uint32_t frames) {
 }
 
 // On a floor that is alone no ray meets a surface that could say how long rays are.
-TEST(NearFieldEnvironment, LightsWhatIsAlone) {
+TEST_P(NearFieldMaps, LightsWhatIsAlone) {
   const Map map = skyWithSun();
-  PassTest test("near-field");
+  PassTest test(GetParam());
   test.viewSize(16, 16).scene(floorUnder(map, 0.5f)).param("fovea_radius", 2.0).param("first_samples", 1024);
   const glm::dvec3 want = irradianceFrom(*map, {0, 1, 0}) / glm::pi<double>();
   for (const uint32_t frames : {1, 2}) {  // the second has a ray a sample
@@ -95,13 +100,13 @@ TEST(NearFieldEnvironment, LightsWhatIsAlone) {
 }
 
 // A panel that shines beside the floor, and a map: rays are aimed at both.
-TEST(NearFieldEnvironment, SharesRaysWithSurfacesThatShine) {
+TEST_P(NearFieldMaps, SharesRaysWithSurfacesThatShine) {
   const Map map = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1, 0, 0)));
   scene::Scene s = floorUnder(map, 0);
   const uint32_t panel = addMaterial(s, glm::vec3(0));
   s.materials[panel].emission = {0, 1, 0};
   addQuad(s, panel, {-400, 0, -2}, {800, 0, 0}, {0, 800, 0});
-  PassTest test("near-field");
+  PassTest test(GetParam());
   test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
   const glm::dvec3 mean = lightOf(test, 1);
   EXPECT_NEAR(mean.r, 0.5, 0.01);  // each fills half of the hemisphere
@@ -109,14 +114,14 @@ TEST(NearFieldEnvironment, SharesRaysWithSurfacesThatShine) {
 }
 
 // With `light` map, surfaces add nothing: neither the light of a panel beside the floor nor what a lamp leaves on it.
-TEST(NearFieldEnvironment, ComesAlone) {
+TEST_P(NearFieldMaps, ComesAlone) {
   const Map map = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1, 2, 3)));
   scene::Scene s = floorUnder(map, 0.5f);
   const uint32_t panel = addMaterial(s, glm::vec3(0.5f));
   s.materials[panel].emission = glm::vec3(20);
   addQuad(s, panel, {-50, 0, -2}, {100, 0, 0}, {0, 50, 0});
   s.lights = {pointLight({0, 2, 0}, glm::vec3(100))};
-  PassTest test("near-field");
+  PassTest test(GetParam());
   test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
   test.param("light", "map");
   const glm::dvec3 mean = lightOf(test, 1);  // the panel hides a half or less
@@ -124,7 +129,7 @@ TEST(NearFieldEnvironment, ComesAlone) {
   EXPECT_LT(mean.r, 1.0);
   EXPECT_NEAR(mean.g / mean.r, 2, 0.01);
   EXPECT_NEAR(mean.b / mean.r, 3, 0.015);
-  PassTest none("near-field");
+  PassTest none(GetParam());
   none.viewSize(16, 16).scene(s).param("light", "none");
   EXPECT_EQ(lightOf(none, 1), glm::dvec3(0));
 }

@@ -9,7 +9,7 @@
 #include "fovea/error.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
@@ -385,14 +385,19 @@ TEST(NearField, MoreRaysForANewFovea) {
   EXPECT_GT(differ, inside / 2);
 }
 
+// Rays on the host and on the device.
+class NearFieldPasses : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, NearFieldPasses, testing::Values("near-field-host", "near-field-device"),
+                         [](const auto& test) { return std::string(test.param).substr(11); });
+
 // When light changes, samples in the fovea are of more rays, and what the cache knows of the old light is forgotten.
-TEST(NearField, MoreRaysForChangedLight) {
+TEST_P(NearFieldPasses, MoreRaysForChangedLight) {
   const Look look(shiningRoom(true), glm::ivec2(16));
   struct Counters {
     double shaded, gathered;
   };
   const auto after = [&](float ageing) {
-    PassTest test("near-field");
+    PassTest test(GetParam());
     test.viewSize(16, 16).scene(look.room.scene).param("saccade_samples", 5).param("vpls", 10);
     test.param("fovea_radius", 2.0).param("first_samples", 1024);  // which fill the cache
     test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
@@ -410,12 +415,12 @@ TEST(NearField, MoreRaysForChangedLight) {
   EXPECT_EQ(all.gathered, all.shaded);
 }
 
-TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
+TEST_P(NearFieldPasses, DiscsAreAsLargeAsDistancesSay) {
   const Look look(shiningRoom(false), glm::ivec2(16));
   double length = 0;
   for (const Seen& seen : look.room.pixels) length += look.part(seen, 1, 64).second / 256;
   for (const int vpls : {100, 1000}) {
-    PassTest test("near-field");
+    PassTest test(GetParam());
     test.viewSize(16, 16).scene(look.room.scene).param("vpls", vpls).param("fovea_radius", 2.0);
     test.run(3);
     const double want = 50 * length * length / vpls;
@@ -423,8 +428,8 @@ TEST(NearField, DiscsAreAsLargeAsDistancesSay) {
   }
 }
 
-TEST(NearField, SpacingIsAPowerOfTwo) {
-  PassTest test("near-field");
+TEST_P(NearFieldPasses, SpacingIsAPowerOfTwo) {
+  PassTest test(GetParam());
   test.viewSize(16, 16).scene(shiningRoom(false)).param("spacing", 6);
   try {
     test.run();

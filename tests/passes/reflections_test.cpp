@@ -6,9 +6,9 @@
 #include <glm/gtc/packing.hpp>
 
 #include "fovea/error.h"
-#include "framework/scene/environment/environment_map.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 #include "tests/passes/deferred_reference.h"
+#include "tests/passes/scene_of_everything.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {
@@ -174,27 +174,9 @@ TEST_P(Reflections, MirrorsOfAnotherViewAreRefused) {
   EXPECT_THROW(test.run(), Error);
 }
 
-// Both take the same random numbers, so that they differ by rounding alone: with lamps, a map all around, metals and glass.
+// Both take the same random numbers, so that they differ by rounding alone.
 TEST(ReflectionsBoth, SeeTheSame) {
-  scene::Scene s;
-  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), metal = addMaterial(s, glm::vec3(0.9f, 0.6f, 0.3f)),
-                 lamp = addMaterial(s, glm::vec3(0.2f)), glass = addMaterial(s, glm::vec3(0.8f, 0.9f, 1));
-  s.materials[metal].metallic = 1;
-  s.materials[metal].roughness = 0.3f;
-  s.materials[lamp].emission = {6, 5, 3};
-  s.materials[glass].transmission = 0.9f;
-  s.materials[glass].doubleSided = true;
-  addBox(s, grey, {-9, -9, -6}, {9, 9, -5});
-  addBox(s, grey, {-4, -4, 3}, {4, 4, 4});
-  addBox(s, metal, {-1.6f, -1.1f, 1}, {0.9f, 1.3f, 2});
-  for (int i = 0; i < 3; ++i)
-    addBox(s, lamp, {-2.0f + 1.5f * float(i), 2, 0}, {-1.7f + 1.5f * float(i), 2.3f, 0.3f});
-  addBox(s, glass, {1, -1, -1}, {2, 1, -0.9f});
-  std::vector<glm::vec3> texels(32 * 16);
-  for (size_t i = 0; i < texels.size(); ++i) texels[i] = glm::vec3(float(i % 7), 2, float(i / 64)) * 0.1f;
-  s.environmentMap = std::make_shared<const scene::EnvironmentMap>(32, 16, texels, 0.4f);
-  s.lights.push_back(pointLight({1.5f, 2, -3}, {30, 20, 10}));
-  const Room room = lookInto(std::move(s), 8, glm::ivec2(kSide));
+  const Room room = lookInto(sceneOfEverything(), 8, glm::ivec2(kSide));
   const auto mirrors = mirrorsOf(room.pixels, 0.25f);
   PassTest host("reflections-host"), device("reflections-device");
   wire(host.param("first_samples", 4), room, mirrors).run(3);

@@ -169,6 +169,36 @@ float emitterDensity(uint triangle, Receiver r) {
   return own > 0.0 ? probability * own / (leafWeight(range, r) * e.area) : 0.0;
 }
 
+bool isNear(vec3 point, float reach, vec3 centre, float radius2) {
+  float radius = reach + sqrt(radius2);
+  return dot(point - centre, point - centre) <= radius * radius;
+}
+
+// Whether an emitter is within `reach` metres of a point, by the bounding spheres of triangles.
+bool isEmitterWithin(vec3 point, float reach) {
+  if (emitterCount() == 0u) return false;
+  const uint kDeepest = 32u;
+  uvec3 stack[kDeepest];  // node, and the range of its emitters
+  stack[0] = uvec3(1u, 0u, emitterCount());
+  for (uint size = 1u; size > 0u;) {
+    uvec3 top = stack[--size];
+    uvec2 range = top.yz;
+    vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().y + 3u * top.x)));
+    // The bounding sphere of a triangle may extend beyond that of its node, but no farther than this.
+    if (!isNear(point, reach, sphere.xyz, 9.0 * sphere.w)) continue;
+    if (isEmitterLeaf(range)) {
+      for (uint i = range.x; i < range.y; ++i) {
+        Emitter e = emitterAt(i);
+        if (isNear(point, reach, e.centre, e.radius2)) return true;
+      }
+    } else {
+      stack[size++] = uvec3(2u * top.x, range.x, middleOf(range));
+      stack[size++] = uvec3(2u * top.x + 1u, middleOf(range), range.y);
+    }
+  }
+  return false;
+}
+
 // ---- The environment map -------------------------------------------------------------------------------------------
 
 // Value i of the map's cumulative light.

@@ -6,6 +6,7 @@
 #ifndef FOVEA_RAYS_GATHER_CACHE_GLSL
 #define FOVEA_RAYS_GATHER_CACHE_GLSL
 
+#include "common/device/sums.glsl"
 #include "common/rays/surfaces.glsl"
 #include "common/records/gather_cache.h"
 
@@ -52,35 +53,27 @@ uint claimCell(CellName cell) {
   return found;
 }
 
-// In 2^-32; x: low word. Light beyond 2^31 is cut off.
-uvec2 wholeNumber(float light) {
-  float x = clamp(light, 0.0, 2147483648.0), whole = floor(x);
-  return uvec2(uint(min((x - whole) * 4294967296.0, 4294967040.0)), uint(whole));
-}
-
 void addToCell(CellName cell, vec3 light) {
   uint place = claimCell(cell);
   if (place == kGatherCells) return;
-  uvec2 r = wholeNumber(light.r), g = wholeNumber(light.g), b = wholeNumber(light.b);
   atomicAdd(cells.list[place].samples, 1u);
-  // A low word that has become smaller than what was added has overflowed.
-  atomicAdd(cells.list[place].redHigh, r.y + uint(atomicAdd(cells.list[place].red, r.x) + r.x < r.x));
-  atomicAdd(cells.list[place].greenHigh, g.y + uint(atomicAdd(cells.list[place].green, g.x) + g.x < g.x));
-  atomicAdd(cells.list[place].blueHigh, b.y + uint(atomicAdd(cells.list[place].blue, b.x) + b.x < b.x));
+  ADD_TO_SUM(cells.list[place].red, cells.list[place].redHigh, light.r);
+  ADD_TO_SUM(cells.list[place].green, cells.list[place].greenHigh, light.g);
+  ADD_TO_SUM(cells.list[place].blue, cells.list[place].blueHigh, light.b);
 }
 
-float fromWholeNumber(uint low, uint high) { return float(high) + float(low) * (1.0 / 4294967296.0); }
+// What the samples of a cell are worth after light has changed: n are worth n / (1 + n ageing).
+float agedWeight(GatherCell cell, float ageing) { return cell.weight / (1.0 + cell.weight * ageing); }
 
-// Makes the samples of this frame part of a cell and lets cells go that have had none for long. ageing: n samples of
-// former frames count as n / (1 + n ageing) of now, as light has changed.
+// Makes the samples of this frame part of a cell and lets cells go that have had none for long.
 void mergeSamples(uint place, float ageing) {
   GatherCell cell = cells.list[place];
   if (cell.key == 0u) return;
   float now = float(cell.samples);
-  float before = min(cell.weight / (1.0 + cell.weight * ageing), max(kMostGathered - now, 0.0));
+  float before = min(agedWeight(cell, ageing), max(kMostGathered - now, 0.0));
   if (cell.samples > 0u) {
-    vec3 sum = vec3(fromWholeNumber(cell.red, cell.redHigh), fromWholeNumber(cell.green, cell.greenHigh),
-                    fromWholeNumber(cell.blue, cell.blueHigh));
+    vec3 sum = vec3(sumOf(cell.red, cell.redHigh), sumOf(cell.green, cell.greenHigh),
+                    sumOf(cell.blue, cell.blueHigh));
     cell.light = (cell.light * before + sum) / (before + now);
   }
   uint idle = cell.samples > 0u ? 0u : cell.idle + 1u;
@@ -91,18 +84,18 @@ void mergeSamples(uint place, float ageing) {
 }
 
 // The mean radiance that reaches v after at most `bounces` reflections, and from emissive surfaces. stream: of random
-// numbers; width: of the cells.
-vec3 gatheredLight(TracedSurface v, uint bounces, uint stream, float width) {
+// numbers; width: of the cells; ageing: of this frame.
+vec3 gatheredLight(TracedSurface v, uint bounces, uint stream, float width, float ageing) {
   vec3 jitter = vec3(uniformFloat(randomStream(stream, 0u, kCellStream, 0u)),
                      uniformFloat(randomStream(stream, 1u, kCellStream, 0u)),
                      uniformFloat(randomStream(stream, 2u, kCellStream, 0u))) - 0.5;
   CellName cell = cellOf(v.position, v.face, jitter, width);
   uint place = findCell(cell);
-  bool known = place != kGatherCells && cells.list[place].weight >= kEnoughGathered;
+  bool known = place != kGatherCells && agedWeight(cells.list[place], ageing) >= kEnoughGathered;
   vec3 light = known ? cells.list[place].light : vec3(0.0);
   if (known && uniformFloat(randomStream(stream, 3u, kCellStream, 0u)) >= kGatheredAnew) return light;
   ++gatherCount;
-  vec3 gathered = gather(v, bounces, stream);
+  vec3 gathered = gather(v, bounces, 1u, stream);
   addToCell(cell, gathered);
   return known ? light : gathered;
 }

@@ -4,6 +4,7 @@
 #define FOVEA_RAYS_SURFACES_GLSL
 
 #include "common/paraboloid.glsl"
+#include "common/pixel_ray.glsl"
 #include "common/random.glsl"
 #include "common/rays/emitters.glsl"
 #include "common/rays/visibility.glsl"
@@ -76,12 +77,57 @@ TracedSurface surfaceOf(RayHit hit, vec3 direction) {
   return v;
 }
 
+#if RAY_PASSAGE
+uint materialFlags(TracedSurface v) {
+  return uint(texelOf(sceneMaterials, int(v.material) * kMaterialTexels + kColorTexture).w);
+}
+bool isGlass(TracedSurface v) { return (materialFlags(v) & kMaterialTransmits) != 0u; }
+
+// Whether a ray passes a surface that it meets. direction: unit; chance: uniform in [0, 1).
+bool passesSurface(TracedSurface v, vec3 direction, float chance) {
+  return (materialFlags(v) & (kMaterialBlended | kMaterialTransmits)) != 0u &&
+         !stops(v.material, v.uv, abs(dot(v.normal, direction)), chance);
+}
+#endif
+
 // Different for every ray and frame.
 uint keyOfRay(vec3 origin, vec3 direction) {
   uint key = randomStream(frame.seed, frame.index, kPassedRayStream, 0u);
   for (int i = 0; i < 3; ++i) key = hashCombine(key, floatBitsToUint(origin[i]));
   for (int i = 0; i < 3; ++i) key = hashCombine(key, floatBitsToUint(direction[i]));
   return key;
+}
+
+// A ray that continues from a surface which it passes.
+Ray beyond(Ray ray, RayHit hit) {
+  ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
+  return ray;
+}
+
+// The surface that the eye sees at a pixel. Where surfaces let a part of the light through, it is the one that pass
+// gbuffer shows in this frame.
+TracedSurface look(ivec2 pixel) {
+  vec3 direction = normalize(pixelRay(pixel));
+  Ray ray = Ray(view.eye, direction, 0.0, kFarAway);
+  uint key = hashCombine(frame.seed, kPassageStream);
+  TracedSurface v;
+  vec3 tint = vec3(1.0);
+  for (uint pane = 0u; pane < kMaxPanes; ++pane) {
+    ++rayCount;
+    RayHit hit = intersect(ray);
+    v = surfaceOf(hit, direction);
+    if (hit.triangle == kNoTriangle) break;
+#if RAY_PASSAGE
+    float chance = passageChance(hashCombine(key, hit.triangle), uvec2(pixel), frame.index);
+    if (v.there && !passesSurface(v, direction, chance)) break;
+    if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
+#else
+    if (v.there) break;
+#endif
+    ray = beyond(ray, hit);
+  }
+  v.brighter *= tint;
+  return v;
 }
 
 // The surface met within `reach` metres. direction: unit. Where surfaces let a part of the light through, the ray passes
@@ -96,13 +142,11 @@ TracedSurface arrive(vec3 origin, vec3 direction, float reach) {
     ++rayCount;
     RayHit hit = intersect(ray);
     v = surfaceOf(hit, direction);
-    if (hit.triangle == kNoTriangle) break;
-    uint flags = uint(texelOf(sceneMaterials, int(v.material) * kMaterialTexels + kColorTexture).w);
-    if ((flags & (kMaterialBlended | kMaterialTransmits)) == 0u ||
-        stops(v.material, v.uv, abs(dot(v.normal, direction)), uniformFloat(hashCombine(key, hit.triangle))))
+    if (hit.triangle == kNoTriangle ||
+        !passesSurface(v, direction, uniformFloat(hashCombine(key, hit.triangle))))
       break;
-    if (v.there && (flags & kMaterialTransmits) != 0u) tint *= glassTint(v.material, v.uv);
-    ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
+    if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
+    ray = beyond(ray, hit);
   }
   v.brighter *= tint;
   return v;
@@ -141,37 +185,58 @@ vec3 directLight(TracedSurface v, vec3 rho) { return rho / kPi * irradianceAt(v)
 
 // The ray from v to a point on an emissive surface, or to the scene's environment map.
 struct EmitterRay {
-  bool there;      // whether a point was found that faces v and may light it; it may be hidden
-  vec3 direction;  // unit
+  bool there;       // whether a point was found that faces v and may light it; it may be hidden
+  vec3 direction;   // unit
   float distance_;  // m; kFarAway to the environment
-  float density;   // probability density of the direction, per sr
-  vec3 radiance;   // W/(sr m^2)
+  float density;    // probability density of the direction, per sr
+  uint triangle;    // kNoTriangle in the environment
+  vec3 radiance;    // W/(sr m^2)
 };
+
+const EmitterRay kNoEmitterRay = EmitterRay(false, vec3(0.0), kFarAway, 0.0, kNoTriangle, vec3(0.0));
+
+bool hasEmitters() { return emitterCount() > 0u || hasEnvironmentMap(); }
+bool facesTo(TracedSurface v, vec3 direction) { return dot(v.normal, direction) > 0.0 && dot(v.face, direction) > 0.0; }
+float cosineDensity(TracedSurface v, vec3 direction) { return dot(v.normal, direction) / kPi; }
 
 // Probability with which aimedRay() chooses a surface, not the environment.
 float surfaceShare() { return !hasEnvironmentMap() ? 1.0 : emitterCount() == 0u ? 0.0 : 0.5; }
 
-EmitterRay aimedRay(TracedSurface v, uint stream) {
-  EmitterRay ray = EmitterRay(false, vec3(0.0), kFarAway, 0.0, vec3(0.0));
-  uint own = hashCombine(stream, kAimedRayStream);
-  float choice = uniformFloat(hashCombine(own, 2u)), share = surfaceShare();
-  vec2 u = streamSequence(own, 0u);
-  if (choice >= share) {
-    MapSample s = sampleMap(u);
-    bool lights_ = s.density > 0.0 && dot(v.normal, s.direction) > 0.0 && dot(v.face, s.direction) > 0.0;
-    return lights_ ? EmitterRay(true, s.direction, kFarAway, (1.0 - share) * s.density, s.radiance) : ray;
+// u: uniform in [0, 1); x chooses the emitter.
+EmitterRay aimedRay(TracedSurface v, vec3 u) {
+  float share = surfaceShare();
+  if (u.x >= share) {
+    MapSample s = sampleMap(u.yz);
+    bool lights_ = s.density > 0.0 && facesTo(v, s.direction);
+    if (!lights_) return kNoEmitterRay;
+    return EmitterRay(true, s.direction, kFarAway, (1.0 - share) * s.density, kNoTriangle, s.radiance);
   }
-  if (emitterCount() == 0u) return ray;
-  EmitterPoint p = sampleEmitters(receiverOf(v), choice / share, u);
+  if (emitterCount() == 0u) return kNoEmitterRay;
+  EmitterPoint p = sampleEmitters(receiverOf(v), u.x / share, u.yz);
   vec3 to = p.position - v.origin;
   float d2 = dot(to, to);
-  if (p.triangle == kNoTriangle || !(d2 > 0.0)) return ray;
+  if (p.triangle == kNoTriangle || !(d2 > 0.0)) return kNoEmitterRay;
   float distance_ = sqrt(d2);
   vec3 direction = to / distance_;
   float cosine = -dot(p.normal, direction);
-  if (!(cosine > 0.0) || dot(v.normal, direction) <= 0.0 || dot(v.face, direction) <= 0.0) return ray;
-  return EmitterRay(true, direction, distance_, share * p.density * d2 / cosine, p.radiance);
+  if (!(cosine > 0.0) || !facesTo(v, direction)) return kNoEmitterRay;
+  return EmitterRay(true, direction, distance_, share * p.density * d2 / cosine, p.triangle, p.radiance);
 }
+
+EmitterRay aimedRay(TracedSurface v, uint stream) {
+  uint own = hashCombine(stream, kAimedRayStream);
+  return aimedRay(v, vec3(uniformFloat(hashCombine(own, 2u)), streamSequence(own, 0u)));
+}
+
+// The ray to the environment map in a given direction, which is unit.
+EmitterRay rayOutside(TracedSurface v, vec3 direction) {
+  if (!hasEnvironmentMap() || isMapBlack() || !facesTo(v, direction)) return kNoEmitterRay;
+  return EmitterRay(true, direction, kFarAway, (1.0 - surfaceShare()) * mapDensity(direction), kNoTriangle,
+                    environmentRadiance(direction));
+}
+
+// The share of its light that reaches v.
+vec3 visibleShare(TracedSurface v, EmitterRay to) { return lightAlong(v.origin, to.direction, to.distance_); }
 
 // Density with which aimedRay() chooses the direction from v to the surface `hit`, per sr; 0 if `hit` does not emit.
 float aimedDensity(TracedSurface v, TracedSurface hit) {
@@ -184,46 +249,48 @@ float aimedDensity(TracedSurface v, TracedSurface hit) {
 // The part of one point on an emissive surface in the balance heuristic (Veach and Guibas 1995), beside `count`
 // cosine-weighted rays that may hit such a surface by chance.
 vec3 fromEmitters(TracedSurface v, float count, uint stream) {
-  if (emitterCount() == 0u && !hasEnvironmentMap()) return vec3(0.0);
+  if (!hasEmitters()) return vec3(0.0);
   EmitterRay to = aimedRay(v, stream);
   if (!to.there) return vec3(0.0);
-  float cosine = dot(v.normal, to.direction) / kPi;
-  return to.radiance * lightAlong(v.origin, to.direction, to.distance_) * (cosine / (to.density + count * cosine));
-}
-
-// The light of the environment map in the direction of a cosine-weighted ray from v that met nothing, in the balance
-// heuristic beside a ray aimed there.
-vec3 fromOutside(TracedSurface v, vec3 direction) {
-  if (!hasEnvironmentMap() || isMapBlack()) return vec3(0.0);
-  float cosine = dot(v.normal, direction) / kPi, density = (1.0 - surfaceShare()) * mapDensity(direction);
-  return environmentRadiance(direction) * (cosine / (density + cosine));
+  float cosine = cosineDensity(v, to.direction);
+  return to.radiance * visibleShare(v, to) * (cosine / (to.density + count * cosine));
 }
 
 // Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light after at
-// most `bounces` reflections, estimated with one ray, which continues with one per further bounce, and with one point on
-// an emissive surface at each vertex.
-vec3 gather(TracedSurface v, uint bounces, uint stream) {
-  vec3 sum = vec3(0.0), throughput = vec3(1.0);
-  for (uint bounce = 0u;; ++bounce) {
-    bool last = bounce >= bounces;
-    sum += throughput * fromEmitters(v, last ? 0.0 : 1.0, stream);
-    if (last) break;
-    vec3 direction = cosineDirection(v.normal, streamSequence(stream, 0u));
-    if (dot(direction, v.face) <= 0.0) break;
-    TracedSurface next = arrive(v.origin, direction, kFarAway);
-    if (!next.there) {
-      if (next.triangle == kNoTriangle) sum += throughput * next.brighter * fromOutside(v, direction);
-      break;
+// most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further bounce, and
+// with one point on an emissive surface at each vertex.
+vec3 gather(TracedSurface v, uint bounces, uint count, uint stream) {
+  vec3 sum = vec3(0.0);
+  for (uint ray = 0u; ray < max(count, 1u); ++ray) {
+    TracedSurface at = v;
+    vec3 throughput = vec3(1.0);
+    uint rays = bounces > 0u ? count : 0u, turn_ = ray, own = stream;
+    for (uint left = bounces;; --left) {
+      // All rays from v share one point.
+      if (left < bounces || ray == 0u) sum += throughput * fromEmitters(at, float(rays), own);
+      if (left == 0u) break;
+      vec3 direction = cosineDirection(at.normal, streamSequence(own, turn_));
+      if (dot(direction, at.face) <= 0.0) break;
+      TracedSurface next = arrive(at.origin, direction, kFarAway);
+      // The part of cosine-weighted rays in the balance heuristic is this over the sum with the other density.
+      float cosine = float(rays) * cosineDensity(at, direction);
+      throughput /= float(rays);
+      if (!next.there) {
+        EmitterRay outside = kNoEmitterRay;
+        if (next.triangle == kNoTriangle) outside = rayOutside(at, direction);
+        if (outside.there) sum += throughput * next.brighter * outside.radiance * (cosine / (outside.density + cosine));
+        break;
+      }
+      vec3 rho = reflectance(next), light = directLight(next, rho), shining = emitted(next);
+      if (shining != vec3(0.0)) light += shining * (cosine / (aimedDensity(at, next) + cosine));
+      sum += throughput * light;
+      throughput *= rho;
+      own = hashCombine(own, turn_ + 2u);
+      turn_ = 0u;
+      rays = left > 1u ? 1u : 0u;
+      at = next;
     }
-    vec3 rho = reflectance(next), light = directLight(next, rho), shining = emitted(next);
-    if (shining != vec3(0.0)) {
-      float cosine = dot(v.normal, direction) / kPi;
-      light += shining * (cosine / (aimedDensity(v, next) + cosine));
-    }
-    sum += throughput * light;
-    throughput *= rho;
-    stream = hashCombine(stream, 2u);
-    v = next;
+    if (bounces == 0u) break;
   }
   return sum;
 }

@@ -1,4 +1,4 @@
-// The cells in which passes remember the light that rays have gathered, on the host (passes/near-field/gather_cache.h)
+// The cells in which passes remember the light that rays have gathered, on the host (passes/near-field-host/gather_cache.h)
 // and on the device (common/rays/gather_cache.glsl).
 #pragma once
 

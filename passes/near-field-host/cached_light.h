@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/scene/rays/surface_tracer.h"
-#include "passes/near-field/gather_cache.h"
+#include "passes/near-field-host/gather_cache.h"
 
 namespace fovea::passes {
 

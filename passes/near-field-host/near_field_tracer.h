@@ -10,7 +10,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "passes/near-field/gather_cache.h"
+#include "passes/near-field-host/gather_cache.h"
 
 namespace fovea::passes {
 

@@ -10,15 +10,14 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_ports.h"
+#include "passes/near-field-host/near_field_tracer.h"
+#include "shaders/common/records/near_field.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
-
-constexpr double kLengthKept = 7 / 8.0;  // share of the mean ray length kept from frame to frame
-constexpr double kCellWidth = 0.1;       // width of the cache's cells, in mean ray lengths
 
 // Rays per sample in the fovea, `most` if all of its history is lost.
 uint32_t raysAfterChange(uint32_t most, float lost) {
@@ -28,56 +27,21 @@ uint32_t raysAfterChange(uint32_t most, float lost) {
 // Stands for the mean length of rays as long as no surface sees another: what the sky sends is found all the same.
 double diagonal(const scene::Geometry& g) { return double(glm::distance(g.boundsMin, g.boundsMax)); }
 
-class NearField : public Pass {
+class NearFieldHost : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
-        "near-field",
+        "near-field-host",
         "light from nearby surfaces, in the part that VPLs shaded as discs take from it, and all "
         "light that comes straight from surfaces that shine and from an environment map, found with a "
-        "few rays per frame through the triangles",
+        "few rays per frame through the triangles on the CPU",
         PassKind::Host);
     d.view();
-    d.input(
-         "change", changeBuffer(), Usage::HostRead,
-         "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: share "
-         "of their history that samples have lost (pass eye-paths)")
-        .makeOptional();
-    d.output("samples",
-             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
-             Usage::HostWrite,
-             "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
-             "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
-             "surface, for pass temporal-accumulation");
-    d.output("spread", spreadBuffer(), Usage::HostWrite,
-             "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
-    d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
-    d.parameter("share", real(50, 0.01, 1e6),
-                "total area of all discs, in squares of the mean distance between visible surfaces and the "
-                "surfaces seen from them, or of the diagonal of the scene where no surface sees another");
-    d.parameter(
-        "bounces", integer(2, 1, 64),
-        "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
-    d.parameter("first_samples", integer(16, 1, 1024),
-                "rays per sample after a camera cut, when there is no history to build on");
-    d.parameter("saccade_samples", integer(1, 1, 16),
-                "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
-                "fovea is that of wide blocks, and up to so many when light changes");
-    d.parameter(
-        "emitter_points", integer(4, 1, 64),
-        "points on surfaces that shine and in an environment map, of which the ray aimed at them chooses "
-        "one; for a map there are as many cosine-weighted ones beside them");
-    d.parameter("light", choice("all", {"none", "map", "all"}),
-                "`map` brings the light of the scene's environment map alone, `none` nothing");
-    declareMaterials(d, "`full` lets metals keep their colour");
-    d.counter("rays", "rays traced, including those towards lights");
-    d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
-    d.counter("gathered",
-              "those of them at whose ends light of further bounces was gathered rather than known");
+    declareNearField(d, Usage::HostRead, Usage::HostWrite);
     return d;
   }
+
+  void prepare(PrepareContext& ctx) override { checkNearField(ctx.parameters(), "near-field-host"); }
 
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
@@ -88,10 +52,6 @@ class NearField : public Pass {
     NearFieldSettings settings;
     settings.foveaRadius = float(p.real("fovea_radius"));
     settings.spacing = uint32_t(p.integer("spacing"));
-    if (!std::has_single_bit(settings.spacing))
-      throw Error(ExitCode::BadInput,
-                  "pass `near-field`: spacing " + std::to_string(settings.spacing) + " is not a power of two",
-                  "use 2, 4 or 8");
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.emitterPoints = uint32_t(p.integer("emitter_points"));
     settings.turn = uint32_t(ctx.frameNumber());
@@ -109,7 +69,7 @@ class NearField : public Pass {
       const auto trace = [&](double length) {
         area = p.real("share") * length * length / double(p.integer("vpls"));
         settings.area = float(area);
-        settings.cellWidth = float(kCellWidth * length);
+        settings.cellWidth = float(kNearCellWidth * length);
         return traceNearField(frame, ctx.view(), *rays, settings, image_);
       };
       const auto knownLength = [&] { return length_ > 0 ? length_ : diagonal(*frame.geometry); };
@@ -149,7 +109,7 @@ class NearField : public Pass {
   std::vector<glm::vec4> image_;
 };
 
-FOVEA_PASS(NearField);
+FOVEA_PASS(NearFieldHost);
 
 }  // namespace
 }  // namespace fovea::passes

@@ -1,4 +1,4 @@
-#include "passes/near-field/near_field_tracer.h"
+#include "passes/near-field-host/near_field_tracer.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,19 +12,14 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
-#include "passes/near-field/cached_light.h"
+#include "passes/near-field-host/cached_light.h"
 #include "passes/same_plane.h"
+#include "shaders/common/records/near_field.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace scene;
-
-constexpr uint32_t kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kGatherStream = 0x6e656774u,
-                   kAimStream = 0x6e656169u;
-constexpr uint32_t kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
-constexpr float kClose = 2;  // an emitter closer than so many widths of a wide block splits it
-constexpr float kSure = 4;   // rays continue with a probability of this many times their share of the light
 
 // What one row of the picture, or one part of a list, adds.
 struct Row : GatheredLight {
@@ -123,7 +118,7 @@ class Tracer {
 
   // Wider or flatter weights would make what has just come into view flicker more, as its brightest sample is dropped.
   glm::vec3 meanAround(int column, int row) const {
-    static constexpr float kWeights[] = {1, 3, 1};
+    static constexpr float kWeights[] = {1, kTileMiddleWeight, 1};
     const TracedSurface& at = tiles_[size_t(row) * tileColumns() + size_t(column)].at;
     glm::vec4 sum(0);
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
@@ -169,7 +164,7 @@ class Tracer {
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
     glm::vec3 light(0);
     if (surfaces_.hasEmitters() && radius2 > 0)
-      light = fromEmitters(v, hashCombine(stream, kAimStream), 16 * turn + order, statistics);
+      light = fromEmitters(v, hashCombine(stream, kNearAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
     const bool tracesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     const TracedSurface hit =
@@ -187,7 +182,7 @@ class Tracer {
     const glm::vec3 rho = surfaces_.reflectance(hit);
     glm::vec3 radiance = surfaces_.direct(hit, rho, statistics.rays);
     radiance += rho * gatheredLight(surfaces_, hit, settings_.bounces - 1,
-                                    randomStream(stream, turn, kGatherStream, order), settings_.cache,
+                                    randomStream(stream, turn, kNearGatherStream, order), settings_.cache,
                                     settings_.cellWidth, statistics);
     if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
       const float cosine = cosineDensity(v, direction);

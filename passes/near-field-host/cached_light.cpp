@@ -1,4 +1,4 @@
-#include "passes/near-field/cached_light.h"
+#include "passes/near-field-host/cached_light.h"
 
 #include "framework/base/random.h"
 

@@ -1,0 +1,59 @@
+#include "passes/near-field-host/near_field_ports.h"
+
+#include <bit>
+
+#include "fovea/error.h"
+#include "passes/bundles.h"
+#include "passes/materials.h"
+
+namespace fovea::passes {
+
+using namespace graph;
+
+void declareNearField(PassDeclaration& d, Usage read, Usage write) {
+  d.input("change", changeBuffer(), read,
+          "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: share "
+          "of their history that samples have lost (pass eye-paths)")
+      .makeOptional();
+  d.output("samples",
+           image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)), write,
+           "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
+           "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
+           "surface, for pass temporal-accumulation");
+  d.output("spread", spreadBuffer(), write, "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
+  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
+  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
+  d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
+  d.parameter("share", real(50, 0.01, 1e6),
+              "total area of all discs, in squares of the mean distance between visible surfaces and the "
+              "surfaces seen from them, or of the diagonal of the scene where no surface sees another");
+  d.parameter(
+      "bounces", integer(2, 1, 64),
+      "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
+  d.parameter("first_samples", integer(16, 1, 1024),
+              "rays per sample after a camera cut, when there is no history to build on");
+  d.parameter("saccade_samples", integer(1, 1, 16),
+              "rays per sample in the fovea for 8 frames after a jump of the gaze, as the history of a new "
+              "fovea is that of wide blocks, and up to so many when light changes");
+  d.parameter(
+      "emitter_points", integer(4, 1, 64),
+      "points on surfaces that shine and in an environment map, of which the ray aimed at them chooses "
+      "one; for a map there are as many cosine-weighted ones beside them");
+  d.parameter("light", choice("all", {"none", "map", "all"}),
+              "`map` brings the light of the scene's environment map alone, `none` nothing");
+  declareMaterials(d, "`full` lets metals keep their colour");
+  d.counter("rays", "rays traced, including those towards lights");
+  d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
+  d.counter("gathered",
+            "those of them at whose ends light of further bounces was gathered rather than known");
+}
+
+void checkNearField(const Parameters& parameters, const std::string& pass) {
+  const auto spacing = uint32_t(parameters.integer("spacing"));
+  if (!std::has_single_bit(spacing))
+    throw Error(ExitCode::BadInput,
+                "pass `" + pass + "`: spacing " + std::to_string(spacing) + " is not a power of two",
+                "use 2, 4 or 8");
+}
+
+}  // namespace fovea::passes

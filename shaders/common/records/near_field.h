@@ -1,0 +1,53 @@
+// What passes near-field-host and near-field-device agree on, and what the latter keeps.
+#pragma once
+
+#include "shared.h"
+
+SHARED_BEGIN(fovea::passes)
+
+// Keep the random numbers of directions, of ranges, of what is gathered and of rays aimed at emitters apart.
+SHARED_CONSTANT uint kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kNearGatherStream = 0x6e656774u,
+                     kNearAimStream = 0x6e656169u;
+SHARED_CONSTANT uint kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
+
+SHARED_CONSTANT float kClose = 2.0f;  // an emitter closer than so many widths of a wide block splits it
+SHARED_CONSTANT float kSure =
+    4.0f;  // rays continue with a probability of this many times their share of the light
+SHARED_CONSTANT float kTileMiddleWeight =
+    3.0f;  // of the tile in the middle of a row of three; the others have 1
+
+SHARED_CONSTANT float kLengthKept = 0.875f;   // share of the mean ray length kept from frame to frame
+SHARED_CONSTANT float kNearCellWidth = 0.1f;  // width of the cache's cells, in mean ray lengths
+
+// Of the device, kept from frame to frame.
+struct NearFieldState {
+  float meanLength SHARED_ZERO;  // m, of the rays so far; 0 as long as none has met anything
+  float area SHARED_ZERO;        // of a VPL's disc, m^2; 0: only the length is found
+  float cellWidth SHARED_ZERO;   // of the cache's cells, m
+  float ageing SHARED_ZERO;      // n samples of the cache are worth n / (1 + n ageing)
+  uint foveaRays SHARED_ZERO;    // per sample in blocks of 2 x 2 pixels
+  // Sums over the rays of a frame: 1 and the length, each divided by the probability that the ray goes so far. Pairs of
+  // low and high words, in 2^-32.
+  uint hits SHARED_ZERO;
+  uint hitsHigh SHARED_ZERO;
+  uint metres SHARED_ZERO;
+  uint metresHigh SHARED_ZERO;
+  uint unused0 SHARED_ZERO;
+  uint unused1 SHARED_ZERO;
+  uint unused2 SHARED_ZERO;
+};
+SHARED_SIZE(NearFieldState, 48)
+
+// `spacing` x `spacing` pixels.
+struct NearFieldTile {
+  vec3 position SHARED_ZERO;  // of the surface from which the rays of a wide tile leave, world space, m
+  uint narrow SHARED_ZERO;    // 1: divided into blocks of 2 x 2 pixels
+  vec3 normal SHARED_ZERO;
+  uint there SHARED_ZERO;  // 1: there is such a surface
+};
+SHARED_SIZE(NearFieldTile, 32)
+
+SHARED_CONSTANT uint kWideItem =
+    0x80000000u;  // in an item, beside its texel: the sample is that of a wide tile
+
+SHARED_END

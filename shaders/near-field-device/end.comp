@@ -1,0 +1,14 @@
+// The mean length of rays over this frame and those before.
+#include "common/device/sums.glsl"
+#include "common/records/near_field.h"
+
+layout(local_size_x = 1) in;
+
+layout(std430) buffer StateBlock { NearFieldState value; } state;
+
+void main() {
+  float hits = sumOf(state.value.hits, state.value.hitsHigh);
+  if (!(hits > 0.0)) return;
+  float now = sumOf(state.value.metres, state.value.metresHigh) / hits;
+  state.value.meanLength = state.value.meanLength > 0.0 ? mix(now, state.value.meanLength, kLengthKept) : now;
+}

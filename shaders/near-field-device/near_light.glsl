@@ -1,0 +1,92 @@
+// Light from nearby surfaces at one point, as passes/near-field-host finds it. Define: RAY_PASSAGE 0/1
+// (common/rays/trace.glsl), MAP_ALONE 0/1, 1 if only the light of the environment map is found.
+#include "common/device/sums.glsl"
+#include "common/rays/gather_cache.glsl"
+#include "common/records/near_field.h"
+
+layout(std430) buffer StateBlock { NearFieldState value; } state;
+
+uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
+
+// The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted ray goes
+// so far.
+float discRadius2() { return state.value.area / kPi; }
+float partAt(float distance_) { return discRadius2() / (distance_ * distance_ + discRadius2()); }
+float probabilityAt(float distance_) { return min(kSure * partAt(distance_), 1.0); }
+
+// The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on surfaces
+// a cosine-weighted ray counts once, in the environment as much as all cosine-weighted points together.
+vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
+  if (!to.there) return vec3(0.0);
+  float cosine = cosineDensity(v, to.direction);
+  float cosineWeighted = to.triangle == kNoTriangle ? 2.0 : probabilityAt(to.distance_) / float(points);
+  return to.radiance * (cosine / (cosine * cosineWeighted + to.density));
+}
+
+// The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the light
+// that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR 2005). The
+// points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
+vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
+  float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
+  float choice = uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), sum = 0.0, own = 0.0;
+  EmitterRay chosen = kNoEmitterRay;
+  vec3 light = vec3(0.0);
+  for (uint i = 0u; i < (hasEnvironmentMap() ? 2u * points : points); ++i) {
+    vec2 u = streamSequence(hashCombine(stream, i + 2u), index);
+    EmitterRay to;
+    if (i < points) to = aimedRay(v, vec3((float(i) + place) / float(points), u));
+    else to = rayOutside(v, cosineDirection(v.normal, u));
+#if MAP_ALONE
+    if (to.triangle != kNoTriangle) continue;
+#endif
+    vec3 its = sharedLight(v, to, points) / float(points);
+    float part = its.r + its.g + its.b;
+    if (!(part > 0.0)) continue;
+    sum += part;
+    float chance = part / sum;
+    bool takes = choice < chance;
+    choice = takes ? choice / chance : (choice - chance) / (1.0 - chance);
+    if (!takes) continue;
+    chosen = to;
+    light = its;
+    own = part;
+  }
+  return own > 0.0 ? light * visibleShare(v, chosen) * (sum / own) : vec3(0.0);
+}
+
+// Irradiance / pi at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.
+vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint points) {
+  uvec2 group = block / 4u, place = block % 4u;
+  uint order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
+  uint stream = randomStream(frame.seed, group.x, kNearStream, group.y);
+  vec3 direction = cosineDirection(v.normal, streamSequence(stream, 16u * turn_ + order));
+  // Rays are traced only as far as they contribute: beyond that, a hit is worth no more than a miss.
+  float choice = max(uniformFloat(randomStream(stream, turn_, kChoiceStream, order)), 1e-6), radius2 = discRadius2();
+  float reach = radius2 > 0.0 ? sqrt(radius2 * (kSure / choice - 1.0)) : kFarAway;
+  vec3 light = vec3(0.0);
+  if (hasEmitters() && radius2 > 0.0) light = fromPoints(v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
+  if (dot(direction, v.face) <= 0.0) return light;
+  bool tracesOutside = hasEnvironmentMap() && radius2 > 0.0;
+  TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : reach);
+  if (tracesOutside && hit.triangle == kNoTriangle)
+    return light + hit.brighter * sharedLight(v, rayOutside(v, direction), points);
+#if MAP_ALONE
+  return light;
+#else
+  float distance_ = distance(hit.position, v.position);
+  if (!hit.there || (tracesOutside && distance_ > reach)) return light;
+  float probability = radius2 > 0.0 ? probabilityAt(distance_) : 1.0;
+  ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
+  ADD_TO_SUM(state.value.metres, state.value.metresHigh, distance_ / probability);
+  if (!(radius2 > 0.0)) return light;
+  ++shadedCount;
+  vec3 rho = reflectance(hit), shining = emitted(hit), radiance = directLight(hit, rho);
+  radiance += rho * gatheredLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order),
+                                  state.value.cellWidth, state.value.ageing);
+  if (shining != vec3(0.0)) {
+    float cosine = cosineDensity(v, direction);
+    light += shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit)));
+  }
+  return light + radiance * (partAt(distance_) / probability);
+#endif
+}

@@ -1,0 +1,56 @@
+// A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
+// (near_light.glsl).
+#include "common/same_surface.glsl"
+#include "near_light.glsl"
+#include "tiles.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
+layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
+layout(std430) readonly buffer ListedBlock { uint count; } listed;
+layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
+layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
+
+layout(push_constant) uniform Constants {
+  uint spacing;
+  uint bounces;
+  uint emitterPoints;
+  uint frameIndex;
+  uint part;   // number of this turn
+  uint parts;  // number of turns
+};
+
+TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
+  uvec2 pixel = corner + samplePixel(turn_, side, corner / side);
+  if (any(greaterThanEqual(pixel, viewSize()))) return kNothingTraced;
+  return look(ivec2(pixel));
+}
+
+void main() {
+  if (gl_GlobalInvocationID.x >= listed.count) return;
+  uint item = items.list[gl_GlobalInvocationID.x], index = item & ~kWideItem;
+  bool wide = item != index;
+  uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x), corner = 2u * texel;
+  uint side = wide ? spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;
+  uvec2 block = corner / side;
+  // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
+  TracedSurface at = seenIn(frameIndex, corner, side), v = at;
+  if (part > 0u) v = seenIn(frameIndex + part, corner, side);
+  if (!v.there || !onSamePlane(at.position, at.normal, v.position, v.normal)) v = at;
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; at.there && i < rays; ++i)
+    sum += nearLight(v, block, rays * (frameIndex + part) + i, bounces, emitterPoints);
+  sum /= float(rays * parts);
+
+  uvec2 inside = samplePixel(frameIndex, side, block);
+  uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
+  traced.list[index] = vec4(part > 0u ? traced.list[index].rgb + sum : sum, float(code));
+  if (wide && part == 0u) {
+    uint tile = corner.y / spacing * tileCount(spacing).x + corner.x / spacing;
+    tiles.list[tile] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));
+  }
+  atomicAdd(counters.rays, rayCount);
+  atomicAdd(counters.shaded, shadedCount);
+  atomicAdd(counters.gathered, gatherCount);
+}

@@ -1,0 +1,79 @@
+// Compares light from nearby surfaces that rays find on the device with what rays on the host find.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <string>
+
+#include "fovea/test.h"
+#include "framework/scene/frame.h"
+#include "tests/passes/scene_of_everything.h"
+
+namespace fovea::test {
+namespace {
+
+constexpr uint32_t kWidth = 63, kHeight = 45;  // neither fills its last tiles
+
+struct Result {
+  std::vector<glm::vec4> samples;
+  float area;
+  double rays, shaded, gathered;
+};
+
+Result run(const char* type, const char* materials, uint32_t frames) {
+  PassTest test(type);
+  test.viewSize(kWidth, kHeight).scene(sceneOfEverything());
+  test.param("materials", materials)
+      .param("spacing", 8)
+      .param("first_samples", 3)
+      .param("saccade_samples", 3);
+  test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
+  test.beforeFrame([](PassTest& t, scene::Frame& frame) {
+    if (frame.index == 2) t.buffer("change", std::vector<glm::vec4>{{0.1f, 0.5f, 0.6f, 0}}, "LightChange");
+    frame.views[0].gaze = {0.3f, 0.4f};
+  });
+  test.run(frames);
+  Result result{{},
+                test.values<glm::vec4>("spread")[0].x,
+                test.counter("rays"),
+                test.counter("shaded"),
+                test.counter("gathered")};
+  for (const uint64_t texel : test.values<uint64_t>("samples"))
+    result.samples.push_back(glm::unpackHalf4x16(texel));
+  return result;
+}
+
+// Both take the same random numbers, so that they differ by rounding alone; where rays meet glass, that decides whether
+// one passes.
+TEST(NearFieldBoth, FindTheSameLight) {
+  for (const std::string materials : {"diffuse", "full"})
+    for (const uint32_t frames : {1u, 4u}) {
+      const Result host = run("near-field-host", materials.c_str(), frames),
+                   device = run("near-field-device", materials.c_str(), frames);
+      ASSERT_EQ(host.samples.size(), device.samples.size());
+      int different = 0, lit = 0, wide = 0;
+      for (size_t i = 0; i < host.samples.size(); ++i) {
+        const glm::vec4 a = host.samples[i], b = device.samples[i];
+        EXPECT_EQ(a.a, b.a) << materials << " " << frames << " texel " << i;
+        lit += a.r > 0;
+        wide += (int(a.a) & 15) == 8;
+        different += !(glm::length(glm::vec3(a - b)) <= 0.01f * glm::length(glm::vec3(a)) + 1e-6f);
+      }
+      EXPECT_GT(lit, int(host.samples.size()) / 2);
+      EXPECT_GT(wide, int(host.samples.size()) / 4);
+      EXPECT_LT(wide, int(host.samples.size()) * 3 / 4);
+      EXPECT_LE(different, int(host.samples.size()) / 50) << materials << " " << frames;
+      const double tolerance = materials == "full" ? 0.03 : 1e-3;
+      EXPECT_NEAR(device.area, host.area, tolerance * host.area) << materials << " " << frames;
+      if (frames == 1)
+        continue;  // the host counts the last of the rays of a first frame, the device all of them
+      EXPECT_NEAR(device.shaded, host.shaded, tolerance * host.shaded + 1);
+      EXPECT_NEAR(device.gathered, host.gathered, tolerance * host.gathered + 1);
+      // On the device, a ray towards a light counts once, however many panes it passes.
+      EXPECT_LE(device.rays, 1.001 * host.rays);
+      EXPECT_GE(device.rays, 0.95 * host.rays);
+    }
+}
+
+}  // namespace
+}  // namespace fovea::test
