@@ -132,12 +132,12 @@ std::vector<MemberSpec> shadowMapMembers() {
   return {read(output, "depth", Usage::Sampled), read(output, "views", Usage::Uniform)};
 }
 
-std::vector<MemberSpec> eyePathOutput(const SizeExpr& points, const SizeExpr& paths) {
-  return {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), points), Usage::HostWrite),
-          member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), paths), Usage::HostWrite)};
+std::vector<MemberSpec> eyePathOutput(const SizeExpr& points, const SizeExpr& paths, Usage write) {
+  return {member("starts", buffer("ScreenPoint", sizeof(EyePathStart), points), write),
+          member("ends", buffer("EyePathEnd", sizeof(EyePathEnd), paths), write)};
 }
 std::vector<MemberSpec> eyePathMembers() {
-  return read(eyePathOutput(1, 1), {"starts", "ends"}, Usage::TexelRead);
+  return read(eyePathOutput(1, 1, Usage::None), {"starts", "ends"}, Usage::TexelRead);
 }
 
 std::vector<MemberSpec> shadeMaskOutput(const SizeExpr& width, const SizeExpr& height,

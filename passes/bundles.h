@@ -28,7 +28,7 @@ graph::ResourceSpec spreadBuffer();
 // x: share of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
 // Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history
 // of n samples is worth n / (1 + n s); z: how much was lost that way, from 0 to 1, and by a quarter less in each frame
-// after.
+// after; w: share by which the light as a whole has grown or shrunk.
 graph::ResourceSpec changeBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------
@@ -55,7 +55,8 @@ std::vector<graph::MemberSpec> shadowMapOutput(const graph::SizeExpr& size, cons
 std::vector<graph::MemberSpec> shadowMapMembers();
 
 // The bundle `eye-paths`: starts, ends.
-std::vector<graph::MemberSpec> eyePathOutput(const graph::SizeExpr& points, const graph::SizeExpr& paths);
+std::vector<graph::MemberSpec> eyePathOutput(const graph::SizeExpr& points, const graph::SizeExpr& paths,
+                                             graph::Usage write);
 std::vector<graph::MemberSpec> eyePathMembers();
 
 // The bundle `shade-mask`: mask, blocks, dispatch. blocks: number of blocks of the image.

@@ -15,6 +15,7 @@
 #include "passes/near-field-host/cached_light.h"
 #include "passes/same_plane.h"
 #include "shaders/common/records/near_field.h"
+#include "shaders/common/records/rays.h"
 
 namespace fovea::passes {
 namespace {

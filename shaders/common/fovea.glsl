@@ -54,4 +54,28 @@ ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
   return clamp(ivec2(position), ivec2(0), imageSize - 1);
 }
 
+const uint kPointsStream = 0x77656967u;
+
+vec2 sequencePoint(uint i) {
+  return vec2(uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u));
+}
+
+// The pixel of fixed point i of `points` in a region: the R2 sequence (Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018) over the box of the region, by rejection as in regionSample. Point i takes points i,
+// i + points, i + 2 points and so on of the sequence until one lies inside.
+ivec2 screenPoint(uint region, uint imageShare64ths, uint i, uint points, Fovea fovea, ivec2 size) {
+  uint number, part = regionOf(region, imageShare64ths, i, number);
+  vec2 high = vec2(size);
+  if (part == kRegionImage) return clamp(ivec2(high * sequencePoint(number)), ivec2(0), size - 1);
+  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));
+  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));
+  vec2 boxLow = max(vec2(0.0), fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);
+  if (dot(off, off) < fovea.radius * fovea.radius)
+    for (uint k = 0u; k < kRegionTries; ++k) {
+      vec2 position = mix(boxLow, boxHigh, sequencePoint(number + k * points)), d = position - fovea.centre;
+      if (dot(d, d) <= fovea.radius * fovea.radius) return clamp(ivec2(position), ivec2(0), size - 1);
+    }
+  return regionSample(part, fovea, size, randomStream(0u, 0u, kPointsStream, number));
+}
+
 #endif

@@ -26,7 +26,7 @@ bool isCloseToEmitter(uvec2 corner) {
 #else
   if (emitterCount() == 0u) return false;
   ivec2 middle = min(ivec2(corner + spacing / 2u), ivec2(viewSize()) - 1);
-  TracedSurface v = look(middle);
+  TracedSurface v = look(vec2(middle) + 0.5);
   if (!v.there || emitted(v) != vec3(0.0)) return false;
   float angle = distance(normalize(pixelRay(middle + ivec2(1, 0))), normalize(pixelRay(middle)));
   return isEmitterWithin(v.position, kClose * float(spacing) * angle * distance(v.position, view.eye));

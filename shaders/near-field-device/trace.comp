@@ -24,7 +24,7 @@ layout(push_constant) uniform Constants {
 TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
   uvec2 pixel = corner + samplePixel(turn_, side, corner / side);
   if (any(greaterThanEqual(pixel, viewSize()))) return kNothingTraced;
-  return look(ivec2(pixel));
+  return look(vec2(pixel) + 0.5);
 }
 
 void main() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "fovea/test.h"
 #include "framework/scene/frame.h"
@@ -14,6 +15,11 @@ namespace fovea::test {
 namespace {
 
 using passes::EyePathEnd;
+
+// Rays on the host and on the device.
+class EyePathsChange : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, EyePathsChange, testing::Values("eye-paths-host", "eye-paths-device"),
+                         [](const auto& test) { return std::string(test.param).substr(10); });
 
 scene::Scene litRoom() {
   scene::Scene s;
@@ -29,7 +35,7 @@ scene::Scene litRoom() {
 // says of the change.
 struct AfterChange {
   AfterChange(uint32_t frames, float factor) {
-    PassTest test("eye-paths");
+    PassTest test(EyePathsChange::GetParam());
     test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
     test.viewSize(32, 32).scene(litRoom());
     test.beforeFrame([factor](PassTest&, scene::Frame& f) {
@@ -54,7 +60,7 @@ struct AfterChange {
 };
 
 // In each frame a share of the points notices that light has become weaker by 1%, and few of the others.
-TEST(EyePathsChange, PathsAreTracedInTurns) {
+TEST_P(EyePathsChange, PathsAreTracedInTurns) {
   const AfterChange before(3, 1);
   EXPECT_EQ(before.change, glm::vec4(0));
   EXPECT_LT(before.rays, 100 + 125 * 10);
@@ -71,7 +77,7 @@ TEST(EyePathsChange, PathsAreTracedInTurns) {
 }
 
 // Twice as large a share of the other paths is traced at once as the light has changed by.
-TEST(EyePathsChange, ChangedLightIsFoundAtOnce) {
+TEST_P(EyePathsChange, ChangedLightIsFoundAtOnce) {
   const AfterChange before(3, 1);
   for (const float factor : {0.0f, 0.7f, 1.1f, 2.0f}) {
     const AfterChange after(4, factor);
@@ -84,26 +90,26 @@ TEST(EyePathsChange, ChangedLightIsFoundAtOnce) {
   EXPECT_EQ(glm::vec2(next), glm::vec2(0)) << "it has changed before";
 }
 
-// x, y and z of `change` and the counter `drift` after so many frames, of which frame i has the lights that `light`
+// The output `change` after so many frames, of which frame i has the lights that `light`
 // makes of those of the scene.
 template <class Function>
 glm::vec4 changeAfter(uint32_t frames, const scene::Scene& scene, const Function& light, int points = 1000) {
-  PassTest test("eye-paths");
+  PassTest test(EyePathsChange::GetParam());
   test.param("paths", 4000).param("points", points).param("renew_frames", 1000);
   test.viewSize(64, 64).scene(scene);
   test.beforeFrame([&](PassTest&, scene::Frame& f) { light(f.lights, uint32_t(f.index)); });
   test.run(frames);
-  return {glm::vec3(test.values<glm::vec4>("change")[0]), test.counter("drift")};
+  return test.values<glm::vec4>("change")[0];
 }
 
 // Light that comes to one place and goes from another: the paths find as much of the light of one lamp as of the other,
 // and in the frames 3 to 6 one becomes weaker and the other brighter by a tenth, and in frame 8 by half. Only what
 // exceeds the changes of the frames before counts, of which a quarter is forgotten in frame 7.
-TEST(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
+TEST_P(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
   scene::Scene lamps = litRoom();
   lamps.lights = {pointLight({-0.8f, 0, 0.5f}, {5, 5, 5}), pointLight({0.8f, 0, 0.5f}, {5, 5, 5})};
   const auto lightOf = [&](size_t lamp) {
-    PassTest test("eye-paths");
+    PassTest test(EyePathsChange::GetParam());
     test.param("paths", 4000).param("points", 1000).viewSize(64, 64).scene(lamps);
     test.beforeFrame([lamp](PassTest&, scene::Frame& f) { f.lights[1 - lamp].color = glm::vec3(0); });
     test.run(1);
@@ -130,7 +136,7 @@ TEST(EyePathsChange, LightThatMovesSteadilyAgesNothing) {
 }
 
 // A single point may change by chance, so it says nothing of the light as a whole.
-TEST(EyePathsChange, OnePointIsNoDrift) {
+TEST_P(EyePathsChange, OnePointIsNoDrift) {
   const auto fading = [](std::vector<scene::Light>& lights, uint32_t frame) {
     for (scene::Light& light : lights) light.color *= std::pow(0.9f, float(frame));
   };
@@ -142,7 +148,7 @@ TEST(EyePathsChange, OnePointIsNoDrift) {
 }
 
 // Light that goes everywhere ages what is remembered in every frame, not just in the first one.
-TEST(EyePathsChange, LightThatGoesOneWayAges) {
+TEST_P(EyePathsChange, LightThatGoesOneWayAges) {
   const auto fading = [](std::vector<scene::Light>& lights, uint32_t frame) {  // then it is halved
     for (scene::Light& light : lights)
       light.color *= std::pow(0.9f, float(std::clamp(int(frame) - 2, 0, 4))) * (frame < 8 ? 1.0f : 0.5f);
@@ -163,9 +169,9 @@ TEST(EyePathsChange, LightThatGoesOneWayAges) {
 }
 
 // What changes all the time has hardly any paths traced out of turn.
-TEST(EyePathsChange, SteadyChangesCostLittle) {
+TEST_P(EyePathsChange, SteadyChangesCostLittle) {
   const auto rays = [](float perFrame) {
-    PassTest test("eye-paths");
+    PassTest test(EyePathsChange::GetParam());
     test.param("paths", 500).param("points", 100).param("renew_frames", 1000).param("trace_frames", 4);
     test.viewSize(32, 32).scene(litRoom());
     test.beforeFrame([perFrame](PassTest&, scene::Frame& f) {
@@ -179,7 +185,7 @@ TEST(EyePathsChange, SteadyChangesCostLittle) {
 }
 
 // Starts on a wall that comes slowly nearer, and turns, stay on it: from inside of it their paths would lose their light.
-TEST(EyePathsChange, SlowSurfacesKeepTheirStarts) {
+TEST_P(EyePathsChange, SlowSurfacesKeepTheirStarts) {
   scene::Scene s = litRoom();
   scene::Mover mover;
   mover.node = uint32_t(s.nodes.size());
@@ -189,7 +195,7 @@ TEST(EyePathsChange, SlowSurfacesKeepTheirStarts) {
   addQuad(s, white, {-1.9f, -1.9f, -1.5f}, {3.8f, 0, 0}, {0, 3.8f, 0});
   s.nodes[mover.node].dynamic = true;
   s.movers = {mover};
-  PassTest test("eye-paths");
+  PassTest test(EyePathsChange::GetParam());
   test.param("paths", 2000).param("points", 500).param("renew_frames", 1000).viewSize(32, 32).scene(s);
   test.run(1);
   const double ends = test.counter("ends");
@@ -202,8 +208,8 @@ TEST(EyePathsChange, SlowSurfacesKeepTheirStarts) {
 }
 
 // What the eye sees anew by looking elsewhere has not changed.
-TEST(EyePathsChange, OtherStartsAreNoChange) {
-  PassTest test("eye-paths");
+TEST_P(EyePathsChange, OtherStartsAreNoChange) {
+  PassTest test(EyePathsChange::GetParam());
   test.param("paths", 500).param("points", 100).viewSize(32, 32).scene(litRoom());
   test.beforeFrame([](PassTest&, scene::Frame& f) { f.views[0].gaze.x = f.index < 3 ? 0.5f : 0.12f; });
   test.run(4);
@@ -212,8 +218,8 @@ TEST(EyePathsChange, OtherStartsAreNoChange) {
 
 // Nor does a camera that walks past starts that stay change what their paths find, though it moves the origins of their
 // rays by as little as keeps these off the surface.
-TEST(EyePathsChange, AWalkingEyeIsNoChange) {
-  PassTest test("eye-paths");
+TEST_P(EyePathsChange, AWalkingEyeIsNoChange) {
+  PassTest test(EyePathsChange::GetParam());
   test.param("paths", 500).param("points", 100).param("stray", 0.25).viewSize(32, 32).scene(litRoom());
   test.beforeFrame([](PassTest&, scene::Frame& f) {
     scene::Camera camera;

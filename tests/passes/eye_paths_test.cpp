@@ -6,7 +6,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
-#include "passes/eye-paths/eye_path_tracer.h"
+#include "passes/eye-paths-host/eye_path_tracer.h"
 #include "tests/passes/vpl_intensity_reference.h"
 #include "tests/support/path_reference.h"
 
@@ -255,7 +255,7 @@ TEST(EyePaths, NothingToFind) {
   const EyePathEnd none;
   for (const EyePathEnd& e : Look(std::move(s)).trace({}, 256))
     EXPECT_EQ(std::memcmp(&e, &none, sizeof e), 0);
-  PassTest empty("eye-paths");
+  PassTest empty("eye-paths-host");
   empty.param("paths", 64);
   empty.viewSize(8, 8);
   empty.run();
@@ -267,7 +267,7 @@ TEST(EyePaths, NothingToFind) {
 // The pass returns what the tracer finds, for its own gaze.
 TEST(EyePaths, PassEqualsTheTracer) {
   const Look look(litRoom(true), {32, 32});
-  PassTest test("eye-paths");
+  PassTest test("eye-paths-host");
   test.param("paths", 512).param("points", 128).param("region", "mixed").param("gathered", 3);
   test.param("image_share", 0.25);
   test.viewSize(32, 32).scene(look.scene);
@@ -296,7 +296,7 @@ TEST(EyePaths, StartsMoveOnInTurns) {
   std::vector<EyePathEnd> after(500);
   passes::traceEyePaths(frame, frame.views[0], *look.rays, settings, {starts, after});
   for (uint32_t moved = 0; moved <= 4; ++moved) {
-    PassTest test("eye-paths");
+    PassTest test("eye-paths-host");
     test.param("paths", 500).param("points", 100).param("renew_frames", 4).param("fovea_radius", 0.1);
     test.viewSize(32, 32).scene(look.scene);
     test.beforeFrame([](PassTest&, scene::Frame& f) {
@@ -369,7 +369,7 @@ TEST(EyePaths, StartsStayUntilTheyStray) {
 TEST(EyePaths, StartsHurryAfterASaccade) {
   const Look look(litRoom(true), {32, 32});
   const auto ends = [&](uint32_t renewFrames, float saccade) {
-    PassTest test("eye-paths");
+    PassTest test("eye-paths-host");
     test.param("paths", 256).param("points", 64).param("renew_frames", int(renewFrames));
     test.param("saccade_renew_frames", 2).viewSize(32, 32).scene(look.scene);
     test.beforeFrame([saccade](PassTest&, scene::Frame& f) {
@@ -389,7 +389,7 @@ TEST(EyePaths, StartsHurryAfterASaccade) {
 TEST(EyePaths, ACutMovesAllStarts) {
   const Look look(litRoom(true), {32, 32});
   const auto ends = [&](uint32_t renewFrames, bool cut) {
-    PassTest test("eye-paths");
+    PassTest test("eye-paths-host");
     test.param("paths", 256).param("points", 64).param("renew_frames", int(renewFrames));
     test.viewSize(32, 32).scene(look.scene);
     test.beforeFrame([cut](PassTest&, scene::Frame& f) {

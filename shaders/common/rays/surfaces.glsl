@@ -104,10 +104,10 @@ Ray beyond(Ray ray, RayHit hit) {
   return ray;
 }
 
-// The surface that the eye sees at a pixel. Where surfaces let a part of the light through, it is the one that pass
+// The surface that the eye sees at a point of the picture, pixels (centres at +0.5). Where surfaces let a part of the light through, it is the one that pass
 // gbuffer shows in this frame.
-TracedSurface look(ivec2 pixel) {
-  vec3 direction = normalize(pixelRay(pixel));
+TracedSurface look(vec2 at) {
+  vec3 direction = normalize(pixelRay(at));
   Ray ray = Ray(view.eye, direction, 0.0, kFarAway);
   uint key = hashCombine(frame.seed, kPassageStream);
   TracedSurface v;
@@ -118,7 +118,7 @@ TracedSurface look(ivec2 pixel) {
     v = surfaceOf(hit, direction);
     if (hit.triangle == kNoTriangle) break;
 #if RAY_PASSAGE
-    float chance = passageChance(hashCombine(key, hit.triangle), uvec2(pixel), frame.index);
+    float chance = passageChance(hashCombine(key, hit.triangle), uvec2(at), frame.index);
     if (v.there && !passesSurface(v, direction, chance)) break;
     if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
 #else

@@ -32,4 +32,46 @@ struct EyePathEnd {
 SHARED_SIZE(EyePathEnd, 48)
 SHARED_OFFSET(EyePathEnd, radiance, 32)
 
+// ---- What passes eye-paths-host and eye-paths-device agree on, and what the latter keeps ----
+
+// Keep the random numbers of paths and of what their ends gather apart.
+SHARED_CONSTANT uint kEyePathStream = 0x70617468u, kPathGatherStream = 0x67617468u;
+
+SHARED_CONSTANT float kSamePlace = 1e-3f;  // relative to the distance from the eye
+SHARED_CONSTANT float kSameFace = 0.9f;    // least cosine between the normals of one surface, a frame apart
+SHARED_CONSTANT float kStill = 0.25f;      // of a ray's epsilon: how far rounding may move a surface
+SHARED_CONSTANT uint kAimedShare = 4u;     // where surfaces emit, one of this many paths is aimed at them
+// Share of points traced out of turn, in shares of light that has changed.
+SHARED_CONSTANT float kOutOfTurn = 2.0f;
+// How much more the square of an error weighs that all pixels share than one of noise: what is left of light that is
+// gone is seen more.
+SHARED_CONSTANT float kBiasWeight = 16.0f;
+SHARED_CONSTANT float kRegained = 0.25f;   // share of what was lost that is regained in each frame
+SHARED_CONSTANT float kUsualKept = 0.75f;  // share of the usual change that is kept from frame to frame
+
+SHARED_CONSTANT float kChannelSum =
+    2147483648.0f;  // of the light of all ends in the brightest channel, in units
+
+// What the paths of a point do in a frame of the device.
+SHARED_CONSTANT uint kPathsAnew = 1u;  // they have another start than before
+SHARED_CONSTANT uint kPathsWait = 2u;  // it is not their turn
+
+// How much light a path finds now differs from what it found before.
+struct EyePathDifference {
+  float changed SHARED_ZERO;  // without its sign
+  float gained SHARED_ZERO;
+  float larger SHARED_ZERO;  // the larger of both
+  float unused SHARED_ZERO;
+};
+SHARED_SIZE(EyePathDifference, 16)
+
+// Kept on the device from frame to frame.
+struct EyePathMemory {
+  float usualChange SHARED_ZERO;  // largest change of the frames so far, forgotten in a few of them
+  float lost SHARED_ZERO;         // z of the output `change`
+  float outOfTurn SHARED_ZERO;    // share of the waiting points whose paths are traced all the same
+  float unused SHARED_ZERO;
+};
+SHARED_SIZE(EyePathMemory, 16)
+
 SHARED_END

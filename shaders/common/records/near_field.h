@@ -8,7 +8,6 @@ SHARED_BEGIN(fovea::passes)
 // Keep the random numbers of directions, of ranges, of what is gathered and of rays aimed at emitters apart.
 SHARED_CONSTANT uint kNearStream = 0x6e656172u, kChoiceStream = 0x6e656368u, kNearGatherStream = 0x6e656774u,
                      kNearAimStream = 0x6e656169u;
-SHARED_CONSTANT uint kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
 
 SHARED_CONSTANT float kClose = 2.0f;  // an emitter closer than so many widths of a wide block splits it
 SHARED_CONSTANT float kSure =

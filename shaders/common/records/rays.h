@@ -34,6 +34,8 @@ SHARED_CONSTANT float kLeastDirection = 1e-30f;  // of a component of a directio
 SHARED_CONSTANT float kShadowEnd = 0.9999f;      // rays towards lights end just before them
 SHARED_CONSTANT uint kMaxPanes = 64u;            // surfaces that light passes on its way
 
+SHARED_CONSTANT uint kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  // steps of sequences, in 2^-32
+
 // Keep the random numbers of rays that are aimed at emitters and of those that pass surfaces apart from others.
 SHARED_CONSTANT uint kAimedRayStream = 0x656d6974u, kPassedRayStream = 0x72617973u;
 

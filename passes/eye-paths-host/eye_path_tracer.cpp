@@ -1,4 +1,4 @@
-#include "passes/eye-paths/eye_path_tracer.h"
+#include "passes/eye-paths-host/eye_path_tracer.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,20 +12,14 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
+#include "shaders/common/records/rays.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace scene;
 
-constexpr uint32_t kPathStream = 0x70617468u, kGatherStream = 0x67617468u;  // random streams
 constexpr uint32_t kPointsAtOnce = 16;  // points that a thread takes at a time
-constexpr float kSamePlace = 1e-3f;     // relative to the distance from the eye
-constexpr float kSameFace = 0.9f;       // least cosine between the normals of one surface, a frame apart
-constexpr float kStill = 0.25f;         // of a ray's epsilon: how far rounding may move a surface
-constexpr uint32_t kAimedShare = 4;     // where surfaces emit, one of this many paths is aimed at them
-constexpr double kOutOfTurn = 2;  // share of points traced out of turn, in shares of light that has changed
-constexpr uint32_t kGoldenRatio = 2654435769u;  // step of a sequence, in 2^-32
 
 float meanChannel(glm::vec3 colour) { return (colour.r + colour.g + colour.b) / 3; }
 
@@ -132,7 +126,7 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   from.normal = start.normal;
   from.face = start.face;
   from.origin = start.position + (start.face - glm::normalize(start.position - view_.eye)) * rays_.epsilon();
-  const uint32_t stream = randomStream(seed_, 0, kPathStream, point);
+  const uint32_t stream = randomStream(seed_, 0, kEyePathStream, point);
   const bool shines = !surfaces_.emitters().empty() && settings_.emission;
   const uint32_t aimed = shines ? paths / kAimedShare : 0, others = paths - aimed;
   const bool isAimed = turn >= others;
@@ -150,8 +144,9 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   end.kind = meanChannel(emitted) > meanChannel(end.radiance) ? 3.0f
              : end.radiance == glm::vec3(0)                   ? 1.0f
                                                               : 2.0f;
-  const glm::vec3 gathered = rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
-                                                    randomStream(seed_, turn, kGatherStream, point), rays);
+  const glm::vec3 gathered =
+      rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
+                             randomStream(seed_, turn, kPathGatherStream, point), rays);
   if (surfaces_.hasEmitters() && end.kind < 3 && meanChannel(gathered) > meanChannel(end.radiance))
     end.kind = 4;
   end.radiance += emitted + gathered;
@@ -184,7 +179,7 @@ Difference Tracer::tracePaths(const EyePathLists& lists, uint32_t point, uint64_
 float sumUnit(std::span<const EyePathEnd> ends) {
   glm::dvec3 sum(0);
   for (const EyePathEnd& e : ends) sum += glm::dvec3(e.radiance) * double(e.weight);
-  return float(std::max({sum.r, sum.g, sum.b}) / 2147483648.0);
+  return float(std::max({sum.r, sum.g, sum.b}) / double(kChannelSum));
 }
 
 EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayScene& rays,
@@ -227,7 +222,7 @@ EyePathStatistics traceEyePaths(const Frame& frame, const View& view, const RayS
   const Difference sum = std::accumulate(differences.begin(), differences.end(), Difference{});
   statistics.change = sum.share();
   statistics.drift = driftOf(differences, sum);
-  if (const double share = kOutOfTurn * (statistics.change - settings.usualChange); share > 0)
+  if (const double share = double(kOutOfTurn) * (statistics.change - settings.usualChange); share > 0)
     forPoints([&](uint32_t point, uint64_t& count) {
       if (waits[point] && uniformFloat(point * kGoldenRatio) < share) tracer.tracePaths(lists, point, count);
     });

@@ -1,5 +1,6 @@
 // Eye paths traced through the triangles; they measure the light that the VPLs stand for.
-#include "passes/eye-paths/eye_path_tracer.h"
+#include "passes/eye-paths-host/eye_path_ports.h"
+#include "passes/eye-paths-host/eye_path_tracer.h"
 
 #include <algorithm>
 #include <vector>
@@ -15,60 +16,15 @@ namespace {
 
 using namespace graph;
 
-// How much more the square of an error weighs that all pixels share than one of noise: what is left of light that is
-// gone is seen more.
-constexpr float kBiasWeight = 16;
-constexpr float kRegained = 0.25f;   // share of what was lost that is regained in each frame
-constexpr float kUsualKept = 0.75f;  // share of the usual change that is kept from frame to frame
-
-class EyePaths : public Pass {
+class EyePathsHost : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("eye-paths",
+    PassDeclaration d("eye-paths-host",
                       "diffuse paths from fixed screen points of the region, one bounce each, and the light "
-                      "leaving the surfaces where they end",
+                      "leaving the surfaces where they end, found with rays on the CPU",
                       PassKind::Host);
     d.view();
-    d.output("paths", "eye-paths", eyePathOutput(parameter("points"), parameter("paths")),
-             "what the screen points show, where their paths end and the light found there; the paths of one "
-             "point are `points` entries apart");
-    d.output(
-        "change", changeBuffer(), Usage::HostWrite,
-        "x: share c of the light found by the paths traced again that differs from what they found before, "
-        "in [0, 1]; y: s = 16 j^2, after which a history of n samples is worth n / (1 + n s), j being the "
-        "part of c that exceeds the changes in the frames before, or the share by which the light as a "
-        "whole has grown or shrunk if that is more; z: s / (1 + s), the share that is lost, and a quarter "
-        "less in each frame after");
-    d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
-                "region in which the eye paths start, as in pass candidates");
-    d.parameter("image_share", real(0.4, 0, 1),
-                "share of starts in the whole image for region `mixed`, rounded to 64ths");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("points", integer(1024, 1, 65536),
-                "number of screen points, the same as in pass vpl-intensity");
-    d.parameter("paths", integer(8192, 64, 65536), "number of eye paths");
-    d.parameter("bounces", integer(2, 1, 64),
-                "reflections of the light before it reaches the visible surface: 1 is direct light at the "
-                "ends, 2 matches a path tracer of depth 4");
-    d.parameter(
-        "emission", flag(true),
-        "whether the ends show the light that surfaces emit themselves; pass near-field brings it from "
-        "there straight to what is seen");
-    d.parameter("gathered", integer(2, 1, 256),
-                "rays from each end that gather the second of these reflections");
-    d.parameter("renew_frames", integer(1, 1, 1000),
-                "frames in which all paths get new starts, a share of the points in each frame; the others "
-                "keep theirs, so that the effect of a gaze jump comes in gradually");
-    d.parameter("saccade_renew_frames", integer(0, 0, 1000),
-                "in place of `renew_frames` for 8 frames after a jump of the gaze; 0 means no other");
-    d.parameter("stray", real(0, 0, 1, "image widths"),
-                "how far a start may be on screen from its place; a closer one that the eye still sees is "
-                "kept, with the light it found, when it is due for renewal");
-    d.parameter("trace_frames", integer(1, 1, 1000),
-                "frames in which all paths are traced anew, those of a share of the points in each frame; "
-                "the others keep the light they found unless their start is new; of them, twice as large a "
-                "share is traced all the same as the light of the former has changed suddenly");
-    declareMaterials(d, "`full` lets metals keep their colour");
+    declareEyePaths(d, Usage::HostWrite, Lifetime::Transient);
     d.counter("rays", "rays traced, including those towards lights");
     d.counter("ends", "paths that hit a surface");
     d.counter("change", "share of the light that has changed, in [0, 1]");
@@ -127,7 +83,7 @@ class EyePaths : public Pass {
                 ageing = kBiasWeight * unfollowed * unfollowed;
     usualChange_ = std::max(change, kUsualKept * usualChange_);
     lost_ = std::max(ageing / (1 + ageing), lost_ - kRegained);
-    return {change, ageing, lost_, 0};
+    return {change, ageing, lost_, float(statistics.drift)};
   }
 
   std::vector<EyePathStart> starts_;  // as last written to the output
@@ -136,7 +92,7 @@ class EyePaths : public Pass {
   float usualChange_ = 0;  // largest change of the frames so far, forgotten in a few of them
 };
 
-FOVEA_PASS(EyePaths);
+FOVEA_PASS(EyePathsHost);
 
 }  // namespace
 }  // namespace fovea::passes
