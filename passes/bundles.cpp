@@ -156,8 +156,8 @@ std::vector<MemberSpec> shadeMaskMembers() {
   return {read(output, "mask", Usage::StorageRead), read(output, "blocks", Usage::TexelRead),
           read(output, "dispatch", Usage::TexelRead | Usage::Indirect)};
 }
-std::vector<MemberSpec> shadeMaskOnHost() {
-  return read(shadeMaskOutput(1, 1, 1), {"mask"}, Usage::HostRead);
+std::vector<MemberSpec> shadeMaskAlone(Usage usage) {
+  return read(shadeMaskOutput(1, 1, 1), {"mask"}, usage);
 }
 
 }  // namespace fovea::passes

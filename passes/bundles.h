@@ -63,7 +63,6 @@ std::vector<graph::MemberSpec> eyePathMembers();
 std::vector<graph::MemberSpec> shadeMaskOutput(const graph::SizeExpr& width, const graph::SizeExpr& height,
                                                const graph::SizeExpr& blocks);
 std::vector<graph::MemberSpec> shadeMaskMembers();
-// The mask alone, for a pass on the CPU.
-std::vector<graph::MemberSpec> shadeMaskOnHost();
+std::vector<graph::MemberSpec> shadeMaskAlone(graph::Usage usage);
 
 }  // namespace fovea::passes

@@ -1,16 +1,19 @@
 // Light from nearby surfaces at one point, as passes/near-field-host finds it. Define: RAY_PASSAGE 0/1
 // (common/rays/trace.glsl), MAP_ALONE 0/1, 1 if only the light of the environment map is found.
-#include "common/device/sums.glsl"
-#include "common/rays/gather_cache.glsl"
+#include "common/rays/surfaces.glsl"
 #include "common/records/near_field.h"
 
-layout(std430) buffer StateBlock { NearFieldState value; } state;
+// Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of the
+// length of a ray and how probable that was, and the mean radiance that reaches a surface after `bounces` reflections.
+float discArea();
+void noteLength(float distance_, float probability);
+vec3 furtherLight(TracedSurface v, uint bounces, uint stream);
 
 uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
 
 // The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted ray goes
 // so far.
-float discRadius2() { return state.value.area / kPi; }
+float discRadius2() { return discArea() / kPi; }
 float partAt(float distance_) { return discRadius2() / (distance_ * distance_ + discRadius2()); }
 float probabilityAt(float distance_) { return min(kSure * partAt(distance_), 1.0); }
 
@@ -76,13 +79,11 @@ vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint poin
   float distance_ = distance(hit.position, v.position);
   if (!hit.there || (tracesOutside && distance_ > reach)) return light;
   float probability = radius2 > 0.0 ? probabilityAt(distance_) : 1.0;
-  ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
-  ADD_TO_SUM(state.value.metres, state.value.metresHigh, distance_ / probability);
+  noteLength(distance_, probability);
   if (!(radius2 > 0.0)) return light;
   ++shadedCount;
   vec3 rho = reflectance(hit), shining = emitted(hit), radiance = directLight(hit, rho);
-  radiance += rho * gatheredLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order),
-                                  state.value.cellWidth, state.value.ageing);
+  radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
   if (shining != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);
     light += shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit)));

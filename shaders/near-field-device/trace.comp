@@ -1,11 +1,14 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
 // (near_light.glsl).
+#include "common/device/sums.glsl"
+#include "common/rays/gather_cache.glsl"
 #include "common/same_surface.glsl"
 #include "near_light.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
 
+layout(std430) buffer StateBlock { NearFieldState value; } state;
 layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
 layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
 layout(std430) readonly buffer ListedBlock { uint count; } listed;
@@ -20,6 +23,15 @@ layout(push_constant) uniform Constants {
   uint part;   // number of this turn
   uint parts;  // number of turns
 };
+
+float discArea() { return state.value.area; }
+void noteLength(float distance_, float probability) {
+  ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
+  ADD_TO_SUM(state.value.metres, state.value.metresHigh, distance_ / probability);
+}
+vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
+  return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);
+}
 
 TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
   uvec2 pixel = corner + samplePixel(turn_, side, corner / side);

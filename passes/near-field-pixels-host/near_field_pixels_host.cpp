@@ -1,44 +1,30 @@
 // Light from nearby surfaces at the few pixels that are shaded anew, which have no history to build on.
 #include <algorithm>
 #include <glm/gtc/packing.hpp>
-#include <string>
 #include <vector>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field-pixels-host/near_field_pixels_ports.h"
 
 namespace fovea::passes {
 namespace {
 
 using namespace graph;
 
-class NearFieldPixels : public Pass {
+class NearFieldPixelsHost : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d(
-        "near-field-pixels",
+        "near-field-pixels-host",
         "light from nearby surfaces, as in pass near-field, at those pixels of a mask where it is "
-        "not known, complete after one frame",
+        "not known, complete after one frame, found with rays on the CPU",
         PassKind::Host);
-    d.view();
-    d.input("shade", "shade-mask", shadeMaskOnHost(), "pixels whose light must be known");
-    d.input("spread", spreadBuffer(), Usage::HostRead,
-            "x: least area of a VPL's disc, m^2, from pass near-field");
-    d.inout("near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::HostRead | Usage::HostWrite,
-            "rgb: irradiance / pi, W/(sr m^2); a: 0 where it is not known; becomes 1 where a pixel of "
-            "`shade` got "
-            "rays");
-    d.parameter("samples", integer(1, 1, 1024), "rays per pixel; 4 x 4 pixels distribute theirs evenly");
-    d.parameter(
-        "bounces", integer(2, 1, 64),
-        "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
-    declareMaterials(d, "`full` lets metals keep their colour");
-    d.counter("rays", "rays traced, including those towards lights");
-    d.counter("pixels", "pixels that got rays");
+    declareNearFieldPixels(d, shadeMaskAlone(Usage::HostRead), Usage::HostRead,
+                           Usage::HostRead | Usage::HostWrite);
     return d;
   }
 
@@ -47,8 +33,7 @@ class NearFieldPixels : public Pass {
     const Parameters& p = ctx.parameters();
     const auto mask = ctx.inputAs<uint8_t>("shade.mask");
     const auto image = ctx.outputAs<uint64_t>("near_field");
-    checkSize(ctx, "shade.mask");
-    checkSize(ctx, "near_field");
+    checkNearFieldPixels(ctx, "near-field-pixels-host", ctx.view().size);
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
     pixels_.clear();
     const uint32_t width = ctx.view().size.x;
@@ -77,17 +62,6 @@ class NearFieldPixels : public Pass {
   }
 
  private:
-  static void checkSize(const HostContext& ctx, const std::string& port) {
-    const VkExtent3D extent = ctx.extent(port);
-    const glm::uvec2 size = ctx.view().size;
-    if (size == glm::uvec2(extent.width, extent.height)) return;
-    throw Error(ExitCode::BadInput,
-                "pass `near-field-pixels`: `" + port + "` has " + std::to_string(extent.width) + "x" +
-                    std::to_string(extent.height) + " pixels, its view " + std::to_string(size.x) + "x" +
-                    std::to_string(size.y),
-                "wire images of the view that the pass looks through");
-  }
-
   static float luminanceOf(glm::vec4 light) {
     return glm::dot(glm::vec3(light), {0.2126f, 0.7152f, 0.0722f});
   }
@@ -116,7 +90,7 @@ class NearFieldPixels : public Pass {
   std::vector<glm::vec2> most_;  // the two largest luminances of each block; -1 if it has none
 };
 
-FOVEA_PASS(NearFieldPixels);
+FOVEA_PASS(NearFieldPixelsHost);
 
 }  // namespace
 }  // namespace fovea::passes
