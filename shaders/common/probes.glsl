@@ -1,4 +1,4 @@
-// How probes are laid out in space and in their images. passes/probe-rays/probe_field.cpp has the same in C++.
+// How probes are laid out in space and in their images. passes/probe-rays-host/probe_field.cpp has the same in C++.
 #ifndef FOVEA_PROBES_GLSL
 #define FOVEA_PROBES_GLSL
 
@@ -9,6 +9,11 @@ int probesOf(ProbeGrid grid) { return int(grid.columns * grid.rows * grid.layers
 
 int probeAt(ProbeGrid grid, ivec3 cell) {
   return cell.x + int(grid.columns) * (cell.y + int(grid.rows) * cell.z);
+}
+
+ivec3 probeCell(ProbeGrid grid, int probe) {
+  int columns = int(grid.columns), rows = int(grid.rows);
+  return ivec3(probe % columns, probe / columns % rows, probe / columns / rows);
 }
 
 float probeReach(ProbeGrid grid) { return kProbeReach * sqrt(3.0) * grid.spacing; }

@@ -10,6 +10,11 @@
 namespace fovea::test {
 namespace {
 
+// Rays on the host and on the device.
+class GiSamples : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, GiSamples, testing::Values("gi-samples-host", "gi-samples-device"),
+                         [](const auto& test) { return std::string(test.param).substr(11); });
+
 constexpr glm::ivec2 kSize(29, 21);  // not whole blocks
 
 struct Samples {
@@ -20,11 +25,11 @@ struct Samples {
 Samples samplesOf(const scene::Scene& scene, glm::ivec2 size, int depth, int spacing = 1, uint32_t frames = 1,
                   int paths = 1) {
   Samples result;
-  for (uint32_t n = 1; n <= frames; ++n) {
-    PassTest test("gi-samples");
-    test.viewSize(uint32_t(size.x), uint32_t(size.y)).scene(scene);
-    test.param("depth", depth).param("spacing", spacing).param("paths", paths);
-    test.run(n);
+  PassTest test(GiSamples::GetParam());
+  test.viewSize(uint32_t(size.x), uint32_t(size.y)).scene(scene);
+  test.param("depth", depth).param("spacing", spacing).param("paths", paths);
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    test.run();
     result.frames.push_back(test.values<Reservoir>("reservoirs"));
     result.rays = test.counter("rays");
     result.samples = test.counter("samples");
@@ -59,14 +64,14 @@ scene::Scene roomWithLamp(glm::vec3 lamp, glm::vec3 candela) {
 }
 
 // Without surfaces that shine, a sample is where a cosine-weighted ray ends, with the direct light that leaves there.
-TEST(GiSamples, EqualsARayAndDirectLight) {
+TEST_P(GiSamples, EqualsARayAndDirectLight) {
   const glm::vec3 lamp(1.2f, 1.1f, -0.4f), candela(3, 5, 8);
   const scene::Scene s = roomWithLamp(lamp, candela);
   const Room room = lookInto(s, 8, kSize);
   const GBuffer seen = gbufferOf(room);
   const Samples samples = samplesOf(room.scene, kSize, 3);
   double cosines = 0;
-  int lit = 0, dark = 0;
+  int lit = 0, dark = 0, edges = 0;
   for (size_t i = 0; i < room.pixels.size(); ++i) {
     SCOPED_TRACE(i);
     const Reservoir& r = samples.frames[0][i];
@@ -80,7 +85,10 @@ TEST(GiSamples, EqualsARayAndDirectLight) {
     const double cosine = glm::dot(glm::normalize(y - x), n);
     cosines += cosine;
     ++lit;
-    EXPECT_NEAR(r.weight * cosine, glm::pi<double>(), 1e-3 * glm::pi<double>());
+    if (std::abs(r.weight * cosine / glm::pi<double>() - 1) > 1e-3) {
+      ++edges;
+      continue;
+    }
     const RayHit hit = castRay(room.scene, room.geometry, x + 1e-4 * n, glm::normalize(y - x));
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit.t, glm::distance(x, y), 2e-3);
@@ -95,6 +103,8 @@ TEST(GiSamples, EqualsARayAndDirectLight) {
       EXPECT_NEAR(r.radiance[c], want, 2e-3 * want + 1e-6);
     }
   }
+  // Where two walls meet in the middle of a pixel, the device may see the other one.
+  EXPECT_LE(edges, GiSamples::GetParam() == std::string("gi-samples-host") ? 0 : 1);
   EXPECT_NEAR(cosines / lit, 2.0 / 3, 0.03);  // about five standard errors
   EXPECT_GT(lit, 400);
   EXPECT_GT(dark, 20);
@@ -102,7 +112,7 @@ TEST(GiSamples, EqualsARayAndDirectLight) {
 }
 
 // Walls that emit e and reflect half of what they get send e (1 + 1/2 + 1/4 ...), a term for each edge from the second on.
-TEST(GiSamples, FurnaceOfWallsThatShine) {
+TEST_P(GiSamples, FurnaceOfWallsThatShine) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f)), walls[6] = {m, m, m, m, m, m};
   s.materials[m].emission = {2, 2, 2};
@@ -116,7 +126,7 @@ TEST(GiSamples, FurnaceOfWallsThatShine) {
 }
 
 // Of a small lamp near the wall, a cosine-weighted ray would make spots, and rays aimed at it alone would at its foot.
-TEST(GiSamples, LampIsReachedInBothWays) {
+TEST_P(GiSamples, LampIsReachedInBothWays) {
   scene::Scene s;
   const uint32_t black = addMaterial(s, glm::vec3(0)), lamp = addMaterial(s, glm::vec3(0));
   const uint32_t walls[6] = {black, black, black, black, black, black};
@@ -152,7 +162,7 @@ TEST(GiSamples, LampIsReachedInBothWays) {
 }
 
 // The sample chosen among four paths stands for the same light, with less variance.
-TEST(GiSamples, OneOfSeveralPathsIsChosen) {
+TEST_P(GiSamples, OneOfSeveralPathsIsChosen) {
   const Room room = lookInto(roomWithLamp({1.2f, 1.1f, -0.4f}, {3, 5, 8}), 8, {48, 48});
   const GBuffer seen = gbufferOf(room);
   const auto light = [&](const Samples& samples) {  // mean and mean of the square
@@ -174,7 +184,7 @@ TEST(GiSamples, OneOfSeveralPathsIsChosen) {
   EXPECT_LT(four.y - four.x * four.x, 0.6 * (one.y - one.x * one.x));
 }
 
-TEST(GiSamples, SkyIsADistantPoint) {
+TEST_P(GiSamples, SkyIsADistantPoint) {
   scene::Scene s;
   addMaterial(s, glm::vec3(0.5f));
   addQuad(s, 0, {-9, -1, -20}, {0, 0, 19.9f}, {18, 0, 0});  // a floor
@@ -183,6 +193,8 @@ TEST(GiSamples, SkyIsADistantPoint) {
   const double expected = irradianceFrom(*room.scene.environmentMap, {0, 1, 0}).r / glm::pi<double>();
   const Samples samples = samplesOf(room.scene, room.size, 4, 1, 4);
   EXPECT_NEAR(ratio(room, samples, [&](const Seen&) { return expected; }), 1, 0.03);
+  // On the device the map is in half floats, and angles are approximate.
+  const float tolerance = GiSamples::GetParam() == std::string("gi-samples-host") ? 1e-2f : 6e-2f;
   int found = 0;
   for (size_t i = 0; i < room.pixels.size(); ++i) {
     const Reservoir& r = samples.frames[0][i];
@@ -191,14 +203,14 @@ TEST(GiSamples, SkyIsADistantPoint) {
     ++found;
     const glm::vec3 direction = glm::normalize(r.position - room.pixels[i].position);
     EXPECT_LT(glm::distance(r.radiance, room.scene.environmentMap->radiance(direction)),
-              1e-2f * (1 + glm::length(r.radiance)))
+              tolerance * (1 + glm::length(r.radiance)))
         << i;
     EXPECT_LT(glm::distance(r.normal, -direction), 1e-5f) << i;
   }
   EXPECT_GT(found, 500);
 }
 
-TEST(GiSamples, BlocksTakeTurns) {
+TEST_P(GiSamples, BlocksTakeTurns) {
   const Room room = closedRoom(true, 8, kSize);
   const Samples samples = samplesOf(room.scene, kSize, 3, 2, 4);
   std::vector<int> turns(room.pixels.size());
@@ -213,12 +225,12 @@ TEST(GiSamples, BlocksTakeTurns) {
 }
 
 // Inside a fovea of a quarter of the width every pixel gets a sample in every frame, outside one of four in turn.
-TEST(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
+TEST_P(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   const Room room = closedRoom(true, 8, kSize);
   const glm::vec2 gaze(0.6f, 0.35f);
   std::vector<int> turns(room.pixels.size());
   for (uint32_t n = 1; n <= 4; ++n) {
-    PassTest test("gi-samples");
+    PassTest test(GiSamples::GetParam());
     test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
     test.param("depth", 3).param("outside_spacing", 2).param("fovea_radius", 0.25);
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
@@ -236,8 +248,8 @@ TEST(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   EXPECT_NEAR(inside, glm::pi<double>() * 7.25 * 7.25, 8);
 }
 
-TEST(GiSamples, EmptySceneHasNone) {
-  PassTest test("gi-samples");
+TEST_P(GiSamples, EmptySceneHasNone) {
+  PassTest test(GiSamples::GetParam());
   test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y));
   test.run();
   for (const Reservoir& r : test.values<Reservoir>("reservoirs")) {

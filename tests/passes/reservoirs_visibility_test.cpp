@@ -9,6 +9,12 @@
 namespace fovea::test {
 namespace {
 
+// Rays on the host and on the device.
+class ReservoirsVisibility : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Tracers, ReservoirsVisibility,
+                         testing::Values("reservoirs-visibility-host", "reservoirs-visibility-device"),
+                         [](const auto& test) { return std::string(test.param).substr(22); });
+
 constexpr glm::ivec2 kSize(27, 18);
 constexpr int kSources = 3;
 
@@ -82,11 +88,11 @@ Sees seesPoint(const Room& room, const SurfacePixel& from, const Reservoir& r) {
 // previous: whether sources on things that move see what the pixel sees.
 void expectPlainRays(bool previous) {
   const Input in;
-  PassTest test("reservoirs-visibility");
+  PassTest test(ReservoirsVisibility::GetParam());
   test.param("previous", previous);
   in.wire(test);
   test.run();
-  const auto visibility = test.values<uint32_t>("visibility");
+  const auto visibility = test.values<uint32_t>("seen");
   int seen = 0, hidden = 0, grazing = 0, nobody = 0;
   for (size_t i = 0; i < visibility.size(); ++i)
     for (size_t k = 0; k < kSources; ++k) {
@@ -117,24 +123,24 @@ void expectPlainRays(bool previous) {
   EXPECT_GT(test.counter("hidden"), 0);
 }
 
-TEST(ReservoirsVisibility, EqualsPlainRays) { expectPlainRays(false); }
-TEST(ReservoirsVisibility, SourcesThatMovedSeeTheSample) { expectPlainRays(true); }
+TEST_P(ReservoirsVisibility, EqualsPlainRays) { expectPlainRays(false); }
+TEST_P(ReservoirsVisibility, SourcesThatMovedSeeTheSample) { expectPlainRays(true); }
 
-TEST(ReservoirsVisibility, RefusesSourcesOfAnotherSize) {
+TEST_P(ReservoirsVisibility, RefusesSourcesOfAnotherSize) {
   Input in;
   in.sources.resize(in.sources.size() - size_t(kSize.y));
-  PassTest test("reservoirs-visibility");
+  PassTest test(ReservoirsVisibility::GetParam());
   in.wire(test, uint32_t(kSources * kSize.x - 1));
   EXPECT_THROW(test.run(), Error);
 }
 
-TEST(ReservoirsVisibility, NobodySeesAnythingInAnEmptyScene) {
+TEST_P(ReservoirsVisibility, NobodySeesAnythingInAnEmptyScene) {
   Input in;
   in.room.scene = {};
-  PassTest test("reservoirs-visibility");
+  PassTest test(ReservoirsVisibility::GetParam());
   in.wire(test);
   test.run();
-  for (const uint32_t bits : test.values<uint32_t>("visibility")) EXPECT_EQ(bits, 0u);
+  for (const uint32_t bits : test.values<uint32_t>("seen")) EXPECT_EQ(bits, 0u);
 }
 
 }  // namespace

@@ -45,5 +45,7 @@ SHARED_CONSTANT float kProbeReach = 1.5f;
 SHARED_CONSTANT float kSettling = 3.0f;
 // A probe that is inside geometry traces every fourth of its rays, to find out when it no longer is.
 SHARED_CONSTANT uint kInsideShare = 4u;
+// Keep the random numbers of directions and of rays towards emitters apart from others.
+SHARED_CONSTANT uint kProbeTurnStream = 0x70726f62u, kProbeEmitterStream = 0x70726f65u;
 
 SHARED_END

@@ -23,4 +23,11 @@ struct Reservoir {
 SHARED_SIZE(Reservoir, 48)
 SHARED_OFFSET(Reservoir, normal, 32)
 
+// Keep the random numbers of rays, of the choice among them, of what they are aimed at and of what is gathered apart.
+SHARED_CONSTANT uint kGiSampleStream = 0x67697361u, kGiChoiceStream = 0x67696368u, kGiAimStream = 0x67696169u,
+                     kGiGatherStream = 0x67696774u;
+SHARED_CONSTANT float kSky = 1e6f;                 // distance of the points that stand for the environment, m
+SHARED_CONSTANT uint kMostSources = 16u;           // whose samples a pixel may share
+SHARED_CONSTANT float kReservoirRayEnd = 0.9999f;  // rays end just before the sample
+
 SHARED_END

@@ -12,6 +12,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
+#include "passes/gi-samples-host/gi_samples_ports.h"
 #include "passes/materials.h"
 #include "passes/near-field-host/near_field_tracer.h"
 #include "shaders/common/records/reservoir.h"
@@ -20,10 +21,6 @@ namespace fovea::passes {
 namespace {
 
 using namespace graph;
-
-constexpr uint32_t kSampleStream = 0x67697361u, kChoiceStream = 0x67696368u, kAimStream = 0x67696169u,
-                   kGatherStream = 0x67696774u;
-constexpr float kSky = 1e6f;  // distance of the points that stand for the environment, m
 
 // Where surfaces shine, or the environment does, each path has a second ray that is aimed at them. One of all rays of a
 // pixel is chosen by resampling, weighted by the balance heuristic (Veach and Guibas 1995).
@@ -40,14 +37,14 @@ class Sampler {
   Reservoir sampleAt(glm::uvec2 pixel, uint64_t& rays) const {
     const scene::TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, rays);
     if (!v.there) return {};
-    const uint32_t stream = randomStream(seed_, pixel.x, kSampleStream, pixel.y);
-    Choice choice{WeightedChoice(uniformFloat(randomStream(stream, turn_, kChoiceStream, 0)))};
+    const uint32_t stream = randomStream(seed_, pixel.x, kGiSampleStream, pixel.y);
+    Choice choice{WeightedChoice(uniformFloat(randomStream(stream, turn_, kGiChoiceStream, 0)))};
     for (uint32_t path = turn_ * paths_; path < (turn_ + 1) * paths_; ++path) {
-      const uint32_t gatherStream = randomStream(stream, path, kGatherStream, 0);
+      const uint32_t gatherStream = randomStream(stream, path, kGiGatherStream, 0);
       const glm::vec3 bounce = scene::cosineDirection(v.normal, scene::streamSequence(stream, path));
       consider(choice, v, bounce, nullptr, gatherStream, rays);
       if (!surfaces_.hasEmitters()) continue;
-      const auto aim = surfaces_.towardsEmitter(v, randomStream(stream, path, kAimStream, 0));
+      const auto aim = surfaces_.towardsEmitter(v, randomStream(stream, path, kGiAimStream, 0));
       if (aim.there) consider(choice, v, aim.direction, &aim, hashCombine(gatherStream, 1), rays);
     }
     choice.sample.count = 1;
@@ -101,27 +98,14 @@ class Sampler {
   uint32_t seed_, depth_, paths_, turn_;
 };
 
-class GiSamples : public Pass {
+class GiSamplesHost : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("gi-samples",
+    PassDeclaration d("gi-samples-host",
                       "one sample of the indirect light of each pixel: a ray, what it meets, and the light "
-                      "that leaves from there",
+                      "that leaves from there; on the CPU",
                       PassKind::Host);
-    d.view();
-    d.output("reservoirs", buffer("Reservoir", sizeof(Reservoir), viewWidth() * viewHeight()),
-             Usage::HostWrite, "the sample of each pixel, row after row; all zeros where there is none");
-    d.parameter("depth", integer(4, 3, 64),
-                "edges of the longest path from a light to the eye, as in pass path-trace");
-    d.parameter("spacing", integer(1, 1, 2),
-                "1: every pixel gets a sample; 2: in each frame one of each block of 2 x 2 pixels, in turn");
-    d.parameter("outside_spacing", integer(1, 1, 2),
-                "spacing outside of the fovea; `spacing` if that is larger");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-    d.parameter("paths", integer(1, 1, 64), "paths that are traced for a sample, of which one is chosen");
-    declareMaterials(d, "`full` lets metals keep their colour");
-    d.counter("rays", "rays traced, including those from the eye and towards lights");
-    d.counter("samples", "pixels that show a surface and got a sample");
+    declareGiSamples(d, Usage::HostWrite);
     return d;
   }
 
@@ -161,7 +145,7 @@ class GiSamples : public Pass {
   }
 };
 
-FOVEA_PASS(GiSamples);
+FOVEA_PASS(GiSamplesHost);
 
 }  // namespace
 }  // namespace fovea::passes

@@ -7,7 +7,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "passes/probe-rays/probe_field.h"
+#include "passes/probe-rays-host/probe_field.h"
 
 namespace fovea::passes {
 

@@ -1,4 +1,4 @@
-#include "passes/probe-rays/probe_tracer.h"
+#include "passes/probe-rays-host/probe_tracer.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,6 @@ namespace {
 
 using namespace scene;
 
-constexpr uint32_t kTurnStream = 0x70726f62u, kEmitterStream = 0x70726f65u;
 constexpr uint32_t kProbesAtOnce = 8;  // probes that a thread takes at a time
 
 // A uniformly distributed rotation (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
@@ -35,7 +34,7 @@ class Tracer {
       : surfaces_(frame, view, rays, settings.fullMaterials),
         field_(settings.grid, settings.previous, settings.bias),
         feedback_(settings.feedback),
-        stream_(randomStream(frame.seed, uint32_t(frame.index), kEmitterStream, 0)) {}
+        stream_(randomStream(frame.seed, uint32_t(frame.index), kProbeEmitterStream, 0)) {}
 
   // What ray `index` of all finds.
   glm::vec4 hitOf(glm::vec3 origin, glm::vec3 direction, uint32_t index, uint64_t& rays) const {
@@ -98,7 +97,7 @@ class InFovea {
 }  // namespace
 
 void probeDirections(uint32_t seed, uint32_t frame, std::span<glm::vec4> directions) {
-  const glm::mat3 turn = randomRotation(randomStream(seed, frame, kTurnStream, 0));
+  const glm::mat3 turn = randomRotation(randomStream(seed, frame, kProbeTurnStream, 0));
   const double golden = glm::golden_ratio<double>() - 1;
   for (size_t i = 0; i < directions.size(); ++i) {
     const double z = 1 - (2 * double(i) + 1) / double(directions.size()), r = std::sqrt(1 - z * z),

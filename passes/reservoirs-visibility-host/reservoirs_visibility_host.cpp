@@ -5,14 +5,13 @@
 #include <glm/gtc/packing.hpp>
 #include <string>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/base/threads.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/visibility.h"
 #include "framework/shader_twins/octahedral.h"
-#include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/reservoirs-visibility-host/reservoirs_visibility_ports.h"
 #include "shaders/common/records/reservoir.h"
 
 namespace fovea::passes {
@@ -21,8 +20,6 @@ namespace {
 using namespace graph;
 
 constexpr uint32_t kNone = 0xffffffffu;  // in place of a pixel: none
-constexpr uint32_t kMostSources = 16;
-constexpr float kRayEnd = 0.9999f;  // rays end just before the sample
 
 // What pixels show, and their reservoirs.
 struct Pixels {
@@ -43,45 +40,24 @@ struct Pixels {
   }
 };
 
-class ReservoirsVisibility : public Pass {
+class ReservoirsVisibilityHost : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("reservoirs-visibility",
-                      "rays to the samples of indirect light that pixels are about to share (ReSTIR GI)",
-                      PassKind::Host);
-    d.view();
-    d.input("gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"position", "face", "id"}),
-            "surfaces seen by the eye");
-    d.input("other_gbuffer", "gbuffer", gbufferMembers(Usage::HostRead, {"position", "face"}),
-            "surfaces of the sources: `gbuffer`, or that of the previous frame");
-    const ResourceSpec reservoirs = buffer("Reservoir", sizeof(Reservoir));
-    d.input("own", reservoirs, Usage::HostRead, "reservoir of each pixel, row after row");
-    d.input("others", reservoirs, Usage::HostRead, "reservoirs of the pixels of `other_gbuffer`");
-    d.input("sources", image2D(VK_FORMAT_R32_UINT), Usage::HostRead,
-            "x | y << 16: pixels of `others` that share their samples, for each pixel one or more side by "
-            "side, at most 16; 0xffffffff for none");
-    d.output("visibility",
-             image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
-             Usage::HostWrite,
-             "two bits for each source k; 2 k: the pixel sees the sample of the source, 2 k + 1: the source "
-             "sees that of the pixel");
-    d.parameter(
-        "previous", flag(false),
-        "whether the sources are of the previous frame. Those on things that move are then taken to see "
-        "what the pixel sees: where they were, something else may be by now, and rays from there would end "
-        "at once");
-    declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
-    d.counter("rays", "rays traced towards samples");
-    d.counter("hidden", "rays that did not reach their sample");
+    PassDeclaration d(
+        "reservoirs-visibility-host",
+        "rays to the samples of indirect light that pixels are about to share (ReSTIR GI), on the CPU",
+        PassKind::Host);
+    declareReservoirsVisibility(d, Usage::HostRead, Usage::HostRead, Usage::HostWrite);
     return d;
   }
 
+  void prepare(PrepareContext& ctx) override { checkReservoirsVisibility(ctx, "reservoirs-visibility-host"); }
+
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
-    const auto visibility = ctx.outputAs<uint32_t>("visibility");
+    const auto visibility = ctx.outputAs<uint32_t>("seen");
     std::ranges::fill(visibility, 0u);
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
-    checkSizes(ctx);
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(ctx.parameters()));
     const Pixels own(ctx, "gbuffer", "own"), others(ctx, "other_gbuffer", "others");
     const auto sources = ctx.inputAs<uint32_t>("sources");
@@ -116,23 +92,6 @@ class ReservoirsVisibility : public Pass {
   }
 
  private:
-  static void checkSizes(const HostContext& ctx) {
-    const VkExtent3D size = ctx.extent("gbuffer.position"), other = ctx.extent("other_gbuffer.position"),
-                     sources = ctx.extent("sources");
-    const uint64_t pixels = uint64_t(size.width) * size.height;
-    if (other.width == size.width && other.height == size.height && sources.height == size.height &&
-        sources.width % size.width == 0 && sources.width <= kMostSources * size.width &&
-        ctx.count("own") == pixels && ctx.count("others") == pixels)
-      return;
-    const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
-    throw Error(ExitCode::BadInput,
-                "pass `reservoirs-visibility`: `gbuffer` has " + text(size) + " pixels, `other_gbuffer` " +
-                    text(other) + " and `sources` " + text(sources) + ", with " +
-                    std::to_string(ctx.count("own")) + " and " + std::to_string(ctx.count("others")) +
-                    " reservoirs",
-                "wire what belongs to one view, with at most 16 sources for each pixel");
-  }
-
   static bool reaches(const scene::Frame& frame, const scene::RayScene& rays, glm::vec3 eye,
                       const Pixels& pixels, size_t pixel, const Reservoir& r, uint64_t& count) {
     const glm::vec3 position(pixels.position[pixel]), face = pixels.faceAt(pixel);
@@ -140,11 +99,11 @@ class ReservoirsVisibility : public Pass {
       return false;
     const glm::vec3 origin = position + (face - glm::normalize(position - eye)) * rays.epsilon();
     const glm::vec3 to = r.position + r.normal * rays.epsilon() - origin;
-    return scene::visibility(frame, rays, {origin, to, 0, kRayEnd}, count) != glm::vec3(0);
+    return scene::visibility(frame, rays, {origin, to, 0, kReservoirRayEnd}, count) != glm::vec3(0);
   }
 };
 
-FOVEA_PASS(ReservoirsVisibility);
+FOVEA_PASS(ReservoirsVisibilityHost);
 
 }  // namespace
 }  // namespace fovea::passes

@@ -1,4 +1,4 @@
-#include "passes/probe-rays/probe_field.h"
+#include "passes/probe-rays-host/probe_field.h"
 
 #include <algorithm>
 #include <cmath>
