@@ -1,5 +1,5 @@
-// The nodes of the tree of emitters from this frame's vertices, one per invocation. Each goes through all of its emitters,
-// which are few; their order in the tree stays.
+// The nodes of the tree of emitters from this frame's vertices, one per invocation. Each goes through all of its
+// emitters, which are few; their order in the tree stays.
 #include "common/records/emitters.h"
 
 layout(local_size_x = 64) in;

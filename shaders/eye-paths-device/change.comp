@@ -23,10 +23,11 @@ void main() {
   if (gl_LocalInvocationID.x != 0u) return;
   // Also 0 where there is no light, or none that is a number.
   float share = sum.x / sum.z, changed = share > 0.0 ? min(share, 1.0) : 0.0;
-  float driftShare = sqrt(max(sum.y * sum.y - sum.w, 0.0)) / sum.z, drift = driftShare > 0.0 ? min(driftShare, 1.0) : 0.0;
+  float oneWay = sqrt(max(sum.y * sum.y - sum.w, 0.0)) / sum.z, drift = oneWay > 0.0 ? min(oneWay, 1.0) : 0.0;
   // Running means are made for what moves all the time, so only what is sudden or goes one way ages them.
   EyePathMemory kept = memory.value;
-  float sudden = changed - kept.usualChange, unfollowed = max(sudden, drift), ageing = kBiasWeight * unfollowed * unfollowed;
+  float sudden = changed - kept.usualChange, unfollowed = max(sudden, drift);
+  float ageing = kBiasWeight * unfollowed * unfollowed;
   memory.value.outOfTurn = kOutOfTurn * sudden;
   memory.value.usualChange = max(changed, kUsualKept * kept.usualChange);
   memory.value.lost = max(ageing / (1.0 + ageing), kept.lost - kRegained);

@@ -1,6 +1,6 @@
 // Where the paths end whose turn it is, and the light found there, as passes/eye-paths-host finds them. Defines:
-// RAY_PASSAGE 0/1 (common/rays/trace.glsl); EMISSION 0/1, whether the ends show the light that surfaces emit themselves;
-// LATE 0/1, 1 for those paths whose turn it is not, but which are traced as light has changed.
+// RAY_PASSAGE 0/1 (common/rays/trace.glsl); EMISSION 0/1, whether the ends show the light that surfaces emit
+// themselves; LATE 0/1, 1 for those paths whose turn it is not, but which are traced as light has changed.
 #include "common/rays/surfaces.glsl"
 #include "common/records/eye_paths.h"
 

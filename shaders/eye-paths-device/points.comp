@@ -42,8 +42,8 @@ bool belongs(EyePathStart start, vec2 pixel) {
   return v.there && distance(v.position, start.position) <= reach;
 }
 
-// Whether the surface (or the background) is still where the start was found, as objects may have moved. The start follows
-// one that moves or turns slowly: paths from below it would meet its inside.
+// Whether the surface (or the background) is still where the start was found, as objects may have moved. The start
+// follows one that moves or turns slowly: paths from below it would meet its inside.
 bool stands(inout EyePathStart start) {
   if (start.there == 0.0) return true;
   float reach = 4.0 * rayEpsilon();

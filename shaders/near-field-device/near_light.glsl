@@ -3,22 +3,23 @@
 #include "common/rays/surfaces.glsl"
 #include "common/records/near_field.h"
 
-// Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of the
-// length of a ray and how probable that was, and the mean radiance that reaches a surface after `bounces` reflections.
+// Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of
+// the length of a ray and how probable that was, and the mean radiance that reaches a surface after `bounces`
+// reflections.
 float discArea();
 void noteLength(float distance_, float probability);
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream);
 
 uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
 
-// The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted ray goes
-// so far.
+// The part of the light from this distance that discs leave out, and the probability with which a cosine-weighted ray
+// goes so far.
 float discRadius2() { return discArea() / kPi; }
 float partAt(float distance_) { return discRadius2() / (distance_ * distance_ + discRadius2()); }
 float probabilityAt(float distance_) { return min(kSure * partAt(distance_), 1.0); }
 
-// The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on surfaces
-// a cosine-weighted ray counts once, in the environment as much as all cosine-weighted points together.
+// The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on
+// surfaces a cosine-weighted ray counts once, in the environment as much as all cosine-weighted points together.
 vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
   if (!to.there) return vec3(0.0);
   float cosine = cosineDensity(v, to.direction);
@@ -26,9 +27,9 @@ vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
   return to.radiance * (cosine / (cosine * cosineWeighted + to.density));
 }
 
-// The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the light
-// that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR 2005). The
-// points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
+// The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the
+// light that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR
+// 2005). The points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
 vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
   float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
   float choice = uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), sum = 0.0, own = 0.0;
@@ -67,7 +68,8 @@ vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint poin
   float choice = max(uniformFloat(randomStream(stream, turn_, kChoiceStream, order)), 1e-6), radius2 = discRadius2();
   float reach = radius2 > 0.0 ? sqrt(radius2 * (kSure / choice - 1.0)) : kFarAway;
   vec3 light = vec3(0.0);
-  if (hasEmitters() && radius2 > 0.0) light = fromPoints(v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
+  if (hasEmitters() && radius2 > 0.0)
+    light = fromPoints(v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
   if (dot(direction, v.face) <= 0.0) return light;
   bool tracesOutside = hasEnvironmentMap() && radius2 > 0.0;
   TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : reach);

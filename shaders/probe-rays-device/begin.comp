@@ -1,5 +1,5 @@
-// Where the probes of this frame lie and which directions their rays take: the same as probeGrid() and probeDirections()
-// of passes/probe-rays-host.
+// Where the probes of this frame lie and which directions their rays take: the same as probeGrid() and
+// probeDirections() of passes/probe-rays-host.
 #include "common/random.glsl"
 #include "common/records/probes.h"
 #include "common/scene.glsl"
@@ -45,7 +45,8 @@ void main() {
     raysGrid.value = grid;
     counters.probes = grid.columns * grid.rows * grid.layers;
   }
-  float z = 1.0 - (2.0 * float(i) + 1.0) / float(rays), r = sqrt(1.0 - z * z), phi = 2.0 * kPi * fract(float(i) * kGolden);
+  float z = 1.0 - (2.0 * float(i) + 1.0) / float(rays), r = sqrt(1.0 - z * z);
+  float phi = 2.0 * kPi * fract(float(i) * kGolden);
   mat3 turn_ = randomRotation(randomStream(frame.seed, frame.index, kProbeTurnStream, 0u));
   raysDirections.list[i] = vec4(turn_ * vec3(r * cos(phi), r * sin(phi), z), 0.0);
 }

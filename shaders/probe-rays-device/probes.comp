@@ -18,8 +18,8 @@ layout(push_constant) uniform Constants {
 
 const int kRim = 64;  // directions around the fovea
 
-// Whether a probe lights points that the eye may see in the fovea: those less than a cell away from its own cell's centre,
-// and the bias off their surface.
+// Whether a probe lights points that the eye may see in the fovea: those less than a cell away from its own cell's
+// centre, and the bias off their surface.
 bool isInFovea(vec3 centre, float spacing) {
   float reach = (sqrt(3.0) + bias) * spacing;
   vec3 to = centre - view.eye;
@@ -44,7 +44,8 @@ void main() {
   shares.list[probe] = 0u;
   if (probe >= probesOf(grid) || frame.triangleCount == 0u) return;  // of an empty scene nothing is known
   bool inside = loadProbe(probesStates, probe).inside > 0.0;
-  bool outside = outsideShare > 1u && !isInFovea(grid.origin + grid.spacing * vec3(probeCell(grid, probe)), grid.spacing);
+  vec3 centre = grid.origin + grid.spacing * vec3(probeCell(grid, probe));
+  bool outside = outsideShare > 1u && !isInFovea(centre, grid.spacing);
   shares.list[probe] = max(inside ? kInsideShare : 1u, outside ? outsideShare : 1u);
   if (inside) atomicAdd(counters.inside, 1u);
 }

@@ -16,8 +16,9 @@ layout(push_constant) uniform Constants {
   uint frameIndex;
 };
 
-// An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a: the
-// distance of what sends it. out_: to the eye, in the frame `axes` of the mirror's normal; stream: of random numbers.
+// An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
+// the distance of what sends it. out_: to the eye, in the frame `axes` of the mirror's normal; stream: of random
+// numbers.
 vec4 underLobe(Mirror m, mat3 axes, vec3 out_, vec2 u, uint stream) {
   vec3 h = sampleVisibleNormal(out_, m.alpha, u), in_ = 2.0 * dot(out_, h) * h - out_, direction = toWorld(axes, in_);
   if (in_.z <= 0.0 || dot(m.face, direction) <= 0.0) return vec4(0.0);

@@ -1,5 +1,5 @@
-// Direct light anew at the pixels in doubt, with rays through the triangles. Defines: GLOSS 0/1 (direct/receiver.glsl) and
-// RAY_PASSAGE (common/rays/trace.glsl), 1 for full materials.
+// Direct light anew at the pixels in doubt, with rays through the triangles. Defines: GLOSS 0/1 (direct/receiver.glsl)
+// and RAY_PASSAGE (common/rays/trace.glsl), 1 for full materials.
 #include "common/rays/visibility.glsl"
 #include "direct/receiver.glsl"
 

@@ -149,8 +149,8 @@ uint placeOfEmitter(uint triangle) {
   return count;
 }
 
-// Density with which sampleEmitters() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does not
-// emit towards it.
+// Density with which sampleEmitters() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does
+// not emit towards it.
 float emitterDensity(uint triangle, Receiver r) {
   uvec2 range = uvec2(0u, emitterCount());
   uint place = placeOfEmitter(triangle);

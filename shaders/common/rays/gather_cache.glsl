@@ -1,8 +1,8 @@
-// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path space
-// filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a frame
-// become part of the cells at its end (mergeSamples()), so that it does not matter which of them comes first. Only where the
-// table is so full that a cell finds none of its places free do results depend on that. Needs RAY_PASSAGE
-// (common/rays/trace.glsl) and a port `cells` that is kept.
+// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path
+// space filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a
+// frame become part of the cells at its end (mergeSamples()), so that it does not matter which of them comes first.
+// Only where the table is so full that a cell finds none of its places free do results depend on that. Needs
+// RAY_PASSAGE (common/rays/trace.glsl) and a port `cells` that is kept.
 #ifndef FOVEA_RAYS_GATHER_CACHE_GLSL
 #define FOVEA_RAYS_GATHER_CACHE_GLSL
 
@@ -19,8 +19,8 @@ struct CellName {
   uint first;  // its places in the table follow this one
 };
 
-// The cell of a point on a surface; cells are about `width` metres wide, a power of two. jitter: in [-0.5, 0.5) for each
-// axis, by which the point is moved in widths of a cell, so that the borders of cells do not show. Sides that face
+// The cell of a point on a surface; cells are about `width` metres wide, a power of two. jitter: in [-0.5, 0.5) for
+// each axis, by which the point is moved in widths of a cell, so that the borders of cells do not show. Sides that face
 // different ways have different cells.
 CellName cellOf(vec3 position, vec3 normal, vec3 jitter, float width) {
   vec3 size = abs(normal);
@@ -41,8 +41,8 @@ uint findCell(CellName cell) {
   return kGatherCells;
 }
 
-// The same, where the cell gets a place if one is free. While samples are added, no place becomes free: invocations that
-// want the same cell at the same time agree on the first one.
+// The same, where the cell gets a place if one is free. While samples are added, no place becomes free: invocations
+// that want the same cell at the same time agree on the first one.
 uint claimCell(CellName cell) {
   uint found = findCell(cell);
   for (uint i = 0u; i < kGatherPlaces && found == kGatherCells; ++i) {
@@ -76,11 +76,11 @@ void mergeSamples(uint place, float ageing) {
                     sumOf(cell.blue, cell.blueHigh));
     cell.light = (cell.light * before + sum) / (before + now);
   }
-  uint idle = cell.samples > 0u ? 0u : cell.idle + 1u;
-  GatherCell merged = GatherCell(cell.light, min(before + now, kMostGathered), cell.key, idle, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
-                                 0u, 0u, 0u);
-  if (idle >= kMostIdle) merged.key = 0u, merged.weight = 0.0;
-  cells.list[place] = merged;
+  cell.idle = cell.samples > 0u ? 0u : cell.idle + 1u;
+  cell.weight = min(before + now, kMostGathered);
+  if (cell.idle >= kMostIdle) cell.key = 0u, cell.weight = 0.0;
+  cell.samples = cell.red = cell.redHigh = cell.green = cell.greenHigh = cell.blue = cell.blueHigh = 0u;
+  cells.list[place] = cell;
 }
 
 // The mean radiance that reaches v after at most `bounces` reflections, and from emissive surfaces. stream: of random

@@ -1,13 +1,13 @@
-// What a ray sees of a surface with full materials, as scene::SurfaceTracer::seen() finds it on the host. RAY_PASSAGE is 1
-// and SURFACE_TEXTURES defined (common/materials/full_material.glsl).
+// What a ray sees of a surface with full materials, as scene::SurfaceTracer::seen() finds it on the host. RAY_PASSAGE
+// is 1 and SURFACE_TEXTURES defined (common/materials/full_material.glsl).
 #ifndef FOVEA_RAYS_SEEN_SURFACE_GLSL
 #define FOVEA_RAYS_SEEN_SURFACE_GLSL
 
 #include "common/materials/full_material.glsl"
 #include "common/rays/surfaces.glsl"
 
-// Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after one
-// reflection.
+// Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after
+// one reflection.
 vec3 seenLight(TracedSurface v, vec3 out_) {
   uvec4 triangle = sceneTriangle(v.triangle);
   vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);

@@ -1,5 +1,5 @@
-// Single rays through the triangles and the light at what they meet, as scene::SurfaceTracer finds it on the host. Define:
-// RAY_PASSAGE 0/1 (common/rays/trace.glsl).
+// Single rays through the triangles and the light at what they meet, as scene::SurfaceTracer finds it on the host.
+// Define: RAY_PASSAGE 0/1 (common/rays/trace.glsl).
 #ifndef FOVEA_RAYS_SURFACES_GLSL
 #define FOVEA_RAYS_SURFACES_GLSL
 
@@ -19,8 +19,8 @@ struct TracedSurface {
   vec3 origin;    // start of rays that leave it, just off the surface
   vec3 normal, face;  // shading and geometric, unit, on the side reached
   vec2 uv;
-  // The factor on its light that makes up for the rays that glass has let through, and what glass before it makes of the
-  // light on its way along the ray; the latter alone if the ray met nothing.
+  // The factor on its light that makes up for the rays that glass has let through, and what glass before it makes of
+  // the light on its way along the ray; the latter alone if the ray met nothing.
   vec3 brighter;
 };
 
@@ -104,8 +104,8 @@ Ray beyond(Ray ray, RayHit hit) {
   return ray;
 }
 
-// The surface that the eye sees at a point of the picture, pixels (centres at +0.5). Where surfaces let a part of the light through, it is the one that pass
-// gbuffer shows in this frame.
+// The surface that the eye sees at a point of the picture, pixels (centres at +0.5). Where surfaces let a part of the
+// light through, it is the one that pass gbuffer shows in this frame.
 TracedSurface look(vec2 at) {
   vec3 direction = normalize(pixelRay(at));
   Ray ray = Ray(view.eye, direction, 0.0, kFarAway);
@@ -130,8 +130,8 @@ TracedSurface look(vec2 at) {
   return v;
 }
 
-// The surface met within `reach` metres. direction: unit. Where surfaces let a part of the light through, the ray passes
-// with the probability of the light that does.
+// The surface met within `reach` metres. direction: unit. Where surfaces let a part of the light through, the ray
+// passes with the probability of the light that does.
 TracedSurface arrive(vec3 origin, vec3 direction, float reach) {
   Ray ray = Ray(origin, direction, 0.0, reach);
 #if RAY_PASSAGE
@@ -256,9 +256,9 @@ vec3 fromEmitters(TracedSurface v, float count, uint stream) {
   return to.radiance * visibleShare(v, to) * (cosine / (to.density + count * cosine));
 }
 
-// Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light after at
-// most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further bounce, and
-// with one point on an emissive surface at each vertex.
+// Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light after
+// at most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further bounce,
+// and with one point on an emissive surface at each vertex.
 vec3 gather(TracedSurface v, uint bounces, uint count, uint stream) {
   vec3 sum = vec3(0.0);
   for (uint ray = 0u; ray < max(count, 1u); ++ray) {

@@ -1,6 +1,6 @@
-// Rays through the triangles of the scene, as RayScene traces them on the host (framework/scene/rays/ray_scene.h). A pass
-// whose shader includes this declares that it traces rays. Define: RAY_PASSAGE 0/1, 1 for full materials, where rays meet
-// alphaMode BLEND everywhere and who traces decides whether they go on.
+// Rays through the triangles of the scene, as RayScene traces them on the host (framework/scene/rays/ray_scene.h). A
+// pass whose shader includes this declares that it traces rays. Define: RAY_PASSAGE 0/1, 1 for full materials, where
+// rays meet alphaMode BLEND everywhere and who traces decides whether they go on.
 #ifndef FOVEA_RAYS_TRACE_GLSL
 #define FOVEA_RAYS_TRACE_GLSL
 
@@ -115,8 +115,8 @@ void meetLeaf(uint first, uint count, inout PreparedRay r, inout RayHit hit) {
 
 // ---- The tree ----------------------------------------------------------------------------------------------------
 
-// The nearest hit, or any if that suffices. Of two children whose boxes the ray enters, the nearer comes first. Nodes are
-// named by their first child; an empty tree has none, 0.
+// The nearest hit, or any if that suffices. Of two children whose boxes the ray enters, the nearer comes first. Nodes
+// are named by their first child; an empty tree has none, 0.
 RayHit trace(Ray ray, bool any) {
   PreparedRay r = prepare(ray);
   RayHit hit = RayHit(kNoTriangle, ray.far, vec2(0.0));

@@ -1,5 +1,5 @@
-// The cells in which passes remember the light that rays have gathered, on the host (passes/near-field-host/gather_cache.h)
-// and on the device (common/rays/gather_cache.glsl).
+// The cells in which passes remember the light that rays have gathered, on the host
+// (passes/near-field-host/gather_cache.h) and on the device (common/rays/gather_cache.glsl).
 #pragma once
 
 #include "shared.h"
