@@ -12,6 +12,11 @@
 
 namespace fovea::passes {
 
+// Documentation of a counter of passes that trace single rays.
+inline constexpr const char* kRaysDoc =
+    "rays traced, including those from the eye and towards lights; on the device, one towards a light counts "
+    "once however many panes it passes, and all rays of a first frame do";
+
 // ---- Buffers of records ----------------------------------------------------------------------------------------
 
 graph::ResourceSpec vplBuffer(const graph::SizeExpr& count = 1);        // scene::Vpl

@@ -30,8 +30,7 @@ vec3 lightAt(ivec2 p) {
   ContactSurface s = contactSurface(p);
   vec3 away = normalize(s.position - view.eye), origin = s.position + (s.normal - away) * rayEpsilon();
   uint stream = randomStream(frame.seed, uint(p.x), kContactStream, uint(p.y));
-  vec2 u = vec2(uniformFloat(hashCombine(stream, 0u) + frameIndex * 3242174889u),
-                uniformFloat(hashCombine(stream, 1u) + frameIndex * 2447445414u));
+  vec2 u = streamSequence(stream, frameIndex);
   uint subset = min(uint(u.y * float(kContactSubsets)), kContactSubsets - 1u), end = uint(sources.list.length());
   float sum = 0.0;
   for (uint i = subset; i < end; i += kContactSubsets) sum += unhidden(sources.list[i], s);

@@ -2,6 +2,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
+#include "passes/bundles.h"
 #include "passes/eye-paths-host/eye_path_ports.h"
 #include "passes/materials.h"
 #include "shaders/common/records/eye_paths.h"
@@ -36,8 +37,7 @@ class EyePathsDevice : public Pass {
               "whether the paths of each point have a new start, and whether they wait");
     d.scratch("differences", buffer("EyePathDifference", sizeof(EyePathDifference), parameter("paths")),
               kReadWrite, "between the light that a path finds and what it found before");
-    d.counter("rays",
-              "rays traced, including those towards lights, which count once however many panes they pass");
+    d.counter("rays", kRaysDoc);
     d.counter("ends", "paths that hit a surface");
     d.step("eye-paths-device/points.comp")
         .define("RAY_PASSAGE", fullMaterials())

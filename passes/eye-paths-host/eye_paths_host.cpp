@@ -25,7 +25,7 @@ class EyePathsHost : public Pass {
                       PassKind::Host);
     d.view();
     declareEyePaths(d, Usage::HostWrite, Lifetime::Transient);
-    d.counter("rays", "rays traced, including those towards lights");
+    d.counter("rays", kRaysDoc);
     d.counter("ends", "paths that hit a surface");
     d.counter("change", "share of the light that has changed, in [0, 1]");
     d.counter("drift", "share by which the light as a whole has grown or shrunk, in [0, 1]");

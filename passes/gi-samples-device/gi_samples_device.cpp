@@ -1,5 +1,6 @@
 // Initial samples of ReSTIR GI with rays on the device.
 #include "fovea/pass.h"
+#include "framework/scene/frame.h"
 #include "passes/gi-samples-host/gi_samples_ports.h"
 #include "passes/materials.h"
 
@@ -16,8 +17,12 @@ class GiSamplesDevice : public Pass {
                       "rays that are traced on the device");
     d.rays();
     declareGiSamples(d, Usage::StorageWrite);
-    d.step("gi-samples-device/sample.comp").define("RAY_PASSAGE", fullMaterials()).over("reservoirs");
+    d.step("gi-samples-device/sample.comp").define("RAY_PASSAGE", fullMaterials());
     return d;
+  }
+
+  void record(RecordContext& ctx) override {
+    ctx.step("sample").dispatchThreads(ctx.view().size.x, ctx.view().size.y);
   }
 };
 

@@ -1,5 +1,6 @@
 #include "passes/gi-samples-host/gi_samples_ports.h"
 
+#include "passes/bundles.h"
 #include "passes/materials.h"
 #include "shaders/common/records/reservoir.h"
 
@@ -20,7 +21,7 @@ void declareGiSamples(PassDeclaration& d, Usage write) {
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("paths", integer(1, 1, 64), "paths that are traced for a sample, of which one is chosen");
   declareMaterials(d, "`full` lets metals keep their colour");
-  d.counter("rays", "rays traced, including those from the eye and towards lights");
+  d.counter("rays", kRaysDoc);
   d.counter("samples", "pixels that show a surface and got a sample");
 }
 

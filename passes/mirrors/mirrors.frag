@@ -1,4 +1,5 @@
 // Picks the pixel of each block from which a ray of pass reflections leaves, if its surface is smooth enough for one.
+#include "common/blocks.glsl"
 #include "common/materials/gloss.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
@@ -9,14 +10,8 @@ layout(location = 0) out uvec4 points;
 
 layout(push_constant) uniform Constants { uint frameIndex; };
 
-// samplePixel(turn, 2, block) of passes/near-field-host/near_field_tracer.h.
-ivec2 samplePixel(ivec2 block) {
-  int turn_ = int(frameIndex & 3u) + ((block.x & 1) * 2 ^ (block.y & 1) * 3);
-  return ivec2(turn_ & 1, (turn_ ^ turn_ >> 1) & 1);
-}
-
 void main() {
-  ivec2 block = ivec2(gl_FragCoord.xy), inside = samplePixel(block), p = 2 * block + inside;
+  ivec2 block = ivec2(gl_FragCoord.xy), inside = ivec2(samplePixel(frameIndex, 2u, uvec2(block))), p = 2 * block + inside;
   ivec2 size = imageSize(gbufferPosition);
   bool there = all(lessThan(p, size)) && imageSize(gbufferSpecular) == size;  // else materials are diffuse
   p = there ? p : ivec2(0);

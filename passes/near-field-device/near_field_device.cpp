@@ -62,6 +62,7 @@ class NearFieldDevice : public Pass {
       trace(ctx, 1);
       begin(ctx, false);
       trace(ctx, turns, false);
+      begin(ctx, false);  // of these rays, the lengths do not count
     }
     trace(ctx, turns);
   }

@@ -42,7 +42,7 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");
   declareMaterials(d, "`full` lets metals keep their colour");
-  d.counter("rays", "rays traced, including those towards lights");
+  d.counter("rays", kRaysDoc);
   d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
   d.counter("gathered",
             "those of them at whose ends light of further bounces was gathered rather than known");

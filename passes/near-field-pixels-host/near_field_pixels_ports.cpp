@@ -23,7 +23,7 @@ void declareNearFieldPixels(PassDeclaration& d, std::vector<MemberSpec> mask, Us
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
   declareMaterials(d, "`full` lets metals keep their colour");
-  d.counter("rays", "rays traced, including those towards lights");
+  d.counter("rays", kRaysDoc);
   d.counter("pixels", "pixels that got rays");
 }
 

@@ -2,7 +2,7 @@
 // previous frames (Majercik et al., "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", JCGT 8(2),
 // 2019, section 4.2).
 #include "common/device/texels.glsl"
-#include "common/probes.glsl"
+#include "common/probes/layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

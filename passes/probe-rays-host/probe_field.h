@@ -1,5 +1,5 @@
 // The light that probes know, for passes on the CPU: the C++ version of passes/probe-sample/probe_sample.frag and
-// shaders/common/probes.glsl, which must be changed together with it.
+// shaders/common/probes/, which must be changed together with it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 #include "passes/probe-rays-host/probe_rays_ports.h"
 
 #include "fovea/error.h"
+#include "passes/bundles.h"
 #include "passes/materials.h"
 #include "shaders/common/records/probes.h"
 
@@ -39,7 +40,7 @@ void declareProbeRays(PassDeclaration& d, ProbeRayUsages usages) {
       "whether surfaces that rays meet reflect the light that `probes` knows; if not, they reflect only "
       "that of lights and of surfaces that shine, and the probes hold one bounce");
   declareMaterials(d, "`full` lets metals keep their colour");
-  d.counter("rays", "rays traced, including those towards lights");
+  d.counter("rays", kRaysDoc);
   d.counter("probes", "probes in the grid");
   d.counter("inside", "probes inside geometry, which light nothing");
 }

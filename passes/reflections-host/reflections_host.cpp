@@ -5,7 +5,6 @@
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
-#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/base/threads.h"
@@ -17,6 +16,7 @@
 #include "framework/shader_twins/octahedral.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "passes/near-field-host/cached_light.h"
+#include "passes/reflections-host/reflections_ports.h"
 #include "shaders/common/records/mirror.h"
 
 namespace fovea::passes {
@@ -115,26 +115,7 @@ class ReflectionsHost : public Pass {
         "indirect light under the narrow lobes of smooth surfaces, found with a ray per block of "
         "pixels and frame on the CPU: VPLs would show as blurred discs there",
         PassKind::Host);
-    d.view();
-    d.input("mirrors", image2D(VK_FORMAT_R32G32B32A32_UINT), Usage::HostRead,
-            "pixels that reflect in a narrow lobe (pass mirrors)");
-    d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("mirrors"), heightOf("mirrors")),
-             Usage::HostWrite,
-             "rgb: mean indirect light under the lobe, W/(sr m^2), at one pixel of each block of 2 x 2; a: "
-             "code of that pixel as in pass near-field, negative where it does not reflect, for pass "
-             "temporal-accumulation");
-    d.output("distances", image2D(VK_FORMAT_R32_SFLOAT, widthOf("mirrors"), heightOf("mirrors")),
-             Usage::HostWrite,
-             "distance from the surface of each block to what it shows, m, 0 where it does not reflect, for "
-             "pass reflection-vectors");
-    d.parameter(
-        "bounces", integer(2, 1, 64),
-        "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
-    d.parameter("first_samples", integer(16, 1, 1024),
-                "rays per sample after a camera cut, when there is no history to build on");
-    d.counter("mirrors", "pixels from which rays leave");
-    d.counter("rays", "rays traced, including those towards lights");
-    d.counter("gathered", "rays at whose ends light of further bounces was gathered rather than known");
+    declareReflections(d, Usage::HostRead, Usage::HostWrite);
     return d;
   }
 
@@ -144,12 +125,7 @@ class ReflectionsHost : public Pass {
     const auto samples = ctx.outputAs<uint64_t>("samples");
     const auto distances = ctx.outputAs<float>("distances");
     const uint32_t width = ctx.extent("mirrors").width, height = ctx.extent("mirrors").height;
-    if (const glm::uvec2 size = (ctx.view().size + 1u) / 2u; size != glm::uvec2(width, height))
-      throw Error(ExitCode::BadInput,
-                  "pass `reflections-host`: `mirrors` has " + std::to_string(width) + "x" +
-                      std::to_string(height) + " texels, half its view has " + std::to_string(size.x) + "x" +
-                      std::to_string(size.y),
-                  "wire mirrors of the view that the pass looks through");
+    checkReflections(ctx, "reflections-host", (ctx.view().size + 1u) / 2u);
     mirrors_.clear();
     for (uint32_t i = 0; i < texels.size(); ++i)
       mirrors_.emplace_back(texels[i], glm::uvec2(i % width, i / width), ctx.view());

@@ -56,12 +56,10 @@ ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
 
 const uint kPointsStream = 0x77656967u;
 
-vec2 sequencePoint(uint i) {
-  return vec2(uniformFloat(0x80000000u + i * 3242174889u), uniformFloat(0x80000000u + i * 2447445414u));
-}
+vec2 sequencePoint(uint i) { return r2Sequence(uvec2(0x80000000u), i); }
 
-// The pixel of fixed point i of `points` in a region: the R2 sequence (Roberts, "The Unreasonable Effectiveness of
-// Quasirandom Sequences", 2018) over the box of the region, by rejection as in regionSample. Point i takes points i,
+// The pixel of fixed point i of `points` in a region: the R2 sequence over the box of the region, by rejection as in
+// regionSample. Point i takes points i,
 // i + points, i + 2 points and so on of the sequence until one lies inside.
 ivec2 screenPoint(uint region, uint imageShare64ths, uint i, uint points, Fovea fovea, ivec2 size) {
   uint number, part = regionOf(region, imageShare64ths, i, number);

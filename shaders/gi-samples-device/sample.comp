@@ -2,12 +2,12 @@
 // Where surfaces shine, or the environment does, each path has a second ray that is aimed at them. One of all rays of a
 // pixel is chosen by resampling, weighted by the balance heuristic (Veach and Guibas 1995). Define: RAY_PASSAGE 0/1
 // (common/rays/trace.glsl).
+#include "common/blocks.glsl"
 #include "common/fovea.glsl"
 #include "common/rays/surfaces.glsl"
 #include "common/records/reservoir.h"
-#include "near-field-device/tiles.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430) writeonly buffer ReservoirsBlock { Reservoir list[]; } reservoirs;
 layout(std430) buffer CountersBlock { uint rays, samples; } counters;
@@ -24,9 +24,9 @@ layout(push_constant) uniform Constants {
 const Reservoir kNothing = Reservoir(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
 struct Choice {
-  float random, sum, own;  // own: weight of the sample chosen
+  WeightedChoice among;
   Reservoir chosen;
-  float density;           // with which the rays of a path go there, per sr
+  float density;  // with which the rays of a path go there, per sr
 };
 
 // Light that leaves a surface by paths of at most `depth` edges to the eye, of which two are known.
@@ -52,14 +52,7 @@ void consider(inout Choice choice, TracedSurface v, vec3 direction, bool isAimed
     density += aimedDensity(v, hit);
   }
   float target = dot(found.radiance, kLuminance) * cosine;
-  if (!(target > 0.0)) return;
-  float weight = target / density;
-  choice.sum += weight;
-  float chance = weight / choice.sum;
-  bool takes = choice.random < chance;
-  choice.random = takes ? choice.random / chance : (choice.random - chance) / (1.0 - chance);
-  if (!takes) return;
-  choice.own = weight;
+  if (!(target > 0.0) || !takes(choice.among, target / density)) return;
   choice.chosen = found;
   choice.density = density;
 }
@@ -68,7 +61,8 @@ Reservoir sampleAt(uvec2 pixel) {
   TracedSurface v = look(vec2(pixel) + 0.5);
   if (!v.there) return kNothing;
   uint stream = randomStream(frame.seed, pixel.x, kGiSampleStream, pixel.y);
-  Choice choice = Choice(uniformFloat(randomStream(stream, frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0, kNothing, 1.0);
+  WeightedChoice among = WeightedChoice(uniformFloat(randomStream(stream, frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0);
+  Choice choice = Choice(among, kNothing, 1.0);
   // Every second ray is the aimed one.
   for (uint i = 0u; i < 2u * paths; ++i) {
     bool isAimed = (i & 1u) != 0u;
@@ -81,14 +75,14 @@ Reservoir sampleAt(uvec2 pixel) {
     consider(choice, v, ray.direction, isAimed, ray.triangle, isAimed ? hashCombine(gatherStream, 1u) : gatherStream);
   }
   choice.chosen.count = 1.0;
-  if (choice.own > 0.0) choice.chosen.weight = choice.sum / (choice.own * choice.density * float(paths));
+  if (isAnyChosen(choice.among))
+    choice.chosen.weight = inverseProbability(choice.among) / (choice.density * float(paths));
   return choice.chosen;
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x, columns = viewSize().x;
-  if (index >= uint(reservoirs.list.length())) return;
-  uvec2 pixel = uvec2(index % columns, index / columns);
+  uvec2 pixel = gl_GlobalInvocationID.xy, size = viewSize();
+  if (any(greaterThanEqual(pixel, size))) return;
   Fovea fovea = makeFovea(view.gaze, view.size, foveaRadius);
   bool seen = distance(vec2(pixel) + 0.5, fovea.centre) <= fovea.radius;
   uint width = seen ? spacing : max(spacing, outsideSpacing);
@@ -99,5 +93,5 @@ void main() {
     atomicAdd(counters.rays, rayCount);
     if (found.count > 0.0) atomicAdd(counters.samples, 1u);
   }
-  reservoirs.list[index] = found;
+  reservoirs.list[pixel.y * size.x + pixel.x] = found;
 }

@@ -27,12 +27,12 @@ void main() {
 #endif
   // The diagonal stands for the mean length as long as no surface sees another: what the sky sends is found all the
   // same.
-  float known = state.value.meanLength > 0.0 ? state.value.meanLength : distance(frame.boundsMin, frame.boundsMax);
+  float known = state.value.meanLength > 0.0 ? state.value.meanLength : diagonal();
   state.value.area = onlyLength != 0u ? 0.0 : share * known * known / float(vpls);
   state.value.cellWidth = kNearCellWidth * known;
   state.value.ageing = changed.y;
   float lost = saccade > 0.0 ? 1.0 : changed.z;
   state.value.foveaRays = isFirst != 0u ? 1u : uint(floor(mix(1.0, float(saccadeSamples), lost) + 0.5));
-  state.value.hits = state.value.hitsHigh = state.value.metres = state.value.metresHigh = 0u;
+  state.value.hits = state.value.hitsHigh = state.value.diagonals = state.value.diagonalsHigh = 0u;
   spread.list[0] = vec4(state.value.area, 0.0, 0.0, 0.0);
 }

@@ -1,6 +1,7 @@
 // The mean length of rays over this frame and those before.
 #include "common/device/sums.glsl"
 #include "common/records/near_field.h"
+#include "common/scene.glsl"
 
 layout(local_size_x = 1) in;
 
@@ -9,6 +10,6 @@ layout(std430) buffer StateBlock { NearFieldState value; } state;
 void main() {
   float hits = sumOf(state.value.hits, state.value.hitsHigh);
   if (!(hits > 0.0)) return;
-  float now = sumOf(state.value.metres, state.value.metresHigh) / hits;
+  float now = diagonal() * sumOf(state.value.diagonals, state.value.diagonalsHigh) / hits;
   state.value.meanLength = state.value.meanLength > 0.0 ? mix(now, state.value.meanLength, kLengthKept) : now;
 }

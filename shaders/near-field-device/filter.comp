@@ -1,9 +1,10 @@
 // Gives wide tiles the mean of the 3 x 3 tiles around them, as far as they lie on the same surface. A ray is a poor
 // estimate, and one that hits something bright would be seen as a spot for many frames. Wider or flatter weights would
 // make what has just come into view flicker more, as its brightest sample is dropped.
+#include "common/blocks.glsl"
+#include "common/records/near_field.h"
 #include "common/same_surface.glsl"
 #include "common/scene.glsl"
-#include "tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

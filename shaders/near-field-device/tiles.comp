@@ -1,8 +1,9 @@
 // Divides the picture into tiles and lists the blocks that have a sample, in any order. Define: RAY_PASSAGE 0/1
 // (common/rays/trace.glsl), MAP_ALONE 0/1, 1 if lamps send no light here.
+#include "common/blocks.glsl"
 #include "common/fovea.glsl"
 #include "common/rays/surfaces.glsl"
-#include "tiles.glsl"
+#include "common/records/near_field.h"
 
 layout(local_size_x = 64) in;
 
@@ -17,7 +18,8 @@ layout(push_constant) uniform Constants {
   uint spacing;
 };
 
-const uint kItemsInGroup = 64u;  // of trace.comp
+const uint kItemsInGroup = 64u;   // of trace.comp
+const uint kMostGroups = 32768u;  // in a row of its dispatch
 
 // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
 bool isCloseToEmitter(uvec2 corner) {
@@ -44,7 +46,9 @@ void main() {
 
   uvec2 first = corner / 2u, end = narrow ? min(first + spacing / 2u, texels) : first + 1u;
   uint number = (end.x - first.x) * (end.y - first.y), at = atomicAdd(listed.count, number);
-  atomicMax(dispatch.groups[0], (at + number + kItemsInGroup - 1u) / kItemsInGroup);
+  uint groups = (at + number + kItemsInGroup - 1u) / kItemsInGroup;
+  atomicMax(dispatch.groups[0], min(groups, kMostGroups));
+  atomicMax(dispatch.groups[1], (groups + kMostGroups - 1u) / kMostGroups);
   for (uint y = first.y; y < end.y; ++y)
     for (uint x = first.x; x < end.x; ++x) items.list[at++] = (y * texels.x + x) | (narrow ? 0u : kWideItem);
   atomicAdd(counters.rays, rayCount);

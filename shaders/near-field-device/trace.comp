@@ -1,10 +1,10 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
 // (near_light.glsl).
+#include "common/blocks.glsl"
 #include "common/device/sums.glsl"
 #include "common/rays/gather_cache.glsl"
+#include "common/rays/near_light.glsl"
 #include "common/same_surface.glsl"
-#include "near_light.glsl"
-#include "tiles.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -27,7 +27,7 @@ layout(push_constant) uniform Constants {
 float discArea() { return state.value.area; }
 void noteLength(float distance_, float probability) {
   ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
-  ADD_TO_SUM(state.value.metres, state.value.metresHigh, distance_ / probability);
+  ADD_TO_SUM(state.value.diagonals, state.value.diagonalsHigh, distance_ / (diagonal() * probability));
 }
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
   return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);
@@ -40,8 +40,9 @@ TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
 }
 
 void main() {
-  if (gl_GlobalInvocationID.x >= listed.count) return;
-  uint item = items.list[gl_GlobalInvocationID.x], index = item & ~kWideItem;
+  uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (number >= listed.count) return;
+  uint item = items.list[number], index = item & ~kWideItem;
   bool wide = item != index;
   uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x), corner = 2u * texel;
   uint side = wide ? spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;

@@ -1,7 +1,7 @@
 // How many of its rays each probe traces: one of so many.
 #include "common/fovea.glsl"
 #include "common/pixel_ray.glsl"
-#include "common/probes.glsl"
+#include "common/probes/layout.glsl"
 
 layout(local_size_x = 64) in;
 

@@ -1,7 +1,7 @@
 // What each ray of each probe meets and the light found there, as passes/probe-rays-host finds it. Defines: RAY_PASSAGE
 // 0/1 (common/rays/trace.glsl); FEEDBACK 0/1, whether surfaces reflect the light that probes know.
+#include "common/probes/light.glsl"
 #include "common/rays/surfaces.glsl"
-#include "probe-sample/probe_light.glsl"
 
 layout(local_size_x = 64) in;
 

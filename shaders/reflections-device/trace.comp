@@ -1,4 +1,4 @@
-// The mean light under the lobe of each mirror, as passes/reflections-host finds it, over `rays` rays from it. Define:
+// A part of the mean light under the lobe of each mirror, as passes/reflections-host finds it: that of one ray. Define:
 // RAY_PASSAGE and SURFACE_TEXTURES as 1.
 #include "common/materials/visible_normals.glsl"
 #include "common/rays/gather_cache.glsl"
@@ -7,13 +7,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba32f) uniform writeonly image2D traced;
+layout(rgba32f) uniform image2D traced;
 layout(std430) buffer CountersBlock { uint mirrors, rays, gathered; } counters;
 
 layout(push_constant) uniform Constants {
-  uint rays;
   uint bounces;
   uint frameIndex;
+  uint part;   // number of this ray
+  uint parts;  // number of rays
 };
 
 // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
@@ -38,17 +39,16 @@ void main() {
   ivec2 block = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(block, imageSize(traced)))) return;
   Mirror m = mirrorAt(block);
-  vec4 sum = vec4(0.0);
+  vec4 sum = part > 0u ? imageLoad(traced, block) : vec4(0.0);
   if (m.there) {
     mat3 axes = orthonormalFrame(m.normal);
     vec3 out_ = toLocal(axes, -m.away);
     out_ = normalize(vec3(out_.xy, max(out_.z, kLeastLobe)));  // a bent normal may face away from the eye
-    uint stream = randomStream(frame.seed, uint(block.x), kMirrorStream, uint(block.y));
-    for (uint i = frameIndex; i < frameIndex + rays; ++i)
-      sum += underLobe(m, axes, out_, streamSequence(stream, i), randomStream(stream, i, kMirrorLightStream, 0u));
-    sum /= float(rays);
-    sum.rgb /= max(mirrorAlbedo(out_.z, m.roughness).all, kLeastLobe);
-    atomicAdd(counters.mirrors, 1u);
+    uint stream = randomStream(frame.seed, uint(block.x), kMirrorStream, uint(block.y)), ray = frameIndex + part;
+    vec4 seen = underLobe(m, axes, out_, streamSequence(stream, ray), randomStream(stream, ray, kMirrorLightStream, 0u));
+    seen.rgb /= max(mirrorAlbedo(out_.z, m.roughness).all, kLeastLobe);
+    sum += seen / float(parts);
+    if (part == 0u) atomicAdd(counters.mirrors, 1u);
     atomicAdd(counters.rays, rayCount);
     atomicAdd(counters.gathered, gatherCount);
   }

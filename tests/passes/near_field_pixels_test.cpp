@@ -65,9 +65,8 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
     before.push_back(i % 2 == 0 ? known : unknown);
   }
   PassTest test(GetParam());
-  // A CPU device drops the turns of long loops.
-  const int samples = std::string(GetParam()) == "near-field-pixels-host" ? 1024 : 128;
-  test.param("samples", samples);
+  constexpr int kSamples = 1024;
+  test.param("samples", kSamples);
   wire(test, room.scene, mask, before);
   test.run();
   const auto after = test.values<uint64_t>("near_field");
@@ -84,13 +83,13 @@ TEST_P(NearFieldPixels, OnlyWhereItIsNotKnown) {
     // What the walls emit comes wholly, what they reflect in part. A ray goes on with a probability of at most four
     // times its part.
     const double want = 1 + 0.75 * part;
-    const double bound = 0.01 + 4.5 / std::sqrt(4 * part * samples);
+    const double bound = 0.01 + 4.5 / std::sqrt(4 * part * kSamples);
     EXPECT_EQ(light.a, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c] / ((1 << c) * want), 1, bound) << "pixel " << i;
     got += light.r;
     wanted += want;
   }
-  EXPECT_NEAR(got / wanted, 1, samples > 500 ? 0.01 : 0.03);
+  EXPECT_NEAR(got / wanted, 1, 0.01);
   EXPECT_EQ(test.counter("pixels"), traced);
   EXPECT_EQ(traced, 128);
   // Nothing depends on the number of the frame, so that what is seen does not flicker.

@@ -1,7 +1,7 @@
 #include "framework/scene/device/environment_image.h"
 
 #include <algorithm>
-#include <glm/gtc/packing.hpp>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,10 +12,9 @@
 namespace fovea::scene {
 
 gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map) {
-  constexpr float kMaxHalf = 65504;
   gpu::ImageDesc desc;
   desc.name = "environment";
-  desc.format = VK_FORMAT_R16G16B16A16_SFLOAT;
+  desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
   desc.width = map ? map->width() : 1;
   desc.height = map ? map->height() : 1;
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -24,12 +23,11 @@ gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map) {
                 "the environment map of " + std::to_string(desc.width) + "x" + std::to_string(desc.height) +
                     " texels exceeds this device's maxImageDimension2D " + std::to_string(limit),
                 "scale the map down");
-  std::vector<uint64_t> texels;
+  std::vector<glm::vec4> texels;
   if (map)
-    for (const glm::vec3& t : map->texels())
-      texels.push_back(glm::packHalf4x16(glm::vec4(glm::min(t, kMaxHalf), 1)));
+    for (const glm::vec3& t : map->texels()) texels.emplace_back(t, 1);
   else
-    texels.push_back(0);
+    texels.emplace_back(0);
   gpu::Image image(device, desc);
   gpu::upload(device, image, std::as_bytes(std::span(texels)), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   return image;

@@ -6,7 +6,7 @@
 
 namespace fovea::scene {
 
-// Half floats, clamped to their range; a single black texel without a map. In
+// 32-bit floats, as the sun in a map may be brighter than halves can say; a single black texel without a map. In
 // VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. Throws Error(BadInput) if the map is too large for the device, and
 // Error(OutOfMemory).
 gpu::Image environmentImage(gpu::Device& device, const EnvironmentMap* map);

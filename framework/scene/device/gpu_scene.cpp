@@ -184,7 +184,7 @@ struct GpuScene::Impl {
         rays(rays_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
         rayTables(d, scene, g, rays_),
-        emitterTables(d, scene, g, rays_),
+        emitterTables(d, scene, g, fullMaterials_, rays_),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {

@@ -37,12 +37,12 @@ Angle operator-(Angle a, Angle b) {
 
 bool Emitters::Range::isLeaf() const { return last - first <= kInLeaf; }
 
-Emitters::Emitters(const Frame& frame) : frame_(frame) {
+Emitters::Emitters(const Frame& frame, bool fullMaterials) : frame_(frame) {
   const auto& materials = frame.scene->materials;
   const Geometry& g = *frame.geometry;
   for (const uint32_t t : g.emissive) {
     const uint32_t index = g.triangles[t].material();
-    if (index >= materials.size()) continue;
+    if (index >= materials.size() || (fullMaterials && materials[index].unlit)) continue;
     const glm::vec3 &a = g.positions[g.triangles[t].v[0]], &b = g.positions[g.triangles[t].v[1]],
                     &c = g.positions[g.triangles[t].v[2]];
     const glm::vec3 normal = glm::cross(b - a, c - a);

@@ -33,7 +33,8 @@ struct Receiver {
 // many lights with adaptive tree splitting" (HPG 2018).
 class Emitters {
  public:
-  explicit Emitters(const Frame& frame);
+  // fullMaterials: whether surfaces have all that glTF says of them; then those of unlit materials are only seen.
+  explicit Emitters(const Frame& frame, bool fullMaterials = false);
   bool empty() const { return emitters_.empty(); }
   // Whether an emitter is within `reach` metres of a point, by the bounding spheres of triangles.
   bool within(glm::vec3 point, float reach) const;

@@ -31,7 +31,7 @@ SurfaceTracer::SurfaceTracer(const Frame& frame, const View& view, const RayScen
     : frame_(frame),
       view_(view),
       rays_(rays),
-      emitters_(frame),
+      emitters_(frame, fullMaterials),
       environment_(frame.scene->environmentMap.get()),
       surfaceShare_(surfaceShare(emitters_, environment_)) {
   if (fullMaterials) materials_.emplace(*frame.scene, *frame.geometry);
@@ -80,7 +80,7 @@ TracedSurface SurfaceTracer::follow(Ray ray, bool meetsBacks, const Function& ch
                                     uint64_t& rays) const {
   TracedSurface v;
   glm::vec3 tint(1);
-  for (;;) {
+  for (uint32_t pane = 0; pane < kMaxPanes; ++pane) {
     ++rays;
     const RayHit hit = rays_.intersect(ray);
     v = hit ? surfaceOf(hit, ray.direction) : TracedSurface{};
@@ -89,6 +89,7 @@ TracedSurface SurfaceTracer::follow(Ray ray, bool meetsBacks, const Function& ch
     if (!passed) break;
     if (v.there && v.material->transmission > 0) tint *= glassTint(*frame_.scene, *v.material, v.uv);
     ray.near = std::nextafter(hit.distance, ray.far) * (1.0f + 1e-6f);
+    v = {};
   }
   v.brighter *= tint;
   return v;
@@ -143,7 +144,7 @@ glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) cons
 glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays) const {
   if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
   const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
-  if (point.unlit) return point.emission;
+  if (point.unlit) return v.brighter * point.emission;
   const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));
   const glm::vec3 light = fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
@@ -153,7 +154,8 @@ glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& r
 }
 
 glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {
-  return emitters_.empty() ? glm::vec3(0) : v.brighter * emission(*frame_.scene, *v.material, v.uv);
+  const bool dark = emitters_.empty() || (materials_ && v.material->unlit);
+  return dark ? glm::vec3(0) : v.brighter * emission(*frame_.scene, *v.material, v.uv);
 }
 
 glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const {
@@ -247,8 +249,8 @@ glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32
     }
     const glm::vec3 rho = reflectance(next);
     sum += direct(next, rho, rays);
-    if (const float density = emitterDensity(v, next); density > 0)
-      sum += emitted(next) * balance(density, direction);
+    if (const glm::vec3 shining = emitted(next); shining != glm::vec3(0))
+      sum += shining * balance(emitterDensity(v, next), direction);
     sum += rho * gather(next, bounces - 1, 1, hashCombine(stream, i + 2), rays);
   }
   return sum / float(count) + fromEmitters(v, count, stream, rays);

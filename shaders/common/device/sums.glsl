@@ -3,7 +3,7 @@
 #ifndef FOVEA_DEVICE_SUMS_GLSL
 #define FOVEA_DEVICE_SUMS_GLSL
 
-// x: low word. Numbers are cut off at 0 and 2^31.
+// x: low word. Numbers are cut off at 0 and 2^31, and sums must stay below 2^32.
 uvec2 wholeNumber(float number) {
   float x = clamp(number, 0.0, 2147483648.0), whole = floor(x);
   return uvec2(uint(min((x - whole) * 4294967296.0, 4294967040.0)), uint(whole));

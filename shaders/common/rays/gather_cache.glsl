@@ -1,8 +1,10 @@
-// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path
-// space filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a
-// frame become part of the cells at its end (mergeSamples()), so that it does not matter which of them comes first.
-// Only where the table is so full that a cell finds none of its places free do results depend on that. Needs
-// RAY_PASSAGE (common/rays/trace.glsl) and a port `cells` that is kept.
+// A cache of the light that is gathered at surfaces, in cells of space, as passes::GatherCache is on the host: path space
+// filtering with a hash table (Binder et al., "Massively parallel path space filtering", 2019). The samples of a frame
+// become part of the cells at its end, so that it does not matter which of them comes first. Only where the table is so
+// full that a cell finds none of its places free do results depend on that.
+//
+// A pass that includes this keeps a buffer `cells` of kGatherCells GatherCells, and its last step calls mergeSamples() for
+// each of them. Needs RAY_PASSAGE (common/rays/trace.glsl).
 #ifndef FOVEA_RAYS_GATHER_CACHE_GLSL
 #define FOVEA_RAYS_GATHER_CACHE_GLSL
 
@@ -56,6 +58,7 @@ uint claimCell(CellName cell) {
 void addToCell(CellName cell, vec3 light) {
   uint place = claimCell(cell);
   if (place == kGatherCells) return;
+  light = min(light, kMostGatheredLight);
   atomicAdd(cells.list[place].samples, 1u);
   ADD_TO_SUM(cells.list[place].red, cells.list[place].redHigh, light.r);
   ADD_TO_SUM(cells.list[place].green, cells.list[place].greenHigh, light.g);

@@ -23,8 +23,8 @@ vec3 seenLight(TracedSurface v, vec3 out_) {
     LightSample l = sampleLight(lights[i], v.position);
     float cosine = dot(normal, l.direction);
     if (dot(v.face, l.direction) <= 0.0 || cosine <= 0.0 || l.irradiance == vec3(0.0)) continue;
-    sum += l.irradiance * cosine * reflected(reflector, l.direction, surface.albedo) *
-           lightAlong(v.origin, l.direction, l.distance);
+    vec3 response = l.irradiance * cosine * reflected(reflector, l.direction, surface.albedo);
+    if (response != vec3(0.0)) sum += response * lightAlong(v.origin, l.direction, l.distance);
   }
   return v.brighter * sum;
 }

@@ -30,12 +30,6 @@ Receiver receiverOf(TracedSurface v) { return Receiver(v.origin, v.normal); }
 
 // ---- Random directions ---------------------------------------------------------------------------------------------
 
-// Point `turn_` of the R2 sequence (Roberts 2018), whose starting point is drawn from `stream`.
-vec2 streamSequence(uint stream, uint turn_) {
-  return vec2(uniformFloat(hashCombine(stream, 0u) + turn_ * 3242174889u),
-              uniformFloat(hashCombine(stream, 1u) + turn_ * 2447445414u));
-}
-
 vec3 cosineDirection(vec3 normal, vec2 u) {
   float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
   return toWorld(orthonormalFrame(normal), vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x)));
@@ -98,33 +92,27 @@ uint keyOfRay(vec3 origin, vec3 direction) {
   return key;
 }
 
-// A ray that continues from a surface which it passes.
-Ray beyond(Ray ray, RayHit hit) {
-  ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
-  return ray;
-}
-
 // The surface that the eye sees at a point of the picture, pixels (centres at +0.5). Where surfaces let a part of the
 // light through, it is the one that pass gbuffer shows in this frame.
 TracedSurface look(vec2 at) {
-  vec3 direction = normalize(pixelRay(at));
+  vec3 direction = normalize(pixelRay(at)), tint = vec3(1.0);
   Ray ray = Ray(view.eye, direction, 0.0, kFarAway);
   uint key = hashCombine(frame.seed, kPassageStream);
-  TracedSurface v;
-  vec3 tint = vec3(1.0);
+  TracedSurface v = kNothingTraced;
   for (uint pane = 0u; pane < kMaxPanes; ++pane) {
     ++rayCount;
     RayHit hit = intersect(ray);
     v = surfaceOf(hit, direction);
-    if (hit.triangle == kNoTriangle) break;
 #if RAY_PASSAGE
     float chance = passageChance(hashCombine(key, hit.triangle), uvec2(at), frame.index);
-    if (v.there && !passesSurface(v, direction, chance)) break;
+    bool passed = hit.triangle != kNoTriangle && (!v.there || passesSurface(v, direction, chance));
+    if (!passed) break;
     if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
 #else
-    if (v.there) break;
+    if (hit.triangle == kNoTriangle || v.there) break;
 #endif
     ray = beyond(ray, hit);
+    v = kNothingTraced;
   }
   v.brighter *= tint;
   return v;
@@ -137,7 +125,7 @@ TracedSurface arrive(vec3 origin, vec3 direction, float reach) {
 #if RAY_PASSAGE
   uint key = keyOfRay(origin, direction);
   vec3 tint = vec3(1.0);
-  TracedSurface v;
+  TracedSurface v = kNothingTraced;
   for (uint pane = 0u; pane < kMaxPanes; ++pane) {
     ++rayCount;
     RayHit hit = intersect(ray);
@@ -147,6 +135,7 @@ TracedSurface arrive(vec3 origin, vec3 direction, float reach) {
       break;
     if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
     ray = beyond(ray, hit);
+    v = kNothingTraced;
   }
   v.brighter *= tint;
   return v;
@@ -206,6 +195,7 @@ float surfaceShare() { return !hasEnvironmentMap() ? 1.0 : emitterCount() == 0u 
 EmitterRay aimedRay(TracedSurface v, vec3 u) {
   float share = surfaceShare();
   if (u.x >= share) {
+    if (!hasEnvironmentMap()) return kNoEmitterRay;
     MapSample s = sampleMap(u.yz);
     bool lights_ = s.density > 0.0 && facesTo(v, s.direction);
     if (!lights_) return kNoEmitterRay;

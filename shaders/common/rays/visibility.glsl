@@ -10,6 +10,12 @@ vec3 faceNormal(uvec4 triangle) {
   return cross(scenePosition(triangle.y) - a, scenePosition(triangle.z) - a);
 }
 
+// A ray that continues from a surface which it passes.
+Ray beyond(Ray ray, RayHit hit) {
+  ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
+  return ray;
+}
+
 // The share of light that passes along the ray, by channels; the same as scene::visibility
 // (framework/scene/rays/visibility.h).
 vec3 visibility(Ray ray) {
@@ -27,7 +33,7 @@ vec3 visibility(Ray ray) {
     if (!(dot(normal, normal) > 1e-24)) normal = faceNormal(triangle);
     share *= transmittance(material, uvAt(triangle, hit.weights), abs(dot(normalize(normal), direction)));
     if (share == vec3(0.0)) break;
-    ray.near = uintBitsToFloat(floatBitsToUint(hit.distance) + 1u) * (1.0 + 1e-6);
+    ray = beyond(ray, hit);
   }
   return vec3(0.0);
 #else

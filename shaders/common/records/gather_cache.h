@@ -33,7 +33,9 @@ SHARED_CONSTANT uint kMostIdle = 64u;         // frames without a sample after w
 
 SHARED_CONSTANT float kEnoughGathered = 16.0f;  // samples from which on a cell is known
 SHARED_CONSTANT float kMostGathered = 256.0f;   // a cell's mean is worth no more samples: old ones fade
-SHARED_CONSTANT float kGatheredAnew = 0.25f;    // probability of gathering anew what is known
+// W/(sr m^2): brighter samples are cut off, so that the sum of 4096 of them in a frame fits into its words.
+SHARED_CONSTANT float kMostGatheredLight = 1048576.0f;
+SHARED_CONSTANT float kGatheredAnew = 0.25f;  // probability of gathering anew what is known
 // Keeps the random numbers with which cells are looked up apart from others.
 SHARED_CONSTANT uint kCellStream = 0x6e656363u;
 

@@ -25,12 +25,12 @@ struct NearFieldState {
   float cellWidth SHARED_ZERO;   // of the cache's cells, m
   float ageing SHARED_ZERO;      // n samples of the cache are worth n / (1 + n ageing)
   uint foveaRays SHARED_ZERO;    // per sample in blocks of 2 x 2 pixels
-  // Sums over the rays of a frame: 1 and the length, each divided by the probability that the ray goes so far. Pairs of
-  // low and high words, in 2^-32.
+  // Sums over the rays of a frame: 1 and the length in diagonals of the scene, each divided by the probability that the
+  // ray goes so far. Pairs of low and high words, in 2^-32.
   uint hits SHARED_ZERO;
   uint hitsHigh SHARED_ZERO;
-  uint metres SHARED_ZERO;
-  uint metresHigh SHARED_ZERO;
+  uint diagonals SHARED_ZERO;
+  uint diagonalsHigh SHARED_ZERO;
   uint unused0 SHARED_ZERO;
   uint unused1 SHARED_ZERO;
   uint unused2 SHARED_ZERO;

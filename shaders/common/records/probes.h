@@ -1,5 +1,4 @@
-// A grid of probes that hold the light and the distances around them: the bundles `probe-rays` and `probes` (common/
-// probes.glsl).
+// A grid of probes that hold the light and the distances around them: the bundles `probe-rays` and `probes` (common/probes/).
 #pragma once
 
 #include "shared.h"

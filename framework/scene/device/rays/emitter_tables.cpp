@@ -21,6 +21,8 @@
 namespace fovea::scene {
 namespace {
 
+constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
+
 using Texels = std::vector<glm::uvec4>;
 
 template <class Record>
@@ -31,11 +33,11 @@ void append(std::span<const Record> records, Texels& texels) {
   std::memcpy(texels.data() + first, records.data(), records.size_bytes());
 }
 
-Texels texelsOf(const Scene& scene, const Geometry& geometry) {
+Texels texelsOf(const Scene& scene, const Geometry& geometry, bool fullMaterials) {
   Frame frame;
   frame.scene = &scene;
   frame.geometry = &geometry;
-  const Emitters emitters(frame);
+  const Emitters emitters(frame, fullMaterials);
   const std::vector<EmitterRecord> records = emitters.records();
   EmitterHeader header;
   header.count = uint32_t(records.size());
@@ -64,8 +66,9 @@ struct EmitterTables::Impl {
   uint32_t nodes = 0;  // of the tree, if any emitter may move
   gpu::Pipeline refit;
 
-  Impl(gpu::Device& d, const Scene& scene, const Geometry& geometry, bool wanted) : device(d) {
-    Texels list = wanted ? texelsOf(scene, geometry) : Texels(1);
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& geometry, bool fullMaterials, bool wanted)
+      : device(d) {
+    Texels list = wanted ? texelsOf(scene, geometry, fullMaterials) : Texels(1);
     const bool moves = std::ranges::any_of(
         geometry.emissive, [&](uint32_t triangle) { return triangle >= geometry.staticTriangles; });
     if (const uint32_t count = list[0].x; moves && count > 0) {
@@ -76,8 +79,9 @@ struct EmitterTables::Impl {
   }
 };
 
-EmitterTables::EmitterTables(gpu::Device& device, const Scene& scene, const Geometry& geometry, bool wanted)
-    : impl_(std::make_unique<Impl>(device, scene, geometry, wanted)) {}
+EmitterTables::EmitterTables(gpu::Device& device, const Scene& scene, const Geometry& geometry,
+                             bool fullMaterials, bool wanted)
+    : impl_(std::make_unique<Impl>(device, scene, geometry, fullMaterials, wanted)) {}
 EmitterTables::~EmitterTables() = default;
 
 void EmitterTables::record(VkCommandBuffer cmd, gpu::Buffer& positions, gpu::Buffer& triangles) {
@@ -88,8 +92,9 @@ void EmitterTables::record(VkCommandBuffer cmd, gpu::Buffer& positions, gpu::Buf
                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   bindNamed(impl_->device, cmd, pipeline, {},
             {{"Positions", &positions}, {"Triangles", &triangles}, {"Emitters", &impl_->texels}});
-  const uint32_t group = pipeline.interface().localSize[0];
-  vkCmdDispatch(cmd, (impl_->nodes + group - 1) / group, 1, 1);
+  const uint32_t nodes = impl_->nodes;  // each has a group
+  vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof nodes, &nodes);
+  vkCmdDispatch(cmd, std::min(nodes, kMostGroups), (nodes + kMostGroups - 1) / kMostGroups, 1);
 }
 
 gpu::Buffer& EmitterTables::texels() const { return impl_->texels; }

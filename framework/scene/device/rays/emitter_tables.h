@@ -18,14 +18,15 @@ namespace fovea::scene {
 
 class EmitterTables {
  public:
-  // Builds the tree of the emitters as they are and uploads it. If `wanted` is false, there are no light sources. Throws
-  // Error(OutOfMemory) if the tables do not fit.
-  EmitterTables(gpu::Device& device, const Scene& scene, const Geometry& geometry, bool wanted);
+  // Builds the tree of the emitters as they are and uploads it. fullMaterials: as in Emitters. If `wanted` is false,
+  // there are no light sources. Throws Error(OutOfMemory) if the tables do not fit.
+  EmitterTables(gpu::Device& device, const Scene& scene, const Geometry& geometry, bool fullMaterials,
+                bool wanted);
   ~EmitterTables();
 
-  // Fits the tree to new positions of the vertices; its order stays. triangles: as in GpuScene. The caller's barriers
-  // must order the commands (compute) before all readers of the tables; the positions have been written by compute
-  // commands before.
+  // Fits the tree to new positions of the vertices, which compute commands have written before; its order stays.
+  // triangles: as in GpuScene. The caller's barriers must order the commands (compute) before all readers of the
+  // tables.
   void record(VkCommandBuffer cmd, gpu::Buffer& positions, gpu::Buffer& triangles);
 
   gpu::Buffer& texels() const;  // uvec4 each; shaders/common/records/emitters.h

@@ -26,7 +26,7 @@ gpu::Buffer longTable(gpu::Device& device, const char* name, std::vector<T> data
     throw Error(ExitCode::OutOfMemory,
                 std::string(name) + ": " + std::to_string(bytes) +
                     " bytes are more than a shader can read on this device, " + std::to_string(limit),
-                "trace rays on the host, as `foveal` does with `--set rays=host`");
+                "trace rays on the host: `--set rays=host`, or `tracer=host` in `ddgi` and `restir_gi`");
   gpu::Buffer buffer(
       device, {name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                gpu::MemoryKind::Device});

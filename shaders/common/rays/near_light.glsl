@@ -32,7 +32,7 @@ vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
 // 2005). The points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
 vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
   float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
-  float choice = uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), sum = 0.0, own = 0.0;
+  WeightedChoice choice = WeightedChoice(uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), 0.0, 0.0);
   EmitterRay chosen = kNoEmitterRay;
   vec3 light = vec3(0.0);
   for (uint i = 0u; i < (hasEnvironmentMap() ? 2u * points : points); ++i) {
@@ -45,17 +45,11 @@ vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
 #endif
     vec3 its = sharedLight(v, to, points) / float(points);
     float part = its.r + its.g + its.b;
-    if (!(part > 0.0)) continue;
-    sum += part;
-    float chance = part / sum;
-    bool takes = choice < chance;
-    choice = takes ? choice / chance : (choice - chance) / (1.0 - chance);
-    if (!takes) continue;
+    if (!(part > 0.0) || !takes(choice, part)) continue;
     chosen = to;
     light = its;
-    own = part;
   }
-  return own > 0.0 ? light * visibleShare(v, chosen) * (sum / own) : vec3(0.0);
+  return isAnyChosen(choice) ? light * visibleShare(v, chosen) * inverseProbability(choice) : vec3(0.0);
 }
 
 // Irradiance / pi at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.

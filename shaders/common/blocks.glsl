@@ -1,6 +1,9 @@
 // Blocks of pixels that share a sample (passes/near-field-host/near_field_tracer.h): tiles of `spacing` x `spacing`
-// pixels, and texels of 2 x 2 pixels in them. Include after common/scene.glsl.
-#include "common/records/near_field.h"
+// pixels, and texels of 2 x 2 pixels in them.
+#ifndef FOVEA_BLOCKS_GLSL
+#define FOVEA_BLOCKS_GLSL
+
+#include "common/scene.glsl"
 
 uvec2 viewSize() { return uvec2(view.size); }
 uvec2 texelCount() { return (viewSize() + 1u) / 2u; }
@@ -16,3 +19,5 @@ uvec2 samplePixel(uint turn_, uint side, uvec2 block) {
   }
   return p;
 }
+
+#endif
