@@ -26,7 +26,8 @@ class Candidates : public Pass {
             "radiance of each voxel side; if not wired, the candidates' luminance is 0")
         .makeOptional();
     d.input("traced", "eye-paths", eyePathMembers(),
-            "paths of pass eye-paths; where some end on surfaces that shine, some candidates lie there")
+            "paths of pass eye-paths; every fourth candidate lies where one of them ends, with the light "
+            "found there")
         .makeOptional();
     d.output("candidates", candidateBuffer(parameter("count")), Usage::StorageWrite,
              "one entry per attempt; an attempt that hit nothing has no side and is otherwise zero");

@@ -1,7 +1,7 @@
 // One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
 // voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
-// first takes an eye path at random, and if that ends on a surface that shines or is lit mostly by such, the
-// candidate lies there. Such surfaces are often smaller than voxels, whose averages would all be the same few places.
+// first takes an eye path at random, and the candidate lies where that ends, with the light found there. Voxels know
+// only direct light, none of surfaces that shine, and their averages close gaps that light comes through.
 #include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
@@ -104,7 +104,7 @@ void main() {
   if (i % 4u == 3u) {
     uint paths = uint(textureSize(tracedEnds)) / 3u;
     EyePathEnd end = loadEyePathEnd(tracedEnds, randomStream(seed, streamFrame, kPathStream, i) % paths);
-    uint side = end.kind >= kShining ? sideAt(end.position, end.normal) : kNoSide;
+    uint side = end.kind > 0.0 ? sideAt(end.position, end.normal) : kNoSide;
     if (side != kNoSide) {
       candidate = candidateOn(side, end.position);
       candidate.luminance = end.weight * luminanceOf(end.radiance);
