@@ -61,6 +61,7 @@ void setConstants(const RecordContext& ctx, Commands& commands) {
       .constant("listLimit", limit)
       .constant("keepCount", keep)
       .constant("mostRejected", uint32_t(std::ceil(p.real("turnover") * slots)))
+      .constant("changeTurnover", float(p.real("change_turnover")))
       .constant("contested", uint32_t(std::ceil(p.real("saccade_turnover") * ctx.frame().saccade * slots)))
       .constant("lightFloor64ths", uint32_t(std::lround(64.0 * p.real("light_floor"))))
       .constant("densityConstant64ths", uint32_t(std::lround(64.0 * p.real("density_constant"))));
@@ -74,12 +75,18 @@ void addSteps(PassDeclaration& d) {
   };
   d.fill("state", 0);
   d.fill("density", 0);
-  step("manage/accept.comp").threads(max(countOf("list"), countOf("candidates")));
-  step("manage/reuse.comp").groups(1);
+  step("manage/accept.comp")
+      .define("RATED", wired("candidate_importance"))
+      .define("CHANGE", wired("change"))
+      .threads(max(countOf("list"), countOf("candidates")));
+  step("manage/reuse.comp").define("CHANGE", wired("change")).groups(1);
   step("manage/thin.comp").groups(1);
   step("manage/order.comp").groups(2);
   step("manage/choose.comp").groups(1);
-  step("manage/write.comp").threads(countOf("list"));
+  step("manage/write.comp")
+      .define("RATED", wired("candidate_importance"))
+      .define("CHANGE", wired("change"))
+      .threads(countOf("list"));
 }
 
 PassDeclaration Manage::declaration() {
@@ -87,11 +94,17 @@ PassDeclaration Manage::declaration() {
                     "VPL management: which VPLs are kept, which candidates become VPLs, and in which slots");
   d.input("candidates", candidateBuffer(), Usage::TexelRead,
           "candidate VPLs; attempts that hit nothing are skipped");
-  d.input("candidate_importance", buffer("float", 4), Usage::TexelRead, "I of each candidate, in [0, 1]");
+  d.input("candidate_importance", buffer("float", 4), Usage::TexelRead,
+          "I of each candidate, in [0, 1]; `placement` `light` needs none, and without it Eq. 1 keeps new "
+          "VPLs in their second frame")
+      .makeOptional();
   d.input("vpl_importance", buffer("float", 4), Usage::TexelRead,
           "I of the VPL in each slot in this frame, in [0, 1]");
   d.input("vpls", vplStateBuffer(), Usage::TexelRead,
           "VPL list of the previous frame, updated for motion; it must have `count` slots");
+  d.input("change", changeBuffer(), Usage::TexelRead,
+          "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths)")
+      .makeOptional();
   d.output("list", vplStateBuffer(parameter("count")), Usage::StorageWrite,
            "VPL list of this frame; a VPL that is kept stays in its slot and takes its new importance, a new "
            "one has life 1 and its importance also as its previous importance");
@@ -117,6 +130,9 @@ PassDeclaration Manage::declaration() {
   d.parameter("turnover", real(1, 0, 1, "slots' share"),
               "most VPLs deleted per frame for failing Eq. 1 (rounded up); if more fail, the least important "
               "are deleted and the others are tested against their former importance again");
+  d.parameter("change_turnover", real(0, 0, 1, "slots' share"),
+              "times the share that `change` says is lost: as many VPLs may be deleted for failing Eq. 1, "
+              "if that is more than `turnover`, since they were chosen by other light");
   d.parameter(
       "saccade_turnover", real(0, 0, 1, "slots' share"),
       "VPLs that lose their place in the frame in which the gaze has jumped although Eq. 1 keeps them, "
@@ -165,7 +181,14 @@ void Manage::prepare(PrepareContext& ctx) {
         "lower the `count` of the pass that finds them");
   require(ctx, "vpls", ctx.count("list"), "set `count` to the slots of the list that comes in");
   require(ctx, "vpl_importance", ctx.count("list"), "wire the importances of `vpls`");
-  require(ctx, "candidate_importance", candidates, "wire the importances of `candidates`");
+  if (ctx.has("candidate_importance"))
+    require(ctx, "candidate_importance", candidates, "wire the importances of `candidates`");
+  else if (ctx.parameters().text("placement") != "light")
+    throw Error(ExitCode::BadInput, "pass manage: candidates compete by importance, and theirs is not known",
+                "wire `candidate_importance`, or set placement to `light`");
+  if (ctx.parameters().real("change_turnover") > 0 && !ctx.has("change"))
+    throw Error(ExitCode::BadInput, "pass manage: parameter `change_turnover` needs the input `change`",
+                "wire `change` to eye-paths, or set change_turnover to 0");
 }
 
 FOVEA_PASS(Manage);

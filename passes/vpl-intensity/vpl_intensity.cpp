@@ -263,6 +263,8 @@ PassDeclaration IntensityImportanceArea::declaration() {
       "regains the light that the clamp removes");
   d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"), "clamp distance of the kernel `clamp`");
   d.parameter("normal_weight", real(0.5, 0, 100), kNormalWeight);
+  d.output("worth", buffer("float", 4, countOf("vpls")), Usage::StorageWrite,
+           "how much each VPL matters, in [0, 1), for pass manage of the next frame");
   d.scratch("sites", buffer("VplSite", sizeof(intensity::VplSite), countOf("vpls")),
             kReadWrite | Usage::TexelRead, "position and normal of the VPLs that compete for paths");
   d.scratch("ends", buffer("PathEnd", sizeof(intensity::PathEnd), parameter("paths")), kWriteThenTexels,
@@ -309,6 +311,7 @@ void IntensityImportanceArea::addSteps(PassDeclaration& d) {
       .constant("normalShare", normalShare)
       .threads(ceilDiv(tried, kSharedPaths));
   addPdf(d, tried, true);
+  stepOverVpls(d, "vpl-intensity/worth.comp").define("TRACED", traced).groups(1);
   inRows(stepOverVpls(d, "vpl-intensity/discs.comp").when(discs).define("NEAR", wired("spread")),
          countOf("vpls"));
   addFinish(d, true, traced, discs);

@@ -1,14 +1,18 @@
-// One slot and one candidate per invocation: importance in fixed point, Eq. 1, and cells of the density grid.
+// One slot and one candidate per invocation: importance in fixed point, Eq. 1, and cells of the density grid. Define:
+// RATED 0/1: whether the candidates have an importance.
 #include "common/scene.glsl"
 #include "common/random.glsl"
 #include "common/vpl.glsl"
 #include "manage/acceptance.glsl"
 #include "manage/memory.glsl"
+#include "manage/turnover.glsl"
 
 layout(local_size_x = 64) in;
 
 uniform usamplerBuffer candidates;
+#if RATED
 uniform samplerBuffer candidateImportance;
+#endif
 uniform samplerBuffer vplImportance;
 uniform usamplerBuffer vpls;
 
@@ -32,7 +36,7 @@ void testSlot(uint slot) {
   // `random` reuses as many as `linear` would.
   bool accepted = reuse == kReuseCosine ? acceptedCosine(importance, before, u) : acceptedLinear(importance, before, u);
   uint key = reuse == kReuseRandom ? hashCombine(stream, 1u) >> 8 : kImportanceMax - importance;
-  if (reuse != kReuseRandom && mostRejected < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // failed last
+  if (reuse != kReuseRandom && mostFailing() < slots) key = key >> 1 | (accepted ? 0u : 0x800000u);  // failed last
   uint cell = cellOf(vpl.position);
   slotRecords.list[slot] = SlotRecord(importance, kAlive | (accepted ? kAccepted : 0u), cell, key);
   occupy(cell);
@@ -47,9 +51,10 @@ void readCandidate(uint i) {
     return;
   }
   uint cell = cellOf(candidate.position);
-  uint value = placement == kPlacementLight
-                   ? quantiseLight(candidate.luminance, frame.exposure)
-                   : quantiseImportance(texelFetch(candidateImportance, int(i)).r);
+  uint value = quantiseLight(candidate.luminance, frame.exposure);
+#if RATED
+  if (placement != kPlacementLight) value = quantiseImportance(texelFetch(candidateImportance, int(i)).r);
+#endif
   candidateRecords.list[i] = uvec2(value, cell);
   occupy(cell);
   atomicAdd(counters.candidates, 1u);

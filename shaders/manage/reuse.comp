@@ -4,12 +4,13 @@
 #define GROUP 64
 #include "manage/group.glsl"
 #include "manage/memory.glsl"
+#include "manage/turnover.glsl"
 #include "manage/radix_sort.glsl"
 
 layout(local_size_x = GROUP) in;
 
 bool eligible(uint slot) {
-  return (slotRecords.list[slot].flags & (reuse == kReuseRandom || mostRejected < slots ? kAlive : kAccepted)) != 0u;
+  return (slotRecords.list[slot].flags & (reuse == kReuseRandom || mostFailing() < slots ? kAlive : kAccepted)) != 0u;
 }
 bool failed(uint slot) {
   return (slotRecords.list[slot].flags & kAlive) != 0u && sources.list[slot] != kKept;
@@ -25,7 +26,7 @@ void main() {
     if (eligible(slot)) lists.entries[place++] = uvec2(slotRecords.list[slot].key, slot);
   groupBarrier();
 
-  uint spared = state.alive - min(state.alive, mostRejected);
+  uint spared = state.alive - min(state.alive, mostFailing());
   uint reused = min(max(state.accepted, spared), listLimit), first = oldList();
   reused -= min(reused, contested);
   if (reused < total) first = radixSort(first, slots, total, 24u);

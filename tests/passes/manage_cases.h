@@ -133,6 +133,10 @@ class Manager {
     test_->param("density_constant", settings.densityConstant).param("cell", settings.cell);
     test_->param("placement", settings.placement.c_str()).param("light_floor", settings.lightFloor);
     test_->param("turnover", settings.turnover).param("saccade_turnover", settings.saccadeTurnover);
+    if (settings.changeTurnover > 0) {
+      test_->param("change_turnover", settings.changeTurnover);
+      test_->buffer("change", std::vector<glm::vec4>(1), "LightChange");
+    }
     test_->beforeFrame([this](PassTest&, scene::Frame& frame) { frame.saccade = saccade_; });
     test_->buffer("candidates", in.candidates, "Candidate");
     test_->buffer("candidate_importance", in.candidateImportance, "float");
@@ -167,6 +171,7 @@ class Manager {
     test_->set("candidate_importance", in.candidateImportance);
     test_->set("vpls", in.vpls);
     test_->set("vpl_importance", in.vplImportance);
+    if (settings_.changeTurnover > 0) test_->set("change", std::vector<glm::vec4>{{0, 0, in.lost, 0}});
   }
   PassTest& test() { return *test_; }
 

@@ -117,5 +117,30 @@ TEST(Manage, LongLists) {
   }
 }
 
+// Candidates that are placed by their light need no importance; those that compete by it do. A list that makes room when
+// the light changes has to know that it does.
+TEST(Manage, WhatItNeedsDependsOnThePlacement) {
+  Dice dice(9);
+  const ManageInput in = randomInput(dice, {20, 50, 0.9f, Importance::Fine, 0.5f});
+  const auto run = [&](const char* placement, double changeTurnover) {
+    PassTest test("manage");
+    test.scene(boundsOnly()).param("count", 20).param("placement", placement);
+    test.param("change_turnover", changeTurnover);
+    test.buffer("candidates", in.candidates, "Candidate").buffer("vpls", in.vpls, "VplState");
+    test.buffer("vpl_importance", in.vplImportance, "float").run(1);
+    int added = 0;
+    for (const VplState& vpl : test.values<VplState>("list")) {
+      if (vpl.life != 1) continue;
+      ++added;
+      EXPECT_EQ(vpl.importance, 0);
+      EXPECT_EQ(vpl.previousImportance, 0);
+    }
+    return added;
+  };
+  EXPECT_GT(run("light", 0), 3);
+  EXPECT_THROW(run("importance", 0), Error);
+  EXPECT_THROW(run("light", 0.1), Error);
+}
+
 }  // namespace
 }  // namespace fovea::test

@@ -18,7 +18,7 @@ struct ManageSettings {
   uint32_t keep = 0, limit = 0, maxDensity = 0;
   double densityConstant = 1, cell = 1.0 / 48;
   std::string placement = "importance";
-  double lightFloor = 0.25, turnover = 1, saccadeTurnover = 0;
+  double lightFloor = 0.25, turnover = 1, changeTurnover = 0, saccadeTurnover = 0;
 };
 
 struct ManageInput {
@@ -28,7 +28,7 @@ struct ManageInput {
   std::vector<float> vplImportance;
   uint32_t seed = 1, frame = 0;
   glm::vec3 boundsMin{0}, boundsMax{1};
-  float exposure = 1, saccade = 0;
+  float exposure = 1, saccade = 0, lost = 0;
 };
 
 struct ManageOutput {
@@ -100,6 +100,13 @@ class ManageReference {
     return u * before < now << 24;
   }
 
+  // Most VPLs that may be deleted for failing Eq. 1.
+  size_t mostRejected() const {
+    const float slots = float(alive_.size());
+    return std::max(size_t(std::ceil(s_.turnover * double(alive_.size()))),
+                    size_t(std::ceil(float(s_.changeTurnover) * in_.lost * slots)));
+  }
+
   void reuse() {
     std::vector<uint32_t> order;
     uint32_t accepted = 0;
@@ -111,7 +118,7 @@ class ManageReference {
       out_.rejected += !passed;
       if (passed || random) order.push_back(slot);
     }
-    const size_t most = size_t(std::ceil(s_.turnover * double(alive_.size())));
+    const size_t most = mostRejected();
     const bool limited = most < alive_.size();
     if (limited && !random) {  // those that failed after those that passed, the most important first
       for (uint32_t slot = 0; slot < alive_.size(); ++slot)
@@ -228,7 +235,7 @@ class ManageReference {
       out_.deleted += alive_[slot] && !stays_[slot];
       if (stays_[slot]) {
         vpl = in_.vpls[slot];
-        const bool limited = std::ceil(s_.turnover * double(alive_.size())) < double(alive_.size());
+        const bool limited = mostRejected() < alive_.size();
         vpl.importance =
             limited && !acceptedByEq1(slot) ? in_.vpls[slot].previousImportance : in_.vplImportance[slot];
       } else if (next < added_.size()) {

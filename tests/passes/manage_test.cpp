@@ -91,6 +91,50 @@ TEST(Manage, LightAndTurnoverEqualTheSerialAlgorithm) {
   }
 }
 
+TEST(Manage, ChangesEqualTheSerialAlgorithm) {
+  Dice dice(55);
+  for (uint32_t seed = 550; seed < 556; ++seed) {
+    SCOPED_TRACE(seed);
+    const Content content{dice.any<uint32_t>({7, 40, 300}), dice.any<uint32_t>({3, 200, 700}), 0.8f};
+    ManageSettings settings;
+    settings.placement = seed % 3 == 0 ? "importance" : "light";
+    settings.turnover = dice.any({0.0, 0.05, 1.0});
+    settings.changeTurnover = dice.any({0.1, 0.5, 1.0});
+    ManageInput in = randomInput(dice, content);
+    Manager manager(settings, in, seed);
+    for (const float lost : {0.0f, 1.0f, 0.7f, 0.03f, 0.0f}) {
+      if (testing::Test::HasFailure()) return;
+      in.lost = lost;
+      const ManageOutput out = manager.run(in);
+      nextFrame(in, out.vpls, dice);
+      newCandidates(in, dice, content);
+    }
+  }
+}
+
+// All VPLs fail Eq. 1. Few of them may go at a time, unless the light has changed.
+TEST(Manage, LightThatChangesMakesRoom) {
+  Dice dice(56);
+  ManageInput in = randomInput(dice, {100, 400, 0.9f, Importance::Fine, 0.0f});
+  for (size_t i = 0; i < in.vpls.size(); ++i) {
+    in.vpls[i].previousImportance = in.vpls[i].importance = 0.5f;
+    in.vplImportance[i] = 0;
+  }
+  ManageSettings settings;
+  settings.placement = "light";
+  settings.maxDensity = 1000;
+  settings.turnover = 0.02;
+  settings.changeTurnover = 0.25;
+  Manager manager(settings, in);
+  for (const auto& [lost, deleted] : {std::pair(0.0f, 2u), {0.04f, 2u}, {0.5f, 13u}, {1.0f, 25u}}) {
+    in.lost = lost;
+    const ManageOutput out = manager.run(in);
+    EXPECT_EQ(out.deleted, deleted) << lost;
+    EXPECT_GT(out.added, deleted / 2) << lost;
+    EXPECT_EQ(out.rejected, 100u);
+  }
+}
+
 TEST(Manage, SaccadesEqualTheSerialAlgorithm) {
   Dice dice(60);
   for (uint32_t seed = 600; seed < 606; ++seed) {

@@ -1,6 +1,7 @@
 // Tests strategy `importance-area` of pass vpl-intensity.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "passes/eye-paths-host/eye_path_tracer.h"
@@ -214,7 +215,8 @@ std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector
 
 std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& points,
                                     const std::vector<passes::EyePathEnd>& ends,
-                                    const WeightSettings& settings, float nearArea) {
+                                    const WeightSettings& settings, float nearArea,
+                                    std::vector<float>* worth = nullptr) {
   PassTest test("vpl-intensity-importance-area");
   wire(test, in, "importance-area", settings);
   std::vector<passes::EyePathStart> starts;
@@ -223,7 +225,57 @@ std::vector<scene::Vpl> weighTraced(const Inputs& in, const std::vector<Seen>& p
   test.buffer("traced.starts", starts, "ScreenPoint").buffer("traced.ends", ends, "EyePathEnd");
   if (nearArea > 0) test.buffer("spread", std::vector<glm::vec4>{{nearArea, 0, 0, 0}}, "VplSpread");
   test.run();
+  if (worth) *worth = test.values<float>("worth");
   return test.values<scene::Vpl>("emitters");
+}
+
+// How much VPLs matter follows from how well the region sees them and from the light of their paths relative to the
+// mean, not from how many VPLs there are or how bright the scene is. What is hidden from the region does not matter.
+TEST(Weights, WorthIsSightTimesLight) {
+  const Room room = closedRoom(false, 32);
+  const WeightSettings settings;
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 300, settings)));
+  in.vpls[4] = {};
+  const auto points = screenPoints(room, settings);
+  const auto p = seenDensities(room, in.vpls, points, emptyMaps(in.vpls.size()));
+  std::vector<double> sorted;
+  for (const double x : p)
+    if (x > 0) sorted.push_back(x);
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[(sorted.size() - 1) / 2];
+  for (const float brightness : {1.0f, 30.0f, 0.0f}) {
+    auto ends = colouredEnds(room, points, 8192);
+    double lit = 0, all = 0;
+    for (passes::EyePathEnd& e : ends) {  // half of the room is dark
+      e.radiance = glm::vec3(e.position.x > 0 ? brightness : 0.0f);
+      all += e.kind > 0;
+      lit += e.position.x > 0 && e.kind > 0;
+    }
+    const float unit = passes::sumUnit(ends);
+    for (passes::EyePathEnd& e : ends) e.unit = unit;
+    for (size_t side = 0; side < in.radiance.size(); ++side)  // stands in for paths where there are none
+      in.radiance[side] = glm::vec4(room.voxels.surface[side].position.x > 0 ? brightness : 0.0f);
+    std::vector<float> worth;
+    weighTraced(in, points, ends, settings, 0, &worth);
+    ASSERT_EQ(worth.size(), in.vpls.size());
+    EXPECT_EQ(worth[4], 0);
+    int checked = 0;
+    for (size_t i = 0; i < worth.size(); ++i) {
+      const float x = in.vpls[i].position.x;
+      if (!(in.vpls[i].life > 0) || std::abs(x) < 0.6f || !(p[i] > 0)) continue;
+      const double relative = x > 0 ? all / lit : 0, light = brightness > 0 ? (relative + 0.25) / 1.25 : 1;
+      const double w = p[i] / median * light;
+      EXPECT_NEAR(worth[i], w / (1 + w), 0.02) << i << ", " << brightness;
+      ++checked;
+    }
+    EXPECT_GT(checked, 100);
+  }
+  in.maps = {16, std::vector<uint32_t>(256 * in.vpls.size(), scene::kParaboloidEmpty)};
+  std::fill_n(in.maps.texels.begin() + 256 * 7, 256, 0);
+  std::vector<float> worth;
+  weighTraced(in, points, colouredEnds(room, points, 8192), settings, 0, &worth);
+  EXPECT_EQ(worth[7], 0);
+  EXPECT_GT(worth[8], 0);
 }
 
 // The region gets the mean light of the paths' ends, channel by channel, whatever the emission of the VPLs.
