@@ -1,7 +1,10 @@
-// Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance that
-// nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence (Roberts 2018). Define:
-// RAY_PASSAGE 0/1 (common/rays/trace.glsl).
+// Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance
+// that nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence (Roberts 2018).
+// Where there is no history it is the mean of several such estimates, which take the places of the frames before, each
+// in the next subset. Defines: RAY_PASSAGE 0/1 (common/rays/trace.glsl); HISTORY 0/1, 1 if `origin` says where there is
+// none.
 #include "common/random.glsl"
+#include "common/history.glsl"
 #include "common/records/contact.h"
 #include "common/rays/visibility.glsl"
 #include "contact_sources.glsl"
@@ -11,11 +14,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430) readonly buffer SourcesBlock { ContactSource list[]; } sources;
 layout(std430) buffer CountsBlock { uvec2 list[]; } counts;  // rays to each VPL, and those that reached it
+#if HISTORY
+layout(r32ui) uniform readonly uimage2D origin;
+#endif
 layout(rgba32f) uniform writeonly image2D unfiltered;
 layout(std430) buffer CountersBlock { uint pixels, rays; } counters;
 
 layout(push_constant) uniform Constants {
   uint rays;
+  uint firstSamples;
   uint frameIndex;
 };
 
@@ -26,12 +33,10 @@ float unhidden(ContactSource light, ContactSurface s) {
   return light.weight * max(-dot(s.normal, d), 0.0) * max(dot(light.normal, d), 0.0) / (d2 * (d2 + light.area));
 }
 
-vec3 lightAt(ivec2 p) {
-  ContactSurface s = contactSurface(p);
-  vec3 away = normalize(s.position - view.eye), origin = s.position + (s.normal - away) * rayEpsilon();
-  uint stream = randomStream(frame.seed, uint(p.x), kContactStream, uint(p.y));
-  vec2 u = streamSequence(stream, frameIndex);
-  uint subset = min(uint(u.y * float(kContactSubsets)), kContactSubsets - 1u), end = uint(sources.list.length());
+// From all VPLs by those of one subset. offset: of the rays' places in the sum, from 0 to 1.
+vec3 lightOf(uint subset, ContactSurface s, float offset) {
+  vec3 away = normalize(s.position - view.eye), start = s.position + (s.normal - away) * rayEpsilon();
+  uint end = uint(sources.list.length());
   float sum = 0.0;
   for (uint i = subset; i < end; i += kContactSubsets) sum += unhidden(sources.list[i], s);
   if (!(sum > 0.0)) return vec3(0.0);
@@ -40,7 +45,7 @@ vec3 lightAt(ivec2 p) {
   uint chosen = subset;
   float before = 0.0, own = unhidden(sources.list[subset], s);
   for (uint k = 0u; k < rays; ++k) {
-    float place = (float(k) + u.x) / float(rays) * sum;
+    float place = (float(k) + offset) / float(rays) * sum;
     for (uint i = chosen + kContactSubsets; i < end && before + own <= place; i += kContactSubsets) {
       float next = unhidden(sources.list[i], s);
       if (!(next > 0.0)) continue;
@@ -48,7 +53,7 @@ vec3 lightAt(ivec2 p) {
       own = next;
       chosen = i;
     }
-    vec3 to = sources.list[chosen].position - origin, share = visibility(Ray(origin, to, 0.0, kContactRayEnd));
+    vec3 to = sources.list[chosen].position - start, share = visibility(Ray(start, to, 0.0, kContactRayEnd));
     atomicAdd(counts.list[chosen].x, 1u);
     if (share == vec3(0.0)) continue;
     atomicAdd(counts.list[chosen].y, 1u);
@@ -57,10 +62,24 @@ vec3 lightAt(ivec2 p) {
   return light * (sum * float(kContactSubsets) / (float(rays) * kPi));
 }
 
+uint samplesAt(ivec2 p) {
+#if HISTORY
+  if (imageLoad(origin, p).r == kNone) return firstSamples;
+#endif
+  return 1u;
+}
+
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(p, imageSize(unfiltered))) || !inContact(p)) return;
+  uint samples = samplesAt(p);
   atomicAdd(counters.pixels, 1u);
-  atomicAdd(counters.rays, rays);
-  imageStore(unfiltered, p, vec4(min(lightAt(p), 65504.0), 0.0));
+  atomicAdd(counters.rays, samples * rays);
+  ContactSurface surface = contactSurface(p);
+  uint stream = randomStream(frame.seed, uint(p.x), kContactStream, uint(p.y));
+  uint first = min(uint(streamSequence(stream, frameIndex).y * float(kContactSubsets)), kContactSubsets - 1u);
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < samples; ++i)
+    sum += lightOf((first + i) % kContactSubsets, surface, streamSequence(stream, frameIndex - i).x);
+  imageStore(unfiltered, p, vec4(min(sum / float(samples), 65504.0), 0.0));
 }

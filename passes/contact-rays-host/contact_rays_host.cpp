@@ -150,16 +150,30 @@ class Sampler {
         turn_(turn) {}
 
   std::vector<Tally> tallies;
+  uint64_t traced = 0;  // rays so far
 
-  // Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance
-  // that nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence.
-  glm::vec3 lightAt(glm::uvec2 pixel, glm::uvec2 contact) {
-    const auto [position, normal] = surfaceAt(view_, pixel, contact);
+  // Irradiance / pi: the mean of `samples` estimates from one subset each. Over the frames, subsets and places in the
+  // sum follow one low-discrepancy sequence. Further estimates take the places of the frames before, each in the next
+  // subset.
+  glm::vec3 lightAt(glm::uvec2 pixel, glm::uvec2 contact, uint32_t samples) {
+    const Surface surface = surfaceAt(view_, pixel, contact);
+    const uint32_t stream = randomStream(frame_.seed, pixel.x, kContactStream, pixel.y);
+    const float part = scene::streamSequence(stream, turn_).y;
+    const size_t first = std::min(size_t(part * float(kSubsets)), kSubsets - 1);
+    glm::vec3 sum(0);
+    for (uint32_t i = 0; i < samples; ++i)
+      sum += lightOf(subsets_[(first + i) % kSubsets], surface, scene::streamSequence(stream, turn_ - i).x);
+    traced += uint64_t(samples) * count_;
+    return sum / float(samples);
+  }
+
+ private:
+  // Irradiance / pi from all VPLs by those of one subset, chosen by the light they would send if nothing hid them and
+  // by the chance that nothing does. offset: of the rays' places in the sum, from 0 to 1.
+  glm::vec3 lightOf(const Lights& lights, const Surface& surface, float offset) {
+    const auto [position, normal] = surface;
     const glm::vec3 away = glm::normalize(position - view_.eye);
     const glm::vec3 origin = position + (normal - away) * rays_.epsilon();
-    const glm::vec2 u =
-        scene::streamSequence(randomStream(frame_.seed, pixel.x, kContactStream, pixel.y), turn_);
-    const Lights& lights = subsets_[std::min(size_t(u.y * float(kSubsets)), kSubsets - 1)];
     lightOfEach(lights, position, normal, unhidden_);
     blocks_.clear();
     for (auto block = unhidden_.begin(); block != unhidden_.end(); block += kBlock)
@@ -168,7 +182,7 @@ class Sampler {
     if (!(sum > 0)) return glm::vec3(0);
     glm::vec3 light(0);
     for (uint32_t k = 0; k < count_; ++k) {
-      float place = (float(k) + u.x) / float(count_) * sum;
+      float place = (float(k) + offset) / float(count_) * sum;
       const size_t block = kBlock * pick(blocks_, place);
       const size_t i = block + pick(std::span(unhidden_).subspan(block, kBlock), place);
       Tally& tally = tallies[lights.slots[i]];
@@ -183,7 +197,6 @@ class Sampler {
     return light * (sum * float(kSubsets) / float(count_) * glm::one_over_pi<float>());
   }
 
- private:
   const scene::RayScene& rays_;
   const scene::Frame& frame_;
   const scene::View& view_;
@@ -206,12 +219,19 @@ class ContactRaysHost : public Pass {
             "x: bits of the distance from the eye, m; y: octahedral normal; 0 elsewhere (pass contacts)");
     d.input("vpls", vplBuffer(), Usage::HostRead, "light sources; empty slots have zero intensity");
     d.input("history", buffer("VplTally", sizeof(Tally)), Usage::HostRead, "`tallies` of the previous frame");
+    d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::HostRead,
+            "0xffffffff where a surface has come into view and has no history (pass motion-vectors)")
+        .makeOptional();
     d.output("light", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("contacts"), heightOf("contacts")),
              Usage::HostWrite,
              "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
     d.parameter("rays", integer(4, 1, 1024), "rays per pixel");
+    d.parameter(
+        "first_samples", integer(4, 1, 1024),
+        "times as many rays where `origin`, if wired, says that there is no history; with 4 they look at "
+        "all VPLs instead of a quarter");
     d.parameter(
         "filter", flag(true),
         "whether the light of a pixel is averaged with that of the eight around it, as far as they are in "
@@ -230,6 +250,7 @@ class ContactRaysHost : public Pass {
     const auto contacts = ctx.inputAs<glm::uvec2>("contacts");
     const auto vpls = ctx.inputAs<scene::Vpl>("vpls");
     const auto history = ctx.inputAs<Tally>("history");
+    const auto origin = ctx.has("origin") ? ctx.inputAs<uint32_t>("origin") : std::span<const uint32_t>{};
     const auto light = ctx.outputAs<uint64_t>("light");
     const auto tallies = ctx.outputAs<Tally>("tallies");
     std::ranges::fill(light, 0);
@@ -242,6 +263,11 @@ class ContactRaysHost : public Pass {
                       std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
                       std::to_string(size.y),
                   "wire contacts of the view that the pass looks through");
+    if (!origin.empty() && origin.size() != contacts.size())
+      throw Error(ExitCode::BadInput,
+                  "pass `contact-rays-host`: `origin` has " + std::to_string(origin.size()) +
+                      " pixels, `contacts` " + std::to_string(contacts.size()),
+                  "make both from the same G-buffer");
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(ctx.parameters()));
     for (size_t s = 0; s < kSubsets; ++s) {
       subsets_[s].clear();
@@ -251,12 +277,13 @@ class ContactRaysHost : public Pass {
       subsets_[s].fillBlock();
     }
     const uint32_t count = uint32_t(ctx.parameters().integer("rays"));
+    const uint32_t firstSamples = uint32_t(ctx.parameters().integer("first_samples"));
     const float longer = float(ctx.parameters().real("longer"));
     const bool filters = ctx.parameters().flag("filter");
     unfiltered_.resize(contacts.size());
     std::atomic<uint32_t> next = 0;
     std::mutex adding;
-    uint64_t pixels = 0;
+    uint64_t pixels = 0, traced = 0;
     onThreads(std::min(threadCount(0), height), [&] {
       Sampler sampler(*rays, frame, ctx.view(), subsets_, count, uint32_t(ctx.frameNumber()), vpls.size());
       uint64_t found = 0;
@@ -265,10 +292,12 @@ class ContactRaysHost : public Pass {
           const size_t i = size_t(y) * width + x;
           if (contacts[i].x == 0) continue;
           ++found;
-          unfiltered_[i] = glm::min(sampler.lightAt({x, y}, contacts[i]), 65504.0f);
+          const uint32_t samples = !origin.empty() && origin[i] == scene::kNoIndex ? firstSamples : 1;
+          unfiltered_[i] = glm::min(sampler.lightAt({x, y}, contacts[i], samples), 65504.0f);
         }
       const std::lock_guard lock(adding);
       pixels += found;
+      traced += sampler.traced;
       for (size_t i = 0; i < tallies.size(); ++i) {  // whole numbers, so the order does not matter
         tallies[i].rays += sampler.tallies[i].rays;
         tallies[i].reached += sampler.tallies[i].reached;
@@ -291,7 +320,7 @@ class ContactRaysHost : public Pass {
       tallies[i].reached += kTallyKept * history[i].reached;
     }
     ctx.counter("pixels", double(pixels));
-    ctx.counter("rays", double(pixels * count));
+    ctx.counter("rays", double(traced));
   }
 
  private:

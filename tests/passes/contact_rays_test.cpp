@@ -41,6 +41,8 @@ constexpr float kLonger = 3;  // length of means of this light, in those of othe
 
 bool everyThird(size_t pixel) { return pixel % 3 == 0; }
 bool mostPixels(size_t pixel) { return pixel % 5 != 0; }
+bool everySecond(size_t pixel) { return pixel % 2 == 0; }
+bool allPixels(size_t) { return true; }
 
 // The chosen pixels of the eye's picture are in contact.
 std::vector<glm::uvec2> contactsOf(const GBuffer& seen, bool (*chosen)(size_t)) {
@@ -64,7 +66,17 @@ struct Settings {
   bool filter = false;
   bool (*contact)(size_t) = everyThird;
   uint32_t frames = 1;
+  // Pixels whose surface has come into view; without it, `origin` is not wired.
+  bool (*fresh)(size_t) = nullptr;
+  int firstSamples = kSubsets;
 };
+
+// Any pixel where there is a history.
+std::vector<uint32_t> originOf(size_t pixels, bool (*fresh)(size_t)) {
+  std::vector<uint32_t> origin(pixels);
+  for (size_t i = 0; i < pixels; ++i) origin[i] = fresh(i) ? 0xffffffffu : uint32_t(i);
+  return origin;
+}
 
 Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& settings, const char* type) {
   const int rays = settings.rays;
@@ -74,6 +86,10 @@ Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& 
   test.param("filter", settings.filter);
   test.param("longer", kLonger);
   test.param("rays", rays);
+  test.param("first_samples", settings.firstSamples);
+  if (settings.fresh)
+    test.image("origin", VK_FORMAT_R32_UINT, kWidth, kHeight, 1,
+               originOf(eye.seen.pixels.size(), settings.fresh));
   test.viewSize(kWidth, kHeight).scene(eye.scene);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0] = eye.view; });
   test.image("contacts", VK_FORMAT_R32G32_UINT, kWidth, kHeight, 1, contactsOf(eye.seen, settings.contact));
@@ -81,10 +97,14 @@ Result run(const Eye& eye, const std::vector<scene::Vpl>& vpls, const Settings& 
   test.buffer("history", history, "VplTally");
   test.run(settings.frames);
   Result result{test.values<uint64_t>("light"), test.values<glm::vec2>("tallies"), test.counter("pixels")};
-  size_t inContact = 0;
-  for (size_t i = 0; i < eye.seen.pixels.size(); ++i) inContact += settings.contact(i);
+  size_t inContact = 0, samples = 0;
+  for (size_t i = 0; i < eye.seen.pixels.size(); ++i) {
+    const bool fresh = settings.fresh && settings.fresh(i);
+    inContact += settings.contact(i);
+    if (settings.contact(i)) samples += fresh ? size_t(settings.firstSamples) : 1;
+  }
   EXPECT_EQ(result.pixels, double(inContact));
-  EXPECT_EQ(test.counter("rays"), rays * result.pixels);
+  EXPECT_EQ(test.counter("rays"), double(rays) * double(samples));
   return result;
 }
 
@@ -145,6 +165,50 @@ TEST_P(ContactRays, AnyHistoryGivesTheSameLight) {
   EXPECT_GT(rays, 0.9 * 1024 * got.pixels) << "few pixels lie in no VPL's light";
 }
 
+// Where a surface has come into view there is no mean over frames in which subsets could take turns.
+TEST_P(ContactRays, AllSubsetsAtOnceWithoutHistory) {
+  const Eye eye({0.3f, 0.2f, 0});
+  std::vector<scene::Vpl> vpls = lamps();
+  for (size_t i = 0; i < vpls.size(); ++i) vpls[i].intensity *= 0.25f + 0.5f * float(i % kSubsets);
+  expectLightOfAllVpls(eye, vpls, run(eye, vpls, {.rays = 256, .fresh = allPixels}));
+  expectLightOfAllVpls(eye, vpls,
+                       run(eye, vpls, {.rays = 128, .fresh = allPixels, .firstSamples = 2 * kSubsets}));
+}
+
+// The others are as they are without `origin`, and a single sample is the one that they have.
+TEST_P(ContactRays, MoreSamplesOnlyWithoutHistory) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  const Result none = run(eye, vpls, {.rays = 1}),
+               single = run(eye, vpls, {.rays = 1, .fresh = everySecond, .firstSamples = 1}),
+               got = run(eye, vpls, {.rays = 1, .fresh = everySecond});
+  EXPECT_EQ(single.light, none.light);
+  int different = 0;
+  for (size_t i = 0; i < got.light.size(); ++i) {
+    if (everySecond(i))
+      different += got.light[i] != none.light[i];
+    else
+      EXPECT_EQ(got.light[i], none.light[i]) << i;
+  }
+  EXPECT_GT(different, 200);
+}
+
+// Each of several samples is an estimate of its own: their mean has a fraction of the variance.
+TEST_P(ContactRays, SamplesOfFramesThatWereMissed) {
+  const Eye eye({0.3f, 0.2f, 0});
+  const auto vpls = lamps();
+  const auto varianceOf = [&](bool (*fresh)(size_t)) {
+    const Result exact = run(eye, vpls), got = run(eye, vpls, {.rays = 1, .fresh = fresh});
+    double sum = 0;
+    for (size_t i = 0; i < got.light.size(); i += 3) {
+      const float d = glm::unpackHalf4x16(got.light[i]).g - glm::unpackHalf4x16(exact.light[i]).g;
+      sum += double(d) * d;
+    }
+    return sum;
+  };
+  EXPECT_LT(varianceOf(allPixels), 0.35 * varianceOf(nullptr));
+}
+
 // The box hides part of the wall, so that many windows show both, and pixels that are not in contact.
 TEST_P(ContactRays, FilterAveragesPixelsOnTheSamePlane) {
   const Eye eye({0.3f, 0.2f, 0});
@@ -190,7 +254,12 @@ TEST(ContactRaysBoth, GiveTheSameLight) {
   const auto vpls = lamps();
   std::vector<glm::vec2> history;
   for (size_t i = 0; i < vpls.size(); ++i) history.emplace_back(100, 40 * (i % 3));
-  const Settings settings{.rays = 3, .history = history, .filter = true, .contact = mostPixels, .frames = 3};
+  const Settings settings{.rays = 3,
+                          .history = history,
+                          .filter = true,
+                          .contact = mostPixels,
+                          .frames = 3,
+                          .fresh = everySecond};
   const Result host = run(eye, vpls, settings, "contact-rays-host"),
                device = run(eye, vpls, settings, "contact-rays-device");
   int different = 0;
@@ -231,6 +300,23 @@ TEST_P(ContactRays, WithoutVplsThereIsNoLight) {
   for (const uint64_t value : test.values<uint64_t>("light"))
     EXPECT_TRUE(value == 0 || glm::unpackHalf4x16(value) == glm::vec4(0, 0, 0, kLonger));
   for (const glm::vec2 tally : test.values<glm::vec2>("tallies")) EXPECT_EQ(tally, glm::vec2(75, 37.5f));
+}
+
+TEST(ContactRaysHost, OriginHasTheSameSize) {
+  PassTest test("contact-rays-host");
+  test.viewSize(8, 8).scene(Eye({0, 0, 0}).scene);
+  test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));
+  test.image("origin", VK_FORMAT_R32_UINT, 8, 4, 1, std::vector<uint32_t>(32));
+  test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
+  test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find("`origin` has 32 pixels, `contacts` 64"), std::string::npos)
+        << e.what();
+  }
 }
 
 TEST(ContactRaysHost, SizeIsTheViews) {
