@@ -227,7 +227,7 @@ class ContactRaysHost : public Pass {
              "rgb: irradiance / pi from VPLs, W/(sr m^2); a: `longer` where surfaces meet, else all 0");
     d.output("tallies", buffer("VplTally", sizeof(Tally), countOf("vpls")), Usage::HostWrite,
              "x: rays to the VPL in a slot, y: those that reached it; a quarter is forgotten in each frame");
-    d.parameter("rays", integer(4, 1, 1024), "rays per pixel");
+    d.parameter("rays", integer(8, 1, 1024), "rays per pixel");
     d.parameter(
         "first_samples", integer(4, 1, 1024),
         "times as many rays where `origin`, if wired, says that there is no history; with 4 they look at "
