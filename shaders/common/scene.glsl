@@ -23,7 +23,7 @@ layout(set = 1, binding = 8) LARGE_TEXELS(vec4, sceneObjects);        // ObjectR
 layout(set = 1, binding = 9) LARGE_TEXELS(vec4, scenePrevious);       // xyz world, last frame, vertices that may move
 layout(set = 1, binding = 10) uniform sampler2D sceneEnvironment;       // equirectangular map, one texel if there is none
 
-// Of the scene's bounds, m; above 0.
+// Diagonal of the scene's bounds, m; above 0.
 float diagonal() { return max(distance(frame.boundsMin, frame.boundsMax), 1e-30); }
 
 // ---- Geometry ----------------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ layout(rgba16f) uniform writeonly image2D samples;
 
 layout(push_constant) uniform Constants { uint spacing; };
 
-// Of a tile in a row of three, by its distance from the middle.
+// Weight of a tile in a row of three, by its distance from the middle.
 float rowWeight(int steps) { return steps == 0 ? kTileMiddleWeight : 1.0; }
 
 // The sample of a wide tile is at its first texel.

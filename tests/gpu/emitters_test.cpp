@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <span>
+#include <vector>
 
 #include "framework/base/random.h"
-#include "framework/gpu/pipeline.h"
-#include "framework/gpu/resources.h"
-#include "framework/gpu/shader/shader.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/emitters.h"
 #include "framework/session/test_device.h"
-#include "tests/gpu/command_helpers.h"
+#include "tests/gpu/scene_queries.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
@@ -54,7 +50,6 @@ struct Answer {
 };
 
 std::vector<Answer> askDevice(GpuScene& scene, const Frame& frame, const std::vector<Query>& queries) {
-  gpu::Device& device = testDevice();
   const char* source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 #define RAY_PASSAGE 0
@@ -76,6 +71,7 @@ struct Answer {
 layout(std430) readonly buffer Queries { Query queries[]; };
 layout(std430) writeonly buffer Answers { Answer answers[]; };
 void main() {
+  if (gl_GlobalInvocationID.x >= queries.length()) return;
   Query q = queries[gl_GlobalInvocationID.x];
   Receiver receiver = Receiver(q.position, q.normal);
   EmitterPoint p = sampleEmitters(receiver, q.choice, q.u);
@@ -93,31 +89,7 @@ void main() {
   answers[gl_GlobalInvocationID.x] = a;
 }
 )";
-  gpu::Buffer in(device, {"queries", queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::Buffer out(device, {"answers", queries.size() * sizeof(Answer), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::upload(device, in, std::as_bytes(std::span(queries)));
-  const gpu::Pipeline pipeline(
-      device,
-      gpu::ComputePipelineDesc{device.shaders().compileSource("emitters.comp", source), scene.setLayout()});
-  scene.update(frame, 0);
-  device.runOnce([&](VkCommandBuffer cmd) {
-    scene.recordMoves(cmd, 0);
-    constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    test::barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
-                  VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
-    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
-                                             {out.handle(), 0, VK_WHOLE_SIZE}};
-    VkWriteDescriptorSet writes[2] = {test::write(pipeline, "Queries"), test::write(pipeline, "Answers")};
-    writes[0].pBufferInfo = &infos[0];
-    writes[1].pBufferInfo = &infos[1];
-    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
-    const VkDescriptorSet set = scene.set(0);
-    const uint32_t offset = scene.viewOffset(0);
-    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
-    vkCmdDispatch(cmd, uint32_t(queries.size()) / 64, 1, 1);
-  });
-  return test::as<Answer>(gpu::download(device, out));
+  return test::askScene<Answer>(scene, frame, source, queries);
 }
 
 // Panels in different places, of different size, power and orientation, above a floor that does not shine; all of them

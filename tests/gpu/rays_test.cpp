@@ -3,13 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <span>
+#include <vector>
 
 #include "framework/base/random.h"
-#include "framework/gpu/pipeline.h"
-#include "framework/gpu/resources.h"
-#include "framework/gpu/shader/shader.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
@@ -17,7 +13,7 @@
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/rays/visibility.h"
 #include "framework/session/test_device.h"
-#include "tests/gpu/command_helpers.h"
+#include "tests/gpu/scene_queries.h"
 #include "tests/support/ray_soup.h"
 
 namespace fovea::scene {
@@ -44,7 +40,6 @@ struct Answer {
 
 std::vector<Answer> traceOnDevice(GpuScene& scene, const Frame& frame, const std::vector<Query>& queries,
                                   bool passage) {
-  gpu::Device& device = testDevice();
   const std::string source = std::string("#version 460\n") +
                              "#extension GL_GOOGLE_include_directive : require\n#define RAY_PASSAGE " +
                              (passage ? "1" : "0") + R"(
@@ -54,10 +49,9 @@ struct Query { vec3 origin; float near; vec3 direction; float far; };
 struct Answer { uint triangle; float distance, u, v; vec3 share; uint occluded; };
 layout(std430) readonly buffer Queries { Query queries[]; };
 layout(std430) writeonly buffer Answers { Answer answers[]; };
-layout(push_constant) uniform Constants { uint count; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= count) return;
+  if (i >= queries.length()) return;
   Query q = queries[i];
   Ray ray = Ray(q.origin, q.direction, q.near, q.far);
   RayHit hit = intersect(ray);
@@ -65,32 +59,7 @@ void main() {
                       occluded(ray) ? 1u : 0u);
 }
 )";
-  gpu::Buffer in(device, {"queries", queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::Buffer out(device, {"answers", queries.size() * sizeof(Answer), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::upload(device, in, std::as_bytes(std::span(queries)));
-  const gpu::Pipeline pipeline(
-      device,
-      gpu::ComputePipelineDesc{device.shaders().compileSource("rays.comp", source), scene.setLayout()});
-  scene.update(frame, 0);
-  device.runOnce([&](VkCommandBuffer cmd) {
-    scene.recordMoves(cmd, 0);
-    constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    test::barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
-                  VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
-    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
-                                             {out.handle(), 0, VK_WHOLE_SIZE}};
-    VkWriteDescriptorSet writes[2] = {test::write(pipeline, "Queries"), test::write(pipeline, "Answers")};
-    writes[0].pBufferInfo = &infos[0];
-    writes[1].pBufferInfo = &infos[1];
-    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
-    const VkDescriptorSet set = scene.set(0);
-    const uint32_t offset = scene.viewOffset(0), count = uint32_t(queries.size());
-    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
-    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
-    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
-  });
-  return test::as<Answer>(gpu::download(device, out));
+  return test::askScene<Answer>(scene, frame, source, queries);
 }
 
 // Rays from everywhere within the scene's box; some within planes of the axes, some cut short, and every second one

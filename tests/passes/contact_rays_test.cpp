@@ -302,6 +302,16 @@ TEST_P(ContactRays, WithoutVplsThereIsNoLight) {
   for (const glm::vec2 tally : test.values<glm::vec2>("tallies")) EXPECT_EQ(tally, glm::vec2(75, 37.5f));
 }
 
+void expectRefused(PassTest& test, const char* says) {
+  try {
+    test.run();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::BadInput);
+    EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
+  }
+}
+
 TEST(ContactRaysHost, OriginHasTheSameSize) {
   PassTest test("contact-rays-host");
   test.viewSize(8, 8).scene(Eye({0, 0, 0}).scene);
@@ -309,14 +319,7 @@ TEST(ContactRaysHost, OriginHasTheSameSize) {
   test.image("origin", VK_FORMAT_R32_UINT, 8, 4, 1, std::vector<uint32_t>(32));
   test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
   test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
-  try {
-    test.run();
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    EXPECT_NE(std::string(e.what()).find("`origin` has 32 pixels, `contacts` 64"), std::string::npos)
-        << e.what();
-  }
+  expectRefused(test, "`origin` has 32 pixels, `contacts` 64");
 }
 
 TEST(ContactRaysHost, SizeIsTheViews) {
@@ -326,13 +329,7 @@ TEST(ContactRaysHost, SizeIsTheViews) {
   test.image("contacts", VK_FORMAT_R32G32_UINT, 8, 8, 1, std::vector<glm::uvec2>(64));
   test.buffer("vpls", std::vector<scene::Vpl>(1), "Vpl");
   test.buffer("history", std::vector<glm::vec2>(1), "VplTally");
-  try {
-    test.run();
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::BadInput);
-    EXPECT_NE(std::string(e.what()).find("8x8 pixels, its view 16x8"), std::string::npos) << e.what();
-  }
+  expectRefused(test, "8x8 pixels, its view 16x8");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ SHARED_CONSTANT float kTileMiddleWeight =
 SHARED_CONSTANT float kLengthKept = 0.875f;   // share of the mean ray length kept from frame to frame
 SHARED_CONSTANT float kNearCellWidth = 0.1f;  // width of the cache's cells, in mean ray lengths
 
-// Of the device, kept from frame to frame.
+// What the device keeps from frame to frame.
 struct NearFieldState {
   float meanLength SHARED_ZERO;  // m, of the rays so far; 0 as long as none has met anything
   float area SHARED_ZERO;        // of a VPL's disc, m^2; 0: only the length is found

@@ -1,0 +1,51 @@
+// Asks a shader that reads the scene (descriptor set 1), one invocation for each question.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/gpu/pipeline.h"
+#include "framework/gpu/resources.h"
+#include "framework/gpu/shader/shader.h"
+#include "framework/scene/device/gpu_scene.h"
+#include "framework/scene/frame.h"
+#include "framework/session/test_device.h"
+#include "tests/gpu/command_helpers.h"
+
+namespace fovea::test {
+
+// source: a compute shader with groups of 64 that reads the storage buffer `Queries` and writes `Answers`, one element for
+// each query; the scene is as in `frame`.
+template <class Answer, class Query>
+std::vector<Answer> askScene(scene::GpuScene& scene, const scene::Frame& frame, const std::string& source,
+                             const std::vector<Query>& queries) {
+  gpu::Device& device = testDevice();
+  gpu::Buffer in(device, {"queries", queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::Buffer out(device, {"answers", queries.size() * sizeof(Answer), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  gpu::upload(device, in, std::as_bytes(std::span(queries)));
+  const gpu::Pipeline pipeline(
+      device,
+      gpu::ComputePipelineDesc{device.shaders().compileSource("queries.comp", source), scene.setLayout()});
+  scene.update(frame, 0);
+  device.runOnce([&](VkCommandBuffer cmd) {
+    scene.recordMoves(cmd, 0);
+    constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    barrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,
+            VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
+    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
+                                             {out.handle(), 0, VK_WHOLE_SIZE}};
+    VkWriteDescriptorSet writes[2] = {write(pipeline, "Queries"), write(pipeline, "Answers")};
+    writes[0].pBufferInfo = &infos[0];
+    writes[1].pBufferInfo = &infos[1];
+    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
+    const VkDescriptorSet set = scene.set(0);
+    const uint32_t offset = scene.viewOffset(0);
+    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
+    vkCmdDispatch(cmd, uint32_t(queries.size() + 63) / 64, 1, 1);
+  });
+  return as<Answer>(gpu::download(device, out));
+}
+
+}  // namespace fovea::test
