@@ -1,5 +1,5 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
-// (near_light.glsl).
+// (common/rays/near_light.glsl).
 #include "common/blocks.glsl"
 #include "common/device/sums.glsl"
 #include "common/rays/gather_cache.glsl"
