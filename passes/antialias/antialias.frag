@@ -132,8 +132,7 @@ bool hasLeft(ivec2 p, ivec2 from, Around a, ivec2 size) {
     uint id = imageLoad(previousId, q).r;
     bool here = false;
     for (int k = 0; k < a.count; ++k) here = here || a.id[k] == id;
-    for (int turn_ = 0; turn_ < int(!here); ++turn_)  // a loop, as a CPU device runs unused branches
-      left = left || !canBeHere(id, imageLoad(previousPosition, q), p, vec2(size));
+    if (!here) left = left || !canBeHere(id, imageLoad(previousPosition, q), p, vec2(size));
   }
   return left;
 }

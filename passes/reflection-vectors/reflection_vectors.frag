@@ -61,6 +61,5 @@ void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   origin = imageLoad(surface, p).r;
   float thing = imageLoad(distances, p >> 1).r;
-  // A CPU device skips a loop of zero turns, but not a branch.
-  for (int turns = origin != kNone && thing > 0.0 ? 1 : 0; turns > 0; --turns) origin = originOf(p, thing, origin);
+  if (origin != kNone && thing > 0.0) origin = originOf(p, thing, origin);
 }

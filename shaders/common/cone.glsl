@@ -116,8 +116,7 @@ LARGE_TEXELS(vec4, radiance);
 // What a cone brings back: the light that it meets, and that of an environment map as far as nothing hides it.
 vec3 lightOf(vec4 met, vec3 direction) {
   vec3 light = met.rgb;
-  // A CPU device skips a loop of zero turns, but not a branch.
-  for (int turns = hasEnvironmentMap() && met.a < 1.0 ? 1 : 0; turns > 0; --turns)
+  if (hasEnvironmentMap() && met.a < 1.0)
     light += (1.0 - met.a) * environmentRadiance(direction);
   return light;
 }

@@ -21,9 +21,8 @@ vec3 movedSince(vec3 position, uvec4 triangle) {
 vec3 pointBefore(vec3 point, vec3 position, uint id, uint triangle) {
   uint object = id >> 16;
   bool deforms = object != 0u && objectDeforms(object);
-  // Loops, as a CPU device runs unused branches.
-  for (int turns = deforms ? 1 : 0; turns > 0; --turns) point -= movedSince(position, sceneTriangle(triangle));
-  for (int turns = object != 0u && !deforms ? 1 : 0; turns > 0; --turns)
+  if (deforms) point -= movedSince(position, sceneTriangle(triangle));
+  if (object != 0u && !deforms)
     point = previousObjectTransform(object) * vec4(toObject(object, point), 1.0);
   return point;
 }

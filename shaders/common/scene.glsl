@@ -187,8 +187,8 @@ vec4 materialReflectance(uint material, vec2 uv) {
 vec3 materialEmission(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels;
   vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
-  // A CPU device skips a loop of zero turns, but not a branch. Few surfaces emit.
-  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
+  // Few surfaces emit.
+  if (emission != vec3(0.0))
     emission *= sampleSceneTexture(first + kEmissionTexture, uv).rgb;
   return emission;
 }

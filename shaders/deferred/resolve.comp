@@ -295,9 +295,7 @@ void searchBlock(inout Centre c, ivec2 p, ivec2 size) {
     bool inWindow = all(greaterThanEqual(d, ivec2(-INTERLEAVE / 2))) && all(lessThan(d, ivec2(INTERLEAVE - INTERLEAVE / 2)));
     uvec2 bit = subsetBit((d + BLOCK) % INTERLEAVE);
     bool wanted = c.outside.a > 0.0 && !inWindow && all(lessThan(q, size)) && (c.missing & bit) != uvec2(0u);
-    int turns = wanted ? 1 : 0;  // on a CPU device a loop of zero turns is skipped, a branch is not
-    for (int k = 0; k < turns; ++k) {
-      if (!sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) continue;
+    if (wanted && sameSurface(c, imageLoad(gbufferPosition, q), imageLoad(gbufferNormal, q).xyz, c.plane, filterCos)) {
       c.sum += loadLight(q);
       ++c.found;
       c.missing &= ~bit;

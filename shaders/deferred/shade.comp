@@ -266,9 +266,9 @@ void main() {
   Block block = blockOf(receivers, valid);
   uint subset = subset2.y * INTERLEAVE + subset2.x;
 #if GLOSS
-  // A CPU device skips a loop of zero turns, but not a branch. Most groups show nothing glossy.
-  for (int turn = glossy ? 0 : 1; turn > 0; --turn) gather(receivers, block, subset, false);
-  for (int turn = glossy ? 1 : 0; turn > 0; --turn) {
+  // Most groups show nothing glossy.
+  if (!glossy) gather(receivers, block, subset, false);
+  if (glossy) {
     for (int k = 0; k < kPixels; ++k) complete(receivers[k].lobe, turnOf(receivers, valid, k));
     gather(receivers, block, subset, true);
   }

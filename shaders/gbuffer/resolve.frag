@@ -68,7 +68,7 @@ void main() {
   // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
   uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
   bool glass = (flags & kMaterialTransmits) != 0u;
-  for (int turns = glass ? 1 : 0; turns > 0; --turns)
+  if (glass)
     surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
 #if TINT
   vec4 before = texelFetch(tint, p, 0);
@@ -92,8 +92,7 @@ void main() {
 #endif
 #endif
   if (background) emission = frame.environment;
-  // A CPU device skips a loop of zero turns, but not a branch.
-  for (int turns = background && hasEnvironmentMap() ? 1 : 0; turns > 0; --turns)
+  if (background && hasEnvironmentMap())
     emission = environmentRadiance(normalize(pixelRay(p)));
 
 #if TINT

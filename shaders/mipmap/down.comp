@@ -54,6 +54,5 @@ void main() {
   anew = isDirty(firstBit, size, cell);
   if (anew) markDirty(firstBit + uint(size * size * size), size / 2, cell / 2);
 #endif
-  // A CPU device skips a loop of zero turns, but not a branch.
-  for (int face = 0; face < (anew ? kFaces : 0); ++face) combine(cell, face);
+  for (int face = 0; anew && face < kFaces; ++face) combine(cell, face);
 }

@@ -97,8 +97,7 @@ void main() {
     if (p == inside) imageStore(nearField, p, known ? vec4(near, 1.0) : vec4(0.0));
 #endif
   }
-  uint turns = open ? 1u : 0u;  // on a CPU device a loop of zero turns is skipped, a branch is not
-  for (uint i = 0u; i < turns; ++i) {
+  if (open) {
     uint tile = uint(first.y / kTile * ((size.x + kTile - 1) / kTile) + first.x / kTile);
     if (atomicOr(tileBlocks.count[tile], 1u) == 0u) openList.list[atomicAdd(openTiles.x, 1u) - 1u] = tile;
   }

@@ -117,9 +117,7 @@ void main() {
   if (!wide && its > 1.0 && old.a > frames) old.a = frames * frames / old.a;
   float count = s.own ? min(old.a + its, most) : old.a;
   vec4 result = s.own ? vec4(mix(old.rgb, s.value, min(its / count, 1.0)), count) : old;
-  // A CPU device skips a loop of zero turns, but not a branch.
-  int without = surface && s.wanted && !(old.a > 0.0) ? 1 : 0;
-  for (int turn_ = 0; turn_ < without; ++turn_) result = fromAround(p, position, normal, size, s.side, its);
+  if (surface && s.wanted && !(old.a > 0.0)) result = fromAround(p, position, normal, size, s.side, its);
   mean = surface ? vec4(nearestHalf(result.rgb), result.a) : vec4(0.0);
 }
 #else

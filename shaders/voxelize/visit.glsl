@@ -90,8 +90,7 @@ void visitCell(CellTriangle t, uint triangle, uvec4 indices, Material material, 
   if (fixedPoint(piece.area) < 1.0) return;
   vec2 uv = cellUv(t, indices, a, piece.centre);
   bool present = true;
-  // A CPU device skips a loop of zero turns, but not a branch.
-  for (int turns = material.alphaCutoff != 0.0 ? 1 : 0; turns > 0; --turns)
+  if (material.alphaCutoff != 0.0)
     present = stops(materialOf(indices), uv, kMeanCosine, kEitherWay);
   if (!present) return;
 #if ACCUMULATE

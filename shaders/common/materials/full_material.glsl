@@ -15,8 +15,8 @@ struct TextureCoordinates {
 vec4 surfaceTexture(int texel, TextureCoordinates at) {
   vec4 place = texelOf(sceneMaterials, texel), result = vec4(1.0);
   bool second = (uint(place.w) & kTextureSecondSet) != 0u;
-  // A CPU device skips a loop of zero turns, but not a branch. Few materials have most of the textures.
-  for (int turns = place.x < 0.0 ? 0 : 1; turns > 0; --turns)
+  // Few materials have most of the textures.
+  if (place.x >= 0.0)
     result = sampleSceneTexture(texel, second ? at.second : at.first);
   return result;
 }
@@ -29,7 +29,7 @@ vec4 colorTexture(int texel, TextureCoordinates at) { return sampleSceneTexture(
 
 TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
-  for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
+  if (frame.firstDetail != 0u) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz) + 1;
     second = mat3x2(texelOf(sceneMaterials, texel.x).xy, texelOf(sceneMaterials, texel.y).xy,
                     texelOf(sceneMaterials, texel.z).xy) * weights;
@@ -39,7 +39,7 @@ TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
 
 vec3 vertexColor(uvec4 triangle, vec3 weights) {
   vec3 color = vec3(1.0);
-  for (int turns = frame.firstDetail == 0u ? 0 : 1; turns > 0; --turns) {
+  if (frame.firstDetail != 0u) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz);
     color = mat3(texelOf(sceneMaterials, texel.x).rgb, texelOf(sceneMaterials, texel.y).rgb,
                  texelOf(sceneMaterials, texel.z).rgb) * weights;
@@ -61,7 +61,7 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
   vec3 bent = normal;
   bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u &&
                 texelOf(sceneMaterials, surface + kNormalTexture).x >= 0.0;
-  for (int turns = mapped ? 1 : 0; turns > 0; --turns) {
+  if (mapped) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
     vec4 a = texelOf(sceneMaterials, first);
     vec3 b = texelOf(sceneMaterials, first + 1).xyz, c = texelOf(sceneMaterials, first + 2).xyz;
@@ -126,7 +126,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   vec3 albedo = color * ((1.0 - metallic) * (1.0 - transmission)) * (1.0 - surfaceAlbedo(dielectric, a, mean));
 
   // The coat takes light from what is below it, and joins its lobe.
-  for (int turns = coat.x > 0.0 ? 1 : 0; turns > 0; --turns) {
+  if (coat.x > 0.0) {
     float share = coat.x * surfaceTexture(surface + kClearcoatTexture, at).r;
     float coatRoughness = coat.y * surfaceTexture(surface + kClearcoatRoughnessTexture, at).g;
     MirrorAlbedo c = mirrorAlbedo(cosine, coatRoughness), coatMean = meanMirrorAlbedo(coatRoughness);
@@ -142,7 +142,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   }
 
   vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
-  for (int turns = emission == vec3(0.0) ? 0 : 1; turns > 0; --turns)
+  if (emission != vec3(0.0))
     emission *= colorTexture(first + kEmissionTexture, at).rgb;
   if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
   return FullSurface(albedo, g, emission);

@@ -53,8 +53,8 @@ bool stops(uint material, vec2 uv, float cosine, float chance) {
   if (cutoff == 0.0) return true;
   uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
   float stopped = coverage(material, uv, flags, cutoff);
-  // A CPU device skips a loop of zero turns, but not a branch. Few materials are glass.
-  for (int turns = (flags & kMaterialTransmits) != 0u ? 1 : 0; turns > 0; --turns)
+  // Few materials are glass.
+  if ((flags & kMaterialTransmits) != 0u)
     stopped *= 1.0 - passage(material, uv, cosine);
   return stopped > chance;
 }
