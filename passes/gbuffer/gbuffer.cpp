@@ -18,14 +18,20 @@ namespace {
 
 using namespace graph;
 
-// Whether a material has textures of more than colours, or takes its colours' from the second coordinates.
-bool hasSurfaceTextures(const scene::Material& m) {
-  return std::ranges::any_of(scene::kMaterialTextures, [&](const auto member) {
-    const scene::TextureUse& use = m.*member;
-    const bool color =
-        member == &scene::Material::baseColorTexture || member == &scene::Material::emissionTexture;
-    return use && (!color || use.set != 0);
-  });
+// MATERIAL_DETAIL of common/materials/full_material.glsl that a material asks for.
+int detailOf(const scene::Material& m) {
+  const bool extended =
+      m.specularTexture || m.specularColorTexture || m.transmission > 0 || m.clearcoat > 0 ||
+      std::ranges::any_of(scene::kMaterialTextures, [&](auto use) { return (m.*use).set != 0; });
+  if (extended) return 2;
+  return m.metallicRoughnessTexture || m.normalTexture ? 1 : 0;
+}
+
+int detailOf(const scene::Scene& scene, const scene::Geometry& geometry) {
+  if (!geometry.colors.empty()) return 2;
+  int detail = 0;
+  for (const scene::Material& m : scene.materials) detail = std::max(detail, detailOf(m));
+  return detail;
 }
 
 class GBuffer : public Pass {
@@ -62,12 +68,12 @@ class GBuffer : public Pass {
           .define("EMISSION_TEXTURES", textured)
           .define("FULL", 0);
     images.push_back("gbuffer.specular");
-    for (const bool textured : {false, true})
+    for (const int detail : {0, 1, 2})
       for (const bool veiled : {false, true})
         d.fullscreen("gbuffer/resolve.frag", images)
-            .called(fullResolve(textured, veiled))
+            .called(fullResolve(detail, veiled))
             .when(full)
-            .define("SURFACE_TEXTURES", textured)
+            .define("MATERIAL_DETAIL", detail)
             .define("TINT", veiled)
             .define("FULL", 1);
     return d;
@@ -107,7 +113,7 @@ class GBuffer : public Pass {
       const std::vector<scene::Material>& materials = ctx.frame().scene->materials;
       emissionTextures_ = std::any_of(materials.begin(), materials.end(),
                                       [](const scene::Material& m) { return bool(m.emissionTexture); });
-      surfaceTextures_ = std::any_of(materials.begin(), materials.end(), hasSurfaceTextures);
+      detail_ = detailOf(*ctx.frame().scene, geometry);
       veiled_ = full_ && std::any_of(materials.begin(), materials.end(), scene::letsLightThrough);
       gpu_ = &gpu;
     }
@@ -124,12 +130,13 @@ class GBuffer : public Pass {
     });
     if (veiled_) drawTint(ctx);
     ctx.run(emissionTextures_ ? "resolve with emission textures" : "resolve");
-    ctx.run(fullResolve(surfaceTextures_, veiled_));
+    ctx.run(fullResolve(detail_, veiled_));
   }
 
  private:
-  static std::string fullResolve(bool textured, bool veiled) {
-    return std::string("resolve full materials") + (textured ? " with textures" : "") +
+  static std::string fullResolve(int detail, bool veiled) {
+    static constexpr const char* kWith[] = {"", " with maps", " with extensions"};
+    return std::string("resolve full materials") + kWith[detail] +
            (veiled ? " behind what lets light through" : "");
   }
 
@@ -144,7 +151,8 @@ class GBuffer : public Pass {
   }
 
   Kernel draw_[3], tint_;
-  bool full_ = false, emissionTextures_ = false, surfaceTextures_ = false, veiled_ = false;
+  bool full_ = false, emissionTextures_ = false, veiled_ = false;
+  int detail_ = 0;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to
   std::vector<scene::DrawCluster> clusters_;
   std::vector<scene::DrawRun> visible_;

@@ -1,8 +1,9 @@
-// The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with
-// the triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility
-// buffer, Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of
-// three images holds what `specular` has no room for (glossOf() in common/materials/gloss.glsl); TINT 0/1, 1 where something that
-// lets light through may stand before the surface (tint.frag).
+// The surface of each pixel from the triangle visible there: the ray through the pixel's centre is intersected with the
+// triangle's plane, so that positions have none of the rasteriser's snapping and interpolation (visibility buffer,
+// Burns and Hunt, JCGT 2013). Defines: EMISSION_TEXTURES 0/1; FULL 0/1, 1 for full materials, where alpha of three
+// images holds what `specular` has no room for (glossOf() in common/materials/gloss.glsl), with MATERIAL_DETAIL 0, 1 or
+// 2 (common/materials/full_material.glsl), and TINT 0/1, 1 where something that lets light through may stand before the
+// surface (tint.frag).
 #if FULL
 #include "common/materials/full_material.glsl"
 #endif
@@ -65,12 +66,13 @@ void main() {
   vec3 toEye = normalize(view.eye - position);
   normal = normalTowards(normal, toEye);
   FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
-  // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
-  uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
-  bool glass = (flags & kMaterialTransmits) != 0u;
-  if (glass)
-    surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
 #if TINT
+  uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
+#if MATERIAL_DETAIL == 2
+  // Glass is seen only where the eye's ray has not passed it (visibility.frag), and has to be as much brighter there.
+  if ((flags & kMaterialTransmits) != 0u)
+    surface = brighter(surface, vec3(1.0 / (1.0 - passage(material, uv, abs(dot(interpolated, toEye))))));
+#endif
   vec4 before = texelFetch(tint, p, 0);
   vec3 seenThrough = exp(before.rgb);
   surface = brighter(surface, seenThrough);

@@ -1,5 +1,5 @@
 // A part of the mean light under the lobe of each mirror, as passes/reflections-host finds it: that of one ray. Define:
-// RAY_PASSAGE and SURFACE_TEXTURES as 1.
+// RAY_PASSAGE as 1, MATERIAL_DETAIL as 2.
 #include "common/materials/visible_normals.glsl"
 #include "common/rays/gather_cache.glsl"
 #include "common/rays/seen_surface.glsl"

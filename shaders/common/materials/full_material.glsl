@@ -9,27 +9,27 @@ struct TextureCoordinates {
   vec2 first, second;
 };
 
-// White where the material has no such texture. `texel` is the first of the three that describe it. If SURFACE_TEXTURES
-// is 0, no material has any but those of base colour and emission, with the first coordinates.
-#if SURFACE_TEXTURES
-vec4 surfaceTexture(int texel, TextureCoordinates at) {
-  vec4 place = texelOf(sceneMaterials, texel), result = vec4(1.0);
-  bool second = (uint(place.w) & kTextureSecondSet) != 0u;
-  // Few materials have most of the textures.
-  if (place.x >= 0.0)
-    result = sampleSceneTexture(texel, second ? at.second : at.first);
-  return result;
+// MATERIAL_DETAIL says what materials may have: with 0 textures of base colour and emission, with 1 also those of
+// metallic and roughness and normal maps, with 2 everything. A CPU device spends time even on what no material has.
+
+vec4 textureAt(int texel, TextureCoordinates at) {
+#if MATERIAL_DETAIL == 2
+  bool second = (uint(texelOf(sceneMaterials, texel).w) & kTextureSecondSet) != 0u;
+  return sampleSceneTexture(texel, second ? at.second : at.first);
+#else
+  return sampleSceneTexture(texel, at.first);
+#endif
 }
 
-vec4 colorTexture(int texel, TextureCoordinates at) { return surfaceTexture(texel, at); }
-#else
-vec4 surfaceTexture(int texel, TextureCoordinates at) { return vec4(1.0); }
-vec4 colorTexture(int texel, TextureCoordinates at) { return sampleSceneTexture(texel, at.first); }
-#endif
+// White where the material has no such texture. `texel` is the first of the three that describe it.
+vec4 mapTexture(int texel, TextureCoordinates at) { return MATERIAL_DETAIL >= 1 ? textureAt(texel, at) : vec4(1.0); }
+vec4 extensionTexture(int texel, TextureCoordinates at) {
+  return MATERIAL_DETAIL == 2 ? textureAt(texel, at) : vec4(1.0);
+}
 
 TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
-  if (frame.firstDetail != 0u) {
+  if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz) + 1;
     second = mat3x2(texelOf(sceneMaterials, texel.x).xy, texelOf(sceneMaterials, texel.y).xy,
                     texelOf(sceneMaterials, texel.z).xy) * weights;
@@ -39,7 +39,7 @@ TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
 
 vec3 vertexColor(uvec4 triangle, vec3 weights) {
   vec3 color = vec3(1.0);
-  if (frame.firstDetail != 0u) {
+  if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
     ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz);
     color = mat3(texelOf(sceneMaterials, texel.x).rgb, texelOf(sceneMaterials, texel.y).rgb,
                  texelOf(sceneMaterials, texel.z).rgb) * weights;
@@ -59,7 +59,7 @@ vec3 cornerTangent(vec3 corner, vec3 edgeB, vec3 edgeC, vec3 across) {
 vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edgeC, vec3 normal, float side,
                   TextureCoordinates at) {
   vec3 bent = normal;
-  bool mapped = SURFACE_TEXTURES != 0 && frame.firstTangent != 0u &&
+  bool mapped = MATERIAL_DETAIL >= 1 && frame.firstTangent != 0u &&
                 texelOf(sceneMaterials, surface + kNormalTexture).x >= 0.0;
   if (mapped) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
@@ -73,7 +73,7 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
     t -= normal * dot(normal, t);
     float d = length(t);
     vec3 tangent = t / max(d, 1e-6), bitangent = a.w * cross(normal, tangent);
-    vec3 m = 2.0 * surfaceTexture(surface + kNormalTexture, at).rgb - 1.0;
+    vec3 m = 2.0 * mapTexture(surface + kNormalTexture, at).rgb - 1.0;
     m.xy *= texelOf(sceneMaterials, surface + 2).y;
     vec3 n = side * m.x * tangent + m.y * bitangent + m.z * normal;
     float size = length(n);
@@ -112,13 +112,13 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   vec4 base = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1);
   vec4 factors = texelOf(sceneMaterials, surface + 2), coat = texelOf(sceneMaterials, surface + 3);
-  vec3 color = base.rgb * colorTexture(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
+  vec3 color = base.rgb * textureAt(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
   color = min(color, 1.0);
-  vec4 metallicRoughness = surfaceTexture(surface + kMetallicRoughnessTexture, at);
+  vec4 metallicRoughness = mapTexture(surface + kMetallicRoughnessTexture, at);
   float metallic = base.a * metallicRoughness.b, roughness = factors.x * metallicRoughness.g;
-  float f90 = specular.a * surfaceTexture(surface + kSpecularTexture, at).a;
-  vec3 f0 = min(specular.rgb * surfaceTexture(surface + kSpecularColorTexture, at).rgb, 1.0) * f90;
-  float transmission = factors.z * surfaceTexture(surface + kTransmissionTexture, at).r;
+  float f90 = specular.a * extensionTexture(surface + kSpecularTexture, at).a;
+  vec3 f0 = min(specular.rgb * extensionTexture(surface + kSpecularColorTexture, at).rgb, 1.0) * f90;
+  float transmission = factors.z * extensionTexture(surface + kTransmissionTexture, at).r;
 
   Gloss g = Gloss(mix(f0, color, metallic), mix(f90, 1.0, metallic), roughness, metallic, dot(f0, vec3(1.0 / 3.0)));
   MirrorAlbedo a = mirrorAlbedo(cosine, roughness), mean = meanMirrorAlbedo(roughness);
@@ -126,9 +126,9 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   vec3 albedo = color * ((1.0 - metallic) * (1.0 - transmission)) * (1.0 - surfaceAlbedo(dielectric, a, mean));
 
   // The coat takes light from what is below it, and joins its lobe.
-  if (coat.x > 0.0) {
-    float share = coat.x * surfaceTexture(surface + kClearcoatTexture, at).r;
-    float coatRoughness = coat.y * surfaceTexture(surface + kClearcoatRoughnessTexture, at).g;
+  if (MATERIAL_DETAIL == 2 && coat.x > 0.0) {
+    float share = coat.x * extensionTexture(surface + kClearcoatTexture, at).r;
+    float coatRoughness = coat.y * extensionTexture(surface + kClearcoatRoughnessTexture, at).g;
     MirrorAlbedo c = mirrorAlbedo(cosine, coatRoughness), coatMean = meanMirrorAlbedo(coatRoughness);
     float reflects = share * (0.04 * (c.all - c.dielectricF90) + c.dielectricF90);
     float onAverage = share * (0.04 * (coatMean.all - coatMean.dielectricF90) + coatMean.dielectricF90);
@@ -143,7 +143,7 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
 
   vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
   if (emission != vec3(0.0))
-    emission *= colorTexture(first + kEmissionTexture, at).rgb;
+    emission *= textureAt(first + kEmissionTexture, at).rgb;
   if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
   return FullSurface(albedo, g, emission);
 }

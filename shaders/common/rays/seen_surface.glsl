@@ -1,5 +1,5 @@
 // What a ray sees of a surface with full materials, as scene::SurfaceTracer::seen() finds it on the host. RAY_PASSAGE
-// is 1 and SURFACE_TEXTURES defined (common/materials/full_material.glsl).
+// is 1 and MATERIAL_DETAIL defined (common/materials/full_material.glsl).
 #ifndef FOVEA_RAYS_SEEN_SURFACE_GLSL
 #define FOVEA_RAYS_SEEN_SURFACE_GLSL
 
