@@ -82,18 +82,17 @@ class GBuffer : public Pass {
   void prepare(PrepareContext& ctx) override {
     full_ = fullMaterials(ctx.parameters());
     const bool cull = ctx.parameters().text("cull") == "auto";
-    for (const auto kind :
-         {scene::DrawKind::DoubleSided, scene::DrawKind::SingleSided, scene::DrawKind::Tested})
-      draw_[size_t(kind)] = ctx.graphics({.vertex = "gbuffer/visibility.vert",
-                                          .fragment = "gbuffer/visibility.frag",
-                                          .defines = {{"TESTED", kind == scene::DrawKind::Tested ? "1" : "0"},
-                                                      {"CULL", cull ? "1" : "0"},
-                                                      {"PASSAGE", full_ ? "1" : "0"}},
-                                          .colors = {"gbuffer.triangle"},
-                                          .depth = "gbuffer.depth",
-                                          .cull = cull && kind == scene::DrawKind::SingleSided
-                                                      ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
-                                                      : 0u});
+    for (const scene::DrawKind kind : scene::kDrawKinds)
+      draw_[size_t(kind)] = ctx.graphics(
+          {.vertex = "gbuffer/visibility.vert",
+           .fragment = "gbuffer/visibility.frag",
+           .defines = {{"TESTED", isTested(kind) ? "1" : "0"},
+                       {"CULL", cull ? "1" : "0"},
+                       {"PASSAGE", kind == scene::DrawKind::Transparent ? "1" : "0"}},
+           .colors = {"gbuffer.triangle"},
+           .depth = "gbuffer.depth",
+           .cull =
+               cull && kind == scene::DrawKind::SingleSided ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT) : 0u});
     if (full_)
       tint_ = ctx.graphics({.vertex = "gbuffer/visibility.vert",
                             .fragment = "gbuffer/tint.frag",
@@ -144,13 +143,13 @@ class GBuffer : public Pass {
     const Attachment depth{"gbuffer.depth", Attachment::Load::Keep};
     ctx.render({{"tint", Attachment::Load::Clear}}, &depth, std::span(&tint_, 1), [&] {
       for (const scene::DrawRun& run : visible_)
-        if (run.kind == scene::DrawKind::Tested)
+        if (run.kind == scene::DrawKind::Transparent)
           ctx.use(tint_).drawTriangles(ctx.frame().gpu->indices().handle(), run.firstTriangle,
                                        run.triangleCount);
     });
   }
 
-  Kernel draw_[3], tint_;
+  Kernel draw_[std::size(scene::kDrawKinds)], tint_;
   bool full_ = false, emissionTextures_ = false, veiled_ = false;
   int detail_ = 0;
   const scene::GpuScene* gpu_ = nullptr;  // the scene that the clusters belong to

@@ -42,12 +42,15 @@ class ShadowMap : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    for (const bool tested : {false, true})
-      draw_[tested] = ctx.graphics({.vertex = "shadow-map/depth.vert",
-                                    .fragment = tested ? "shadow-map/depth.frag" : "",
-                                    .defines = {{"TESTED", tested ? "1" : "0"}},
-                                    .depth = "maps.depth",
-                                    .depthCompare = VK_COMPARE_OP_GREATER_OR_EQUAL});
+    for (const scene::DrawKind kind : scene::kDrawKinds) {
+      const bool tested = isTested(kind), passage = kind == scene::DrawKind::Transparent;
+      draw_[size_t(kind)] =
+          ctx.graphics({.vertex = "shadow-map/depth.vert",
+                        .fragment = tested ? "shadow-map/depth.frag" : "",
+                        .defines = {{"TESTED", tested ? "1" : "0"}, {"PASSAGE", passage ? "1" : "0"}},
+                        .depth = "maps.depth",
+                        .depthCompare = VK_COMPARE_OP_GREATER_OR_EQUAL});
+    }
   }
 
   void record(RecordContext& ctx) override {
@@ -94,13 +97,13 @@ class ShadowMap : public Pass {
     first = std::max(first, run.firstTriangle);
     end = std::min(end, run.firstTriangle + run.triangleCount);
     if (first >= end) return;
-    ctx.use(draw_[run.kind == scene::DrawKind::Tested])
+    ctx.use(draw_[size_t(run.kind)])
         .drawTriangles(ctx.frame().gpu->indices().handle(), first, end - first, layers);
   }
 
   std::vector<scene::Light> lights_;      // lights for which `still` is drawn
   const scene::GpuScene* gpu_ = nullptr;  // scene of which `still` is drawn
-  Kernel draw_[2];
+  Kernel draw_[std::size(scene::kDrawKinds)];
 };
 
 FOVEA_PASS(ShadowMap);

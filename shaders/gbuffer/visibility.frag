@@ -1,6 +1,6 @@
 // The visible triangle; everything else is computed once per pixel in resolve.frag. Defines: TESTED 0/1, 1 for
-// materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 for full materials, of which alphaMode BLEND and thin
-// glass let some of the eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
+// materials that have to be looked up; CULL 0/1; PASSAGE 0/1, 1 where alphaMode BLEND and thin glass let some of the
+// eye's rays through (stochastic transparency: Enderton et al., I3D 2010).
 #include "common/device/fragment.glsl"
 #include "common/materials/passage.glsl"
 #include "common/scene.glsl"
@@ -26,11 +26,10 @@ void main() {
   // The same as in scene::SurfaceTracer::look().
   uint key = hashCombine(hashCombine(frame.seed, kPassageStream), triangle);
   float chance = passageChance(key, uvec2(gl_FragCoord.xy), frame.index);
-  float cosine = abs(dot(normalize(normal), normalize(toEye)));
+  if (!stops(material, uv, abs(dot(normalize(normal), normalize(toEye))), chance)) discard;
 #else
-  const float chance = kEitherWay, cosine = 1.0;
+  if (!(coverage(material, uv) > kEitherWay)) discard;
 #endif
-  if (!stops(material, uv, cosine, chance)) discard;
 #endif
   visible = triangle;
 }

@@ -36,12 +36,12 @@ Geometry soup(uint32_t seed) {
 }
 
 const std::vector<DrawRun> kRuns{{DrawKind::DoubleSided, 0, 1000},
-                                 {DrawKind::Tested, 1000, 1},
+                                 {DrawKind::Masked, 1000, 1},
                                  {DrawKind::SingleSided, 1001, kAll - 1001}};
 
 DrawKind kindOf(uint32_t triangle) {
   return triangle < 1000    ? DrawKind::DoubleSided
-         : triangle == 1000 ? DrawKind::Tested
+         : triangle == 1000 ? DrawKind::Masked
                             : DrawKind::SingleSided;
 }
 
@@ -134,7 +134,7 @@ TEST(DrawClusters, RunsGrowTogetherWhereNothingIsLeftOut) {
 }
 
 TEST(DrawClusters, NothingToDraw) {
-  std::vector<DrawRun> visible{{DrawKind::Tested, 0, 1}};
+  std::vector<DrawRun> visible{{DrawKind::Masked, 0, 1}};
   const Geometry empty;
   EXPECT_TRUE(drawClusters({}, empty).empty());
   visibleRuns({}, {}, 0, glm::mat4(1), visible);

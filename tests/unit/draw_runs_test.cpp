@@ -30,7 +30,7 @@ TEST(DrawRuns, NeighboursOfOneKindShareADraw) {
   ASSERT_EQ(runs.size(), 4u);
   expectRun(runs[0], DrawKind::SingleSided, 0, 2);
   expectRun(runs[1], DrawKind::DoubleSided, 2, 1);
-  expectRun(runs[2], DrawKind::Tested, 3, 3);
+  expectRun(runs[2], DrawKind::Masked, 3, 3);
   expectRun(runs[3], DrawKind::SingleSided, 6, 1);
 }
 
@@ -39,8 +39,15 @@ TEST(DrawRuns, GlassIsTransparentWithFullMaterialsOnly) {
   s.materials[0].transmission = 0.5f;
   const Geometry g = triangles({0, 1});
   expectRun(drawRuns(s, g)[0], DrawKind::SingleSided, 0, 1);
-  expectRun(drawRuns(s, g, true)[0], DrawKind::Tested, 0, 1);
+  expectRun(drawRuns(s, g, true)[0], DrawKind::Transparent, 0, 1);
   expectRun(drawRuns(s, g, true)[1], DrawKind::DoubleSided, 1, 1);
+}
+
+TEST(DrawRuns, BlendedSurfacesHaveHolesInsteadWithDiffuseMaterials) {
+  Scene s = threeMaterials();
+  s.materials[2].blended = true;
+  expectRun(drawRuns(s, triangles({2}))[0], DrawKind::Masked, 0, 1);
+  expectRun(drawRuns(s, triangles({2}), true)[0], DrawKind::Transparent, 0, 1);
 }
 
 TEST(DrawRuns, NothingToDraw) { EXPECT_TRUE(drawRuns(threeMaterials(), {}).empty()); }
@@ -52,7 +59,7 @@ TEST(DrawRuns, AMixtureIsTestedAsAWhole) {
   materials.push_back(kMaxDrawRuns % 2);
   const auto runs = drawRuns(threeMaterials(), triangles(materials));
   ASSERT_EQ(runs.size(), 1u);
-  expectRun(runs[0], DrawKind::Tested, 0, uint32_t(materials.size()));
+  expectRun(runs[0], DrawKind::Masked, 0, uint32_t(materials.size()));
 }
 
 }  // namespace

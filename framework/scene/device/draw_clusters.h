@@ -14,7 +14,7 @@ struct DrawCluster {
   glm::vec3 centre{0};  // world space
   float radius = 0;
   uint32_t firstTriangle = 0, triangleCount = 0;
-  DrawKind kind = DrawKind::Tested;
+  DrawKind kind = DrawKind::Transparent;
 };
 
 // Clusters of all static triangles of the runs, in their order, with at most `size` triangles each.

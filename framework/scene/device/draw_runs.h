@@ -12,19 +12,25 @@ namespace fovea::scene {
 enum class DrawKind : uint8_t {
   DoubleSided,  // opaque, both sides
   SingleSided,  // opaque, the front only
-  Tested,       // alpha-masked, transparent or mixed: the material is looked up for every fragment
+  // The material is looked up for every fragment, which may also be of a simpler kind.
+  Masked,       // with holes, by their alpha
+  Transparent,  // let a share of the light through; with full materials only
 };
 
+inline constexpr DrawKind kDrawKinds[] = {DrawKind::DoubleSided, DrawKind::SingleSided, DrawKind::Masked,
+                                          DrawKind::Transparent};
+inline bool isTested(DrawKind kind) { return kind == DrawKind::Masked || kind == DrawKind::Transparent; }
+
 struct DrawRun {
-  DrawKind kind = DrawKind::Tested;
+  DrawKind kind = DrawKind::Transparent;
   uint32_t firstTriangle = 0, triangleCount = 0;
 };
 
 // Where materials change too often, more draws would cost more than the tests that they save.
 inline constexpr size_t kMaxDrawRuns = 256;
 
-// Runs in the order of the triangles, covering all of them; a single `Tested` run if there would be
-// more than kMaxDrawRuns. fullMaterials: glass is transparent.
+// Runs in the order of the triangles, covering all of them; a single one of the last kind that the materials know if
+// there would be more than kMaxDrawRuns. fullMaterials: glass and alphaMode BLEND are transparent.
 std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry, bool fullMaterials = false);
 
 }  // namespace fovea::scene

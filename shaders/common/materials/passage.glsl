@@ -45,6 +45,12 @@ float coverage(uint material, vec2 uv, uint flags, float cutoff) {
   return (flags & kMaterialBlended) != 0u ? clamp(alpha, 0.0, 1.0) : float(alpha >= cutoff);
 }
 
+float coverage(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  return coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+}
+
 // Whether a surface stops a ray at uv. chance: uniform in [0, 1); rays that pass with half the probability or more do
 // at one half.
 bool stops(uint material, vec2 uv, float cosine, float chance) {
