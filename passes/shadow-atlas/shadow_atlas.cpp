@@ -80,6 +80,11 @@ PassDeclaration ShadowAtlas::declaration() {
           "state of the VPLs, which says which are new and how important each is; if not wired, every map is "
           "drawn in every frame")
       .makeOptional();
+  d.input(
+       "change", changeBuffer(), Usage::TexelRead,
+       "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths); if that is more "
+       "than `refresh_share`, the maps of so many kept VPLs are drawn again")
+      .makeOptional();
   // `layout` counts as its index: 0 layers, 1 tiled.
   const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
   d.output("atlas",
@@ -192,6 +197,7 @@ void ShadowAtlas::prepare(PrepareContext& ctx) {
   defines["STATIC_MAPS"] = staticMaps_ ? "1" : "0";
   clear_ = ctx.compute("shadow-atlas/clear.comp", defines);
   defines["REFRESH"] = refresh == "split" ? "2" : refresh == "stale" ? "3" : "1";
+  defines["CHANGE"] = hasState_ && ctx.has("change") ? "1" : "0";
   choose_ = ctx.compute("shadow-atlas/choose.comp", defines);
   setup_ = ctx.compute("shadow-atlas/setup.comp", Defines{});
   exact_ = makeKernels(ctx, false, false);

@@ -1,6 +1,7 @@
 // One work group: which slots get a new map in this frame. New VPLs always do; of those kept from the previous frame,
 // as many as the budget allows (passes/README.md, shadow-atlas). Defines: HAS_STATE 0/1: without the state of the
-// VPLs every lit slot is drawn; REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1.
+// VPLs every lit slot is drawn; REFRESH: 1 top, 2 split, 3 stale; STATIC_MAPS 0/1; CHANGE 0/1: whether changes of the
+// light are known.
 #include "common/vpl.glsl"
 #include "shadow-atlas/step.glsl"
 
@@ -16,6 +17,9 @@ layout(std430) buffer CountersBlock {
 layout(std430) readonly buffer ChangesBlock { uint list[]; } changes;
 layout(std430) readonly buffer StateBlock { VplState list[]; } state;
 #endif
+#if CHANGE
+uniform samplerBuffer change;  // z: share of what was known of the light that is lost
+#endif
 
 layout(push_constant) uniform Constants {
   uint slots;
@@ -30,6 +34,13 @@ layout(push_constant) uniform Constants {
 #include "shadow-atlas/compact.glsl"
 
 #if HAS_STATE
+// Where a door opens, maps that still show it hide the light that has come in.
+#if CHANGE
+float shareDrawn() { return max(refreshShare, texelFetch(change, 0).z); }
+#else
+float shareDrawn() { return refreshShare; }
+#endif
+
 shared uint histogram[256];
 shared uint threshold, takenAbove;
 
@@ -110,7 +121,7 @@ void main() {
   memoryBarrierBuffer();
   barrier();
 #if HAS_STATE
-  uint budget = min(uint(ceil(refreshShare * float(kept))), kept);
+  uint budget = min(uint(ceil(shareDrawn() * float(kept))), kept);
 #if REFRESH == 2
   uint first = (budget + 1u) / 2u;
   take(first, kByImportance);

@@ -293,6 +293,27 @@ TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
   EXPECT_EQ(stale.counter("maps"), 0);
 }
 
+// Where the light has changed, all maps that would change are drawn in one frame.
+TEST(ShadowAtlasRefresh, LightThatChangesHasMoreMapsDrawn) {
+  constexpr uint32_t kSlots = 60;
+  MoverBehindWall world(kSlots);
+  PassTest stale("shadow-atlas"), whole("shadow-atlas");
+  for (PassTest* test : {&stale, &whole}) test->scene(world.scene).param("size", 16);
+  stale.param("refresh", "stale").param("refresh_share", 0.1).param("static_maps", true);
+  stale.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
+  stale.buffer("change", std::vector<glm::vec4>(1), "LightChange");
+  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
+  stale.run(4);
+  EXPECT_LE(stale.counter("maps"), kSlots / 10);
+  whole.run(4);
+  EXPECT_NE(stale.values<float>("atlas"), whole.values<float>("atlas"));
+  stale.set("change", std::vector<glm::vec4>{{0, 0, 1, 0}});
+  stale.run();
+  whole.run();
+  EXPECT_GT(stale.counter("maps"), kSlots / 10);
+  EXPECT_EQ(stale.values<float>("atlas"), whole.values<float>("atlas"));
+}
+
 // Slack applies to moving objects in the frames in which they move and leaves everything else unchanged.
 TEST(ShadowAtlasRefresh, MoversAreDrawnFartherByTheirWay) {
   const float way = 6 / 0.2f / 42;  // m a frame
