@@ -251,6 +251,11 @@ PassDeclaration IntensityImportanceArea::declaration() {
        "discs of this area leave out, and the intensity of a VPL is at most doubled to make up for its disc; "
        "needs `traced` and kernel `disc`")
       .makeOptional();
+  d.input(
+       "change", changeBuffer(), Usage::TexelRead,
+       "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths); by as much less "
+       "is a new VPL faded in")
+      .makeOptional();
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths through the voxels to assign (M), without `traced`");
   d.parameter(
@@ -296,6 +301,7 @@ void IntensityImportanceArea::addSteps(PassDeclaration& d) {
       .threads(parameter("points"));
   d.step("vpl-intensity/paths.comp").when(!traced).threads(parameter("paths"));
   inRows(stepOverVpls(d, "vpl-intensity/seen.comp")
+             .define("CHANGE", wired("change"))
              .constant("nearest",
                        [](const RecordContext& ctx) {
                          const Parameters& p = ctx.parameters();

@@ -5,6 +5,7 @@
 // disc of a cell by that of the VPL's own area. V is the visibility that pass deferred uses, a look-up in the VPL's
 // own shadow map: with any other visibility (such as rays through voxels), VPLs would be compensated for light that
 // they do not lose, or not for light that they do. Points that show the background count as dark.
+// Define: CHANGE 0/1: whether changes of the light are known.
 #include "common/device/texels.glsl"
 #include "common/scene.glsl"
 #include "common/paraboloid.glsl"
@@ -17,6 +18,9 @@ layout(local_size_x = 64) in;
 uniform usamplerBuffer vpls;
 uniform samplerBuffer placed;
 layout(r32ui) uniform readonly uimage2DArray atlas;
+#if CHANGE
+uniform samplerBuffer change;  // z: share of what was known of the light that is lost
+#endif
 layout(std430) writeonly buffer DensitiesBlock { float list[]; } densities;
 
 LARGE_TEXELS(vec4, radiance);
@@ -92,6 +96,9 @@ void main() {
   if (light > 0.0 && siteKind(light, luminanceOf(loadSide(uint(side)).emission)) == kShining) light = -light;
   // A new VPL is put at a disadvantage of up to 1 / (N p_l), the area it would have, so that it grows from nothing.
   float young = fadeFrames > 0u ? max(1.0 - vpl.life / float(fadeFrames + 1u), 0.0) : 0.0;
+#if CHANGE
+  young *= 1.0 - texelFetch(change, 0).z;
+#endif
   float handicap = sum > 0.0 ? min(young * float(points) / (sum * float(vplCount)), 1e10) : -1.0;
   sites.list[slot] = VplSite(vpl.position, handicap, vpl.normal, light);
 }

@@ -190,6 +190,27 @@ TEST(Weights, TheShareOfANewVplGrows) {
   EXPECT_EQ(grown[8], whole);
 }
 
+// Where light is lost, a new VPL has its whole share at once.
+TEST(Weights, ANewVplDoesNotWaitWhenTheLightHasChanged) {
+  const Room room = closedRoom(false, 32);
+  Inputs in = inputs(room, vplsOf(room, candidatesOf(room, 200, {})));
+  const auto sum = [&](float life, float lost) {
+    for (size_t i = 0; i < in.vpls.size(); ++i) in.vpls[i].life = i % 20 == 0 ? life : 100;
+    PassTest test("vpl-intensity-importance-area");
+    wire(test, in, "importance-area", {});
+    test.buffer("change", std::vector<glm::vec4>{{0, 0, lost, 0}}, "LightChange").param("fade_frames", 8);
+    test.run();
+    const auto list = test.values<scene::Vpl>("emitters");
+    double areas = 0;
+    for (size_t i = 0; i < list.size(); i += 20) areas += list[i].area;
+    return areas;
+  };
+  const double whole = sum(100, 0), young = sum(1, 0);
+  EXPECT_LT(young, 0.35 * whole);
+  EXPECT_EQ(sum(1, 1), whole);
+  EXPECT_GT(sum(1, 0.5f), 1.2 * young);
+}
+
 // Ends that bring their own light, in colour, and use none of the light of the VPLs themselves.
 std::vector<passes::EyePathEnd> colouredEnds(const Room& room, const std::vector<Seen>& points,
                                              uint32_t count) {
