@@ -131,8 +131,9 @@ PassDeclaration Manage::declaration() {
               "most VPLs deleted per frame for failing Eq. 1 (rounded up); if more fail, the least important "
               "are deleted and the others are tested against their former importance again");
   d.parameter("change_turnover", real(0, 0, 1, "slots' share"),
-              "times the share that `change` says is lost: as many VPLs may be deleted for failing Eq. 1, "
-              "if that is more than `turnover`, since they were chosen by other light");
+              "times the square of the share that `change` says is lost: at least so many VPLs lose their "
+              "place, the least important ones, as if they had failed Eq. 1, since they were chosen by other "
+              "light; it may be more than `turnover`");
   d.parameter(
       "saccade_turnover", real(0, 0, 1, "slots' share"),
       "VPLs that lose their place in the frame in which the gaze has jumped although Eq. 1 keeps them, "

@@ -12,7 +12,7 @@ layout(push_constant) uniform Constants {
   uint listLimit;        // N_MAX <= slots
   uint keepCount;        // K of the thinning; 0 means the number of free slots (placement `light`)
   uint mostRejected;     // most VPLs deleted for failing Eq. 1
-  float changeTurnover;  // share of the slots, times the share of the light that is lost: raises mostRejected
+  float changeTurnover;  // share of the slots that is replaced when all light is lost
   uint contested;        // VPLs that lose their place although Eq. 1 keeps them
   uint lightFloor64ths;  // in means of the candidates' light
   uint placement;        // parameters of these names

@@ -1,5 +1,6 @@
 // One work group: which VPLs are reused, and L', those that are not. Eq. 1 has decided this unless the list got
-// shorter or the gaze has jumped, in which case the most important stay; `random` takes any of the VPLs.
+// shorter, the gaze has jumped or light is lost, in which case the most important stay; `random` takes any of the
+// VPLs.
 #include "common/vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"
@@ -29,6 +30,7 @@ void main() {
   uint spared = state.alive - min(state.alive, mostFailing());
   uint reused = min(max(state.accepted, spared), listLimit), first = oldList();
   reused -= min(reused, contested);
+  reused = min(reused, state.alive - min(state.alive, outdated()));
   if (reused < total) first = radixSort(first, slots, total, 24u);
   for (uint i = lane; i < reused; i += GROUP) {
     uint slot = lists.entries[first + i].y;

@@ -100,11 +100,14 @@ class ManageReference {
     return u * before < now << 24;
   }
 
+  // VPLs that lose their place because light is lost.
+  size_t outdated() const {
+    return size_t(float(s_.changeTurnover) * in_.lost * in_.lost * float(alive_.size()));
+  }
+
   // Most VPLs that may be deleted for failing Eq. 1.
   size_t mostRejected() const {
-    const float slots = float(alive_.size());
-    return std::max(size_t(std::ceil(s_.turnover * double(alive_.size()))),
-                    size_t(std::ceil(float(s_.changeTurnover) * in_.lost * slots)));
+    return std::max(size_t(std::ceil(s_.turnover * double(alive_.size()))), outdated());
   }
 
   void reuse() {
@@ -136,7 +139,7 @@ class ManageReference {
     });
     const double contested = std::ceil(s_.saccadeTurnover * in_.saccade * double(alive_.size()));
     const size_t reused = std::min<size_t>(accepted, limit_);
-    order.resize(reused - std::min(reused, size_t(contested)));
+    order.resize(std::min(reused - std::min(reused, size_t(contested)), alive - std::min(alive, outdated())));
     for (uint32_t slot : order) stay(slot);
   }
 

@@ -126,12 +126,33 @@ TEST(Manage, LightThatChangesMakesRoom) {
   settings.turnover = 0.02;
   settings.changeTurnover = 0.25;
   Manager manager(settings, in);
-  for (const auto& [lost, deleted] : {std::pair(0.0f, 2u), {0.04f, 2u}, {0.5f, 13u}, {1.0f, 25u}}) {
+  for (const auto& [lost, deleted] : {std::pair(0.0f, 2u), {0.04f, 2u}, {0.5f, 6u}, {1.0f, 25u}}) {
     in.lost = lost;
     const ManageOutput out = manager.run(in);
     EXPECT_EQ(out.deleted, deleted) << lost;
     EXPECT_GT(out.added, deleted / 2) << lost;
     EXPECT_EQ(out.rejected, 100u);
+  }
+}
+
+// Where a door opens, the VPLs of a dark room matter as little as before, so that Eq. 1 keeps all of them.
+TEST(Manage, LightThatChangesReplacesTheLeastImportant) {
+  Dice dice(57);
+  ManageInput in = randomInput(dice, {100, 400, 0.9f, Importance::Fine, 0.0f});
+  for (size_t i = 0; i < in.vpls.size(); ++i)
+    in.vpls[i].previousImportance = in.vpls[i].importance = in.vplImportance[i] = 0.2f + 0.005f * float(i);
+  ManageSettings settings;
+  settings.placement = "light";
+  settings.maxDensity = 1000;
+  settings.turnover = 0.02;
+  settings.changeTurnover = 1;
+  Manager manager(settings, in);
+  for (const auto& [lost, deleted] : {std::pair(0.0f, 0u), {0.09f, 0u}, {0.5f, 25u}, {1.0f, 100u}}) {
+    in.lost = lost;
+    const ManageOutput out = manager.run(in);
+    EXPECT_EQ(out.deleted, deleted) << lost;
+    EXPECT_EQ(out.rejected, 0u);
+    for (size_t i = 0; i < in.vpls.size(); ++i) EXPECT_EQ(out.vpls[i].life > 1, i >= deleted) << i;
   }
 }
 
