@@ -3,10 +3,10 @@
 // the mean lies outside the colours around the pixel, to which it is clipped (Salvi, "An Excursion in Temporal
 // Supersampling", GDC 2016).
 //
-// Where surfaces let light through, a pixel shows now this one and now that (shaders/common/materials/passage.glsl). The
-// mean of all is what the eye should see, so it is one of light as it is; the box is that of more pixels, which show each
-// surface by its share; and the mean follows the surface that the pixel shows, as there is no telling which is the
-// nearest.
+// Where surfaces let light through, a pixel shows now this one and now that (shaders/common/materials/passage.glsl).
+// The mean of all is what the eye should see, so it is one of light as it is; the box is that of more pixels, which
+// show each surface by its share; and the mean follows the surface that the pixel shows, as there is no telling which
+// is the nearest.
 #include "common/finite.glsl"
 #include "common/materials/gloss.glsl"
 #include "common/motion.glsl"
@@ -103,7 +103,8 @@ Around around(ivec2 p, ivec2 size, bool veiled) {
 vec3 placeBefore(ivec2 p, Around a, vec2 size) {
   bool surface = a.position.w > 0.0;
   uint id = imageLoad(gbufferId, a.nearest).r, triangle = imageLoad(gbufferTriangle, a.nearest).r;
-  vec4 point = surface ? vec4(positionBefore(a.position.xyz, id, triangle), 1.0) : vec4(pixelRay(p), 0.0);
+  Motion motion = motionOf(a.position.xyz, id, triangle);
+  vec4 point = surface ? vec4(pointBefore(motion, a.position.xyz), 1.0) : vec4(pixelRay(p), 0.0);
   vec4 clip = view.previousWorldToClip * point;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * size - 0.5 - view.jitterStep;  // texel centres at whole numbers
   at += vec2(surface ? p - a.nearest : ivec2(0));

@@ -44,15 +44,15 @@ uint originOf(ivec2 p, float thing, uint otherwise) {
   vec4 position = imageLoad(gbufferPosition, p);
   vec3 normal = imageLoad(gbufferNormal, p).xyz;
   uint id = imageLoad(gbufferId, p).r, triangle = imageLoad(gbufferTriangle, p).r;
-  vec3 before = positionBefore(position.xyz, id, triangle);
+  Motion motion = motionOf(position.xyz, id, triangle);
   float behind = thing / (1.0 + 2.0 * curvatureAt(p, position, normal, size) * thing);
   vec3 image = position.xyz + behind * normalize(position.xyz - view.eye);
-  vec4 clip = view.previousWorldToClip * vec4(pointBefore(image, position.xyz, id, triangle), 1.0);
+  vec4 clip = view.previousWorldToClip * vec4(pointBefore(motion, image), 1.0);
   if (!(clip.w > 0.0)) return otherwise;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5 - view.jitterStep;  // texel centres at whole numbers
   ivec2 q = oneOfFour(at, randomStream(uint(p.x), frameIndex, kReflectionStream, uint(p.y)));
   ivec2 inside = clamp(q, ivec2(0), size - 1);
-  bool same = sameSurface(before, normal, normal, imageLoad(previousPosition, inside),
+  bool same = sameSurface(pointBefore(motion, position.xyz), normal, normal, imageLoad(previousPosition, inside),
                           imageLoad(previousNormal, inside).xyz, planeTolerance * position.w, leastCosine);
   return q == inside && same ? packPixel(q) : otherwise;
 }

@@ -16,17 +16,26 @@ vec3 movedSince(vec3 position, uvec4 triangle) {
   return (now - before) * vec3(1.0 - weights.x - weights.y, weights);
 }
 
-// Position in the previous frame of a point that moves along with the surface at `position`. id, triangle: of the
-// G-buffer there.
-vec3 pointBefore(vec3 point, vec3 position, uint id, uint triangle) {
+// How a surface has moved since the previous frame: what moves along with it was at turn * point + way.
+struct Motion {
+  mat3 turn;
+  vec3 way;
+};
+
+// id, triangle: of the G-buffer at `position`.
+Motion motionOf(vec3 position, uint id, uint triangle) {
   uint object = id >> 16;
-  bool deforms = object != 0u && objectDeforms(object);
-  if (deforms) point -= movedSince(position, sceneTriangle(triangle));
-  if (object != 0u && !deforms)
-    point = previousObjectTransform(object) * vec4(toObject(object, point), 1.0);
-  return point;
+  Motion motion = Motion(mat3(1.0), vec3(0.0));
+  if (object != 0u && objectDeforms(object)) {
+    motion.way = -movedSince(position, sceneTriangle(triangle));
+  } else if (object != 0u) {
+    mat4x3 fromObject = previousObjectTransform(object), toObject = inverseObjectTransform(object);
+    motion.turn = mat3(fromObject) * mat3(toObject);
+    motion.way = fromObject * vec4(toObject[3], 1.0);
+  }
+  return motion;
 }
 
-vec3 positionBefore(vec3 position, uint id, uint triangle) { return pointBefore(position, position, id, triangle); }
+vec3 pointBefore(Motion motion, vec3 point) { return motion.turn * point + motion.way; }
 
 #endif

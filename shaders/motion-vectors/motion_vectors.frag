@@ -33,7 +33,8 @@ ivec2 onRing(int k, int radius) {
 
 // veiled: whether the pixel may show another surface in each frame, as one of them lets light through.
 uint originOf(ivec2 p, vec4 position, vec3 normal, bool veiled, ivec2 size) {
-  vec3 before = positionBefore(position.xyz, imageLoad(gbufferId, p).r, imageLoad(gbufferTriangle, p).r);
+  Motion motion = motionOf(position.xyz, imageLoad(gbufferId, p).r, imageLoad(gbufferTriangle, p).r);
+  vec3 before = pointBefore(motion, position.xyz);
   vec4 clip = view.previousWorldToClip * vec4(before, 1.0);
   if (!(clip.w > 0.0)) return kNone;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * vec2(size) - 0.5;  // texel centres at whole numbers
