@@ -95,92 +95,63 @@ VkMemoryPropertyFlags memoryFlags(MemoryKind kind) {
 
 // Uncached memory is slow to read. Every desktop driver offers memory that is cached and
 // coherent, but none is guaranteed.
-VkDeviceMemory allocateFor(Device& device, MemoryKind kind, const VkMemoryRequirements& needs,
-                           const std::string& what) {
+UniqueMemory allocateFor(Device& device, MemoryKind kind, const VkMemoryRequirements& needs,
+                         const std::string& what) {
+  const auto allocated = [&](VkMemoryPropertyFlags flags) {
+    return UniqueMemory(device.allocate(needs.size, needs.memoryTypeBits, flags, what),
+                        {&device, needs.size});
+  };
   if (kind == MemoryKind::Readback) {
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
     const VkMemoryPropertyFlags cached = memoryFlags(kind) | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
       if ((needs.memoryTypeBits & (1u << i)) && (memory.memoryTypes[i].propertyFlags & cached) == cached)
-        return device.allocate(needs.size, needs.memoryTypeBits, cached, what);
+        return allocated(cached);
     }
   }
-  return device.allocate(needs.size, needs.memoryTypeBits, memoryFlags(kind), what);
+  return allocated(memoryFlags(kind));
 }
 
 }  // namespace
 
-// ---- Buffer
-// ----------------------------------------------------------------------------------------------------
+void ReleaseMemory::operator()(VkDeviceMemory memory) const { device->release(memory, bytes); }
 
-Buffer::Buffer(Device& device, const BufferDesc& desc) : device_(&device), desc_(desc), owned_(true) {
-  checkDesc(device, desc);
-  try {
-    const VkBufferCreateInfo info = bufferInfo(desc);
-    check(vkCreateBuffer(device.handle(), &info, nullptr, &handle_), "creating buffer `" + desc.name + "`");
-    device.setName(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(handle_), desc.name);
-    VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(device.handle(), handle_, &needs);
-    memory_ = allocateFor(device, desc.memory, needs, desc.name);
-    memoryBytes_ = needs.size;
-    check(vkBindBufferMemory(device.handle(), handle_, memory_, 0), "binding buffer `" + desc.name + "`");
-    if (desc.memory != MemoryKind::Device) {
-      check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_),
-            "mapping buffer `" + desc.name + "`");
-    }
-  } catch (...) {
-    destroy();
-    throw;
-  }
+// ---- Buffer --------------------------------------------------------------------------------------------------
+
+Buffer::Buffer(Device& device, const BufferDesc& desc) : device_(&device), desc_(desc) {
+  create();
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device.handle(), handle(), &needs);
+  memory_ = allocateFor(device, desc.memory, needs, desc.name);
+  bind(memory_.get(), 0);
+  if (desc.memory != MemoryKind::Device)
+    check(vkMapMemory(device.handle(), memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped_),
+          "mapping buffer `" + desc.name + "`");
 }
 
 Buffer::Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory, uint64_t offset)
-    : device_(&device), desc_(desc), memory_(memory) {
-  checkDesc(device, desc);
-  try {
-    const VkBufferCreateInfo info = bufferInfo(desc);
-    check(vkCreateBuffer(device.handle(), &info, nullptr, &handle_), "creating buffer `" + desc.name + "`");
-    device.setName(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(handle_), desc.name);
-    check(vkBindBufferMemory(device.handle(), handle_, memory, offset), "placing buffer `" + desc.name + "`");
-  } catch (...) {
-    destroy();
-    throw;
-  }
+    : device_(&device), desc_(desc) {
+  create();
+  bind(memory, offset);
 }
 
-Buffer::~Buffer() { destroy(); }
-
-Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
-
-Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  if (this == &other) return *this;
-  destroy();
-  device_ = std::exchange(other.device_, nullptr);
-  desc_ = std::move(other.desc_);
-  handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
-  memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
-  memoryBytes_ = std::exchange(other.memoryBytes_, 0);
-  owned_ = std::exchange(other.owned_, false);
-  mapped_ = std::exchange(other.mapped_, nullptr);
-  views_ = std::exchange(other.views_, {});
-  return *this;
+void Buffer::create() {
+  checkDesc(*device_, desc_);
+  const VkBufferCreateInfo info = bufferInfo(desc_);
+  VkBuffer buffer = VK_NULL_HANDLE;
+  check(vkCreateBuffer(device_->handle(), &info, nullptr, &buffer), "creating buffer `" + desc_.name + "`");
+  handle_ = UniqueBuffer(buffer, {device_->handle()});
+  device_->setName(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer), desc_.name);
 }
 
-void Buffer::destroy() {
-  if (!device_) return;
-  for (const auto& [format, view] : views_) vkDestroyBufferView(device_->handle(), view, nullptr);
-  views_.clear();
-  vkDestroyBuffer(device_->handle(), handle_, nullptr);
-  if (owned_) device_->release(memory_, memoryBytes_);
-  handle_ = VK_NULL_HANDLE;
-  memory_ = VK_NULL_HANDLE;
-  mapped_ = nullptr;
-  device_ = nullptr;
+void Buffer::bind(VkDeviceMemory memory, uint64_t offset) {
+  check(vkBindBufferMemory(device_->handle(), handle(), memory, offset),
+        "binding buffer `" + desc_.name + "`");
 }
 
 VkBufferView Buffer::texelView(VkFormat format) {
-  if (const auto it = views_.find(format); it != views_.end()) return it->second;
+  if (const auto it = views_.find(format); it != views_.end()) return it->second.get();
   const uint64_t texels = desc_.bytes / formatInfo(format).bytesPerTexel;
   if (texels > device_->limits().maxTexelBufferElements) {
     throw Error(ExitCode::BadInput,
@@ -190,77 +161,44 @@ VkBufferView Buffer::texelView(VkFormat format) {
                 "use fewer elements");
   }
   VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
-  info.buffer = handle_;
+  info.buffer = handle();
   info.format = format;
   info.range = VK_WHOLE_SIZE;
   VkBufferView view = VK_NULL_HANDLE;
   check(vkCreateBufferView(device_->handle(), &info, nullptr, &view),
         "creating a view of buffer `" + desc_.name + "`");
   device_->setName(VK_OBJECT_TYPE_BUFFER_VIEW, reinterpret_cast<uint64_t>(view), desc_.name);
-  views_.emplace(format, view);
+  views_.emplace(format, UniqueBufferView(view, {device_->handle()}));
   return view;
 }
 
-// ---- Image
-// -----------------------------------------------------------------------------------------------------
+// ---- Image ---------------------------------------------------------------------------------------------------
 
-Image::Image(Device& device, const ImageDesc& desc) : device_(&device), desc_(desc), owned_(true) {
-  checkDesc(device, desc);
-  try {
-    const VkImageCreateInfo info = imageInfo(desc);
-    check(vkCreateImage(device.handle(), &info, nullptr, &handle_), "creating image `" + desc.name + "`");
-    device.setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(handle_), desc.name);
-    VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(device.handle(), handle_, &needs);
-    memory_ = allocateFor(device, MemoryKind::Device, needs, desc.name);
-    memoryBytes_ = needs.size;
-    check(vkBindImageMemory(device.handle(), handle_, memory_, 0), "binding image `" + desc.name + "`");
-  } catch (...) {
-    destroy();
-    throw;
-  }
+Image::Image(Device& device, const ImageDesc& desc) : device_(&device), desc_(desc) {
+  create();
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device.handle(), handle(), &needs);
+  memory_ = allocateFor(device, MemoryKind::Device, needs, desc.name);
+  bind(memory_.get(), 0);
 }
 
 Image::Image(Device& device, const ImageDesc& desc, VkDeviceMemory memory, uint64_t offset)
-    : device_(&device), desc_(desc), memory_(memory) {
-  checkDesc(device, desc);
-  try {
-    const VkImageCreateInfo info = imageInfo(desc);
-    check(vkCreateImage(device.handle(), &info, nullptr, &handle_), "creating image `" + desc.name + "`");
-    device.setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(handle_), desc.name);
-    check(vkBindImageMemory(device.handle(), handle_, memory, offset), "placing image `" + desc.name + "`");
-  } catch (...) {
-    destroy();
-    throw;
-  }
+    : device_(&device), desc_(desc) {
+  create();
+  bind(memory, offset);
 }
 
-Image::~Image() { destroy(); }
-
-Image::Image(Image&& other) noexcept { *this = std::move(other); }
-
-Image& Image::operator=(Image&& other) noexcept {
-  if (this == &other) return *this;
-  destroy();
-  device_ = std::exchange(other.device_, nullptr);
-  desc_ = std::move(other.desc_);
-  handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
-  memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
-  memoryBytes_ = std::exchange(other.memoryBytes_, 0);
-  owned_ = std::exchange(other.owned_, false);
-  views_ = std::exchange(other.views_, {});
-  return *this;
+void Image::create() {
+  checkDesc(*device_, desc_);
+  const VkImageCreateInfo info = imageInfo(desc_);
+  VkImage image = VK_NULL_HANDLE;
+  check(vkCreateImage(device_->handle(), &info, nullptr, &image), "creating image `" + desc_.name + "`");
+  handle_ = UniqueImage(image, {device_->handle()});
+  device_->setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image), desc_.name);
 }
 
-void Image::destroy() {
-  if (!device_) return;
-  for (const auto& [key, view] : views_) vkDestroyImageView(device_->handle(), view, nullptr);
-  views_.clear();
-  vkDestroyImage(device_->handle(), handle_, nullptr);
-  if (owned_) device_->release(memory_, memoryBytes_);
-  handle_ = VK_NULL_HANDLE;
-  memory_ = VK_NULL_HANDLE;
-  device_ = nullptr;
+void Image::bind(VkDeviceMemory memory, uint64_t offset) {
+  check(vkBindImageMemory(device_->handle(), handle(), memory, offset), "binding image `" + desc_.name + "`");
 }
 
 VkImageAspectFlags Image::aspect() const {
@@ -283,10 +221,10 @@ VkImageView Image::makeView(uint32_t firstMip, uint32_t mips, uint32_t firstLaye
     throw Error(ExitCode::Internal, "image `" + desc_.name + "` has no mip " + std::to_string(firstMip) +
                                         " of layer " + std::to_string(firstLayer));
   }
-  VkImageView& view = views_[{firstMip, mips, firstLayer, layers, array}];
-  if (view) return view;
+  UniqueImageView& known = views_[{firstMip, mips, firstLayer, layers, array}];
+  if (known) return known.get();
   VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-  info.image = handle_;
+  info.image = handle();
   switch (desc_.type) {
     case VK_IMAGE_TYPE_1D:
       info.viewType = array ? VK_IMAGE_VIEW_TYPE_1D_ARRAY : VK_IMAGE_VIEW_TYPE_1D;
@@ -299,14 +237,15 @@ VkImageView Image::makeView(uint32_t firstMip, uint32_t mips, uint32_t firstLaye
   }
   info.format = desc_.format;
   info.subresourceRange = {aspect(), firstMip, mips, firstLayer, layers};
+  VkImageView view = VK_NULL_HANDLE;
   check(vkCreateImageView(device_->handle(), &info, nullptr, &view),
         "creating a view of image `" + desc_.name + "`");
+  known = UniqueImageView(view, {device_->handle()});
   device_->setName(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(view), desc_.name);
   return view;
 }
 
-// ---- Requirements, samplers
-// ------------------------------------------------------------------------------------
+// ---- Requirements, samplers ----------------------------------------------------------------------------------
 
 VkMemoryRequirements memoryRequirements(Device& device, const BufferDesc& desc) {
   checkDesc(device, desc);

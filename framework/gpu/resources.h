@@ -10,9 +10,19 @@
 #include <tuple>
 #include <vector>
 
+#include "framework/gpu/unique.h"
+
 namespace fovea::gpu {
 
 class Device;
+
+struct ReleaseMemory {
+  using pointer = VkDeviceMemory;
+  Device* device = nullptr;
+  uint64_t bytes = 0;
+  void operator()(VkDeviceMemory memory) const;
+};
+using UniqueMemory = std::unique_ptr<std::remove_pointer_t<VkDeviceMemory>, ReleaseMemory>;
 
 enum class MemoryKind { Device, Upload, Readback };  // Upload and Readback are mapped and coherent
 
@@ -30,12 +40,9 @@ class Buffer {
   Buffer(Device& device, const BufferDesc& desc);  // owns its memory
   // Placed into memory that it does not own.
   Buffer(Device& device, const BufferDesc& desc, VkDeviceMemory memory, uint64_t offset);
-  ~Buffer();
-  Buffer(Buffer&& other) noexcept;
-  Buffer& operator=(Buffer&& other) noexcept;
 
-  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
-  VkBuffer handle() const { return handle_; }
+  explicit operator bool() const { return bool(handle_); }
+  VkBuffer handle() const { return handle_.get(); }
   uint64_t bytes() const { return desc_.bytes; }
   const std::string& name() const { return desc_.name; }
   void* mapped() const { return mapped_; }  // null unless Upload or Readback
@@ -43,15 +50,14 @@ class Buffer {
   VkBufferView texelView(VkFormat format);
 
  private:
-  void destroy();
+  void create();
+  void bind(VkDeviceMemory memory, uint64_t offset);
   Device* device_ = nullptr;
   BufferDesc desc_;
-  VkBuffer handle_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
-  uint64_t memoryBytes_ = 0;
-  bool owned_ = false;
+  UniqueMemory memory_;  // null if it is placed
+  UniqueBuffer handle_;
   void* mapped_ = nullptr;
-  std::map<VkFormat, VkBufferView> views_;
+  std::map<VkFormat, UniqueBufferView> views_;
 };
 
 struct ImageDesc {
@@ -69,12 +75,9 @@ class Image {
   Image() = default;
   Image(Device& device, const ImageDesc& desc);
   Image(Device& device, const ImageDesc& desc, VkDeviceMemory memory, uint64_t offset);
-  ~Image();
-  Image(Image&& other) noexcept;
-  Image& operator=(Image&& other) noexcept;
 
-  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
-  VkImage handle() const { return handle_; }
+  explicit operator bool() const { return bool(handle_); }
+  VkImage handle() const { return handle_.get(); }
   const ImageDesc& desc() const { return desc_; }
   const std::string& name() const { return desc_.name; }
   VkExtent3D extent() const { return {desc_.width, desc_.height, desc_.depth}; }
@@ -87,14 +90,13 @@ class Image {
 
  private:
   VkImageView makeView(uint32_t firstMip, uint32_t mips, uint32_t firstLayer, uint32_t layers, bool array);
-  void destroy();
+  void create();
+  void bind(VkDeviceMemory memory, uint64_t offset);
   Device* device_ = nullptr;
   ImageDesc desc_;
-  VkImage handle_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
-  uint64_t memoryBytes_ = 0;
-  bool owned_ = false;
-  std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, bool>, VkImageView> views_;
+  UniqueMemory memory_;  // null if it is placed
+  UniqueImage handle_;
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, bool>, UniqueImageView> views_;
 };
 
 // Memory requirements, determined without creating memory; input to the aliasing phase.
