@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <span>
 
 #include "fovea/error.h"
 #include "framework/gpu/resources.h"
@@ -15,6 +14,7 @@
 #include "framework/session/test_device.h"
 #include "framework/shader_twins/octahedral.h"
 #include "tests/gpu/command_helpers.h"
+#include "tests/gpu/scene_queries.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::scene {
@@ -25,49 +25,6 @@ using fovea::test::as;
 using fovea::test::testDevice;
 using Path = AnimationChannel::Path;
 using Interpolation = AnimationChannel::Interpolation;
-
-// Runs `body` once per query; it reads vec4 q and writes vec4 r[3].
-std::vector<glm::vec4> runShader(GpuScene& scene, uint32_t slot, const std::vector<glm::vec4>& queries,
-                                 const std::string& body) {
-  gpu::Device& device = testDevice();
-  const std::string source = R"(#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "common/scene.glsl"
-layout(local_size_x = 64) in;
-layout(std430) readonly buffer Queries { vec4 queries[]; };
-layout(std430) writeonly buffer Results { vec4 results[]; };
-layout(push_constant) uniform Constants { uint count; };
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= count) return;
-  vec4 q = queries[i];
-  vec4 r[3];
-)" + body + R"(
-  for (int k = 0; k < 3; ++k) results[3u * i + k] = r[k];
-}
-)";
-  gpu::Buffer in(device, {"queries", queries.size() * 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::Buffer out(device, {"results", queries.size() * 48, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::upload(device, in, std::as_bytes(std::span(queries)));
-  const gpu::Pipeline pipeline(
-      device,
-      gpu::ComputePipelineDesc{device.shaders().compileSource("attach.comp", source), scene.setLayout()});
-  device.runOnce([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
-                                             {out.handle(), 0, VK_WHOLE_SIZE}};
-    VkWriteDescriptorSet writes[2] = {test::write(pipeline, "Queries"), test::write(pipeline, "Results")};
-    writes[0].pBufferInfo = &infos[0];
-    writes[1].pBufferInfo = &infos[1];
-    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
-    const VkDescriptorSet set = scene.set(slot);
-    const uint32_t offset = scene.viewOffset(0), count = uint32_t(queries.size());
-    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
-    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
-    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
-  });
-  return as<glm::vec4>(gpu::download(device, out));
-}
 
 struct Vertices {
   std::vector<glm::vec4> positions, attributes, previous;
@@ -272,13 +229,11 @@ void attachAndCompare(bool coarse) {
   Geometry now = g;
   moveObjects(frame, now);
   GpuScene gpu(testDevice(), s, g, 1);
-  gpu.update(frame, 0);
-  testDevice().runOnce([&](VkCommandBuffer cmd) { gpu.recordMoves(cmd, 0); });
   std::vector<glm::vec4> queries;
   for (int i = 0; i < 400; ++i)
     queries.emplace_back(std::fmod(0.37f * float(i), 4.0f) - 1, std::fmod(0.73f * float(i), 3.0f) - 1,
                          std::fmod(0.91f * float(i), 2.0f) - 1, float(i % 2));
-  const auto results = runShader(gpu, 0, queries, R"(
+  const auto results = test::evaluate(gpu, frame, queries, R"(
     uint triangle = uint(q.w);
     vec3 place = attach(triangle, q.xyz);
     r[0] = vec4(place, objectDeforms(1u) && !objectDeforms(0u) ? 1.0 : 0.0);

@@ -1,82 +1,23 @@
 // Compares shaders/common/scene.glsl with its CPU twins: textures, materials, lights and geometry.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "framework/gpu/pipeline.h"
-#include "framework/gpu/resources.h"
-#include "framework/gpu/shader/shader.h"
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
+#include "tests/gpu/scene_queries.h"
 
 namespace fovea::scene {
 namespace {
 
+using test::evaluate;
 using test::testDevice;
-
-// Runs `body` once per query; it reads vec4 q and writes vec4 r[3]. `head` stands before all else.
-std::vector<glm::vec4> evaluate(GpuScene& scene, const Frame& frame, const std::vector<glm::vec4>& queries,
-                                const std::string& name, const std::string& body,
-                                const std::string& head = "") {
-  gpu::Device& device = testDevice();
-  const std::string source = R"(#version 460
-#extension GL_GOOGLE_include_directive : require
-)" + head + R"(
-#include "common/materials/passage.glsl"
-#include "common/scene.glsl"
-layout(local_size_x = 64) in;
-layout(std430) readonly buffer Queries { vec4 queries[]; };
-layout(std430) writeonly buffer Results { vec4 results[]; };
-layout(push_constant) uniform Constants { uint count; };
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= count) return;
-  vec4 q = queries[i];
-  vec4 r[3] = vec4[3](vec4(0), vec4(0), vec4(0));
-)" + body + R"(
-  for (int k = 0; k < 3; ++k) results[3u * i + k] = r[k];
-}
-)";
-  gpu::Buffer in(device, {"queries", queries.size() * 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::Buffer out(device, {"results", queries.size() * 48, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  gpu::upload(device, in, std::as_bytes(std::span(queries)));
-  const gpu::Pipeline pipeline(
-      device,
-      gpu::ComputePipelineDesc{device.shaders().compileSource(name + ".comp", source), scene.setLayout()});
-  scene.update(frame, 1);
-  device.runOnce([&](VkCommandBuffer cmd) {
-    vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
-    const VkDescriptorBufferInfo infos[2] = {{in.handle(), 0, VK_WHOLE_SIZE},
-                                             {out.handle(), 0, VK_WHOLE_SIZE}};
-    std::vector<VkWriteDescriptorSet> writes;
-    for (const gpu::ReflectedBinding& b : pipeline.interface().bindings) {
-      VkWriteDescriptorSet& w =
-          writes.emplace_back(VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
-      w.dstBinding = b.binding;
-      w.descriptorCount = 1;
-      w.descriptorType = gpu::descriptorType(b.kind);
-      w.pBufferInfo = &infos[b.name == "Results"];
-    }
-    device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, writes);
-    const VkDescriptorSet set = scene.set(1);
-    const uint32_t offset = scene.viewOffset(frame.views.empty() ? 0 : uint32_t(frame.views.size() - 1));
-    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint(), pipeline.layout(), 1, 1, &set, 1, &offset);
-    const uint32_t count = uint32_t(queries.size());
-    vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof count, &count);
-    vkCmdDispatch(cmd, (count + 63) / 64, 1, 1);
-  });
-  std::vector<glm::vec4> results(queries.size() * 3);
-  const std::vector<std::byte> bytes = gpu::download(device, out);
-  std::memcpy(results.data(), bytes.data(), bytes.size());
-  return results;
-}
 
 float random(uint32_t stream, uint32_t index) { return uniformFloat(hashCombine(stream, index)); }
 
@@ -136,7 +77,7 @@ TEST(SceneGlsl, MaterialsAndTextures) {
       queries.emplace_back(float(m), uv, 0);
     }
   queries.emplace_back(0, std::nanf(""), 1e30f, 0);
-  const auto results = evaluate(gpu, frame, queries, "materials", R"(
+  const auto results = evaluate(gpu, frame, queries, R"(
     uint m = uint(q.x);
     SurfacePoint s = surfaceAt(m, q.yz);
     Material material = loadMaterial(m);
@@ -178,7 +119,7 @@ TEST(SceneGlsl, QuotientsAndRootsAreThoseOfTheCpu) {
   queries.emplace_back(0, 3, 0, 0);
   for (const int off : {-2, 0, 2}) {
     const auto results =
-        evaluate(gpu, Frame{}, queries, "exact", R"(
+        evaluate(gpu, Frame{}, queries, R"(
     r[0] = vec4(quotient(q.x, q.y), quotient(1.0, q.y), root(q.z), quotient(1.0, 0.0 * q.z));
   )",
                  "float offBy(float x) { return x == 0.0 ? x : intBitsToFloat(floatBitsToInt(x) + " +
@@ -218,7 +159,7 @@ TEST(SceneGlsl, Lights) {
   for (uint32_t k = 0; k < kMaxLights * 32; ++k)
     queries.emplace_back(glm::vec3(random(20, k), random(21, k), random(22, k)) * 12.0f - 6.0f,
                          float(k % kMaxLights));
-  const auto results = evaluate(gpu, frame, queries, "lights", R"(
+  const auto results = evaluate(gpu, frame, queries, R"(
     LightRecord light = lights[uint(q.w)];
     LightSample s = sampleLight(light, q.xyz);
     r[0] = vec4(s.irradiance, s.distance);
@@ -285,7 +226,7 @@ TEST(SceneGlsl, GeometryFrameAndViews) {
   }
   std::vector<glm::vec4> queries;
   for (uint32_t i = 0; i < 6; ++i) queries.emplace_back(float(i));
-  const auto results = evaluate(gpu, frame, queries, "geometry", R"(
+  const auto results = evaluate(gpu, frame, queries, R"(
     uint vertex = uint(q.x);
     r[0] = vec4(scenePosition(vertex), sceneUv(vertex).x);
     r[1] = vec4(sceneNormal(vertex), sceneUv(vertex).y);
@@ -299,8 +240,7 @@ TEST(SceneGlsl, GeometryFrameAndViews) {
     }
     EXPECT_EQ(results[3 * i + 1].w, geometry.uvs[i].y);
   }
-  const auto blocks =
-      evaluate(gpu, frame, {glm::vec4(0), glm::vec4(1), glm::vec4(2), glm::vec4(3)}, "blocks", R"(
+  const auto blocks = evaluate(gpu, frame, {glm::vec4(0), glm::vec4(1), glm::vec4(2), glm::vec4(3)}, R"(
     if (i < 2u) {
       uvec4 t = sceneTriangle(i);
       r[0] = vec4(t.xyz, materialOf(t));
@@ -355,13 +295,13 @@ TEST(SceneGlsl, ObjectsEqualTheFrames) {
   std::vector<glm::vec4> queries;
   for (uint32_t k = 0; k < 400; ++k)
     queries.emplace_back(3 * random(31, k), 2 * random(32, k) - 1, random(33, k) + 0.1f, float(k % 40));
-  const auto places = evaluate(gpu, frame, queries, "objects", R"(
+  const auto places = evaluate(gpu, frame, queries, R"(
     uint object = uint(q.w);
     r[0] = vec4(fromObject(object, q.xyz), objectVisible(object) ? 1.0 : 0.0);
     r[1] = vec4(toObject(object, q.xyz), objectWasVisible(object) ? 1.0 : 0.0);
     r[2] = vec4(previousObjectTransform(object) * vec4(q.xyz, 1.0), 0.0);
   )");
-  const auto normals = evaluate(gpu, frame, queries, "object_normals", R"(
+  const auto normals = evaluate(gpu, frame, queries, R"(
     uint object = uint(q.w);
     r[0] = vec4(normalFromObject(object, normalize(q.xyz)), 0.0);
     r[1] = vec4(normalToObject(object, normalize(q.xyz)), 0.0);
@@ -386,7 +326,7 @@ TEST(SceneGlsl, ObjectsEqualTheFrames) {
 TEST(SceneGlsl, AnEmptySceneWorks) {
   GpuScene gpu(testDevice(), Scene{}, {}, 2);
   EXPECT_EQ(gpu.triangleCount(), 0u);
-  const auto results = evaluate(gpu, Frame{}, {glm::vec4(0)}, "empty", R"(
+  const auto results = evaluate(gpu, Frame{}, {glm::vec4(0)}, R"(
     r[0] = vec4(frame.triangleCount + frame.lightCount + frame.vertexCount, frame.boundsMin);
     r[1] = vec4(frame.boundsMax, 0.0);
   )");
@@ -415,8 +355,8 @@ TEST(SceneGlsl, LightPassesBlendAndGlassAsOnTheCpu) {
     uint m = uint(q.x);
     r[0] = vec4(passage(m, q.yz, q.w), stops(m, q.yz, q.w, 0.3) ? 1.0 : 0.0, stops(m, q.yz, q.w, 0.7) ? 1.0 : 0.0, 0.0);
   )";
-  const auto results = evaluate(gpu, Frame{}, queries, "passage", body),
-             solid = evaluate(diffuse, Frame{}, queries, "passage", body);
+  const auto results = evaluate(gpu, Frame{}, queries, body),
+             solid = evaluate(diffuse, Frame{}, queries, body);
   uint32_t stopped = 0, passed = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
     const Material& m = scene.materials[size_t(queries[i].x)];
@@ -448,7 +388,7 @@ TEST(SceneGlsl, RaysPassWhereTheyDoOnTheCpu) {
     queries.emplace_back(k, float(hashPcg(k) % 4096), float(hashPcg(k + 256) % 4096),
                          float(hashPcg(k + 512) % 1000));
   GpuScene gpu(testDevice(), Scene{}, {}, 2, true);
-  const auto results = evaluate(gpu, Frame{}, queries, "chance", R"(
+  const auto results = evaluate(gpu, Frame{}, queries, R"(
     r[0] = vec4(passageChance(hashPcg(uint(q.x)), uvec2(q.yz), uint(q.w)), 0.0, 0.0, 0.0);
   )");
   for (size_t i = 0; i < queries.size(); ++i)
@@ -466,8 +406,7 @@ TEST(SceneGlsl, ManyLargeTexturesTakeSeveralPages) {
   GpuScene gpu(testDevice(), scene, {}, 2);
   std::vector<glm::vec4> queries;
   for (uint32_t k = 0; k < 24 * 16; ++k) queries.emplace_back(float(k / 16), random(1, k), random(2, k), 0);
-  const auto results =
-      evaluate(gpu, Frame{}, queries, "pages", "r[0] = materialReflectance(uint(q.x), q.yz);");
+  const auto results = evaluate(gpu, Frame{}, queries, "r[0] = materialReflectance(uint(q.x), q.yz);");
   for (size_t i = 0; i < queries.size(); ++i) {
     const glm::vec4 expected = reflectance(scene, scene.materials[i / 16], {queries[i].y, queries[i].z});
     for (int c = 0; c < 4; ++c) ASSERT_NEAR(results[3 * i][c], expected[c], 1e-4) << "texture " << i / 16;
