@@ -33,7 +33,8 @@ struct BufferDesc {
   MemoryKind memory = MemoryKind::Device;
 };
 
-// Move-only. Throws Error(OutOfMemory) naming the buffer and its size.
+// Move-only; of one that was moved from only the destructor and assignment may be used. Assignment frees the old memory
+// before what is bound to it, which Vulkan allows. Throws Error(OutOfMemory) naming the buffer and its size.
 class Buffer {
  public:
   Buffer() = default;
@@ -69,7 +70,7 @@ struct ImageDesc {
   VkImageUsageFlags usage = 0;
 };
 
-// Move-only; optimal tiling, device memory.
+// Move-only like Buffer; optimal tiling, device memory.
 class Image {
  public:
   Image() = default;

@@ -103,7 +103,7 @@ Around around(ivec2 p, ivec2 size, bool veiled) {
 vec3 placeBefore(ivec2 p, Around a, vec2 size) {
   bool surface = a.position.w > 0.0;
   uint id = imageLoad(gbufferId, a.nearest).r, triangle = imageLoad(gbufferTriangle, a.nearest).r;
-  Motion motion = motionOf(a.position.xyz, id, triangle);
+  Motion motion = motionOf(a.position.xyz, surface ? id : 0u, triangle);
   vec4 point = surface ? vec4(pointBefore(motion, a.position.xyz), 1.0) : vec4(pixelRay(p), 0.0);
   vec4 clip = view.previousWorldToClip * point;
   vec2 at = (0.5 * clip.xy / clip.w + 0.5) * size - 0.5 - view.jitterStep;  // texel centres at whole numbers

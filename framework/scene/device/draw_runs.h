@@ -12,7 +12,7 @@ namespace fovea::scene {
 enum class DrawKind : uint8_t {
   DoubleSided,  // opaque, both sides
   SingleSided,  // opaque, the front only
-  // The material is looked up for every fragment, which may also be of a simpler kind.
+  // The material is looked up for every fragment; a run may hold simpler kinds, too.
   Masked,       // with holes, by their alpha
   Transparent,  // let a share of the light through; with full materials only
 };
@@ -29,8 +29,8 @@ struct DrawRun {
 // Where materials change too often, more draws would cost more than the tests that they save.
 inline constexpr size_t kMaxDrawRuns = 256;
 
-// Runs in the order of the triangles, covering all of them; a single one of the last kind that the materials know if
-// there would be more than kMaxDrawRuns. fullMaterials: glass and alphaMode BLEND are transparent.
+// Runs in the order of the triangles, covering all of them; if there would be more than kMaxDrawRuns, a single one, which
+// is Transparent with full materials and Masked otherwise. fullMaterials: glass and alphaMode BLEND are transparent.
 std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry, bool fullMaterials = false);
 
 }  // namespace fovea::scene
