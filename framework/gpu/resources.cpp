@@ -1,7 +1,6 @@
 #include "framework/gpu/resources.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "fovea/error.h"
 #include "framework/gpu/device.h"

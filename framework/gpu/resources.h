@@ -16,6 +16,7 @@ namespace fovea::gpu {
 
 class Device;
 
+// The deleter of memory that a device has allocated. bytes: as they were asked for.
 struct ReleaseMemory {
   using pointer = VkDeviceMemory;
   Device* device = nullptr;

@@ -8,6 +8,7 @@
 
 namespace fovea::gpu {
 
+// The deleter of a handle. kDestroy: the Vulkan function that destroys it, such as vkDestroyBuffer.
 template <class Handle, auto kDestroy>
 struct Destroy {
   using pointer = Handle;

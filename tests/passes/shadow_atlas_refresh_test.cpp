@@ -270,16 +270,21 @@ TEST(ShadowAtlasRefresh, WhatMovesIsDrawnOverMapsOfWhatNeverDoes) {
   checkUnchanged(true, "simplified");
 }
 
+// A tenth of the stale maps is drawn in a frame by `stale`, and all maps by `whole`.
+void drawTenthAndAll(const MoverBehindWall& world, PassTest& stale, PassTest& whole) {
+  for (PassTest* test : {&stale, &whole}) test->scene(world.scene).param("size", 16);
+  stale.param("refresh", "stale").param("refresh_share", 0.1).param("static_maps", true);
+  stale.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
+  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
+}
+
 // The budget is spent on maps that would change: soon after the mover has stopped, all maps are as if drawn anew, and
 // after that none is drawn.
 TEST(ShadowAtlasRefresh, StaleSpendsNothingOnMapsThatWouldNotChange) {
   constexpr uint32_t kSlots = 60;
   MoverBehindWall world(kSlots);
   PassTest stale("shadow-atlas"), whole("shadow-atlas");
-  for (PassTest* test : {&stale, &whole}) test->scene(world.scene).param("size", 16);
-  stale.param("refresh", "stale").param("refresh_share", 0.1).param("static_maps", true);
-  stale.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
-  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
+  drawTenthAndAll(world, stale, whole);
   for (uint32_t frame = 0; frame < 9 + kSlots / 6; ++frame) {
     stale.run();
     EXPECT_EQ(stale.counter("unchanged_maps"), 0) << "frame " << frame;
@@ -298,11 +303,8 @@ TEST(ShadowAtlasRefresh, LightThatChangesHasMoreMapsDrawn) {
   constexpr uint32_t kSlots = 60;
   MoverBehindWall world(kSlots);
   PassTest stale("shadow-atlas"), whole("shadow-atlas");
-  for (PassTest* test : {&stale, &whole}) test->scene(world.scene).param("size", 16);
-  stale.param("refresh", "stale").param("refresh_share", 0.1).param("static_maps", true);
-  stale.buffer("vpls", world.vpls, "Vpl").buffer("state", world.state, "VplState");
+  drawTenthAndAll(world, stale, whole);
   stale.buffer("change", std::vector<glm::vec4>(1), "LightChange");
-  whole.param("refresh", "all").buffer("vpls", world.vpls, "Vpl");
   stale.run(4);
   EXPECT_LE(stale.counter("maps"), kSlots / 10);
   whole.run(4);
