@@ -13,25 +13,33 @@
 // roughness to the second it passes over into that, and with the second VPLs need not be asked.
 const float kDullFrom = 0.45, kDullTo = 0.6;
 
+// Of Lobe::grazing: its value on a smooth surface, and the square of the roughness at which it has fallen to 1 / e. With
+// these the layer gets the light that bsdf.h lets through a dielectric with an index of refraction of 1.5, within 0.06
+// above a cosine of 0.1.
+const float kLayerLoss = 0.87, kLayerLossEnd = 0.176;
+
 struct Lobe {
   vec3 toEye;  // unit
   float a2;    // square of GGX's alpha
   float cosine;  // of the eye
   float masking, alpha2;  // for the masking: sqrt(alpha^2 + (1 - alpha^2) cosine^2), and alpha^2 as it was
-  float albedo;  // of a mirror of this roughness, set by complete()
-  float share;   // 0: the light is that of the diffuse layer, 1: that under the lobe
+  float albedo;   // of a mirror of this roughness, set by complete()
+  float share;    // 0: the light is that of the diffuse layer, 1: that under the lobe
+  float grazing;  // how much less of the light at grazing angles enters the diffuse layer, see responseTo()
 };
 
-Lobe lobeOf(vec3 normal, vec3 toEye, vec4 specular) {
+// normal, specular: as gbuffer stores them.
+Lobe lobeOf(vec4 normal, vec3 toEye, vec4 specular) {
   Lobe l;
   l.toEye = normalize(toEye);
-  l.cosine = max(dot(normal, l.toEye), 1e-3);
+  l.cosine = max(dot(normal.xyz, l.toEye), 1e-3);
   float alpha = ggxAlpha(specular.a);
   l.a2 = alpha * alpha;
   l.alpha2 = l.a2;
   l.masking = sqrt(l.a2 + (1.0 - l.a2) * l.cosine * l.cosine);
   l.albedo = 1.0;
   l.share = looksMetallic(specular) ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
+  l.grazing = l.share * abs(normal.a) * kLayerLoss * exp(-specular.a * specular.a / kLayerLossEnd);
   return l;
 }
 
@@ -44,14 +52,23 @@ void complete(inout Lobe l, float turn2) {
   l.a2 += 0.25 * turn2;
 }
 
-// D V of GGX, per sr, for light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V
-// (Heitz 2014). Simpler forms of V lose up to a seventh of the light.
+// What a surface makes of light from one direction. lobe: D V of GGX, per sr; layer: the share that enters the diffuse
+// layer, over its mean for diffuse light.
+struct Response {
+  float lobe, layer;
+};
+
+// For light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V (Heitz 2014). Simpler
+// forms of V lose up to a seventh of the light.
 //
 // A disc fills the solid angle area / (d^2 + area / pi), as the kernel `disc` has it, and its halfway vectors a quarter
 // of that, divided by the cosine between halfway vector and light. A lobe that is that much wider makes the disc as
 // bright as a mirror would. With the square of this cosine, u / 2, it is dimmer at grazing angles and never brighter;
 // l.a2 and what is added to it are multiplied by u.
-float lobeTowards(Lobe l, vec3 normal, vec3 toLight, float area) {
+//
+// Fresnel's reflection leaves the diffuse layer little of the light at grazing angles: about a linear function of
+// (1 - cosine)^4, whose mean over diffuse light is 1 / 15.
+Response responseTo(Lobe l, vec3 normal, vec3 toLight, float area) {
   float d2 = max(dot(toLight, toLight), 1e-12), d = sqrt(d2);
   float facing = dot(normal, toLight);
   float inverse = 1.0 / d, u = max(1.0 + dot(l.toEye, toLight) * inverse, 1e-4), c = max(facing, 0.0) * inverse;
@@ -59,7 +76,8 @@ float lobeTowards(Lobe l, vec3 normal, vec3 toLight, float area) {
   float a2 = min(l.a2 * u + area / (2.0 * kPi * d2 + 2.0 * area), u);
   float s = max(h2 - nh2, 0.0) * u + nh2 * a2;
   float masking = c * l.masking + l.cosine * sqrt(l.alpha2 + (1.0 - l.alpha2) * c * c);
-  return a2 * u * h2 * h2 * 0.5 / (kPi * s * s * masking);
+  float away = 1.0 - c, away2 = away * away;
+  return Response(a2 * u * h2 * h2 * 0.5 / (kPi * s * s * masking), 1.0 + l.grazing * (1.0 / 15.0 - away2 * away2));
 }
 
 #endif

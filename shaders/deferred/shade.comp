@@ -225,14 +225,15 @@ void gather(inout Receiver receivers[kPixels], Block block, uint subset, bool gl
 #else
         float t = transfer(receivers[k], e, 0u);
 #endif
-        receivers[k].sum += t * e.intensity;
 #if GLOSS
         if (glossy) {
           vec3 toLight = e.position - receivers[k].position;
-          float lobe = lobeTowards(receivers[k].lobe, receivers[k].normal, toLight, e.area);
-          receivers[k].gloss += (t * lobe) * e.intensity;
+          Response response = responseTo(receivers[k].lobe, receivers[k].normal, toLight, e.area);
+          receivers[k].gloss += (t * response.lobe) * e.intensity;
+          t *= response.layer;
         }
 #endif
+        receivers[k].sum += t * e.intensity;
       }
     }
   }
@@ -248,13 +249,14 @@ void main() {
     vec4 position = imageLoad(gbufferPosition, p);
     valid[k] = position.w > 0.0 && all(lessThan(at, size));
     receivers[k].position = position.xyz;
-    receivers[k].normal = imageLoad(gbufferNormal, p).xyz;
+    vec4 normal = imageLoad(gbufferNormal, p);
+    receivers[k].normal = normal.xyz;
 #if SHADOWED
     receivers[k].face = octDecode(imageLoad(gbufferFace, p).xy);
 #endif
     receivers[k].sum = vec3(0.0);
 #if GLOSS
-    receivers[k].lobe = lobeOf(receivers[k].normal, view.eye - position.xyz, imageLoad(gbufferSpecular, p));
+    receivers[k].lobe = lobeOf(normal, view.eye - position.xyz, imageLoad(gbufferSpecular, p));
     receivers[k].gloss = vec3(0.0);
 #endif
   }

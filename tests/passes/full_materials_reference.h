@@ -37,6 +37,12 @@ inline glm::dvec3 dielectricAlbedo(const scene::BsdfParameters& p, float cosine)
                        double(p.dielectricAlbedo->averageCurve()),
                        p.dielectricAlbedo->at(cosine, p.roughness), p.dielectricAlbedo->average(p.roughness));
 }
+// Its mean over all directions, for diffuse light.
+inline glm::dvec3 dielectricAlbedo(const scene::BsdfParameters& p) {
+  const scene::Albedo mean = p.dielectricAlbedo->average(p.roughness);
+  return surfaceAlbedo(glm::dvec3(p.specularF0), double(p.specularF90),
+                       double(p.dielectricAlbedo->averageCurve()), mean, mean);
+}
 inline glm::dvec3 metalAlbedo(const scene::BsdfParameters& p, float cosine) {
   return surfaceAlbedo(glm::dvec3(p.baseColor), 1, double(p.metalAlbedo->averageCurve()),
                        p.metalAlbedo->at(cosine, p.roughness), p.metalAlbedo->average(p.roughness));
