@@ -86,7 +86,8 @@ class Tracer {
     if (!hit.there) return {0, 0, 0, glm::distance(hit.position, origin)};
     const glm::vec3 gathered =
         gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, kMirrorCellWidth * m.distance, sum);
-    return {weight * (surfaces_.seen(hit, -direction, sum.rays) + surfaces_.reflectance(hit) * gathered),
+    return {weight * (surfaces_.seen(hit, -direction, sum.rays, m.roughness) +
+                      surfaces_.reflectance(hit) * gathered),
             glm::distance(hit.position, origin)};
   }
 
@@ -96,15 +97,17 @@ class Tracer {
   const GatherCache& cache_;
 };
 
-// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap.
+// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap where they meet what is seen.
 float overlap(const Mirror& m, const Mirror& neighbour) {
   if (!neighbour.there) return 0;
   const glm::vec3 to = neighbour.position - m.position;
   if (std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
   const glm::vec3 turned =
       2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
+  const float reach = std::max(m.reach + neighbour.reach, kLeastReach);
+  const float apart = glm::dot(turned, turned) + glm::dot(to, to) / (reach * reach);
   const float blurred = std::min(m.alpha / kSharp, 1.0f);
-  return blurred * blurred * std::exp(-glm::dot(turned, turned) / (m.alpha * m.alpha));
+  return blurred * blurred * std::exp(-apart / (m.alpha * m.alpha));
 }
 
 class ReflectionsHost : public Pass {
@@ -189,12 +192,12 @@ class ReflectionsHost : public Pass {
     return sum;
   }
 
-  // The mean over 3 x 3 texels: single rays are poor estimates of what wide lobes reflect.
+  // The mean over 5 x 5 texels: single rays are poor estimates of what wide lobes reflect.
   glm::vec3 meanAround(glm::ivec2 at, glm::ivec2 size) const {
     const Mirror& m = mirrors_[size_t(at.y) * size.x + at.x];
     glm::vec4 sum(m.light, 1);
-    for (int y = std::max(at.y - 1, 0); m.there && y <= std::min(at.y + 1, size.y - 1); ++y)
-      for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
+    for (int y = std::max(at.y - kSharing, 0); m.there && y <= std::min(at.y + kSharing, size.y - 1); ++y)
+      for (int x = std::max(at.x - kSharing, 0); x <= std::min(at.x + kSharing, size.x - 1); ++x) {
         const Mirror& other = mirrors_[size_t(y) * size.x + x];
         if (&other != &m) sum += overlap(m, other) * glm::vec4(other.light, 1);
       }

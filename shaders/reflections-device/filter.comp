@@ -1,4 +1,4 @@
-// The mean over 3 x 3 mirrors as far as their lobes overlap: single rays are poor estimates of what wide lobes reflect.
+// The mean over 5 x 5 mirrors as far as their lobes overlap: single rays are poor estimates of what wide lobes reflect.
 #include "common/scene.glsl"
 #include "mirror.glsl"
 
@@ -8,13 +8,14 @@ layout(rgba32f) uniform readonly image2D traced;
 layout(rgba16f) uniform writeonly image2D samples;
 layout(r32f) uniform writeonly image2D distances;
 
-// The share of a neighbour's light that counts for `m`, too.
-float overlap(Mirror m, Mirror neighbour) {
+// The share of a neighbour's light that counts for `m`, too. reach: the sum of the distances of what both see, m.
+float overlap(Mirror m, Mirror neighbour, float reach) {
   vec3 to = neighbour.position - m.position;
   if (!neighbour.there || abs(dot(to, m.face)) > kSameSlope * length(to)) return 0.0;
   vec3 turned = 2.0 * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
+  float far = max(reach, kLeastReach), apart = dot(turned, turned) + dot(to, to) / (far * far);
   float blurred = min(m.alpha / kSharp, 1.0);
-  return blurred * blurred * exp(-dot(turned, turned) / (m.alpha * m.alpha));
+  return blurred * blurred * exp(-apart / (m.alpha * m.alpha));
 }
 
 void main() {
@@ -22,11 +23,12 @@ void main() {
   if (any(greaterThanEqual(block, size))) return;
   Mirror m = mirrorAt(block);
   vec4 own = imageLoad(traced, block), sum = vec4(own.rgb, 1.0);
-  ivec2 low = max(block - 1, 0), high = m.there ? min(block + 1, size - 1) : low - 1;
+  ivec2 low = max(block - kSharing, 0), high = m.there ? min(block + kSharing, size - 1) : low - 1;
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 at = ivec2(x, y);
-      if (at != block) sum += overlap(m, mirrorAt(at)) * vec4(imageLoad(traced, at).rgb, 1.0);
+      vec4 its = imageLoad(traced, at);
+      if (at != block) sum += overlap(m, mirrorAt(at), own.a + its.a) * vec4(its.rgb, 1.0);
     }
   vec3 light = min(sum.rgb / sum.a, 65504.0);
   imageStore(samples, block, vec4(light, m.there ? float(m.code) : -float(m.code)));

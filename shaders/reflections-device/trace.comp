@@ -30,7 +30,7 @@ vec4 underLobe(Mirror m, mat3 axes, vec3 out_, vec2 u, uint stream) {
     return vec4(hasEnvironmentMap() ? weight * hit.brighter * environmentRadiance(direction) : vec3(0.0), kOutside);
   float distance_ = distance(hit.position, origin);
   if (!hit.there) return vec4(vec3(0.0), distance_);
-  vec3 light = seenLight(hit, -direction);
+  vec3 light = seenLight(hit, -direction, m.roughness);
   light += reflectance(hit) * gatheredLight(hit, bounces - 1u, stream, kMirrorCellWidth * m.distance_, 0.0);
   return vec4(weight * light, distance_);
 }

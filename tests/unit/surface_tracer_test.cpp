@@ -38,5 +38,33 @@ TEST(SurfaceTracer, TheSkyDoesNotShineThroughBlackBacks) {
   EXPECT_LT(lightBelow(true), 0.01);
 }
 
+// What a sun beside the mirror direction lets one see of a floor of metal, which may be taken for rougher than it is.
+float gleamOf(float roughness, float leastRoughness) {
+  scene::Scene s;
+  const uint32_t metal = addMaterial(s, glm::vec3(0.8f));
+  s.materials[metal].metallic = 1;
+  s.materials[metal].roughness = roughness;
+  addQuad(s, metal, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+  scene::Light sun;
+  sun.direction = glm::normalize(glm::vec3(-0.3f, -1, 0));
+  sun.intensity = 1;
+  s.lights.push_back(sun);
+  s.cameras.emplace_back().position = {0, 1, 0};
+  s.cameras[0].orientation = glm::angleAxis(-1.57f, glm::vec3(1, 0, 0));
+  const scene::Geometry g = scene::flatten(s);
+  const scene::Frame frame = scene::makeFrame(s, g, {8, 8}, 0, 1);
+  const auto rays = scene::RayScene::cached(s, g);
+  const scene::SurfaceTracer tracer(frame, frame.views[0], *rays, true);
+  uint64_t count = 0;
+  return tracer.seen(tracer.look({4, 4}, count), {0, 1, 0}, count, leastRoughness).g;
+}
+
+TEST(SurfaceTracer, SmoothSurfacesMayBeTakenForRougher) {
+  const float smooth = gleamOf(0.2f, 0), rough = gleamOf(0.5f, 0);
+  EXPECT_GT(rough, 2 * smooth);  // its highlight reaches further
+  EXPECT_FLOAT_EQ(gleamOf(0.2f, 0.5f), rough);
+  EXPECT_FLOAT_EQ(gleamOf(0.5f, 0.2f), rough);
+}
+
 }  // namespace
 }  // namespace fovea::test

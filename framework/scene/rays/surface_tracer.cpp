@@ -141,9 +141,11 @@ glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) cons
   });
 }
 
-glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays) const {
+glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays,
+                              float leastRoughness) const {
   if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
-  const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
+  SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
+  point.bsdf.roughness = std::max(point.bsdf.roughness, leastRoughness);
   if (point.unlit) return v.brighter * point.emission;
   const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));

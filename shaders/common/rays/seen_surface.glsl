@@ -7,8 +7,8 @@
 #include "common/rays/surfaces.glsl"
 
 // Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after
-// one reflection.
-vec3 seenLight(TracedSurface v, vec3 out_) {
+// one reflection. leastRoughness: v is taken for as rough at least.
+vec3 seenLight(TracedSurface v, vec3 out_, float leastRoughness) {
   uvec4 triangle = sceneTriangle(v.triangle);
   vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);
   vec3 edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
@@ -17,6 +17,7 @@ vec3 seenLight(TracedSurface v, vec3 out_) {
   int record = int(frame.firstSurface) + int(v.material) * kSurfaceTexels;
   vec3 normal = normalTowards(mappedNormal(record, v.triangle, weights, edgeB, edgeC, v.normal, side, at), out_);
   FullSurface surface = fullSurface(v.material, triangle, weights, at, dot(normal, out_));
+  surface.gloss.roughness = max(surface.gloss.roughness, leastRoughness);
   Reflector reflector = reflectorOf(surface.gloss, normal, out_);
   vec3 sum = surface.emission;
   for (uint i = 0u; i < frame.lightCount; ++i) {
