@@ -142,6 +142,41 @@ TEST_F(PassFiles, InputsUnderACondition) {
   expectReport(file("image.width"), "the condition `image.width` is not over");
 }
 
+// A pass that draws the tiles of `mask`, which is an input with these properties.
+std::string tiledPass(const char* mask, const char* step) {
+  return fmt::format(R"({{"doc": "x", "inputs": {{"mask": {{"doc": "x", {}}}}},
+ "outputs": {{"image": {{"doc": "x", "format": "rgba8"}}}}, "steps": [
+ {}]}})",
+                     mask, step);
+}
+
+const char* const kTiledStep = R"({"shader": "a.frag", "colors": ["image"], "tiles": "mask"})";
+
+TEST_F(PassFiles, StepsMayDrawTiles) {
+  EXPECT_EQ(reported(tiledPass(R"("format": "r8", "optional": true)", kTiledStep)), "");
+  const PassDeclaration* d = registry_.find("blur");
+  ASSERT_NE(d, nullptr);
+  EXPECT_EQ(d->steps[0].tileMask, "mask");
+  EXPECT_TRUE(any(d->findPort("mask")->members[0].usage, Usage::StorageRead)) << "follows from the step";
+}
+
+TEST_F(PassFiles, TilesAreReportedWhereTheyAreWrong) {
+  const std::string where = "blur.pass.json:3:2: error: pass type `blur`: step `a`: ";
+  expectReport(
+      tiledPass(R"("format": "r8")", R"({"shader": "a.frag", "colors": ["image"], "tiles": "mark"})"),
+      where + "no port `mark`; did you mean `mask`?");
+  expectReport(tiledPass(R"("format": "r8")", R"({"shader": "a.comp", "over": "image", "tiles": "mask"})"),
+               where + "only a fragment shader that writes images draws tiles");
+  for (const char* wrong : {R"("format": "r32f")", R"("format": "r8", "layers": 2)", R"("optional": true)"})
+    expectReport(tiledPass(wrong, kTiledStep),
+                 where + "`mask` says which tiles to draw, so it has to be a flat image of the format r8");
+  expectReport(tiledPass(R"("element": "uint")", kTiledStep), where + "`mask` is a buffer, not an image");
+  expectReport(tiledPass(R"("format": "r8", "usage": ["sampled"])", kTiledStep),
+               where + "port `mask` does not declare the usage StorageRead");
+  expectReport(tiledPass(R"("format": "r8")", R"({"shader": "a.frag", "colors": ["image"], "tiles": 16})"),
+               "blur.pass.json:3:53: error: `tiles`: expected a text, found the number 16");
+}
+
 TEST_F(PassFiles, MayLieInFoldersOfTheirOwn) {
   write("blur/blur.pass.json", kBlur);
   EXPECT_EQ(added(), "");
@@ -235,7 +270,7 @@ TEST_F(PassFiles, AMissingFolderIsNamed) {
 
 TEST_F(PassFiles, HaveASchema) {
   const std::string schema = passFileSchema();
-  for (const char* key : {"\"steps\"", "\"inputs\"", "\"shader\"", "\"together\"", "\"keep\""})
+  for (const char* key : {"\"steps\"", "\"inputs\"", "\"shader\"", "\"together\"", "\"keep\"", "\"tiles\""})
     EXPECT_NE(schema.find(key), std::string::npos) << key;
 }
 

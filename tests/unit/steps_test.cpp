@@ -157,6 +157,25 @@ TEST_F(Steps, AnIndirectDispatchWaitsForItsBuffer) {
   EXPECT_EQ(steps[1].before.dstAccess, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
 }
 
+// A step that draws the tiles of a mask of its own, of which its fragment shader knows nothing.
+TEST_F(Steps, TilesAreDrawnAfterTheirMask) {
+  declaration_.kind = PassKind::ComputeAndGraphics;
+  declaration_.scratch("mask", image2D(VK_FORMAT_R8_UNORM, 2, 2), Usage::StorageRead | Usage::ColorAttachment,
+                       "");
+  declaration_.scratch("image", image2D(kColor), Usage::ColorAttachment, "drawn");
+  shaders_.add("mask.frag", {});
+  shaders_.add("draws.frag", {});
+  declaration_.fullscreen("mask.frag", {"mask"});
+  declaration_.fullscreen("draws.frag", {"image"}).tiles("mask");
+  const auto& steps = plan();
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[1].before.srcAccess & VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+            VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+  EXPECT_NE(steps[1].before.dstStage & VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, 0u);
+  EXPECT_NE(steps[1].before.dstAccess & VK_ACCESS_2_SHADER_STORAGE_READ_BIT, 0u);
+  EXPECT_TRUE(checkPlan(plan_).empty());
+}
+
 TEST_F(Steps, ReadingWhatNothingWroteIsAnError) {
   declaration_.step("reads.comp").threads(16);
   try {

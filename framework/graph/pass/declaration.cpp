@@ -355,6 +355,11 @@ StepSpec& StepSpec::indirect(std::string buffer, uint64_t byteOffset) {
   return *this;
 }
 
+StepSpec& StepSpec::tiles(std::string mask) {
+  tileMask = std::move(mask);
+  return *this;
+}
+
 namespace {
 
 // "blur/rows.comp" -> "rows"

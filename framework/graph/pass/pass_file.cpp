@@ -320,6 +320,7 @@ class Reader {
       error(item.where, reader.path(), "a step needs a `shader`, `fill`, `clear` or `copy`");
     if (!step) return;
     if (reader.has("name")) step->name = reader.text("name");
+    step->tiles(reader.text("tiles"));
     step->condition = expressionAt(reader, "when", 1);
     step->together = reader.boolean("together", false);
   }
@@ -429,6 +430,7 @@ class Reader {
       attachment |= target && step.action == Action::Fullscreen;
       if (target && step.action != Action::Fullscreen) usage = usage | Usage::TransferWrite;
       if (step.action == Action::Copy && step.source == path) usage = usage | Usage::TransferRead;
+      if (step.tileMask == path) usage = usage | Usage::StorageRead;
       if (step.sizing == StepSpec::Size::Indirect && step.sizePort == path) usage = usage | Usage::Indirect;
     }
     if (attachment) usage = usage | Usage::ColorAttachment;

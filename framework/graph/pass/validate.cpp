@@ -217,15 +217,31 @@ class Validator {
     return nullptr;
   }
 
-  void checkTarget(const StepSpec& step, const std::string& path, ResourceKind kind, Usage usage,
-                   const char* usageName) {
+  // The member if a step may use it in this way; null after a report if not.
+  const MemberSpec* checkTarget(const StepSpec& step, const std::string& path, ResourceKind kind, Usage usage,
+                                const char* usageName) {
     const MemberSpec* m = stepPort(step, path);
-    if (!m) return;
+    if (!m) return nullptr;
     if (m->resource.kind != kind)
       wrong(fmt::format("step `{}`: `{}` is {}", step.name, path,
                         kind == ResourceKind::Image ? "a buffer, not an image" : "an image, not a buffer"));
     else if (!any(m->usage, usage))
       wrong(fmt::format("step `{}`: port `{}` does not declare the usage {}", step.name, path, usageName));
+    else
+      return m;
+    return nullptr;
+  }
+
+  void checkTiles(const StepSpec& step) {
+    if (step.action != StepSpec::Action::Fullscreen)
+      return wrong(
+          fmt::format("step `{}`: only a fragment shader that writes images draws tiles", step.name));
+    const MemberSpec* m =
+        checkTarget(step, step.tileMask, ResourceKind::Image, Usage::StorageRead, "StorageRead");
+    if (m && (m->resource.format != VK_FORMAT_R8_UNORM || m->resource.array || m->resource.volume))
+      wrong(fmt::format(
+          "step `{}`: `{}` says which tiles to draw, so it has to be a flat image of the format r8",
+          step.name, step.tileMask));
   }
 
   void checkStep(const StepSpec& step) {
@@ -240,6 +256,7 @@ class Validator {
     }
     if (step.action == Action::Copy)
       checkTarget(step, step.source, ResourceKind::Image, Usage::TransferRead, "TransferRead");
+    if (!step.tileMask.empty()) checkTiles(step);
     if (step.sizing == StepSpec::Size::Indirect)
       checkTarget(step, step.sizePort, ResourceKind::Buffer, Usage::Indirect, "Indirect");
     if (step.sizing == StepSpec::Size::Over) stepPort(step, step.sizePort);

@@ -247,7 +247,11 @@ void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
 void Commands::drawFullscreen() {
   Kernel kernel;
   kernel.state_ = &kernel_;
-  context_.render(kernel_.covers, nullptr, {&kernel, 1}, [&] { draw(3); });
+  context_.render(kernel_.covers, nullptr, {&kernel, 1}, [&] {
+    const VkViewport tiled{0, 0, float(kernel_.tiled.width), float(kernel_.tiled.height), 0, 1};
+    if (tiled.width > 0) vkCmdSetViewport(context_.cmd_, 0, 1, &tiled);
+    draw(kernel_.vertices);
+  });
 }
 
 namespace {

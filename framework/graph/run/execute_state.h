@@ -109,6 +109,8 @@ struct KernelState {
   };
   std::vector<Override> overrides;
   std::vector<Attachment> covers;  // attachments that a full-screen kernel writes
+  uint32_t vertices = 3;           // with which it does so
+  VkExtent2D tiled{};              // pixels that its tiles span, if it draws tiles
 };
 
 // A declared step that takes part in the plan, with everything that no frame changes.

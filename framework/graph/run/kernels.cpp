@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <filesystem>
 #include <limits>
@@ -255,6 +256,28 @@ uint32_t stepWord(const PassInstance& pass, const StepSpec& spec, int64_t value,
                                       ", which no 32-bit number without a sign holds");
 }
 
+// Pixels along an axis that whole tiles span; 0 if no power of two is the width of that many tiles.
+uint32_t tileSpan(uint32_t pixels, uint32_t tiles) {
+  const uint32_t width = std::bit_ceil((pixels + tiles - 1) / tiles);
+  return (pixels + width - 1) / width == tiles ? tiles * width : 0;
+}
+
+// Lets a full-screen kernel draw only the tiles of a mask.
+void drawTiles(const PassInstance& pass, const StepSpec& spec, const VkExtent3D& image,
+               const VkExtent3D& mask, KernelState& kernel) {
+  kernel.tiled = {tileSpan(image.width, mask.width), tileSpan(image.height, mask.height)};
+  if (kernel.tiled.width == 0 || kernel.tiled.height == 0)
+    throw Error(
+        ExitCode::BadInput,
+        fmt::format("pass `{}` ({}), step `{}`: `{}` has {}x{} texels for images of {}x{}, so its tiles are "
+                    "not a power of two wide and high",
+                    pass.bound->name, pass.bound->declaration->type, spec.name, spec.tileMask, mask.width,
+                    mask.height, image.width, image.height),
+        "make it as large as the images divided by 8, 16 or 32");
+  kernel.vertices = 6 * mask.width * mask.height;
+  for (Attachment& cover : kernel.covers) cover.load = Attachment::Load::Clear;
+}
+
 // Its row in the timings.
 void labelStep(PassInstance& pass, const StepInstance& step) {
   const Label label = pass.label(step.spec->name);
@@ -290,6 +313,8 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
       kernel = context.compute(spec.shader, stepDefines(spec, context));
     if (spec.action == StepSpec::Action::Fullscreen)
       kernel = context.fullscreen(spec.shader, spec.targets, stepDefines(spec, context));
+    if (context.has(spec.tileMask))
+      drawTiles(pass, spec, context.extent(spec.targets[0]), context.extent(spec.tileMask), *kernel.state_);
     step.kernel = kernel.state_;
     labelStep(pass, step);
     pass.stepByName[spec.name] = static_cast<uint32_t>(pass.steps.size());

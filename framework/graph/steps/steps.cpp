@@ -81,6 +81,7 @@ std::vector<StepAccess> shaderAccesses(const BoundPass& pass, std::span<const gp
 gpu::Defines stepDefines(const StepSpec& step, const PassContext& context) {
   gpu::Defines defines;
   for (const auto& [macro, value] : step.defines) defines[macro] = std::to_string(context.evaluate(value));
+  if (context.has(step.tileMask)) defines["TILES"] = shaderName(step.tileMask);  // common/fullscreen.vert
   return defines;
 }
 
@@ -249,6 +250,8 @@ std::vector<StepAccess> accessesOf(const BoundPass& pass, const StepSpec& step, 
   checkConstants(pass, step, *shader);
   std::vector<StepAccess> accesses = shaderAccesses(pass, shader->reflection.bindings, stages);
   for (const std::string& target : step.targets) accesses.push_back(attachment(pass, target));
+  if (context.has(step.tileMask))
+    accesses.push_back(portAccess(pass, accessOf(pass, step.tileMask), Usage::StorageRead, stages));
   if (step.sizing == StepSpec::Size::Indirect)
     accesses.push_back(portAccess(pass, accessOf(pass, step.sizePort), Usage::Indirect, stages));
   return accesses;
