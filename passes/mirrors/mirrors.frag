@@ -12,13 +12,12 @@ layout(push_constant) uniform Constants { uint frameIndex; };
 
 void main() {
   ivec2 block = ivec2(gl_FragCoord.xy), inside = ivec2(samplePixel(frameIndex, 2u, uvec2(block))), p = 2 * block + inside;
-  ivec2 size = imageSize(gbufferPosition);
-  bool there = all(lessThan(p, size)) && imageSize(gbufferSpecular) == size;  // else materials are diffuse
+  bool there = all(lessThan(p, imageSize(gbufferSpecular)));
   p = there ? p : ivec2(0);
   vec4 position = imageLoad(gbufferPosition, p), specular = imageLoad(gbufferSpecular, p);
   there = there && position.w > 0.0 && tracedShare(specular) > 0.0;
-  uint code = uint(2 | inside.x << 4 | inside.y << 7 | (there ? 0 : 1 << 10));
-  points = uvec4(there ? floatBitsToUint(position.w) : 0u,
-                 packSnorm2x16(octEncode(normalize(imageLoad(gbufferNormal, p).xyz))),
-                 packSnorm2x16(imageLoad(gbufferFace, p).xy), code | packUnorm2x16(vec2(0.0, specular.a)));
+  uint code = uint(2 | inside.x << 4 | inside.y << 7);
+  uvec4 point = uvec4(floatBitsToUint(position.w), packSnorm2x16(octEncode(normalize(imageLoad(gbufferNormal, p).xyz))),
+                      packSnorm2x16(imageLoad(gbufferFace, p).xy), code | packUnorm2x16(vec2(0.0, specular.a)));
+  points = there ? point : uvec4(0u);
 }

@@ -24,7 +24,7 @@ namespace {
 
 using namespace graph;
 
-// A texel of pass mirrors, and the light that was found for it. If it reflects nothing, only its code is known.
+// A texel of pass mirrors, and the light that was found for it. Only `there` counts if it reflects nothing.
 struct Mirror {
   Mirror(glm::uvec4 texel, glm::uvec2 block, const scene::View& view)
       : there(texel.x != 0), code(texel.w & 0xffffu) {
@@ -140,7 +140,7 @@ class ReflectionsHost : public Pass {
       for (uint32_t x = 0; x < width; ++x) {
         const glm::vec3 light = glm::min(meanAround(glm::ivec2(x, y), glm::ivec2(width, height)), 65504.0f);
         const Mirror& m = mirrors_[size_t(y) * width + x];
-        const float code = m.there ? float(m.code) : -float(m.code);
+        const float code = m.there ? float(m.code) : kNoMirror;
         samples[size_t(y) * width + x] = glm::packHalf4x16(glm::vec4(light, code));
         distances[size_t(y) * width + x] = m.reach;
       }

@@ -45,6 +45,9 @@ class TemporalAccumulation : public Pass {
             "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed; z: share "
             "of their history that samples have lost (pass eye-paths)")
         .makeOptional();
+    d.input("tiles", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead,
+            "tiles with samples (pass mirrors), outside of which the mean is 0; if not wired, all are drawn")
+        .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
     d.parameter(
@@ -67,7 +70,8 @@ class TemporalAccumulation : public Pass {
     const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1);
     d.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"})
         .define("BLOCKS", blocks)
-        .define("CHANGES", wired("change"));
+        .define("CHANGES", wired("change"))
+        .tiles("tiles");
     return d;
   }
 

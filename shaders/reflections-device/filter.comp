@@ -31,6 +31,6 @@ void main() {
       if (at != block) sum += overlap(m, mirrorAt(at), own.a + its.a) * vec4(its.rgb, 1.0);
     }
   vec3 light = min(sum.rgb / sum.a, 65504.0);
-  imageStore(samples, block, vec4(light, m.there ? float(m.code) : -float(m.code)));
+  imageStore(samples, block, vec4(light, m.there ? float(m.code) : kNoMirror));
   imageStore(distances, block, vec4(own.a));
 }

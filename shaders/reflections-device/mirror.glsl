@@ -7,7 +7,7 @@
 layout(rgba32ui) uniform readonly uimage2D mirrors;
 
 struct Mirror {
-  bool there;  // if not, only its code is known
+  bool there;  // if not, nothing is known of it
   uint code;
   float roughness, alpha;
   vec3 normal, face, away, position;  // away: from the eye

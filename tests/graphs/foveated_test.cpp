@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "fovea/scene.h"
 #include "framework/base/paths.h"
@@ -418,6 +420,38 @@ TEST(Foveated, FovealErrorByMethod) {
   EXPECT_LT(mean["ours clamp"].display, mean["ir_1000 clamp"].display);
   EXPECT_LT(mean["ours clamp"].display, 1.1 * mean["ours_r clamp"].display);
   EXPECT_LT(mean["ours disc"].display, mean["ours clamp"].display);
+}
+
+// `foveal` with reflections followed in the whole picture, by passes that know of no tiles.
+std::string foveatedWithoutTiles() {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "without_tiles", file = folder / "foveal.json";
+  fs::remove_all(folder);
+  fs::copy(FOVEA_SOURCE_DIR "/passes/mirrors", folder);
+  fs::remove(folder / "mirrors.pass.json");
+  std::ifstream original(FOVEA_SOURCE_DIR "/passes/mirrors/mirrors.pass.json");
+  std::string pass(std::istreambuf_iterator<char>(original), {});
+  const std::string tiles = R"(, "tiles": "tiles")";
+  pass.erase(pass.find(tiles), tiles.size());
+  std::ofstream(folder / "mirrors-everywhere.pass.json") << pass;
+  std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/foveal.json", "passes": {
+    "mirrors": {"type": "mirrors-everywhere", "inputs": {"gbuffer": "gbuffer"}},
+    "reflection-vectors": {"inputs": {"tiles": null}}, "reflections-mean": {"inputs": {"tiles": null}}}})";
+  graph::addPasses(folder);
+  return file.string();
+}
+
+// Two cubes of the moving box are mirrors. Reflections are followed in the tiles that show them, with the same result as
+// in the whole picture.
+TEST(Foveated, ReflectionsAreFollowedInTheirTiles) {
+  Diagnostics warnings;
+  scene::Scene s = scene::load("cornellbox_moving", warnings);
+  for (scene::Material& m : s.materials)
+    if (m.name == "blue" || m.name == "yellow") m.metallic = 1, m.roughness = 0.2f;
+  const auto render = [&](const std::string& graph) {
+    return runGraph(graph, s, small({"materials=full"}, 6)).outputs.at("radiance").bytes;
+  };
+  EXPECT_EQ(render("foveal"), render(foveatedWithoutTiles()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
@@ -12,6 +13,19 @@
 namespace fovea::test {
 
 constexpr glm::ivec2 kSize{48, 40};
+
+// A mask of tiles of 16 x 16 pixels, of which the last row is cut.
+constexpr glm::uvec2 kTiles{3, 3};
+const std::vector<uint8_t> kSomeTiles{255, 0, 255, 0, 0, 255, 0, 255, 0};
+
+// Sets the pixels outside of them to 0; each has `channels` numbers.
+template <class T>
+void clearOutside(std::vector<T>& image, size_t channels) {
+  for (size_t i = 0; i < image.size(); ++i) {
+    const size_t pixel = i / channels, x = pixel % kSize.x, y = pixel / kSize.x;
+    if (kSomeTiles[y / 16 * kTiles.x + x / 16] == 0) image[i] = T(0);
+  }
+}
 
 // What a camera at `position` sees: a wall and a nearer box.
 struct Eye {

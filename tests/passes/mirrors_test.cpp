@@ -1,6 +1,7 @@
 // Compares the pixels from which reflections are traced with the plain rule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <glm/gtc/packing.hpp>
 
@@ -45,11 +46,14 @@ TEST(Mirrors, OnePixelOfEachBlockThatIsSmooth) {
       const SurfacePixel& pixel = within ? g.at(p.x, p.y) : g.at(0, 3);
       const bool there = pixel.distance > 0 && pixel.specular.r > 0;
       const bool smooth = there && pixel.specular.a < (pixel.specular.r > 0.15f ? 0.85f : 0.45f);
-      EXPECT_EQ(texel.w & 0xffffu, passes::sampleCode(2, inside, smooth)) << i;
-      EXPECT_EQ(texel.x, smooth ? std::bit_cast<uint32_t>(pixel.distance) : 0u) << i;
       found += smooth;
       rough += there && !smooth;
-      if (!smooth) continue;
+      if (!smooth) {
+        EXPECT_EQ(texel, glm::uvec4(0)) << i;
+        continue;
+      }
+      EXPECT_EQ(texel.w & 0xffffu, passes::sampleCode(2, inside, true)) << i;
+      EXPECT_EQ(texel.x, std::bit_cast<uint32_t>(pixel.distance)) << i;
       EXPECT_NEAR(glm::unpackUnorm2x16(texel.w).y, pixel.specular.a, 1e-3);
       for (const uint32_t normal : {texel.y, texel.z})
         EXPECT_LT(glm::distance(scene::octDecode(glm::unpackSnorm2x16(normal)), pixel.normal), 2e-3f);
@@ -59,13 +63,36 @@ TEST(Mirrors, OnePixelOfEachBlockThatIsSmooth) {
   EXPECT_GT(rough, 100);
 }
 
+// Every pixel of a tile counts, be it at its edge or one whose turn it is not, and none of its neighbours.
+TEST(Mirrors, TilesInWhichAnyPixelIsSmooth) {
+  constexpr int kTile = 16, kColumns = 5, kRows = 3;
+  const std::vector<glm::ivec2> smooth{{0, 0}, {31, 15}, {69, 20}, {40, 32}, {48, 39}, {64, 39}};
+  GBuffer g(70, 40, [&](int x, int y) {
+    SurfacePixel p;
+    p.distance = 5;
+    p.specular = glm::vec4(glm::vec3(0.04f), std::ranges::count(smooth, glm::ivec2(x, y)) > 0 ? 0.2f : 0.6f);
+    return p;
+  });
+  g.full = true;
+  std::vector<uint8_t> want(size_t(kColumns * kRows));
+  for (const glm::ivec2 p : smooth) want[size_t(p.y / kTile * kColumns + p.x / kTile)] = 255;
+  EXPECT_EQ(std::ranges::count(want, 255), int(smooth.size()));
+  for (const uint32_t frames : {1u, 2u, 3u, 4u}) {
+    PassTest test("mirrors");
+    g.wire(test);
+    test.run(frames);
+    EXPECT_EQ(test.values<uint8_t>("tiles"), want);
+  }
+}
+
 // Without full materials the G-buffer knows no reflectance.
 TEST(Mirrors, NoneWithDiffuseMaterials) {
   const GBuffer g = surfaces();
   PassTest test("mirrors");
   g.wire(test);
   test.run();
-  for (const glm::uvec4& texel : test.values<glm::uvec4>("points")) EXPECT_EQ(texel.x, 0u);
+  for (const glm::uvec4& texel : test.values<glm::uvec4>("points")) EXPECT_EQ(texel, glm::uvec4(0));
+  for (const uint8_t tile : test.values<uint8_t>("tiles")) EXPECT_EQ(tile, 0);
 }
 
 }  // namespace

@@ -11,8 +11,9 @@ namespace {
 constexpr uint32_t kNone = 0xffffffffu, kOtherwise = 3 | 5 << 16;
 
 // One frame of the pass, where all pixels have the same distance to what they show and the same origin of the surface.
-std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, float thing,
-                                uint32_t surface = kOtherwise) {
+// tiles: of 16 x 16 pixels that the pass looks at; all if empty.
+std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, float thing, uint32_t surface = kOtherwise,
+                                const std::vector<uint8_t>& tiles = {}) {
   PassTest test("reflection-vectors");
   const auto pixels = size_t(kSize.x * kSize.y);
   now.seen.wire(test);
@@ -25,6 +26,7 @@ std::vector<uint32_t> originsOf(const Eye& now, const Eye& before, float thing,
              std::vector<uint32_t>(pixels, surface));
   test.image("distances", VK_FORMAT_R32_SFLOAT, uint32_t(kSize.x / 2), uint32_t(kSize.y / 2), 1,
              std::vector<float>(pixels / 4, thing));
+  if (!tiles.empty()) test.image("tiles", VK_FORMAT_R8_UNORM, kTiles.x, kTiles.y, 1, tiles);
   test.scene(now.scene).beforeFrame([&](PassTest&, scene::Frame& frame) {
     frame.views[0] = now.view;
     frame.views[0].previousWorldToClip = before.view.worldToClip;
@@ -97,6 +99,13 @@ TEST(ReflectionVectors, FallsBackOnTheSurface) {
   Eye now({0.2f, 0.1f, 0}), before({0, 0, 0});
   for (SurfacePixel& p : before.seen.pixels) p.distance = 0;
   EXPECT_EQ(originsOf(now, before, 2), std::vector<uint32_t>(size_t(kSize.x * kSize.y), kOtherwise));
+}
+
+TEST(ReflectionVectors, OnlyInItsTiles) {
+  const Eye now({0.2f, 0.1f, 0}), before({0, 0, 0});
+  std::vector<uint32_t> want = originsOf(now, before, 1.5f);
+  clearOutside(want, 1);
+  EXPECT_EQ(originsOf(now, before, 1.5f, kOtherwise, kSomeTiles), want);
 }
 
 }  // namespace

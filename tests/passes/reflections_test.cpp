@@ -30,10 +30,10 @@ std::vector<glm::uvec4> mirrorsOf(const std::vector<Seen>& pixels, float roughne
     const glm::uvec2 p = 2u * block + inside;
     const Seen& seen = pixels[size_t(p.y) * kSide + p.x];
     const uint32_t normal = glm::packSnorm2x16(octEncode(seen.normal));
-    const float distance = seen.there ? glm::length(seen.position) : 0.0f;  // the eye is at the origin
-    texels.emplace_back(
-        std::bit_cast<uint32_t>(distance), normal, normal,
-        passes::sampleCode(2, inside, seen.there) | glm::packUnorm2x16(glm::vec2(0, roughness)));
+    const float distance = glm::length(seen.position);  // the eye is at the origin
+    const glm::uvec4 texel(std::bit_cast<uint32_t>(distance), normal, normal,
+                           passes::sampleCode(2, inside, true) | glm::packUnorm2x16(glm::vec2(0, roughness)));
+    texels.push_back(seen.there ? texel : glm::uvec4(0));
   }
   return texels;
 }
@@ -129,7 +129,7 @@ TEST_P(Reflections, CodesOfTheSamples) {
   wire(test, room, texels).run(2);
   const auto samples = samplesOf(test);
   for (size_t i = 0; i < samples.size(); ++i) {
-    EXPECT_EQ(samples[i].a, (texels[i].x != 0 ? 1.0f : -1.0f) * float(texels[i].w & 0xffffu));
+    EXPECT_EQ(samples[i].a, texels[i].x != 0 ? float(texels[i].w & 0xffffu) : passes::kNoMirror);
     EXPECT_EQ(samples[i].r > 0, texels[i].x != 0);
   }
   EXPECT_EQ(test.counter("mirrors"), kTexels * kTexels / 2);

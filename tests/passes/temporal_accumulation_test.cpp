@@ -25,11 +25,11 @@ std::vector<uint32_t> ownPlaces() {
 }
 
 // One frame of the pass; `samples` holds one per block of 2 x 2 pixels, or one per pixel. ageing: of the history, as
-// light has changed; not wired if negative.
+// light has changed; not wired if negative. tiles: those that are written; all if empty.
 std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samples,
                               const std::vector<glm::vec4>& history, int firstSamples = 1,
                               const std::vector<uint32_t>& origin = ownPlaces(), float saccade = 0,
-                              float ageing = -1) {
+                              float ageing = -1, const std::vector<uint8_t>& tiles = {}) {
   PassTest test("temporal-accumulation");
   test.param("frames", 8.0).param("first_samples", firstSamples).param("saccade_samples", 3);
   test.beforeFrame([saccade](PassTest&, scene::Frame& f) { f.saccade = saccade; });
@@ -42,6 +42,7 @@ std::vector<float> accumulate(const Eye& eye, const std::vector<glm::vec4>& samp
              halves(history));
   if (ageing >= 0)
     test.buffer("change", std::vector<glm::vec4>{{0, ageing, ageing / (1 + ageing), 0}}, "LightChange");
+  if (!tiles.empty()) test.image("tiles", VK_FORMAT_R8_UNORM, kTiles.x, kTiles.y, 1, tiles);
   test.scene(eye.scene).run(saccade > 0 ? 2 : 1);  // a first frame has no saccade
   return test.floats("mean");
 }
@@ -310,6 +311,17 @@ TEST(TemporalAccumulation, HistoryAgesWhenLightChanges) {
       ++own;
     }
     EXPECT_GT(own, 1000);
+  }
+}
+
+TEST(TemporalAccumulation, OnlyInItsTiles) {
+  const Eye eye({0, 0, 0});
+  for (const auto& samples : {everywhere(kSize / 2, {4, 2, 1, passes::sampleCode(2, {1, 0}, true)}),
+                              everywhere(kSize, {4, 2, 1, 1})}) {
+    const auto history = everywhere(kSize, {1, 1, 3, 5});
+    std::vector<float> want = accumulate(eye, samples, history);
+    clearOutside(want, 4);
+    EXPECT_EQ(accumulate(eye, samples, history, 1, ownPlaces(), 0, -1, kSomeTiles), want);
   }
 }
 

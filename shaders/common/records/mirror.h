@@ -8,6 +8,9 @@ SHARED_BEGIN(fovea::passes)
 // Keep the random numbers of rays from mirrors, and of what they gather, apart from others.
 SHARED_CONSTANT uint kMirrorStream = 0x6d697272u, kMirrorLightStream = 0x6d696c69u;
 
+// The code of a sample where nothing reflects; its bit 10 says that there is none.
+SHARED_CONSTANT float kNoMirror = -1024.0f;
+
 SHARED_CONSTANT float kMirrorCellWidth =
     0.02f;                                  // of the cache's cells, in distances of the mirror from the eye
 SHARED_CONSTANT float kSharp = 0.04f;       // GGX's alpha from which neighbours share all of their light
