@@ -37,7 +37,7 @@ LIGHT = 0.02
 
 # Suites of device_tests of which each has kernels of its own kind and takes a few seconds.
 SUITES = ("Animate Attach Candidates Compose Compute Cones Contacts Demodulate DeviceRays Direct GBuffer Graphics Mipmap "
-          "Mirrors Reproject ReservoirsVisibility Transfer WeightMap").split()
+          "Mirrors Reproject ReservoirsVisibility Tiles Transfer WeightMap").split()
 CASES = ("Deferred.RandomGBuffersEqualTheReference", "DeferredMask.RandomMasksEqualTheReference",
          "Manage.LightAndTurnoverEqualTheSerialAlgorithm", "Voxelize.ThinWallsKeepBothSides",
          "Voxelize.DynamicObjectsMoveAppearAndDisappear")
