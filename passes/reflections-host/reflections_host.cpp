@@ -97,15 +97,16 @@ class Tracer {
   const GatherCache& cache_;
 };
 
-// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap where they meet what is seen.
+// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap where the nearer of the things
+// that they see lies.
 float overlap(const Mirror& m, const Mirror& neighbour) {
   if (!neighbour.there) return 0;
   const glm::vec3 to = neighbour.position - m.position;
   if (std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
   const glm::vec3 turned =
       2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
-  const float reach = std::max(m.reach + neighbour.reach, kLeastReach);
-  const float apart = glm::dot(turned, turned) + glm::dot(to, to) / (reach * reach);
+  const float reach = std::max(std::min(m.reach, neighbour.reach), kLeastReach);
+  const float apart = glm::dot(turned, turned) + glm::dot(to, to) / (4 * reach * reach);
   const float blurred = std::min(m.alpha / kSharp, 1.0f);
   return blurred * blurred * std::exp(-apart / (m.alpha * m.alpha));
 }

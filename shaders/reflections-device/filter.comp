@@ -8,12 +8,13 @@ layout(rgba32f) uniform readonly image2D traced;
 layout(rgba16f) uniform writeonly image2D samples;
 layout(r32f) uniform writeonly image2D distances;
 
-// The share of a neighbour's light that counts for `m`, too. reach: the sum of the distances of what both see, m.
+// The share of a neighbour's light that counts for `m`, too. reach: the distance of the nearer
+// of the things that they see, m.
 float overlap(Mirror m, Mirror neighbour, float reach) {
   vec3 to = neighbour.position - m.position;
   if (!neighbour.there || abs(dot(to, m.face)) > kSameSlope * length(to)) return 0.0;
   vec3 turned = 2.0 * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
-  float far = max(reach, kLeastReach), apart = dot(turned, turned) + dot(to, to) / (far * far);
+  float near = max(reach, kLeastReach), apart = dot(turned, turned) + dot(to, to) / (4.0 * near * near);
   float blurred = min(m.alpha / kSharp, 1.0);
   return blurred * blurred * exp(-apart / (m.alpha * m.alpha));
 }
@@ -28,7 +29,7 @@ void main() {
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 at = ivec2(x, y);
       vec4 its = imageLoad(traced, at);
-      if (at != block) sum += overlap(m, mirrorAt(at), own.a + its.a) * vec4(its.rgb, 1.0);
+      if (at != block) sum += overlap(m, mirrorAt(at), min(own.a, its.a)) * vec4(its.rgb, 1.0);
     }
   vec3 light = min(sum.rgb / sum.a, 65504.0);
   imageStore(samples, block, vec4(light, m.there ? float(m.code) : kNoMirror));
