@@ -72,12 +72,12 @@ class Tracer {
 
  private:
   // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
-  // the distance of what sends it.
+  // the distance of what sends it, that of the environment if the ray goes into the surface.
   glm::vec4 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
                       GatheredLight& sum) const {
     const glm::vec3 h = scene::sampleVisibleNormal(out, m.alpha, u.x, u.y);
     const glm::vec3 in = 2 * glm::dot(out, h) * h - out, direction = scene::toWorld(frame, in);
-    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return glm::vec4(0);
+    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return {0, 0, 0, kOutside};
     const float hidden = scene::smithLambda(out, m.alpha);
     const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
     const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;

@@ -18,11 +18,11 @@ layout(push_constant) uniform Constants {
 };
 
 // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
-// the distance of what sends it. out_: to the eye, in the frame `axes` of the mirror's normal; stream: of random
-// numbers.
+// the distance of what sends it, that of the environment if the ray goes into the surface. out_: to the eye, in the
+// frame `axes` of the mirror's normal; stream: of random numbers.
 vec4 underLobe(Mirror m, mat3 axes, vec3 out_, vec2 u, uint stream) {
   vec3 h = sampleVisibleNormal(out_, m.alpha, u), in_ = 2.0 * dot(out_, h) * h - out_, direction = toWorld(axes, in_);
-  if (in_.z <= 0.0 || dot(m.face, direction) <= 0.0) return vec4(0.0);
+  if (in_.z <= 0.0 || dot(m.face, direction) <= 0.0) return vec4(vec3(0.0), kOutside);
   float hidden = smithLambda(out_, m.alpha), weight = (1.0 + hidden) / (1.0 + hidden + smithLambda(in_, m.alpha));
   vec3 origin = m.position + (m.face - m.away) * rayEpsilon();
   TracedSurface hit = arrive(origin, direction, kFarAway);
