@@ -21,7 +21,8 @@ class ReflectionsDevice : public Pass {
     d.parameter("materials", choice("full", {"full"}), "what surfaces are: diffuse ones are no mirrors");
     d.scratch("traced",
               image2D(VK_FORMAT_R32G32B32A32_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
-              kReadWrite, "what the rays of each block found, and its distance, before neighbours share it");
+              kReadWrite,
+              "what the rays of each block found, before neighbours share it; a: mean of 1 / distance, 1/m");
     d.scratch("cells", buffer("GatherCell", sizeof(scene::GatherCell), scene::kGatherCells), kReadWrite,
               "light gathered in the frames so far")
         .keep(Lifetime::View);

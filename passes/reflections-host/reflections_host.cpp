@@ -45,7 +45,7 @@ struct Mirror {
   glm::vec3 normal{0}, face{0}, away{0}, position{0};  // away: from the eye
   float distance = 0;                                  // from the eye, m
   glm::vec3 light{0};                                  // mean under the lobe, W/(sr m^2)
-  float reach = 0;                                     // mean distance of what it shows, m
+  float reach = 0;                                     // harmonic mean of the distances of what it shows, m
 };
 
 // The light that mirrors reflect, for one thread or more.
@@ -60,24 +60,27 @@ class Tracer {
     glm::vec3 out = scene::toLocal(frame, -m.away);
     out.z = std::max(out.z, kLeastLobe);  // a bent normal may face away from the eye
     out = glm::normalize(out);
+    float nearness = 0;
     for (uint32_t i = turn; i < turn + count; ++i) {
       const glm::vec4 seen = underLobe(m, frame, out, scene::streamSequence(stream, i),
                                        randomStream(stream, i, kMirrorLightStream, 0), sum);
       m.light += glm::vec3(seen);
-      m.reach += seen.a / float(count);
+      nearness += 1 / std::max(seen.a, kLeastReach);
     }
+    m.reach = float(count) / nearness;
     const float albedo = scene::AlbedoTable::schlick().at(out.z, m.roughness).total();
     m.light /= float(count) * std::max(albedo, kLeastLobe);
   }
 
  private:
   // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
-  // the distance of what sends it, that of the environment if the ray goes into the surface.
+  // the distance of what sends it; if the ray goes into the surface, one at which the lobes of neighbours hardly part.
   glm::vec4 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
                       GatheredLight& sum) const {
     const glm::vec3 h = scene::sampleVisibleNormal(out, m.alpha, u.x, u.y);
     const glm::vec3 in = 2 * glm::dot(out, h) * h - out, direction = scene::toWorld(frame, in);
-    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return {0, 0, 0, kOutside};
+    if (in.z <= 0 || glm::dot(m.face, direction) <= 0)
+      return {0, 0, 0, kMirrorCellWidth * m.distance / m.alpha};
     const float hidden = scene::smithLambda(out, m.alpha);
     const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
     const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;
@@ -105,7 +108,7 @@ float overlap(const Mirror& m, const Mirror& neighbour) {
   if (std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
   const glm::vec3 turned =
       2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
-  const float reach = std::max(std::min(m.reach, neighbour.reach), kLeastReach);
+  const float reach = std::min(m.reach, neighbour.reach);
   const float apart = glm::dot(turned, turned) + glm::dot(to, to) / (4 * reach * reach);
   const float blurred = std::min(m.alpha / kSharp, 1.0f);
   return blurred * blurred * std::exp(-apart / (m.alpha * m.alpha));

@@ -16,8 +16,8 @@ void declareReflections(PassDeclaration& d, Usage read, Usage write) {
            "code of that pixel as in pass near-field, negative where it does not reflect, for pass "
            "temporal-accumulation");
   d.output("distances", image2D(VK_FORMAT_R32_SFLOAT, widthOf("mirrors"), heightOf("mirrors")), write,
-           "distance from the surface of each block to what it shows, m, 0 where it does not reflect, for "
-           "pass reflection-vectors");
+           "harmonic mean of the distances from each block to what its rays met, m, 0 where it does not "
+           "reflect, for pass reflection-vectors");
   d.parameter(
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");

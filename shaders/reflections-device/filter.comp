@@ -14,7 +14,7 @@ float overlap(Mirror m, Mirror neighbour, float reach) {
   vec3 to = neighbour.position - m.position;
   if (!neighbour.there || abs(dot(to, m.face)) > kSameSlope * length(to)) return 0.0;
   vec3 turned = 2.0 * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
-  float near = max(reach, kLeastReach), apart = dot(turned, turned) + dot(to, to) / (4.0 * near * near);
+  float apart = dot(turned, turned) + dot(to, to) / (4.0 * reach * reach);
   float blurred = min(m.alpha / kSharp, 1.0);
   return blurred * blurred * exp(-apart / (m.alpha * m.alpha));
 }
@@ -24,14 +24,15 @@ void main() {
   if (any(greaterThanEqual(block, size))) return;
   Mirror m = mirrorAt(block);
   vec4 own = imageLoad(traced, block), sum = vec4(own.rgb, 1.0);
+  float reach = m.there ? 1.0 / own.a : 0.0;
   ivec2 low = max(block - kSharing, 0), high = m.there ? min(block + kSharing, size - 1) : low - 1;
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 at = ivec2(x, y);
       vec4 its = imageLoad(traced, at);
-      if (at != block) sum += overlap(m, mirrorAt(at), min(own.a, its.a)) * vec4(its.rgb, 1.0);
+      if (at != block) sum += overlap(m, mirrorAt(at), 1.0 / max(own.a, its.a)) * vec4(its.rgb, 1.0);
     }
   vec3 light = min(sum.rgb / sum.a, 65504.0);
   imageStore(samples, block, vec4(light, m.there ? float(m.code) : kNoMirror));
-  imageStore(distances, block, vec4(own.a));
+  imageStore(distances, block, vec4(reach));
 }

@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "fovea/error.h"
+#include "framework/scene/environment/environment_map.h"
 #include "passes/near-field-host/near_field_tracer.h"
 #include "shaders/common/records/mirror.h"
 #include "tests/passes/deferred_reference.h"
@@ -161,6 +162,39 @@ TEST_P(Reflections, NeighboursShareTheirLight) {
     return sum;
   };
   EXPECT_LT(variance(false), 0.3 * variance(true));
+}
+
+// A wall under a white sky, before whose left half a black one stands so close that it shows nothing else. Where one ray
+// meets that and its neighbour finds the sky, neither counts for the other.
+TEST_P(Reflections, TheSkyStaysOutOfGaps) {
+  scene::Scene wall;
+  addBox(wall, addMaterial(wall, glm::vec3(0)), {-9, -9, -6}, {9, 9, -5});
+  wall.environmentMap =
+      std::make_shared<scene::EnvironmentMap>(4, 2, std::vector<glm::vec3>(8, glm::vec3(1)));
+  Room room = lookInto(wall, 8, glm::ivec2(kSide));
+  const auto texels = mirrorsOf(room.pixels, 0.45f);
+  scene::Scene gap = room.scene;
+  addBox(gap, 0, {-9, -9, -4.9f}, {-0.1f, 9, -4.8f});
+  room.scene = gap;
+  PassTest many("reflections-host"), single(GetParam());
+  many.param("first_samples", 1024);
+  single.param("first_samples", 1);
+  wire(many, room, texels).run();
+  wire(single, room, texels);
+  const auto want = samplesOf(many);
+  double light = 0, hidden = 0;
+  constexpr int kFrames = 40;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    single.run();
+    const auto got = samplesOf(single);
+    for (uint32_t i = 0; i < got.size(); ++i)
+      if (i % kTexels < kTexels / 2) {
+        light += double(got[i].r) / kFrames;
+        hidden += double(want[i].r) / kFrames;
+      }
+  }
+  EXPECT_GT(hidden, 0.1);
+  EXPECT_NEAR(light / hidden, 1, 0.2);
 }
 
 TEST_P(Reflections, MirrorsOfAnotherViewAreRefused) {
