@@ -13,9 +13,9 @@
 // roughness to the second it passes over into that, and with the second VPLs need not be asked.
 const float kDullFrom = 0.45, kDullTo = 0.6;
 
-// Of Lobe::grazing: its value on a smooth surface, and the square of the roughness at which it has fallen to 1 / e. With
-// these the layer gets the light that bsdf.h lets through a dielectric with an index of refraction of 1.5, within 0.06
-// above a cosine of 0.1.
+// Of Lobe::grazing: its value on a smooth surface, and the square of the roughness at which it has fallen to 1 / e.
+// With these the layer gets the light that bsdf.h lets through a dielectric with an index of refraction of 1.5, within
+// 0.06 above a cosine of 0.1.
 const float kLayerLoss = 0.87, kLayerLossEnd = 0.176;
 
 struct Lobe {
@@ -39,13 +39,14 @@ Lobe lobeOf(vec4 normal, vec3 toEye, vec4 specular) {
   l.masking = sqrt(l.a2 + (1.0 - l.a2) * l.cosine * l.cosine);
   l.albedo = 1.0;
   l.share = looksMetallic(specular) ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
-  l.grazing = l.share * abs(normal.a) * kLayerLoss * exp(-specular.a * specular.a / kLayerLossEnd);
+  float layer = looksMetallic(specular) ? 0.0 : l.share;  // metals have none
+  l.grazing = layer * abs(normal.a) * kLayerLoss * exp(-specular.a * specular.a / kLayerLossEnd);
   return l;
 }
 
 // Neighbours of the same subset see other parts of a reflection where the surface is bent, and between them each VPL is
-// asked at one pixel only. This widens a lobe for it, and completes it. turn2: squared difference between their normals,
-// of which a quarter is about what makes their lobes overlap.
+// asked at one pixel only. This widens a lobe for it, and completes it. turn2: squared difference between their
+// normals, of which a quarter is about what makes their lobes overlap.
 const float kSharpEdge = 0.25;  // squared difference between normals of two surfaces
 void complete(inout Lobe l, float turn2) {
   l.albedo = mirrorAlbedo(l.cosine, sqrt(sqrt(l.alpha2))).all;
@@ -58,8 +59,8 @@ struct Response {
   float lobe, layer;
 };
 
-// For light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V (Heitz 2014). Simpler
-// forms of V lose up to a seventh of the light.
+// For light from a disc of `area` m^2 at the end of `toLight`, m, with height-correlated masking V (Heitz 2014).
+// Simpler forms of V lose up to a seventh of the light.
 //
 // A disc fills the solid angle area / (d^2 + area / pi), as the kernel `disc` has it, and its halfway vectors a quarter
 // of that, divided by the cosine between halfway vector and light. A lobe that is that much wider makes the disc as
