@@ -10,6 +10,7 @@ void main() {
   ivec2 first = TILE * ivec2(gl_FragCoord.xy), end = full ? min(first + TILE, imageSize(gbufferSpecular)) : first;
   bool smooth_ = false;
   for (int y = first.y; y < end.y; ++y)
-    for (int x = first.x; x < end.x; ++x) smooth_ = smooth_ || tracedShare(imageLoad(gbufferSpecular, ivec2(x, y))) > 0.0;
+    for (int x = first.x; x < end.x; ++x)
+      smooth_ = smooth_ || tracedShare(imageLoad(gbufferSpecular, ivec2(x, y))) > 0.0;
   tiles = smooth_ ? 1.0 : 0.0;
 }

@@ -24,7 +24,7 @@ namespace {
 
 using namespace graph;
 
-// A texel of pass mirrors, and the light that was found for it. Only `there` counts if it reflects nothing.
+// A texel of pass mirrors, and the light that was found for it. If it reflects nothing, the other members mean nothing.
 struct Mirror {
   Mirror(glm::uvec4 texel, glm::uvec2 block, const scene::View& view)
       : there(texel.x != 0), code(texel.w & 0xffffu) {
@@ -45,7 +45,7 @@ struct Mirror {
   glm::vec3 normal{0}, face{0}, away{0}, position{0};  // away: from the eye
   float distance = 0;                                  // from the eye, m
   glm::vec3 light{0};                                  // mean under the lobe, W/(sr m^2)
-  float reach = 0;                                     // harmonic mean of the distances of what it shows, m
+  float nearness = 0;  // mean of 1 / distance of what it shows, 0 for rays into the surface, 1/m
 };
 
 // The light that mirrors reflect, for one thread or more.
@@ -60,38 +60,36 @@ class Tracer {
     glm::vec3 out = scene::toLocal(frame, -m.away);
     out.z = std::max(out.z, kLeastLobe);  // a bent normal may face away from the eye
     out = glm::normalize(out);
-    float nearness = 0;
     for (uint32_t i = turn; i < turn + count; ++i) {
       const glm::vec4 seen = underLobe(m, frame, out, scene::streamSequence(stream, i),
                                        randomStream(stream, i, kMirrorLightStream, 0), sum);
       m.light += glm::vec3(seen);
-      nearness += 1 / std::max(seen.a, kLeastReach);
+      m.nearness += seen.a / float(count);
     }
-    m.reach = float(count) / nearness;
     const float albedo = scene::AlbedoTable::schlick().at(out.z, m.roughness).total();
     m.light /= float(count) * std::max(albedo, kLeastLobe);
   }
 
  private:
   // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
-  // the distance of what sends it; if the ray goes into the surface, one at which the lobes of neighbours hardly part.
+  // 1 / distance of what sends it, 0 if the ray goes into the surface, 1/m.
   glm::vec4 underLobe(const Mirror& m, const glm::mat3& frame, glm::vec3 out, glm::vec2 u, uint32_t stream,
                       GatheredLight& sum) const {
     const glm::vec3 h = scene::sampleVisibleNormal(out, m.alpha, u.x, u.y);
     const glm::vec3 in = 2 * glm::dot(out, h) * h - out, direction = scene::toWorld(frame, in);
-    if (in.z <= 0 || glm::dot(m.face, direction) <= 0)
-      return {0, 0, 0, kMirrorCellWidth * m.distance / m.alpha};
+    if (in.z <= 0 || glm::dot(m.face, direction) <= 0) return glm::vec4(0);
     const float hidden = scene::smithLambda(out, m.alpha);
     const float weight = (1 + hidden) / (1 + hidden + scene::smithLambda(in, m.alpha));
     const glm::vec3 origin = m.position + (m.face - m.away) * epsilon_;
     const scene::TracedSurface hit = surfaces_.arrive(origin, direction, scene::kFarAway, sum.rays);
-    if (hit.isOutside()) return {weight * hit.brighter * surfaces_.outside(direction).radiance, kOutside};
-    if (!hit.there) return {0, 0, 0, glm::distance(hit.position, origin)};
+    if (hit.isOutside()) return {weight * hit.brighter * surfaces_.outside(direction).radiance, 1 / kOutside};
+    const float nearness = 1 / std::max(glm::distance(hit.position, origin), kLeastReach);
+    if (!hit.there) return {0, 0, 0, nearness};
     const glm::vec3 gathered =
         gatheredLight(surfaces_, hit, bounces_ - 1, stream, &cache_, kMirrorCellWidth * m.distance, sum);
     return {weight * (surfaces_.seen(hit, -direction, sum.rays, m.roughness) +
                       surfaces_.reflectance(hit) * gathered),
-            glm::distance(hit.position, origin)};
+            nearness};
   }
 
   const scene::SurfaceTracer& surfaces_;
@@ -100,16 +98,21 @@ class Tracer {
   const GatherCache& cache_;
 };
 
-// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap where the nearer of the things
-// that they see lies.
+// At which distance, as 1/m, lobes have to overlap for light to be shared.
+float sharingNearness(const Mirror& m) {
+  return m.nearness > 0 ? m.nearness : m.alpha / (kHardlyApart * m.distance);
+}
+
+// The share of a neighbour's light that counts for `m`, too, as far as their lobes overlap where the nearer of the
+// things that they see lies.
 float overlap(const Mirror& m, const Mirror& neighbour) {
   if (!neighbour.there) return 0;
   const glm::vec3 to = neighbour.position - m.position;
   if (std::abs(glm::dot(to, m.face)) > kSameSlope * glm::length(to)) return 0;
   const glm::vec3 turned =
       2.0f * (neighbour.normal - m.normal);  // a mirror turns light by twice its own turn
-  const float reach = std::min(m.reach, neighbour.reach);
-  const float apart = glm::dot(turned, turned) + glm::dot(to, to) / (4 * reach * reach);
+  const glm::vec3 parallax = 0.5f * std::max(sharingNearness(m), sharingNearness(neighbour)) * to;
+  const float apart = glm::dot(turned, turned) + glm::dot(parallax, parallax);
   const float blurred = std::min(m.alpha / kSharp, 1.0f);
   return blurred * blurred * std::exp(-apart / (m.alpha * m.alpha));
 }
@@ -146,7 +149,7 @@ class ReflectionsHost : public Pass {
         const Mirror& m = mirrors_[size_t(y) * width + x];
         const float code = m.there ? float(m.code) : kNoMirror;
         samples[size_t(y) * width + x] = glm::packHalf4x16(glm::vec4(light, code));
-        distances[size_t(y) * width + x] = m.reach;
+        distances[size_t(y) * width + x] = m.nearness > 0 ? 1 / m.nearness : 0;
       }
     });
     ctx.counter("mirrors", double(sum.mirrors));

@@ -17,7 +17,7 @@ void declareReflections(PassDeclaration& d, Usage read, Usage write) {
            "temporal-accumulation");
   d.output("distances", image2D(VK_FORMAT_R32_SFLOAT, widthOf("mirrors"), heightOf("mirrors")), write,
            "harmonic mean of the distances from each block to what its rays met, m, 0 where it does not "
-           "reflect, for pass reflection-vectors");
+           "reflect or all rays went into the surface, for pass reflection-vectors");
   d.parameter(
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");

@@ -65,7 +65,7 @@ void main() {
   normal = mappedNormal(record, index, weights, edgeB, edgeC, normal, side, at);
   vec3 toEye = normalize(view.eye - position);
   normal = normalTowards(normal, toEye);
-  FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye));
+  FullSurface surface = fullSurface(material, triangle, weights, at, dot(normal, toEye), 0.0);
 #if TINT
   uint flags = uint(texelOf(sceneMaterials, int(material) * kMaterialTexels + kColorTexture).w);
 #if MATERIAL_DETAIL == 2

@@ -18,21 +18,21 @@ layout(push_constant) uniform Constants {
 };
 
 // An estimate of the integral of D V cos times the radiance that arrives, by a visible normal of the microfacets; a:
-// the distance of what sends it; if the ray goes into the surface, one at which the lobes of neighbours hardly part.
-// out_: to the eye, in the frame `axes` of the mirror's normal; stream: of random numbers.
+// 1 / distance of what sends it, 0 if the ray goes into the surface, 1/m. out_: to the eye, in the frame `axes` of the
+// mirror's normal; stream: of random numbers.
 vec4 underLobe(Mirror m, mat3 axes, vec3 out_, vec2 u, uint stream) {
   vec3 h = sampleVisibleNormal(out_, m.alpha, u), in_ = 2.0 * dot(out_, h) * h - out_, direction = toWorld(axes, in_);
-  if (in_.z <= 0.0 || dot(m.face, direction) <= 0.0) return vec4(vec3(0.0), kMirrorCellWidth * m.distance_ / m.alpha);
+  if (in_.z <= 0.0 || dot(m.face, direction) <= 0.0) return vec4(0.0);
   float hidden = smithLambda(out_, m.alpha), weight = (1.0 + hidden) / (1.0 + hidden + smithLambda(in_, m.alpha));
   vec3 origin = m.position + (m.face - m.away) * rayEpsilon();
   TracedSurface hit = arrive(origin, direction, kFarAway);
   if (hit.triangle == kNoTriangle)
-    return vec4(hasEnvironmentMap() ? weight * hit.brighter * environmentRadiance(direction) : vec3(0.0), kOutside);
-  float distance_ = distance(hit.position, origin);
-  if (!hit.there) return vec4(vec3(0.0), distance_);
+    return vec4(hasEnvironmentMap() ? weight * hit.brighter * environmentRadiance(direction) : vec3(0.0), 1.0 / kOutside);
+  float nearness = 1.0 / max(distance(hit.position, origin), kLeastReach);
+  if (!hit.there) return vec4(vec3(0.0), nearness);
   vec3 light = seenLight(hit, -direction, m.roughness);
   light += reflectance(hit) * gatheredLight(hit, bounces - 1u, stream, kMirrorCellWidth * m.distance_, 0.0);
-  return vec4(weight * light, distance_);
+  return vec4(weight * light, nearness);
 }
 
 void main() {
@@ -46,7 +46,7 @@ void main() {
     out_ = normalize(vec3(out_.xy, max(out_.z, kLeastLobe)));  // a bent normal may face away from the eye
     uint stream = randomStream(frame.seed, uint(block.x), kMirrorStream, uint(block.y)), ray = frameIndex + part;
     vec4 seen = underLobe(m, axes, out_, streamSequence(stream, ray), randomStream(stream, ray, kMirrorLightStream, 0u));
-    seen = vec4(seen.rgb / max(mirrorAlbedo(out_.z, m.roughness).all, kLeastLobe), 1.0 / max(seen.a, kLeastReach));
+    seen.rgb /= max(mirrorAlbedo(out_.z, m.roughness).all, kLeastLobe);
     sum += seen / float(parts);
     if (part == 0u) atomicAdd(counters.mirrors, 1u);
     atomicAdd(counters.rays, rayCount);

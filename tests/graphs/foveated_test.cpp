@@ -422,10 +422,18 @@ TEST(Foveated, FovealErrorByMethod) {
   EXPECT_LT(mean["ours disc"].display, mean["ours clamp"].display);
 }
 
+// A graph file in the test's folder that changes `foveal`.
+std::string changedFoveal(const std::filesystem::path& name, const std::string& changes) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/foveal.json", )" << changes << "}";
+  return file.string();
+}
+
 // `foveal` with reflections followed in the whole picture, by passes that know of no tiles.
 std::string foveatedWithoutTiles() {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / "without_tiles", file = folder / "foveal.json";
+  const fs::path folder = fs::path(testing::TempDir()) / "without_tiles";
   fs::remove_all(folder);
   fs::copy(FOVEA_SOURCE_DIR "/passes/mirrors", folder);
   fs::remove(folder / "mirrors.pass.json");
@@ -434,24 +442,27 @@ std::string foveatedWithoutTiles() {
   const std::string tiles = R"(, "tiles": "tiles")";
   pass.erase(pass.find(tiles), tiles.size());
   std::ofstream(folder / "mirrors-everywhere.pass.json") << pass;
-  std::ofstream(file) << R"({"extends": ")" FOVEA_SOURCE_DIR R"(/graphs/foveal.json", "passes": {
-    "mirrors": {"type": "mirrors-everywhere", "inputs": {"gbuffer": "gbuffer"}},
-    "reflection-vectors": {"inputs": {"tiles": null}}, "reflections-mean": {"inputs": {"tiles": null}}}})";
   graph::addPasses(folder);
-  return file.string();
+  return changedFoveal("without_tiles/foveal.json", R"("passes": {
+    "mirrors": {"type": "mirrors-everywhere", "inputs": {"gbuffer": "gbuffer"}},
+    "reflection-vectors": {"inputs": {"tiles": null}}, "reflections-mean": {"inputs": {"tiles": null}}})");
 }
 
-// Two cubes of the moving box are mirrors. Reflections are followed in the tiles that show them, with the same result as
-// in the whole picture.
+// A cube and the ring of the moving box are mirrors. Reflections are followed in the tiles that show them, with the
+// same result as in the whole picture.
 TEST(Foveated, ReflectionsAreFollowedInTheirTiles) {
   Diagnostics warnings;
   scene::Scene s = scene::load("cornellbox_moving", warnings);
   for (scene::Material& m : s.materials)
     if (m.name == "blue" || m.name == "yellow") m.metallic = 1, m.roughness = 0.2f;
   const auto render = [&](const std::string& graph) {
-    return runGraph(graph, s, small({"materials=full"}, 6)).outputs.at("radiance").bytes;
+    return runGraph(graph, s, small({"materials=full"}, 6)).outputs;
   };
-  EXPECT_EQ(render("foveal"), render(foveatedWithoutTiles()));
+  const auto tiled = render(changedFoveal("with_tiles.json", R"("outputs": {"tiles": "mirrors.tiles"})"));
+  EXPECT_EQ(tiled.at("radiance").bytes, render(foveatedWithoutTiles()).at("radiance").bytes);
+  const auto& tiles = tiled.at("tiles").bytes;
+  EXPECT_GT(std::ranges::count(tiles, std::byte(255)), 0);
+  EXPECT_GT(std::ranges::count(tiles, std::byte(0)), 0);
 }
 
 }  // namespace

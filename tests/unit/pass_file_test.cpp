@@ -165,6 +165,9 @@ TEST_F(PassFiles, TilesAreReportedWhereTheyAreWrong) {
   expectReport(
       tiledPass(R"("format": "r8")", R"({"shader": "a.frag", "colors": ["image"], "tiles": "mark"})"),
       where + "no port `mark`; did you mean `mask`?");
+  expectReport(
+      tiledPass(R"("format": "r8")", R"({"shader": "a.frag", "colors": ["image"], "tiles": "image"})"),
+      where + "`image` says which tiles to draw, so the step cannot write it");
   expectReport(tiledPass(R"("format": "r8")", R"({"shader": "a.comp", "over": "image", "tiles": "mask"})"),
                where + "only a fragment shader that writes images draws tiles");
   for (const char* wrong : {R"("format": "r32f")", R"("format": "r8", "layers": 2)", R"("optional": true)"})

@@ -236,6 +236,9 @@ class Validator {
     if (step.action != StepSpec::Action::Fullscreen)
       return wrong(
           fmt::format("step `{}`: only a fragment shader that writes images draws tiles", step.name));
+    if (std::ranges::find(step.targets, step.tileMask) != step.targets.end())
+      return wrong(fmt::format("step `{}`: `{}` says which tiles to draw, so the step cannot write it",
+                               step.name, step.tileMask));
     const MemberSpec* m =
         checkTarget(step, step.tileMask, ResourceKind::Image, Usage::StorageRead, "StorageRead");
     if (m && (m->resource.format != VK_FORMAT_R8_UNORM || m->resource.array || m->resource.volume))

@@ -224,10 +224,11 @@ Json stepSchema() {
   return objectOf(
       {{"name", text},
        {"shader", described("a .comp file, or with `colors` a .frag file, beside this file", text)},
-       {"colors",
-        described("images of which the shader writes every pixel", {{"type", "array"}, {"items", text}})},
-       {"tiles",
-        described("image of the format r8: with `colors`, only the tiles whose texel in it is not 0", text)},
+       {"colors", described("images that the shader writes: every pixel, or those of `tiles`",
+                            {{"type", "array"}, {"items", text}})},
+       {"tiles", described("mask of the format r8, with `colors`: only tiles whose texel is not 0 are drawn, "
+                           "the rest becomes 0",
+                           text)},
        {"define", described("preprocessor macros", mapOf(expression))},
        {"constant", described("push constants", mapOf(expression))},
        {"over", described("one thread for each texel or element of this port", text)},

@@ -81,7 +81,8 @@ std::vector<StepAccess> shaderAccesses(const BoundPass& pass, std::span<const gp
 gpu::Defines stepDefines(const StepSpec& step, const PassContext& context) {
   gpu::Defines defines;
   for (const auto& [macro, value] : step.defines) defines[macro] = std::to_string(context.evaluate(value));
-  if (context.has(step.tileMask)) defines["TILES"] = shaderName(step.tileMask);  // common/fullscreen.vert
+  if (context.has(step.tileMask))
+    defines["FOVEA_TILE_MASK"] = shaderName(step.tileMask);  // common/fullscreen.vert
   return defines;
 }
 

@@ -145,7 +145,8 @@ glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& r
                               float leastRoughness) const {
   if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
   SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
-  point.bsdf.roughness = std::max(point.bsdf.roughness, leastRoughness);
+  for (float* roughness : {&point.bsdf.roughness, &point.bsdf.clearcoatRoughness})
+    *roughness = std::max(*roughness, leastRoughness);
   if (point.unlit) return v.brighter * point.emission;
   const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
   const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));

@@ -49,9 +49,9 @@ class SurfaceTracer {
   // passes with the probability of the light that does.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
   // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights after
-  // one reflection. leastRoughness: that of a surface which passes the light on and blurs it, so that a smoother v may
-  // be taken for as rough: a few rays find what it reflects as one wide, dim spot rather than a small, bright one
-  // (Kaplanyan and Dachsbacher, "Path Space Regularization for Holistic and Robust Light Transport", 2013).
+  // one reflection. v is treated as at least as rough as leastRoughness, the roughness of a surface that passes the
+  // light on and blurs it: then a few rays find a wide, dim highlight rather than a small, bright one (Kaplanyan and
+  // Dachsbacher, "Path Space Regularization for Holistic and Robust Light Transport", 2013).
   glm::vec3 seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays, float leastRoughness = 0) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)

@@ -108,14 +108,16 @@ FullSurface brighter(FullSurface s, vec3 factor) {
   return s;
 }
 
-FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine) {
+// leastRoughness: that of the surface and of its coat.
+FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoordinates at, float cosine,
+                        float leastRoughness) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   vec4 base = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1);
   vec4 factors = texelOf(sceneMaterials, surface + 2), coat = texelOf(sceneMaterials, surface + 3);
   vec3 color = base.rgb * textureAt(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
   color = min(color, 1.0);
   vec4 metallicRoughness = mapTexture(surface + kMetallicRoughnessTexture, at);
-  float metallic = base.a * metallicRoughness.b, roughness = factors.x * metallicRoughness.g;
+  float metallic = base.a * metallicRoughness.b, roughness = max(factors.x * metallicRoughness.g, leastRoughness);
   float f90 = specular.a * extensionTexture(surface + kSpecularTexture, at).a;
   vec3 f0 = min(specular.rgb * extensionTexture(surface + kSpecularColorTexture, at).rgb, 1.0) * f90;
   float transmission = factors.z * extensionTexture(surface + kTransmissionTexture, at).r;
@@ -128,7 +130,8 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   // The coat takes light from what is below it, and joins its lobe.
   if (MATERIAL_DETAIL == 2 && coat.x > 0.0) {
     float share = coat.x * extensionTexture(surface + kClearcoatTexture, at).r;
-    float coatRoughness = coat.y * extensionTexture(surface + kClearcoatRoughnessTexture, at).g;
+    float coatRoughness =
+        max(coat.y * extensionTexture(surface + kClearcoatRoughnessTexture, at).g, leastRoughness);
     MirrorAlbedo c = mirrorAlbedo(cosine, coatRoughness), coatMean = meanMirrorAlbedo(coatRoughness);
     float reflects = share * (0.04 * (c.all - c.dielectricF90) + c.dielectricF90);
     float onAverage = share * (0.04 * (coatMean.all - coatMean.dielectricF90) + coatMean.dielectricF90);

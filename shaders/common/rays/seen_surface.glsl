@@ -7,7 +7,7 @@
 #include "common/rays/surfaces.glsl"
 
 // Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after
-// one reflection. leastRoughness: v is taken for as rough at least.
+// one reflection. leastRoughness: v is treated as at least this rough.
 vec3 seenLight(TracedSurface v, vec3 out_, float leastRoughness) {
   uvec4 triangle = sceneTriangle(v.triangle);
   vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);
@@ -16,8 +16,7 @@ vec3 seenLight(TracedSurface v, vec3 out_, float leastRoughness) {
   float side = dot(cross(edgeB, edgeC), v.face) < 0.0 ? -1.0 : 1.0;
   int record = int(frame.firstSurface) + int(v.material) * kSurfaceTexels;
   vec3 normal = normalTowards(mappedNormal(record, v.triangle, weights, edgeB, edgeC, v.normal, side, at), out_);
-  FullSurface surface = fullSurface(v.material, triangle, weights, at, dot(normal, out_));
-  surface.gloss.roughness = max(surface.gloss.roughness, leastRoughness);
+  FullSurface surface = fullSurface(v.material, triangle, weights, at, dot(normal, out_), leastRoughness);
   Reflector reflector = reflectorOf(surface.gloss, normal, out_);
   vec3 sum = surface.emission;
   for (uint i = 0u; i < frame.lightCount; ++i) {

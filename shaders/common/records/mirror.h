@@ -15,8 +15,11 @@ SHARED_CONSTANT float kMirrorCellWidth =
     0.02f;                                  // of the cache's cells, in distances of the mirror from the eye
 SHARED_CONSTANT float kSharp = 0.04f;       // GGX's alpha from which neighbours share all of their light
 SHARED_CONSTANT int kSharing = 2;           // texels as far as this from each other share their light
-SHARED_CONSTANT float kLeastReach = 1e-6f;  // of the distance of what a ray met, m
-SHARED_CONSTANT float kOutside = 1e5f;      // m: stands for the distance of the environment
+SHARED_CONSTANT float kLeastReach = 1e-6f;  // m: least distance of what a ray met that counts
+// A ray into the surface shares its darkness as if it had met something at this distance, over alpha and relative to the
+// mirror's distance from the eye. Lobes that are four pixels apart hardly part there.
+SHARED_CONSTANT float kHardlyApart = 0.02f;
+SHARED_CONSTANT float kOutside = 1e5f;  // m: stands for the distance of the environment
 SHARED_CONSTANT float kSameSlope =
     0.1f;  // most of a line between two points of one surface, against its plane
 SHARED_CONSTANT float kLeastLobe = 1e-3f;  // of a cosine to the eye and of an albedo
