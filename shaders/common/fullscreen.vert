@@ -1,5 +1,5 @@
-// One triangle over the whole image; or, if FOVEA_TILE_MASK names one, two over each tile that it asks for. The viewport then
-// spans whole tiles.
+// One triangle over the whole image; or two over each tile whose texel is not 0 in the mask that FOVEA_TILE_MASK names,
+// if it is defined. The viewport then spans whole tiles.
 
 #ifdef FOVEA_TILE_MASK
 layout(r8) uniform readonly image2D FOVEA_TILE_MASK;

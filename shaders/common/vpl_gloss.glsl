@@ -38,9 +38,9 @@ Lobe lobeOf(vec4 normal, vec3 toEye, vec4 specular) {
   l.alpha2 = l.a2;
   l.masking = sqrt(l.a2 + (1.0 - l.a2) * l.cosine * l.cosine);
   l.albedo = 1.0;
-  l.share = looksMetallic(specular) ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
-  float layer = looksMetallic(specular) ? 0.0 : l.share;  // metals have none
-  l.grazing = layer * abs(normal.a) * kLayerLoss * exp(-specular.a * specular.a / kLayerLossEnd);
+  bool metal = looksMetallic(specular);  // without a diffuse layer
+  l.share = metal ? 1.0 : clamp((kDullTo - specular.a) / (kDullTo - kDullFrom), 0.0, 1.0);
+  l.grazing = (metal ? 0.0 : l.share) * abs(normal.a) * kLayerLoss * exp(-specular.a * specular.a / kLayerLossEnd);
   return l;
 }
 

@@ -210,10 +210,11 @@ TEST_P(Reflections, MirrorsOfAnotherViewAreRefused) {
 }
 
 // Both take the same random numbers, so that they differ by rounding alone; where rays meet glass, that decides whether
-// one passes, and each ray counts for 5 x 5 texels. A cut of the camera in the third frame lets both forget.
+// one passes, and so mirrors are sharp there, whose rays count for one texel alone. A cut of the camera in the third
+// frame lets both forget.
 TEST(ReflectionsBoth, SeeTheSame) {
   for (const auto& [glass, roughness] :
-       {std::pair(false, 0.25f), std::pair(false, 0.6f), std::pair(true, 0.25f)}) {
+       {std::pair(false, 0.25f), std::pair(false, 0.6f), std::pair(true, 0.02f)}) {
     SCOPED_TRACE(testing::Message() << glass << " " << roughness);
     scene::Scene everything = sceneOfEverything(glass);
     for (scene::Material& m : everything.materials)
@@ -236,7 +237,7 @@ TEST(ReflectionsBoth, SeeTheSame) {
       lit += a[i].r > 0;
     }
     EXPECT_GT(lit, int(a.size()) / 2);
-    EXPECT_LE(different, glass ? int(a.size()) / 2 : 1);
+    EXPECT_LE(different, glass ? int(a.size()) / 4 : 1);
     EXPECT_NEAR(sums[1].g / sums[0].g, 1, glass ? 0.05 : 0.005);
     EXPECT_GT(host.counter("gathered"), 5);
     EXPECT_NEAR(device.counter("gathered"), host.counter("gathered"), 2);

@@ -30,7 +30,8 @@ const char* const kChosen = R"json({
               "chosen": { "doc": "tiles", "format": "r8", "usage": ["storage_read"] } },
   "outputs": { "place": { "doc": "x, y, 1", "format": "rgba32f", "width": "size.width", "height": "size.height" },
                "seven": { "doc": "7", "format": "r32ui", "width": "size.width", "height": "size.height" } },
-  "scratch": { "own_tiles": { "doc": "tiles to draw", "format": "r8", "width": "size.width / 8", "height": "size.height / 8" } },
+  "scratch": { "own_tiles": { "doc": "tiles to draw", "format": "r8",
+                              "width": "size.width / 8", "height": "size.height / 8" } },
   "steps": [{ "shader": "choose.frag", "colors": ["own_tiles"] },
             { "shader": "places.frag", "colors": ["place", "seven"], "tiles": "own_tiles" }]
 })json";

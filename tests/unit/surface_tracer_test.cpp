@@ -38,7 +38,7 @@ TEST(SurfaceTracer, TheSkyDoesNotShineThroughBlackBacks) {
   EXPECT_LT(lightBelow(true), 0.01);
 }
 
-// What a sun beside the mirror direction lets one see of a floor of metal, which may be taken for rougher than it is.
+// What a sun beside the mirror direction lets one see of a floor of metal that is treated as at least so rough.
 float gleamOf(float roughness, float leastRoughness) {
   scene::Scene s;
   const uint32_t metal = addMaterial(s, glm::vec3(0.8f));
@@ -59,7 +59,7 @@ float gleamOf(float roughness, float leastRoughness) {
   return tracer.seen(tracer.look({4, 4}, count), {0, 1, 0}, count, leastRoughness).g;
 }
 
-TEST(SurfaceTracer, SmoothSurfacesMayBeTakenForRougher) {
+TEST(SurfaceTracer, SmoothSurfacesMayBeTreatedAsRougher) {
   const float smooth = gleamOf(0.2f, 0), rough = gleamOf(0.5f, 0);
   EXPECT_GT(rough, 2 * smooth);  // its highlight reaches further
   EXPECT_FLOAT_EQ(gleamOf(0.2f, 0.5f), rough);

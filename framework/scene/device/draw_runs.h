@@ -29,8 +29,9 @@ struct DrawRun {
 // Where materials change too often, more draws would cost more than the tests that they save.
 inline constexpr size_t kMaxDrawRuns = 256;
 
-// Runs in the order of the triangles, covering all of them; if there would be more than kMaxDrawRuns, a single one, which
-// is Transparent with full materials and Masked otherwise. fullMaterials: glass and alphaMode BLEND are transparent.
+// Runs in the order of the triangles, covering all of them; if there would be more than kMaxDrawRuns, a single one,
+// which is Transparent with full materials and Masked otherwise. fullMaterials: glass and alphaMode BLEND are
+// transparent.
 std::vector<DrawRun> drawRuns(const Scene& scene, const Geometry& geometry, bool fullMaterials = false);
 
 }  // namespace fovea::scene

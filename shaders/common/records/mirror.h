@@ -16,8 +16,8 @@ SHARED_CONSTANT float kMirrorCellWidth =
 SHARED_CONSTANT float kSharp = 0.04f;       // GGX's alpha from which neighbours share all of their light
 SHARED_CONSTANT int kSharing = 2;           // texels as far as this from each other share their light
 SHARED_CONSTANT float kLeastReach = 1e-6f;  // m: least distance of what a ray met that counts
-// A ray into the surface shares its darkness as if it had met something at this distance, over alpha and relative to the
-// mirror's distance from the eye. Lobes that are four pixels apart hardly part there.
+// A ray into the surface is shared as if it had met something at this distance, which is multiplied by the mirror's
+// distance from the eye and divided by GGX's alpha. The lobes of mirrors four pixels apart hardly part there.
 SHARED_CONSTANT float kHardlyApart = 0.02f;
 SHARED_CONSTANT float kOutside = 1e5f;  // m: stands for the distance of the environment
 SHARED_CONSTANT float kSameSlope =
