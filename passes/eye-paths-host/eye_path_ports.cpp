@@ -47,7 +47,7 @@ void declareEyePaths(PassDeclaration& d, Usage write, Lifetime paths) {
               "frames in which all paths are traced anew, those of a share of the points in each frame; "
               "the others keep the light they found unless their start is new; of them, twice as large a "
               "share is traced all the same as the light of the former has changed suddenly");
-  declareMaterials(d, "`full` lets metals keep their colour");
+  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
 }
 
 }  // namespace fovea::passes

@@ -140,13 +140,13 @@ EyePathEnd Tracer::end(const EyePathStart& start, uint32_t point, uint32_t turn,
   if (!v.there || (isAimed && v.triangle != aim.triangle)) return end;
   const glm::vec3 rho = surfaces_.reflectance(v),
                   emitted = settings_.emission ? surfaces_.emitted(v) : glm::vec3(0);
-  end.radiance = surfaces_.direct(v, rho, rays);
+  const Reflection reflection = surfaces_.reflection(v, -direction, rho, kBounceRoughness);
+  end.radiance = surfaces_.direct(v, reflection, rays);
   end.kind = meanChannel(emitted) > meanChannel(end.radiance) ? 3.0f
              : end.radiance == glm::vec3(0)                   ? 1.0f
                                                               : 2.0f;
-  const glm::vec3 gathered =
-      rho * surfaces_.gather(v, settings_.bounces - 1, settings_.gathered,
-                             randomStream(seed_, turn, kPathGatherStream, point), rays);
+  const glm::vec3 gathered = surfaces_.passedOn(v, reflection, settings_.bounces - 1, settings_.gathered,
+                                                randomStream(seed_, turn, kPathGatherStream, point), rays);
   if (surfaces_.hasEmitters() && end.kind < 3 && meanChannel(gathered) > meanChannel(end.radiance))
     end.kind = 4;
   end.radiance += emitted + gathered;

@@ -41,7 +41,7 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
       "one; for a map there are as many cosine-weighted ones beside them");
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");
-  declareMaterials(d, "`full` lets metals keep their colour");
+  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
   d.counter("rays", kRaysDoc);
   d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
   d.counter("gathered",

@@ -26,7 +26,7 @@ class ReflectionsDevice : public Pass {
     d.scratch("cells", buffer("GatherCell", sizeof(scene::GatherCell), scene::kGatherCells), kReadWrite,
               "light gathered in the frames so far")
         .keep(Lifetime::View);
-    d.step("reflections-device/trace.comp").define("RAY_PASSAGE", 1).define("MATERIAL_DETAIL", 2);
+    d.step("reflections-device/trace.comp").define("RAY_PASSAGE", 1);
     d.step("reflections-device/merge.comp").define("RAY_PASSAGE", 1).threads(scene::kGatherCells);
     d.step("reflections-device/filter.comp").over("samples");
     return d;

@@ -1,7 +1,7 @@
 // Where the paths end whose turn it is, and the light found there, as passes/eye-paths-host finds them. Defines:
 // RAY_PASSAGE 0/1 (common/rays/trace.glsl); EMISSION 0/1, whether the ends show the light that surfaces emit
 // themselves; LATE 0/1, 1 for those paths whose turn it is not, but which are traced as light has changed.
-#include "common/rays/surfaces.glsl"
+#include "common/rays/gather.glsl"
 #include "common/records/eye_paths.h"
 
 layout(local_size_x = 64) in;
@@ -24,7 +24,6 @@ layout(push_constant) uniform Constants {
 
 const EyePathEnd kNoEnd = EyePathEnd(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
-float meanChannel(vec3 colour) { return (colour.r + colour.g + colour.b) / 3.0; }
 float lightOf(EyePathEnd end) { return meanChannel(end.radiance) * end.weight; }
 
 // Path `turn_` of the `paths` that leave a start.
@@ -49,12 +48,14 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
   if (dot(direction, start.face) <= 0.0) return kNoEnd;
   TracedSurface v = arrive(from.origin, direction, kFarAway);
   if (!v.there || (isAimed && v.triangle != aim.triangle)) return kNoEnd;
-  vec3 rho = reflectance(v), shining = vec3(0.0), radiance = directLight(v, rho);
+  Reflection reflection = reflectionOf(v, -direction, reflectance(v), kBounceRoughness);
+  vec3 shining = vec3(0.0), radiance = directLight(v, reflection);
 #if EMISSION
   shining = emitted(v);
 #endif
   float direct = meanChannel(radiance), kind = meanChannel(shining) > direct ? 3.0 : radiance == vec3(0.0) ? 1.0 : 2.0;
-  vec3 indirect = rho * gather(v, bounces - 1u, gathered, randomStream(frame.seed, turn_, kPathGatherStream, point));
+  vec3 indirect = passedOn(v, reflection, bounces - 1u, gathered,
+                           randomStream(frame.seed, turn_, kPathGatherStream, point));
   if (hasEmitters() && kind < 3.0 && meanChannel(indirect) > direct) kind = 4.0;
   float weight = 1.0;
   if (aimed > 0u) {

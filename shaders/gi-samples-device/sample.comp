@@ -4,7 +4,7 @@
 // (common/rays/trace.glsl).
 #include "common/blocks.glsl"
 #include "common/fovea.glsl"
-#include "common/rays/surfaces.glsl"
+#include "common/rays/gather.glsl"
 #include "common/records/reservoir.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,7 +32,7 @@ struct Choice {
 // Light that leaves a surface by paths of at most `depth` edges to the eye, of which two are known.
 vec3 radianceOf(TracedSurface hit, uint stream) {
   vec3 rho = reflectance(hit);
-  return emitted(hit) + directLight(hit, rho) + rho * gather(hit, depth - 3u, 1u, stream);
+  return emitted(hit) + diffuseLight(hit, rho) + rho * gather(hit, depth - 3u, 1u, stream);
 }
 
 // aimedAt: the triangle at which the ray is aimed, if it is. A ray that meets something else instead does not count.

@@ -1,7 +1,7 @@
 // What each ray of each probe meets and the light found there, as passes/probe-rays-host finds it. Defines: RAY_PASSAGE
 // 0/1 (common/rays/trace.glsl); FEEDBACK 0/1, whether surfaces reflect the light that probes know.
 #include "common/probes/light.glsl"
-#include "common/rays/surfaces.glsl"
+#include "common/rays/gather.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -29,7 +29,7 @@ vec4 hitOf(vec3 origin, vec3 direction, uint index) {
   vec3 light = gather(v, 0u, 1u, hashCombine(stream, index));
 #endif
   vec3 rho = reflectance(v);
-  return vec4(emitted(v) + directLight(v, rho) + rho * light, distance_);
+  return vec4(emitted(v) + diffuseLight(v, rho) + rho * light, distance_);
 }
 
 void main() {

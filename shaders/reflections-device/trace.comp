@@ -1,8 +1,7 @@
 // A part of the mean light under the lobe of each mirror, as passes/reflections-host finds it: that of one ray. Define:
-// RAY_PASSAGE as 1, MATERIAL_DETAIL as 2.
+// RAY_PASSAGE as 1.
 #include "common/materials/visible_normals.glsl"
 #include "common/rays/gather_cache.glsl"
-#include "common/rays/seen_surface.glsl"
 #include "mirror.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -6,7 +6,10 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
+#include "framework/shader_twins/paraboloid.h"
 #include "passes/eye-paths-host/eye_path_tracer.h"
+#include "shaders/common/records/rays.h"
+#include "tests/passes/full_materials_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 #include "tests/support/path_reference.h"
 
@@ -29,12 +32,13 @@ struct Look {
     frame = scene::makeFrame(scene, geometry, size, 0, 1);
   }
   std::vector<EyePathEnd> trace(const passes::EyePathSettings& settings, uint32_t paths = 4096) const {
-    std::vector<EyePathStart> starts(settings.points);
+    starts.assign(settings.points, {});
     std::vector<EyePathEnd> ends(paths);
     statistics = passes::traceEyePaths(frame, frame.views[0], *rays, settings, {starts, ends});
     return ends;
   }
   mutable passes::EyePathStatistics statistics;
+  mutable std::vector<EyePathStart> starts;
 };
 
 scene::Scene litRoom(bool block) {
@@ -94,6 +98,42 @@ TEST(EyePaths, EndsAreLitAsPlainRaysSay) {
   }
   EXPECT_GT(lit, 1000);
   EXPECT_GT(dark, 20);
+}
+
+// With full materials the ends send light back as their material says, of which the smoothest are treated as a little
+// rougher.
+TEST(EyePaths, FullMaterialsSendLightBackAsTheyAre) {
+  scene::Scene s = litRoom(false);
+  for (scene::Material& m : s.materials) m.roughness = m.baseColor.r > 0.55f ? 0.1f : 0.6f;
+  s.materials[0].metallic = 1;
+  const Look look(std::move(s));
+  passes::EyePathSettings settings;
+  settings.bounces = 1;
+  settings.fullMaterials = true;
+  const auto ends = look.trace(settings);
+  int lit = 0;
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const EyePathEnd& e = ends[i];
+    if (!(e.kind > 0)) continue;
+    const RayHit at = castRay(look.scene, look.geometry, glm::dvec3(e.position) + 0.01 * glm::dvec3(e.normal),
+                              -glm::dvec3(e.normal));
+    ASSERT_TRUE(at);
+    const scene::Material& m = look.scene.materials[look.geometry.triangles[at.triangle].material()];
+    const scene::BsdfParameters parameters =
+        bsdfParameters(glm::vec3(m.baseColor), m.metallic, std::max(m.roughness, scene::kBounceRoughness));
+    const glm::mat3 axes = scene::orthonormalFrame(e.normal);
+    const auto local = [&](glm::vec3 to) { return glm::normalize(scene::toLocal(axes, to - e.position)); };
+    const scene::Bsdf bsdf(parameters, local(look.starts[i % settings.points].position));
+    glm::dvec3 want(0);
+    for (const scene::Light& light : look.scene.lights) {
+      const glm::vec3 to = light.position - e.position;
+      want += glm::dvec3(light.color * light.intensity * bsdf.evaluate(local(light.position))) /
+              double(glm::dot(to, to));
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(e.radiance[c], want[c], 5e-3 * want[c] + 1e-5) << i;
+    lit += e.radiance != glm::vec3(0);
+  }
+  EXPECT_GT(lit, 3000);
 }
 
 // The light that the paths bring to the surfaces of the points is their indirect light.

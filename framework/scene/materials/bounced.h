@@ -1,6 +1,6 @@
-// Materials as light finds them that bounces between surfaces on its way to those of the picture. It takes all for
-// diffuse, also where the picture shows full materials; metals then keep their colour, as the mean of what they reflect
-// differs little from that, and otherwise they are black.
+// Materials as light finds them where nobody asks in which direction it leaves (rays/reflection.h does). All are taken
+// for diffuse, also where the picture shows full materials; metals then keep their colour, as the mean of what they
+// reflect differs little from that, and otherwise they are black.
 #pragma once
 
 #include "framework/scene/scene.h"

@@ -144,16 +144,14 @@ glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) cons
 glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays,
                               float leastRoughness) const {
   if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
-  SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
-  for (float* roughness : {&point.bsdf.roughness, &point.bsdf.clearcoatRoughness})
-    *roughness = std::max(*roughness, leastRoughness);
-  if (point.unlit) return v.brighter * point.emission;
-  const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
-  const Bsdf bsdf(point.bsdf, glm::normalize(toLocal(frame, out)));
-  const glm::vec3 light = fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
-    return irradiance * bsdf.evaluate(toLocal(frame, direction));
-  });
-  return v.brighter * (point.emission + light);
+  const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
+  return v.brighter * point.emission + direct(v, Reflection(point, out, leastRoughness, v.brighter), rays);
+}
+
+Reflection SurfaceTracer::reflection(const TracedSurface& v, glm::vec3 out, glm::vec3 rho,
+                                     float leastRoughness) const {
+  if (!materials_) return rho;
+  return {materials_->at({v.triangle, 0, v.u, v.v}), out, leastRoughness, v.brighter};
 }
 
 glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {
@@ -161,8 +159,11 @@ glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {
   return dark ? glm::vec3(0) : v.brighter * emission(*frame_.scene, *v.material, v.uv);
 }
 
-glm::vec3 SurfaceTracer::direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const {
-  return rho * glm::one_over_pi<float>() * irradiance(v, rays);
+glm::vec3 SurfaceTracer::direct(const TracedSurface& v, const Reflection& reflection, uint64_t& rays) const {
+  if (!reflection.full()) return reflection.rho() * glm::one_over_pi<float>() * irradiance(v, rays);
+  return fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
+    return irradiance * reflection.evaluate(direction);
+  });
 }
 
 SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, uint32_t stream) const {
@@ -232,31 +233,53 @@ glm::vec3 SurfaceTracer::fromEmitters(const TracedSurface& v, uint32_t count, ui
   return to.radiance * visibility(v, to, rays) * (cosine / (to.density + float(count) * cosine));
 }
 
+void SurfaceTracer::addArriving(glm::vec3& sum, glm::vec3 factor, const TracedSurface& v, glm::vec3 direction,
+                                float density, uint32_t bounces, uint32_t stream, uint64_t& rays) const {
+  const auto balance = [&](float other) { return density / (other + density); };
+  const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
+  if (!next.there) {
+    if (const Outside light = outside(direction); next.isOutside() && light.density > 0)
+      sum += factor * next.brighter * light.radiance * balance(light.density);
+    return;
+  }
+  const glm::vec3 rho = reflectance(next);
+  sum += factor * direct(next, reflection(next, -direction, rho, kGatheredRoughness), rays);
+  if (const glm::vec3 shining = emitted(next); shining != glm::vec3(0))
+    sum += factor * shining * balance(emitterDensity(v, next));
+  sum += factor * rho * gather(next, bounces - 1, 1, stream, rays);
+}
+
 glm::vec3 SurfaceTracer::gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
                                 uint64_t& rays) const {
   if (bounces == 0) return fromEmitters(v, 0, stream, rays);
-  // The part of cosine-weighted rays in the balance heuristic.
-  const auto balance = [&](float density, glm::vec3 direction) {
-    const float cosine = float(count) * glm::dot(v.normal, direction) * glm::one_over_pi<float>();
-    return cosine / (density + cosine);
-  };
   glm::vec3 sum(0);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 direction = cosineDirection(v.normal, streamSequence(stream, i));
     if (glm::dot(direction, v.face) <= 0) continue;
-    const TracedSurface next = arrive(v.origin, direction, kFarAway, rays);
-    if (!next.there) {
-      if (const Outside light = outside(direction); next.isOutside() && light.density > 0)
-        sum += next.brighter * light.radiance * balance(light.density, direction);
-      continue;
-    }
-    const glm::vec3 rho = reflectance(next);
-    sum += direct(next, rho, rays);
-    if (const glm::vec3 shining = emitted(next); shining != glm::vec3(0))
-      sum += shining * balance(emitterDensity(v, next), direction);
-    sum += rho * gather(next, bounces - 1, 1, hashCombine(stream, i + 2), rays);
+    const float density = float(count) * glm::dot(v.normal, direction) * glm::one_over_pi<float>();
+    addArriving(sum, glm::vec3(1), v, direction, density, bounces, hashCombine(stream, i + 2), rays);
   }
   return sum / float(count) + fromEmitters(v, count, stream, rays);
+}
+
+glm::vec3 SurfaceTracer::passedOn(const TracedSurface& v, const Reflection& reflection, uint32_t bounces,
+                                  uint32_t count, uint32_t stream, uint64_t& rays) const {
+  if (!reflection.full()) return reflection.rho() * gather(v, bounces, count, stream, rays);
+  if (bounces == 0) count = 0;
+  glm::vec3 sum(0);
+  for (uint32_t i = 0; i < count; ++i) {
+    const float choice = uniformFloat(hashCombine(hashCombine(stream, kLobeStream), i));
+    const std::optional<Reflection::Sample> s = reflection.sample(choice, streamSequence(stream, i));
+    if (!s || glm::dot(s->direction, v.face) <= 0) continue;
+    addArriving(sum, s->weight / float(count), v, s->direction, float(count) * s->density, bounces,
+                hashCombine(stream, i + 2), rays);
+  }
+  if (!hasEmitters()) return sum;
+  const EmitterRay to = towardsEmitter(v, stream);
+  if (!to.there) return sum;
+  const glm::vec3 response = reflection.evaluate(to.direction);
+  return sum + response * to.radiance * visibility(v, to, rays) /
+                   (to.density + float(count) * reflection.density(to.direction));
 }
 
 }  // namespace fovea::scene

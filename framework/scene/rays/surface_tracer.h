@@ -9,6 +9,7 @@
 #include "framework/scene/materials/surface_materials.h"
 #include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "framework/scene/rays/reflection.h"
 
 namespace fovea::scene {
 
@@ -38,8 +39,7 @@ glm::vec3 cosineDirection(glm::vec3 normal, glm::vec2 u);
 // light the back is black. `rays` counts the rays traced.
 class SurfaceTracer {
  public:
-  // Surfaces are diffuse for light that bounces between them. fullMaterials: as in materials/bounced.h;
-  // what is seen of them, seen(), is then all that the surface reflects.
+  // fullMaterials: reflection() is that of full materials, and reflectance() as in materials/bounced.h.
   SurfaceTracer(const Frame& frame, const View& view, const RayScene& rays, bool fullMaterials = false);
 
   // The surface that the eye sees at `pixel` (pixels, centres at +0.5). Where surfaces let a part of the light through,
@@ -49,19 +49,27 @@ class SurfaceTracer {
   // passes with the probability of the light that does.
   TracedSurface arrive(glm::vec3 origin, glm::vec3 direction, float reach, uint64_t& rays) const;
   // Radiance from v in the direction `out` (unit), from where it is seen: emitted, or light of the scene's lights after
-  // one reflection. v is treated as at least as rough as leastRoughness, the roughness of a surface that passes the
-  // light on and blurs it: then a few rays find a wide, dim highlight rather than a small, bright one (Kaplanyan and
-  // Dachsbacher, "Path Space Regularization for Holistic and Robust Light Transport", 2013).
+  // one reflection. leastRoughness: as in reflection().
   glm::vec3 seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays, float leastRoughness = 0) const;
+  // How v reflects light in the direction `out`, unit. rho: its reflectance, with diffuse materials. With full ones it
+  // is treated as at least as rough as leastRoughness, the roughness of a surface that passes the light on and blurs
+  // it: then a few rays find a wide, dim highlight rather than a small, bright one (Kaplanyan and Dachsbacher, "Path
+  // Space Regularization for Holistic and Robust Light Transport", 2013).
+  Reflection reflection(const TracedSurface& v, glm::vec3 out, glm::vec3 rho, float leastRoughness) const;
   glm::vec3 reflectance(const TracedSurface& v) const;
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
-  // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
-  glm::vec3 direct(const TracedSurface& v, glm::vec3 rho, uint64_t& rays) const;
+  // Radiance that leaves v after one reflection of light from the scene's lights.
+  glm::vec3 direct(const TracedSurface& v, const Reflection& reflection, uint64_t& rays) const;
   // Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light
   // after at most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further
-  // bounce, and with one point on an emissive surface at each vertex.
+  // bounce, and with one point on an emissive surface at each vertex. Surfaces send the light of lamps to where the ray
+  // came from as reflection() says, and other light diffusely.
   glm::vec3 gather(const TracedSurface& v, uint32_t bounces, uint32_t count, uint32_t stream,
                    uint64_t& rays) const;
+  // Radiance that v sends in the direction of `reflection` of the light that reaches it as in gather(). With a full one
+  // the rays are chosen by it.
+  glm::vec3 passedOn(const TracedSurface& v, const Reflection& reflection, uint32_t bounces, uint32_t count,
+                     uint32_t stream, uint64_t& rays) const;
 
   // The ray from v to a point on an emissive surface, or to the scene's environment map.
   struct EmitterRay {
@@ -107,6 +115,10 @@ class SurfaceTracer {
   template <class Function>
   glm::vec3 fromLights(const TracedSurface& v, uint64_t& rays, const Function& respond) const;
   glm::vec3 irradiance(const TracedSurface& v, uint64_t& rays) const;
+  // Adds what a ray from v brings, times `factor`, to a sum. density: that of the direction, times the number of rays
+  // from v, per sr. The other parameters are those of gather().
+  void addArriving(glm::vec3& sum, glm::vec3 factor, const TracedSurface& v, glm::vec3 direction,
+                   float density, uint32_t bounces, uint32_t stream, uint64_t& rays) const;
   glm::vec3 fromEmitters(const TracedSurface& v, uint32_t count, uint32_t stream, uint64_t& rays) const;
 
   const Frame& frame_;

@@ -11,6 +11,9 @@ struct TextureCoordinates {
 
 // MATERIAL_DETAIL says what materials may have: with 0 textures of base colour and emission, with 1 also those of
 // metallic and roughness and normal maps, with 2 everything. A CPU device spends time even on what no material has.
+#ifndef MATERIAL_DETAIL
+#define MATERIAL_DETAIL 2
+#endif
 
 vec4 textureAt(int texel, TextureCoordinates at) {
 #if MATERIAL_DETAIL == 2

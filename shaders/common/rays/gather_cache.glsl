@@ -9,7 +9,7 @@
 #define FOVEA_RAYS_GATHER_CACHE_GLSL
 
 #include "common/device/sums.glsl"
-#include "common/rays/surfaces.glsl"
+#include "common/rays/gather.glsl"
 #include "common/records/gather_cache.h"
 
 layout(std430) buffer CellsBlock { GatherCell list[]; } cells;

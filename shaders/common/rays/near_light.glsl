@@ -1,6 +1,6 @@
 // Light from nearby surfaces at one point, as passes/near-field-host finds it. Define: RAY_PASSAGE 0/1
 // (common/rays/trace.glsl), MAP_ALONE 0/1, 1 if only the light of the environment map is found.
-#include "common/rays/surfaces.glsl"
+#include "common/rays/gather.glsl"
 #include "common/records/near_field.h"
 
 // Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of
@@ -78,7 +78,8 @@ vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint poin
   noteLength(distance_, probability);
   if (!(radius2 > 0.0)) return light;
   ++shadedCount;
-  vec3 rho = reflectance(hit), shining = emitted(hit), radiance = directLight(hit, rho);
+  vec3 rho = reflectance(hit), shining = emitted(hit);
+  vec3 radiance = directLight(hit, reflectionOf(hit, -direction, rho, kBounceRoughness));
   radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
   if (shining != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);

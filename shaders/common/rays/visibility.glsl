@@ -17,11 +17,13 @@ Ray beyond(Ray ray, RayHit hit) {
 }
 
 // The share of light that passes along the ray, by channels; the same as scene::visibility
-// (framework/scene/rays/visibility.h).
-vec3 visibility(Ray ray) {
+// (framework/scene/rays/visibility.h). rays: grows by the number of rays traced, one more for each surface that is
+// passed.
+vec3 visibility(Ray ray, inout uint rays) {
 #if RAY_PASSAGE
   vec3 share = vec3(1.0), direction = normalize(ray.direction);
   for (uint pane = 0u; pane < kMaxPanes; ++pane) {
+    ++rays;
     RayHit hit = intersect(ray);
     if (hit.triangle == kNoTriangle) return share;
     uvec4 triangle = sceneTriangle(hit.triangle);
@@ -37,8 +39,14 @@ vec3 visibility(Ray ray) {
   }
   return vec3(0.0);
 #else
+  ++rays;
   return vec3(occluded(ray) ? 0.0 : 1.0);
 #endif
+}
+
+vec3 visibility(Ray ray) {
+  uint rays = 0u;
+  return visibility(ray, rays);
 }
 
 #endif

@@ -38,5 +38,11 @@ SHARED_CONSTANT uint kGoldenRatio = 2654435769u, kSilverRatio = 1779033704u;  //
 
 // Keep the random numbers of rays that are aimed at emitters and of those that pass surfaces apart from others.
 SHARED_CONSTANT uint kAimedRayStream = 0x656d6974u, kPassedRayStream = 0x72617973u;
+// And those that choose one of the ways in which a surface reflects light.
+SHARED_CONSTANT uint kLobeStream = 0x6c6f6265u;
+
+// The least roughness with which surfaces reflect light towards those that the eye sees, and towards others. With less,
+// single paths are bright spots.
+SHARED_CONSTANT float kBounceRoughness = 0.3f, kGatheredRoughness = 0.5f;
 
 SHARED_END

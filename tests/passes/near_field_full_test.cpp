@@ -1,0 +1,77 @@
+// Compares near-field light from full materials with their BSDF.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "framework/base/random.h"
+#include "framework/scene/frame.h"
+#include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "passes/near-field-host/near_field_tracer.h"
+#include "tests/passes/full_materials_reference.h"
+#include "tests/passes/vpl_intensity_reference.h"
+
+namespace fovea::test {
+namespace {
+
+// Irradiance / pi at a pixel from what surfaces of one material reflect of a lamp, without shadows.
+glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& seen, uint32_t material) {
+  constexpr int kRays = 8000;
+  const scene::Material& m = room.scene.materials[material];
+  const scene::BsdfParameters parameters = bsdfParameters(glm::vec3(m.baseColor), m.metallic, m.roughness);
+  glm::dvec3 sum(0);
+  for (int i = 0; i < kRays; ++i) {
+    const glm::vec2 u((float(i) + 0.5f) / float(kRays), uniformFloat(uint32_t(i) * 2654435769u));
+    const glm::vec3 d = scene::cosineDirection(seen.normal, u);
+    const RayHit hit = castRay(room.scene, room.geometry,
+                               glm::dvec3(seen.position) + 1e-5 * glm::dvec3(seen.normal), glm::dvec3(d));
+    if (!hit || room.geometry.triangles[hit.triangle].material() != material) continue;
+    const glm::vec3 at = seen.position + float(hit.t) * d, to = lamp.position - at, normal(1, 0, 0);
+    const glm::mat3 axes = scene::orthonormalFrame(normal);
+    const scene::Bsdf bsdf(parameters, scene::toLocal(axes, -d));
+    sum += glm::dvec3(lamp.color * lamp.intensity * bsdf.evaluate(scene::toLocal(axes, glm::normalize(to)))) /
+           double(glm::dot(to, to));
+  }
+  return sum / double(kRays);
+}
+
+// With full materials light comes from where surfaces send it: a polished metal wall beside the floor sends a lamp's
+// light towards some of the floor, and little to where the lamp hangs.
+TEST(NearFieldFull, MetalSendsLightInItsLobe) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), metal = addMaterial(s, glm::vec3(0.9f));
+  s.materials[metal].metallic = 1;
+  s.materials[metal].roughness = 0.4f;
+  addQuad(s, grey, {-2, -1, -4}, {0, 0, 4}, {4, 0, 0});
+  addQuad(s, metal, {-2, -1, -4}, {0, 0, 8}, {0, 4, 0});
+  s.materials[metal].doubleSided = true;
+  s.lights = {pointLight({0.5f, 2, -2}, glm::vec3(10))};
+  const Room room = lookInto(std::move(s), 8, glm::ivec2(8));
+  const scene::RayScene rays(room.scene, room.geometry);
+  const scene::Frame frame = scene::makeFrame(room.scene, room.geometry, glm::uvec2(8), 0, 1);
+  passes::NearFieldSettings settings;
+  settings.foveaRadius = 2;
+  settings.samples = 8192;
+  settings.area = 1e4f;  // nothing is left to discs
+  settings.bounces = 1;
+  settings.fullMaterials = true;
+  std::vector<glm::vec4> got(16);
+  passes::traceNearField(frame, frame.views[0], rays, settings, got);
+  int lit = 0;
+  for (uint32_t i = 0; i < 16; ++i) {
+    glm::dvec3 want(0);
+    bool same = true;
+    for (uint32_t k = 0; k < 4; ++k) {
+      const Seen seen = room.pixels[(2 * (i / 4) + k / 2) * 8 + 2 * (i % 4) + k % 2];
+      same = same && seen.normal.y > 0.9f;
+      want += mirroredBy(room, room.scene.lights[0], seen, metal) / 4.0;
+    }
+    if (!same || got[i].a == 0) continue;
+    ++lit;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[i][c], want[c], 0.04 * want[c]) << i;
+  }
+  EXPECT_GT(lit, 3);
+}
+
+}  // namespace
+}  // namespace fovea::test
