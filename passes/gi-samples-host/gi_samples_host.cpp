@@ -90,7 +90,7 @@ class Sampler {
   // Light that leaves a surface by paths of at most `depth` edges to the eye, of which two are known.
   glm::vec3 radianceOf(const scene::TracedSurface& hit, uint32_t stream, uint64_t& rays) const {
     const glm::vec3 rho = surfaces_.reflectance(hit);
-    return surfaces_.emitted(hit) + surfaces_.direct(hit, rho, rays) +
+    return surfaces_.emitted(hit) + surfaces_.direct(hit, scene::Reflection(rho), rays) +
            rho * surfaces_.gather(hit, depth_ - 3, 1, stream, rays);
   }
 

@@ -181,8 +181,7 @@ class Tracer {
     if (!(radius2 > 0)) return light;
     ++statistics.shaded;
     const glm::vec3 rho = surfaces_.reflectance(hit);
-    glm::vec3 radiance =
-        surfaces_.direct(hit, surfaces_.reflection(hit, -direction, rho, kBounceRoughness), statistics.rays);
+    glm::vec3 radiance = surfaces_.directTowards(hit, -direction, rho, kBounceRoughness, statistics.rays);
     radiance += rho * gatheredLight(surfaces_, hit, settings_.bounces - 1,
                                     randomStream(stream, turn, kNearGatherStream, order), settings_.cache,
                                     settings_.cellWidth, statistics);

@@ -43,7 +43,7 @@ class Tracer {
     const float distance = glm::distance(v.position, origin);
     if (!v.there) return {glm::vec3(0), -kBackShortened * distance};
     const glm::vec3 rho = surfaces_.reflectance(v), light = lightAt(v, -direction, index, rays);
-    return {surfaces_.emitted(v) + surfaces_.direct(v, rho, rays) + rho * light, distance};
+    return {surfaces_.emitted(v) + surfaces_.direct(v, Reflection(rho), rays) + rho * light, distance};
   }
 
  private:

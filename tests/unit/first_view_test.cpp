@@ -62,7 +62,7 @@ Displayed display(const scene::Scene& s) {
       glm::vec3 light = s.environmentMap ? s.environmentMap->radiance(direction) : s.environment;
       if (seen.there) {
         const glm::vec3 rho = tracer.reflectance(seen);
-        light = tracer.emitted(seen) + tracer.direct(seen, rho, count) +
+        light = tracer.emitted(seen) + tracer.direct(seen, scene::Reflection(rho), count) +
                 rho * tracer.gather(seen, 2, 64, 1 + x + kSize * y, count);
       }
       d.surfaces += seen.there / double(kSize * kSize);
@@ -238,13 +238,15 @@ TEST(FirstView, TheGroundContinuesTheFloor) {
   const scene::TracedSurface seen = tracer.arrive(above + glm::vec3(0, 1, 0), {0, -1, 0}, 1e6f, count);
   ASSERT_TRUE(seen.there);
   const glm::vec3 rho = tracer.reflectance(seen),
-                  light = tracer.direct(seen, rho, count) + rho * tracer.gather(seen, 1, 4096, 1, count),
+                  light = tracer.direct(seen, scene::Reflection(rho), count) +
+                          rho * tracer.gather(seen, 1, 4096, 1, count),
                   ground = s.environmentMap->radiance({0, -1, 0});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
   // Full materials do not shine, not even where the sun would be mirrored.
   const scene::SurfaceTracer full(frame, frame.views[0], *rays, true);
   const glm::vec3 mirrored = glm::reflect(s.lights[0].direction, glm::vec3(0, 1, 0));
-  const glm::vec3 sunlit = tracer.direct(seen, rho, count), shown = full.seen(seen, mirrored, count);
+  const glm::vec3 sunlit = tracer.direct(seen, scene::Reflection(rho), count),
+                  shown = full.seen(seen, mirrored, count);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], sunlit[c], 0.01f * sunlit[c]);
 }
 

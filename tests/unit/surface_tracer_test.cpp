@@ -62,7 +62,7 @@ struct Floor {
     seen = tracer->look({4, 4}, count);
   }
 
-  // The light that it sends upwards of what gather() finds, from many random numbers.
+  // The radiance that it sends in the direction `out` of the light that reaches it, a mean over many random numbers.
   double passedOn(glm::vec3 out, float leastRoughness, uint32_t bounces) {
     constexpr uint32_t kGathers = 20000;
     const scene::Reflection reflection =

@@ -36,8 +36,8 @@ Frame firstFrame(const Scene& scene, const Geometry& geometry) {
   return makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
 }
 
-// The first camera's picture as a path tracer with few samples sees it, if surfaces reflect indirect light as diffuse
-// ones of their colour, metals too.
+// The first camera's picture as a path tracer with few samples sees it, if the surfaces in it reflect indirect light as
+// diffuse ones of their colour, metals too.
 Picture trace(const Frame& frame, const RayScene& rays) {
   const Scene& scene = *frame.scene;
   const View& view = frame.views.front();

@@ -13,15 +13,16 @@ namespace fovea::scene {
 // from which light arrives.
 class Reflection {
  public:
-  Reflection(glm::vec3 rho) : rho_(rho) {}
+  explicit Reflection(glm::vec3 rho) : rho_(rho) {}
   // Of a full material. out: direction of the reflected light, unit, world space; leastRoughness: the surface is
   // treated as at least this rough; factor: on all that it reflects.
   Reflection(const SurfacePoint& point, glm::vec3 out, float leastRoughness, glm::vec3 factor);
 
-  bool full() const { return bsdf_.has_value(); }
+  bool full() const { return full_; }
   glm::vec3 rho() const { return rho_; }  // of a diffuse surface
 
   // The rest is for full materials; directions are unit, in world space.
+  glm::vec3 normal() const { return frame_[2]; }  // of shading
   glm::vec3 evaluate(glm::vec3 direction) const;  // f cos, with the factor, per sr
   struct Sample {
     glm::vec3 direction{0};
@@ -33,9 +34,10 @@ class Reflection {
 
  private:
   glm::vec3 rho_{0};
+  bool full_ = false;
   glm::vec3 factor_{1};
-  glm::mat3 frame_{1};  // of the shading normal
-  std::optional<Bsdf> bsdf_;
+  glm::mat3 frame_{1};        // of the shading normal
+  std::optional<Bsdf> bsdf_;  // none of an unlit material, which reflects nothing
 };
 
 }  // namespace fovea::scene

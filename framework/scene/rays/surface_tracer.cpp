@@ -143,15 +143,15 @@ glm::vec3 SurfaceTracer::irradiance(const TracedSurface& v, uint64_t& rays) cons
 
 glm::vec3 SurfaceTracer::seen(const TracedSurface& v, glm::vec3 out, uint64_t& rays,
                               float leastRoughness) const {
-  if (!materials_) return emitted(v) + direct(v, reflectance(v), rays);
+  if (!materials_) return emitted(v) + direct(v, Reflection(reflectance(v)), rays);
   const SurfacePoint point = materials_->at({v.triangle, 0, v.u, v.v});
   return v.brighter * point.emission + direct(v, Reflection(point, out, leastRoughness, v.brighter), rays);
 }
 
 Reflection SurfaceTracer::reflection(const TracedSurface& v, glm::vec3 out, glm::vec3 rho,
                                      float leastRoughness) const {
-  if (!materials_) return rho;
-  return {materials_->at({v.triangle, 0, v.u, v.v}), out, leastRoughness, v.brighter};
+  if (!materials_) return Reflection(rho);
+  return Reflection(materials_->at({v.triangle, 0, v.u, v.v}), out, leastRoughness, v.brighter);
 }
 
 glm::vec3 SurfaceTracer::emitted(const TracedSurface& v) const {
@@ -164,6 +164,12 @@ glm::vec3 SurfaceTracer::direct(const TracedSurface& v, const Reflection& reflec
   return fromLights(v, rays, [&](glm::vec3 irradiance, glm::vec3 direction) {
     return irradiance * reflection.evaluate(direction);
   });
+}
+
+glm::vec3 SurfaceTracer::directTowards(const TracedSurface& v, glm::vec3 out, glm::vec3 rho,
+                                       float leastRoughness, uint64_t& rays) const {
+  if (frame_.lights.empty()) return glm::vec3(0);
+  return direct(v, reflection(v, out, rho, leastRoughness), rays);
 }
 
 SurfaceTracer::EmitterRay SurfaceTracer::towardsEmitter(const TracedSurface& v, uint32_t stream) const {
@@ -243,7 +249,7 @@ void SurfaceTracer::addArriving(glm::vec3& sum, glm::vec3 factor, const TracedSu
     return;
   }
   const glm::vec3 rho = reflectance(next);
-  sum += factor * direct(next, reflection(next, -direction, rho, kGatheredRoughness), rays);
+  sum += factor * directTowards(next, -direction, rho, kGatheredRoughness, rays);
   if (const glm::vec3 shining = emitted(next); shining != glm::vec3(0))
     sum += factor * shining * balance(emitterDensity(v, next));
   sum += factor * rho * gather(next, bounces - 1, 1, stream, rays);
@@ -266,18 +272,21 @@ glm::vec3 SurfaceTracer::passedOn(const TracedSurface& v, const Reflection& refl
                                   uint32_t count, uint32_t stream, uint64_t& rays) const {
   if (!reflection.full()) return reflection.rho() * gather(v, bounces, count, stream, rays);
   if (bounces == 0) count = 0;
+  TracedSurface bent = v;  // with the normal about which rays are chosen
+  bent.normal = reflection.normal();
   glm::vec3 sum(0);
   for (uint32_t i = 0; i < count; ++i) {
     const float choice = uniformFloat(hashCombine(hashCombine(stream, kLobeStream), i));
     const std::optional<Reflection::Sample> s = reflection.sample(choice, streamSequence(stream, i));
-    if (!s || glm::dot(s->direction, v.face) <= 0) continue;
-    addArriving(sum, s->weight / float(count), v, s->direction, float(count) * s->density, bounces,
+    if (!s || s->weight == glm::vec3(0) || glm::dot(s->direction, v.face) <= 0) continue;
+    addArriving(sum, s->weight / float(count), bent, s->direction, float(count) * s->density, bounces,
                 hashCombine(stream, i + 2), rays);
   }
   if (!hasEmitters()) return sum;
-  const EmitterRay to = towardsEmitter(v, stream);
+  const EmitterRay to = towardsEmitter(bent, stream);
   if (!to.there) return sum;
   const glm::vec3 response = reflection.evaluate(to.direction);
+  if (response == glm::vec3(0)) return sum;
   return sum + response * to.radiance * visibility(v, to, rays) /
                    (to.density + float(count) * reflection.density(to.direction));
 }

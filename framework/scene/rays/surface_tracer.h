@@ -60,6 +60,9 @@ class SurfaceTracer {
   glm::vec3 emitted(const TracedSurface& v) const;  // radiance, W/(sr m^2)
   // Radiance that leaves v after one reflection of light from the scene's lights.
   glm::vec3 direct(const TracedSurface& v, const Reflection& reflection, uint64_t& rays) const;
+  // The same in the direction `out`; the parameters are those of reflection().
+  glm::vec3 directTowards(const TracedSurface& v, glm::vec3 out, glm::vec3 rho, float leastRoughness,
+                          uint64_t& rays) const;
   // Cosine-weighted mean radiance that reaches v over its hemisphere from emissive surfaces, and that of all light
   // after at most `bounces` reflections, estimated with `count` rays, each of which continues with one ray per further
   // bounce, and with one point on an emissive surface at each vertex. Surfaces send the light of lamps to where the ray

@@ -70,8 +70,8 @@ float aimedDensity(TracedSurface v, TracedSurface hit) {
 }
 
 // The part of one point on an emissive surface in the balance heuristic (Veach and Guibas 1995), beside `count` rays
-// that may hit such a surface by chance. byLobe: these are chosen by the reflection `full`, whose factor is a part of
-// the result, and not cosine-weighted.
+// that may hit such a surface by chance. byLobe: those rays are chosen by the reflection `full` instead of by the cosine,
+// and the result is multiplied by it.
 vec3 fromEmitters(TracedSurface v, float count, uint stream, bool byLobe, Reflection full) {
   if (!hasEmitters()) return vec3(0.0);
   EmitterRay to = aimedRay(v, stream);
@@ -84,6 +84,7 @@ vec3 fromEmitters(TracedSurface v, float count, uint stream, bool byLobe, Reflec
     response = reflectedFrom(full, to.direction);
   }
 #endif
+  if (response == vec3(0.0)) return vec3(0.0);
   return to.radiance * visibleShare(v, to) * (response / (to.density + count * density));
 }
 
@@ -102,7 +103,7 @@ Arrival arrival(TracedSurface at, vec3 direction, float density) {
     return a;
   }
   a.rho = reflectance(a.next);
-  a.light = directLight(a.next, reflectionOf(a.next, -direction, a.rho, kGatheredRoughness));
+  a.light = directTowards(a.next, -direction, a.rho, kGatheredRoughness);
   vec3 shining = emitted(a.next);
   if (shining != vec3(0.0)) a.light += shining * (density / (aimedDensity(at, a.next) + density));
   return a;
@@ -116,6 +117,9 @@ vec3 gather(TracedSurface v, uint bounces, uint count, uint stream, bool isFull,
   vec3 sum = vec3(0.0);
   for (uint ray = 0u; ray < max(count, 1u); ++ray) {
     TracedSurface at = v;
+#if RAY_PASSAGE
+    if (isFull) at.normal = full.reflector.normal;
+#endif
     vec3 throughput = vec3(1.0);
     uint rays = bounces > 0u ? count : 0u, turn_ = ray, own = stream;
     for (uint left = bounces;; --left) {
@@ -132,6 +136,7 @@ vec3 gather(TracedSurface v, uint bounces, uint count, uint stream, bool isFull,
         density = reflectionDensity(full, direction);
         if (!(density > 0.0)) break;
         throughput = reflectedFrom(full, direction) / density;
+        if (throughput == vec3(0.0)) break;
 #endif
       } else {
         direction = cosineDirection(at.normal, streamSequence(own, turn_));

@@ -79,7 +79,7 @@ vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint poin
   if (!(radius2 > 0.0)) return light;
   ++shadedCount;
   vec3 rho = reflectance(hit), shining = emitted(hit);
-  vec3 radiance = directLight(hit, reflectionOf(hit, -direction, rho, kBounceRoughness));
+  vec3 radiance = directTowards(hit, -direction, rho, kBounceRoughness);
   radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
   if (shining != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);

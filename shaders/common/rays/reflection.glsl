@@ -36,7 +36,7 @@ struct Reflection {
   float chooseDiffuse;  // probability with which sampleReflection() takes a direction for the diffuse layer
 };
 
-// out_: unit; leastRoughness: v is treated as at least this rough.
+// out_: unit; rho: its reflectance, with diffuse materials; leastRoughness: v is treated as at least this rough.
 Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
   uvec4 triangle = sceneTriangle(v.triangle);
   vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);
@@ -110,5 +110,11 @@ Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughne
 vec3 directLight(TracedSurface v, Reflection r) { return diffuseLight(v, r.rho); }
 
 #endif
+
+// The same in the direction `out_`; the parameters are those of reflectionOf().
+vec3 directTowards(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
+  if (frame.lightCount == 0u) return vec3(0.0);
+  return directLight(v, reflectionOf(v, out_, rho, leastRoughness));
+}
 
 #endif
