@@ -6,7 +6,7 @@
 // Where surfaces let light through, a pixel shows now this one and now that (shaders/common/materials/passage.glsl).
 // The mean of all is what the eye should see, so it is one of light as it is; the box is that of more pixels, which
 // show each surface by its share; and the mean follows the surface that the pixel shows, as there is no telling which
-// is the nearest.
+// is the nearest. With ONLY_VEILS 1 nothing else is smoothed.
 #include "common/finite.glsl"
 #include "common/materials/gloss.glsl"
 #include "common/motion.glsl"
@@ -35,6 +35,7 @@ const float kSamePlace = 1e-3;  // pixels: does not move
 const float kNear = 3.5;        // pixels: as far as surfaces in the 3x3 pixels of two frames may be apart
 const float kMaxHalf = 65504.0;
 const float kVeiledFrames = 2.0;  // by how much the mean is longer where surfaces let light through
+const float kVeiledStart = 8.0;   // frames that the pixels around one are worth there in its first frame
 
 float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
@@ -158,6 +159,17 @@ vec4 historyAt(vec2 at, ivec2 p, ivec2 size, float strength) {
   return vec4(sum, imageLoad(history, clamp(ivec2(round(at)), ivec2(0), size - 1)).a);
 }
 
+// The mean of the 5x5 pixels around one at which something lets light through: together they show each surface by its
+// share.
+vec3 veiledMean(ivec2 p, ivec2 size, bool wanted) {
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < (wanted ? 25 : 0); ++i) {
+    ivec2 q = clamp(p + ivec2(i % 5, i / 5) - 2, ivec2(0), size - 1);
+    if (isVeiled(imageLoad(gbufferNormal, q).a)) sum += vec4(finiteLight(q), 1.0);
+  }
+  return sum.rgb / max(sum.a, 1.0);
+}
+
 // Draws a colour towards the middle of a box until it lies inside.
 vec3 clipped(vec3 colour, vec3 middle, vec3 extent) {
   vec3 away = colour - middle, ratio = abs(away) / max(extent, 1e-5);
@@ -178,5 +190,11 @@ void main() {
   float count = known ? min(old.a, frames * (veiled ? kVeiledFrames : 1.0) - 1.0) : 0.0;
   vec3 kept = fromYCoCg(clipped(toYCoCg(old.rgb), a.mean, deviations * a.deviation));
   vec3 mean = expand(mix(kept, compress(light, strength), 1.0 / (count + 1.0)), strength);
-  smoothed = vec4(count > 0.0 ? clamp(mean, 0.0, kMaxHalf) : light, count + 1.0);
+#if ONLY_VEILS
+  if (!veiled) count = 0.0;
+#endif
+  bool begins = veiled && count == 0.0;
+  vec3 first = veiledMean(p, size, begins);
+  smoothed = begins ? vec4(first, kVeiledStart)
+                    : vec4(count > 0.0 ? clamp(mean, 0.0, kMaxHalf) : light, count + 1.0);
 }

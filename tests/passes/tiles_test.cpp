@@ -36,6 +36,17 @@ const char* const kChosen = R"json({
             { "shader": "places.frag", "colors": ["place", "seven"], "tiles": "own_tiles" }]
 })json";
 
+// Writes 7 into all of an image, and 9 into some tiles of it.
+const char* const kOverdrawn = R"json({
+  "doc": "writes one number over another",
+  "inputs": { "size": { "doc": "gives the size", "format": "r8" },
+              "tiles": { "doc": "tiles to draw", "format": "r8", "usage": ["storage_read"] } },
+  "outputs": { "number": { "doc": "7 or 9", "format": "r32ui", "width": "size.width", "height": "size.height" } },
+  "steps": [{ "name": "all", "shader": "number.frag", "colors": ["number"], "define": { "NUMBER": 7 } },
+            { "name": "some", "shader": "number.frag", "colors": ["number"], "define": { "NUMBER": 9 },
+              "tiles": "tiles" }]
+})json";
+
 class Tiles : public testing::Test {
  protected:
   Tiles() {
@@ -43,6 +54,11 @@ class Tiles : public testing::Test {
     fs::create_directories(folder);
     std::ofstream(folder / "test-places.pass.json") << kPlaces;
     std::ofstream(folder / "test-chosen-places.pass.json") << kChosen;
+    std::ofstream(folder / "test-overdrawn.pass.json") << kOverdrawn;
+    std::ofstream(folder / "number.frag") << R"(
+layout(location = 0) out uint number;
+void main() { number = uint(NUMBER); }
+)";
     std::ofstream(folder / "places.frag") << R"(
 layout(location = 0) out vec4 place;
 layout(location = 1) out uint seven;
@@ -114,6 +130,20 @@ TEST_F(Tiles, NothingIsLeftWhereTheMaskIsEmpty) {
   test.set("tiles", none);
   test.run();
   expectPlaces(test, size, 8, none);
+}
+
+TEST_F(Tiles, WhatAnEarlierStepHasWrittenStays) {
+  const Size size{61, 35};
+  const Mask mask = masked(size.tiles(16), 3);
+  PassTest test("test-overdrawn");
+  wire(test, size, "tiles", size.tiles(16), mask);
+  test.run();
+  const auto number = test.values<uint32_t>("number");
+  for (uint32_t i = 0; i < number.size(); ++i) {
+    const uint32_t x = i % size.width, y = i / size.width;
+    ASSERT_EQ(number[i], mask[size_t(y / 16) * size.tiles(16).width + x / 16] != 0 ? 9u : 7u)
+        << x << " " << y;
+  }
 }
 
 TEST_F(Tiles, WithoutAMaskEverythingIsDrawn) {

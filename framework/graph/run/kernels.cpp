@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 #include <limits>
+#include <set>
 
 #include "fovea/error.h"
 #include "framework/graph/pass/registry.h"
@@ -262,9 +263,9 @@ uint32_t tileSpan(uint32_t pixels, uint32_t tiles) {
   return (pixels + width - 1) / width == tiles ? tiles * width : 0;
 }
 
-// Lets a full-screen kernel draw only the tiles of a mask.
+// Lets a full-screen kernel draw only the tiles of a mask. written: what earlier steps have written.
 void drawTiles(const PassInstance& pass, const StepSpec& spec, const VkExtent3D& image,
-               const VkExtent3D& mask, KernelState& kernel) {
+               const VkExtent3D& mask, const std::set<std::string>& written, KernelState& kernel) {
   kernel.tiled = {tileSpan(image.width, mask.width), tileSpan(image.height, mask.height)};
   if (kernel.tiled.width == 0 || kernel.tiled.height == 0)
     throw Error(
@@ -275,7 +276,8 @@ void drawTiles(const PassInstance& pass, const StepSpec& spec, const VkExtent3D&
                     mask.height, image.width, image.height),
         "make it as large as the images divided by 8, 16 or 32");
   kernel.vertices = 6 * mask.width * mask.height;
-  for (Attachment& cover : kernel.covers) cover.load = Attachment::Load::Clear;
+  for (Attachment& cover : kernel.covers)
+    cover.load = written.contains(cover.port) ? Attachment::Load::Keep : Attachment::Load::Clear;
 }
 
 // Its row in the timings.
@@ -300,6 +302,7 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
   PrepareContext context(pass);
   const std::vector<StepSpec>& specs = pass.bound->declaration->steps;
   for (const StepSpec& spec : specs) pass.stepByName.emplace(spec.name, kNone);
+  std::set<std::string> written;
   for (const PlannedStep& plan : planned) {
     const StepSpec& spec = specs[plan.step];
     StepInstance step{&plan, &spec, nullptr, {}, {}};
@@ -314,7 +317,9 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
     if (spec.action == StepSpec::Action::Fullscreen)
       kernel = context.fullscreen(spec.shader, spec.targets, stepDefines(spec, context));
     if (context.has(spec.tileMask))
-      drawTiles(pass, spec, context.extent(spec.targets[0]), context.extent(spec.tileMask), *kernel.state_);
+      drawTiles(pass, spec, context.extent(spec.targets[0]), context.extent(spec.tileMask), written,
+                *kernel.state_);
+    written.insert(spec.targets.begin(), spec.targets.end());
     step.kernel = kernel.state_;
     labelStep(pass, step);
     pass.stepByName[spec.name] = static_cast<uint32_t>(pass.steps.size());
