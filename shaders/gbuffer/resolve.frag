@@ -24,6 +24,7 @@ layout(location = 5) out uint gbufferId;
 layout(location = 6) out vec4 gbufferSpecular;
 
 const float kLeastGrazing = 1e-4;  // so that its sign is kept
+const float kSolid = 1.0 - 0.5 / 255.0;  // with this alpha, what is BLEND lets nothing through
 #endif
 
 const uint kNothing = 0xffffffffu;
@@ -81,8 +82,9 @@ void main() {
   // Of normal, albedo and emission.
   vec3 alphas = vec3(surface.gloss.f90, surface.gloss.metallic, surface.gloss.dielectricF0);
 #if TINT
-  bool own = !background && (flags & (kMaterialTransmits | kMaterialBlended)) != 0u;
-  if (own || before.a > 0.0) alphas.x = -max(alphas.x, kLeastGrazing);
+  bool own = (flags & kMaterialTransmits) != 0u ||
+             ((flags & kMaterialBlended) != 0u && coverage(material, uv) < kSolid);
+  if ((own && !background) || before.a > 0.0) alphas.x = -max(alphas.x, kLeastGrazing);
 #endif
 #else
   const vec3 alphas = vec3(0.0);

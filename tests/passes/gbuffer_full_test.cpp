@@ -272,5 +272,26 @@ TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
             pixels[1] / 2);
 }
 
+// What is BLEND and hides all that is behind it shows the same surface in every frame, and is not marked.
+TEST(GBufferFull, WhatIsSolidIsNotMarked) {
+  std::vector<scene::Material> list(2);
+  for (scene::Material& m : list) m.masked = m.blended = true;
+  list[1].baseColor.a = 0.5f;
+  PassTest test("gbuffer");
+  test.scene(panels(list)).viewSize(kWidth, kHeight).param("materials", "full");
+  test.run();
+  const auto ids = test.values<uint32_t>("gbuffer.id");
+  const auto normals = test.floats("gbuffer.normal");
+  uint32_t shown[2] = {}, marked[2] = {};
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] == ~0u) continue;
+    ++shown[ids[i] & 0xffff];
+    marked[ids[i] & 0xffff] += normals[4 * i + 3] < 0;
+  }
+  EXPECT_GT(std::min(shown[0], shown[1]), 200u);
+  EXPECT_EQ(marked[0], 0u);
+  EXPECT_EQ(marked[1], shown[1]);
+}
+
 }  // namespace
 }  // namespace fovea::test
