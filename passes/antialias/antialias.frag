@@ -191,7 +191,7 @@ void main() {
   vec3 kept = fromYCoCg(clipped(toYCoCg(old.rgb), a.mean, deviations * a.deviation));
   vec3 mean = expand(mix(kept, compress(light, strength), 1.0 / (count + 1.0)), strength);
 #if ONLY_VEILS
-  if (!veiled) count = 0.0;
+  if (!veiled || old.a < kVeiledStart) count = 0.0;  // fewer: nothing let light through there before
 #endif
   bool begins = veiled && count == 0.0;
   vec3 first = veiledMean(p, size, begins);

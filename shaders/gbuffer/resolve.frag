@@ -24,7 +24,7 @@ layout(location = 5) out uint gbufferId;
 layout(location = 6) out vec4 gbufferSpecular;
 
 const float kLeastGrazing = 1e-4;  // so that its sign is kept
-const float kSolid = 1.0 - 0.5 / 255.0;  // with this alpha, what is BLEND lets nothing through
+const float kSolid = 1.0 - 0.5 / 255.0;  // with this alpha, what is BLEND lets next to nothing through
 #endif
 
 const uint kNothing = 0xffffffffu;

@@ -5,6 +5,8 @@
 #include "common/materials/passage.glsl"
 #include "common/scene.glsl"
 
+const float kNothingCovered = 0.5 / 255.0;  // an alpha of 0
+
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 tint;
 
@@ -16,5 +18,6 @@ void main() {
   if (!gl_FrontFacing && (flags & kMaterialDoubleSided) == 0u) discard;
 #endif
   bool glass = (flags & kMaterialTransmits) != 0u;
+  if (!glass && coverage(material, uv) < kNothingCovered) discard;
   tint = vec4(glass ? log(glassTint(material, uv)) : vec3(0.0), 1.0);
 }

@@ -291,6 +291,13 @@ TEST(GBufferFull, WhatIsSolidIsNotMarked) {
   EXPECT_GT(std::min(shown[0], shown[1]), 200u);
   EXPECT_EQ(marked[0], 0u);
   EXPECT_EQ(marked[1], shown[1]);
+
+  for (scene::Material& m : list) m.baseColor.a = 0;  // nothing is there
+  PassTest clear("gbuffer");
+  clear.scene(panels(list)).viewSize(kWidth, kHeight).param("materials", "full");
+  clear.run();
+  const auto nothing = clear.floats("gbuffer.normal");
+  for (size_t i = 0; i < ids.size(); ++i) EXPECT_FALSE(nothing[4 * i + 3] < 0) << i;
 }
 
 }  // namespace

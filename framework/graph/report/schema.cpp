@@ -227,7 +227,7 @@ Json stepSchema() {
        {"colors", described("images that the shader writes: every pixel, or those of `tiles`",
                             {{"type", "array"}, {"items", text}})},
        {"tiles", described("mask of the format r8, with `colors`: only tiles whose texel is not 0 are drawn, "
-                           "the rest becomes 0",
+                           "the rest keeps what an earlier step has written, and otherwise becomes 0",
                            text)},
        {"define", described("preprocessor macros", mapOf(expression))},
        {"constant", described("push constants", mapOf(expression))},
