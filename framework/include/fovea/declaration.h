@@ -292,8 +292,8 @@ struct StepSpec {
   StepSpec& threads(SizeExpr x, SizeExpr y = 1, SizeExpr z = 1);
   StepSpec& over(std::string port);
   StepSpec& indirect(std::string buffer, uint64_t offset = 0);
-  // A full-screen step draws only the tiles whose texel of `mask` is not 0. The rest of its images keeps what an earlier
-  // step of the pass has written, and otherwise becomes 0. If `mask` is an input that is not wired, the step draws
+  // A full-screen step draws only the tiles whose texel of `mask` is not 0. The rest of its images keeps what an
+  // earlier step of the pass has written, and otherwise becomes 0. If `mask` is an input that is not wired, the step draws
   // everything. `mask` is an image of the format r8 with a texel for each tile. Tiles are a power of two wide and high:
   // 16 pixels if 100 pixels have 7 texels. This saves the work outside of them, which on a CPU device no branch in a
   // shader does.

@@ -70,8 +70,8 @@ float aimedDensity(TracedSurface v, TracedSurface hit) {
 }
 
 // The part of one point on an emissive surface in the balance heuristic (Veach and Guibas 1995), beside `count` rays
-// that may hit such a surface by chance. byLobe: those rays are chosen by the reflection `full` instead of by the cosine,
-// and the result is multiplied by it.
+// that may hit such a surface by chance. byLobe: those rays are chosen by the reflection `full` instead of by the
+// cosine, and the result is multiplied by it.
 vec3 fromEmitters(TracedSurface v, float count, uint stream, bool byLobe, Reflection full) {
   if (!hasEmitters()) return vec3(0.0);
   EmitterRay to = aimedRay(v, stream);
