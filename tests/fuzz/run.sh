@@ -31,7 +31,6 @@ seeds() {
 [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null
 ninja -C build/fuzz "${targets[@]}"
 mkdir -p build/fuzz/found
-export LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp:print_suppressions=0
 for target in "${targets[@]}"; do
   corpus=build/fuzz/corpus/$target
   mkdir -p "$corpus" "$corpus.seeds"
