@@ -21,9 +21,9 @@ scene::Passing passingOf(const Parameters& parameters) {
 SizeExpr fullMaterials() { return parameter("materials"); }
 
 void checkMaterials(const PassContext& ctx, const std::string& pass) {
-  const VkExtent3D specular = ctx.extent("gbuffer.specular"), position = ctx.extent("gbuffer.position");
+  const VkExtent3D specular = ctx.extent("gbuffer.specular"), normal = ctx.extent("gbuffer.normal");
   if (!fullMaterials(ctx.parameters()) ||
-      (specular.width == position.width && specular.height == position.height))
+      (specular.width == normal.width && specular.height == normal.height))
     return;
   throw Error(ExitCode::BadInput,
               "pass `" + pass + "`: materials are `full`, but those of the G-buffer are not",

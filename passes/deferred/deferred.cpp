@@ -62,6 +62,10 @@ class Deferred : public Pass {
          "that of the VPLs")
         .makeOptional()
         .when(parameter("near_light"));
+    d.input("near_gloss", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: the same light under the lobe of each surface, W/(sr m^2) (`gloss` of pass near-field), "
+            "for which `near_field` stands in if it is not wired")
+        .when(parameter("near_light") * fullMaterials());
     d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi from VPLs where rays have found it (pass contact-rays), to which "
             "`near_field` is added as it is; a: above 0 there, and written to `irradiance`; not used where "
@@ -275,6 +279,7 @@ class Deferred : public Pass {
     defines["NEAR_FIELD"] = ctx.has("near_field") ? "1" : "0";
     defines["SHADOWED"] = ctx.has("atlas") ? "1" : "0";
     defines["GLOSS"] = fullMaterials(ctx.parameters()) && !masked_ ? "1" : "0";
+    defines["NEAR_GLOSS"] = ctx.has("near_gloss") && !masked_ ? "1" : "0";
     defines["TILED"] = "0";
     if (ctx.has("atlas")) {
       const VkExtent3D maps = ctx.extent("atlas");

@@ -39,16 +39,20 @@ class NearFieldDevice : public Pass {
               "indirect dispatch over `items`");
     d.scratch("traced", buffer("vec4", 16, texels), kReadWrite,
               "samples of the listed blocks, before adjacent tiles share theirs");
+    d.scratch("traced_gloss", buffer("vec4", 16, max(fullMaterials() * texels, 1)), kReadWrite,
+              "with full materials, as `traced`, for `gloss`");
     addSteps(d);
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkNearField(ctx.parameters(), "near-field-device"); }
+  void prepare(PrepareContext& ctx) override { checkNearField(ctx, "near-field-device"); }
 
   void record(RecordContext& ctx) override {
+    checkGBufferSize(ctx, "near-field-device", ctx.view().size);
     const std::string& light = ctx.parameters().text("light");
     if (light == "none") {
       ctx.clear("samples", {});
+      ctx.clear("gloss", {});
       ctx.fill("spread", 0);
       return;
     }
@@ -78,10 +82,12 @@ class NearFieldDevice : public Pass {
         .constant("saccade", [](const RecordContext& ctx) { return ctx.frame().saccade; })
         .constant("isFirst", [](const RecordContext& ctx) { return uint32_t(ctx.firstFrame()); });
     withRays("near-field-device/tiles.comp").define("MAP_ALONE", is("light", "map")).over("tiles");
-    withRays("near-field-device/trace.comp").define("MAP_ALONE", is("light", "map"));
+    withRays("near-field-device/trace.comp")
+        .define("MAP_ALONE", is("light", "map"))
+        .define("LOBES", wired("gbuffer"));
     d.step("near-field-device/end.comp").groups(1);
     withRays("near-field-device/merge.comp").threads(scene::kGatherCells);
-    d.step("near-field-device/filter.comp").over("samples");
+    d.step("near-field-device/filter.comp").define("GLOSS", fullMaterials()).over("samples");
   }
 
   // onlyLength: whether the rays that follow find no light.

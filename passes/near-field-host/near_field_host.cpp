@@ -41,7 +41,7 @@ class NearFieldHost : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkNearField(ctx.parameters(), "near-field-host"); }
+  void prepare(PrepareContext& ctx) override { checkNearField(ctx, "near-field-host"); }
 
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
@@ -58,6 +58,12 @@ class NearFieldHost : public Pass {
     settings.seed = frame.seed;
     settings.fullMaterials = fullMaterials(p);
     settings.mapAlone = p.text("light") == "map";
+    checkGBufferSize(ctx, "near-field-host", ctx.view().size);
+    if (ctx.has("gbuffer")) {
+      settings.normal = ctx.inputAs<uint64_t>("gbuffer.normal");
+      settings.specular = ctx.inputAs<uint64_t>("gbuffer.specular");
+    }
+    gloss_.resize(settings.fullMaterials ? samples.size() : 0);
     NearFieldStatistics statistics;
     double area = 0;
     if (p.text("light") != "none" && frame.scene != nullptr && frame.geometry != nullptr &&
@@ -70,7 +76,7 @@ class NearFieldHost : public Pass {
         area = p.real("share") * length * length / double(p.integer("vpls"));
         settings.area = float(area);
         settings.cellWidth = float(kNearCellWidth * length);
-        return traceNearField(frame, ctx.view(), *rays, settings, image_);
+        return traceNearField(frame, ctx.view(), *rays, settings, image_, gloss_);
       };
       const auto knownLength = [&] { return length_ > 0 ? length_ : diagonal(*frame.geometry); };
       if (first) {  // first the length alone, then the cache
@@ -87,10 +93,13 @@ class NearFieldHost : public Pass {
       learnLength(statistics);
     } else {
       std::ranges::fill(image_, glm::vec4(0));
+      std::ranges::fill(gloss_, glm::vec4(0));
     }
-    std::ranges::transform(image_, samples.begin(), [](glm::vec4 v) {
+    const auto halves = [](glm::vec4 v) {
       return glm::packHalf4x16(glm::vec4(glm::min(glm::vec3(v), 65504.0f), v.a));
-    });
+    };
+    std::ranges::transform(image_, samples.begin(), halves);
+    if (!gloss_.empty()) std::ranges::transform(gloss_, ctx.outputAs<uint64_t>("gloss").begin(), halves);
     ctx.outputAs<glm::vec4>("spread")[0] = glm::vec4(area, 0, 0, 0);
     ctx.counter("rays", double(statistics.rays));
     ctx.counter("shaded", double(statistics.shaded));
@@ -106,7 +115,7 @@ class NearFieldHost : public Pass {
 
   double length_ = 0;  // m, mean ray length of the frames so far; 0 as long as no ray has met anything
   GatherCache cache_;  // of the frames so far
-  std::vector<glm::vec4> image_;
+  std::vector<glm::vec4> image_, gloss_;
 };
 
 FOVEA_PASS(NearFieldHost);

@@ -15,11 +15,21 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
           "y: s, after which n rays gathered before are worth n / (1 + n s), as light has changed; z: share "
           "of their history that samples have lost (pass eye-paths)")
       .makeOptional();
-  d.output("samples",
-           image2D(VK_FORMAT_R16G16B16A16_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)), write,
+  d.input("gbuffer", "gbuffer", gbufferMembers(read, {"normal", "specular"}),
+          "surfaces seen by the eye, whose lobes `gloss` is for; if not wired, it is the same as `samples`")
+      .makeOptional()
+      .when(fullMaterials());
+  const SizeExpr width = ceilDiv(viewWidth(), 2), height = ceilDiv(viewHeight(), 2);
+  d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), write,
            "rgb: irradiance / pi, W/(sr m^2), at one pixel of each 2 x 2 block, or of each `spacing` x "
            "`spacing` block outside the fovea; a: code of the sampled pixel and of whether it shows a "
            "surface, for pass temporal-accumulation");
+  d.output("gloss",
+           image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
+                   max(fullMaterials() * height, 1)),
+           write,
+           "with full materials, rgb: at the same pixels, the mean of the same light under the lobe of the "
+           "surface, W/(sr m^2); a: as in `samples`; otherwise one undefined texel");
   d.output("spread", spreadBuffer(), write, "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
   d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
@@ -48,12 +58,26 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
             "those of them at whose ends light of further bounces was gathered rather than known");
 }
 
-void checkNearField(const Parameters& parameters, const std::string& pass) {
-  const auto spacing = uint32_t(parameters.integer("spacing"));
+void checkNearField(const PassContext& ctx, const std::string& pass) {
+  const auto spacing = uint32_t(ctx.parameters().integer("spacing"));
   if (!std::has_single_bit(spacing))
     throw Error(ExitCode::BadInput,
                 "pass `" + pass + "`: spacing " + std::to_string(spacing) + " is not a power of two",
                 "use 2, 4 or 8");
+  if (ctx.has("gbuffer")) checkMaterials(ctx, pass);
+}
+
+void checkGBufferSize(const PassContext& ctx, const std::string& pass, glm::uvec2 view) {
+  if (!ctx.has("gbuffer")) return;
+  const VkExtent3D size = ctx.extent("gbuffer.normal");
+  if (view == glm::uvec2(size.width, size.height)) return;
+  const auto text = [](uint32_t width, uint32_t height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  throw Error(ExitCode::BadInput,
+              "pass `" + pass + "`: `gbuffer` has " + text(size.width, size.height) +
+                  " pixels, its view has " + text(view.x, view.y),
+              "wire the G-buffer of the view that the pass looks through");
 }
 
 }  // namespace fovea::passes

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/packing.hpp>
 #include <vector>
 
 #include "framework/base/random.h"
@@ -13,6 +14,7 @@
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/near-field-host/cached_light.h"
+#include "passes/near-field-host/receiver_lobe.h"
 #include "passes/same_plane.h"
 #include "shaders/common/records/near_field.h"
 #include "shaders/common/records/rays.h"
@@ -28,9 +30,35 @@ struct Row : GatheredLight {
   double hits = 0, length = 0;
 };
 
+// What the eye sees at a pixel.
+struct Seen {
+  TracedSurface surface;
+  ReceiverLobe lobe;
+};
+
+// Light that arrives: irradiance / pi, and the mean under the lobe of the surface.
+struct NearLight {
+  glm::vec3 light{0}, gloss{0};
+
+  void add(const Seen& to, glm::vec3 its, glm::vec3 direction) {
+    light += its;
+    gloss += to.lobe.response(direction) * its;
+  }
+  NearLight& operator+=(const NearLight& other) {
+    light += other.light;
+    gloss += other.gloss;
+    return *this;
+  }
+};
+
+// A sample of a block of pixels. code: sampleCode().
+struct Sample : NearLight {
+  float code = 0;
+};
+
 // The sample of `spacing` x `spacing` pixels outside the fovea, and where it was taken.
 struct Tile {
-  glm::vec4 sample{0};
+  Sample sample;
   TracedSurface at;
   bool narrow = false;  // whether it is divided into blocks of 2 x 2 pixels
 };
@@ -38,11 +66,12 @@ struct Tile {
 class Tracer {
  public:
   Tracer(const Frame& frame, const View& view, const RayScene& rays, const NearFieldSettings& settings,
-         std::span<glm::vec4> image)
+         std::span<glm::vec4> image, std::span<glm::vec4> gloss)
       : view_(view),
         settings_(settings),
         surfaces_(frame, view, rays, settings.fullMaterials),
         image_(image),
+        gloss_(gloss),
         columns_((view.size.x + 1) / 2),
         rows_((view.size.y + 1) / 2),
         fovea_(makeFovea(view.gaze, glm::vec2(view.size), settings.foveaRadius)),
@@ -64,9 +93,9 @@ class Tracer {
       if (!tile.narrow) {
         tile.sample = sampleOf(corner, spacing, tile.at, statistics);
       } else {
-        forTexels({column, row}, [&](glm::uvec2 texel, glm::vec4& value) {
+        forTexels({column, row}, [&](glm::uvec2 texel) {
           TracedSurface at;
-          value = sampleOf(2u * texel, 2, at, statistics);
+          write(texel, sampleOf(2u * texel, 2, at, statistics));
         });
       }
     }
@@ -78,18 +107,18 @@ class Tracer {
     for (uint32_t column = 0; column < tileColumns(); ++column) {
       const Tile& tile = tiles_[row * tileColumns() + column];
       if (tile.narrow) continue;
-      const glm::vec4 shared(tile.at.there ? meanAround(int(column), int(row)) : glm::vec3(0), tile.sample.a);
-      forTexels({column, row}, [&](glm::uvec2, glm::vec4& value) { value = shared; });
+      const Sample shared{tile.at.there ? meanAround(int(column), int(row)) : NearLight{}, tile.sample.code};
+      forTexels({column, row}, [&](glm::uvec2 texel) { write(texel, shared); });
     }
   }
 
   glm::vec4 pixelLight(glm::uvec2 pixel, Row& statistics) const {
-    const TracedSurface v = surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays);
-    if (!v.there) return glm::vec4(0);
-    glm::vec3 sum(0);
+    const Seen seen = look(pixel, statistics);
+    if (!seen.surface.there) return glm::vec4(0);
+    NearLight sum;
     for (uint32_t turn = settings_.turn; turn < settings_.turn + settings_.samples; ++turn)
-      sum += lightAt(v, pixel, turn, statistics);
-    return {sum / float(std::max(settings_.samples, 1u)), 1};
+      sum += lightAt(seen, pixel, turn, statistics);
+    return {sum.light / float(std::max(settings_.samples, 1u)), 1};
   }
 
  private:
@@ -98,9 +127,24 @@ class Tracer {
     const uint32_t step = settings_.spacing / 2;
     for (uint32_t i = 0; i < step * step; ++i) {
       const glm::uvec2 texel = step * tile + glm::uvec2(i % step, i / step);
-      if (texel.x < columns_ && texel.y < rows_)
-        function(texel, image_[size_t(texel.y) * columns_ + texel.x]);
+      if (texel.x < columns_ && texel.y < rows_) function(texel);
     }
+  }
+
+  void write(glm::uvec2 texel, const Sample& sample) {
+    const size_t place = size_t(texel.y) * columns_ + texel.x;
+    image_[place] = {sample.light, sample.code};
+    if (!gloss_.empty()) gloss_[place] = {sample.gloss, sample.code};
+  }
+
+  Seen look(glm::uvec2 pixel, Row& statistics) const {
+    Seen seen{surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays), {}};
+    if (settings_.normal.empty() || !seen.surface.there) return seen;
+    const size_t place = size_t(pixel.y) * view_.size.x + pixel.x;
+    seen.lobe = ReceiverLobe(glm::unpackHalf4x16(settings_.normal[place]),
+                             glm::unpackHalf4x16(settings_.specular[place]),
+                             glm::normalize(view_.eye - seen.surface.position));
+    return seen;
   }
 
   // Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
@@ -118,17 +162,21 @@ class Tracer {
   }
 
   // Wider or flatter weights would make what has just come into view flicker more, as its brightest sample is dropped.
-  glm::vec3 meanAround(int column, int row) const {
+  NearLight meanAround(int column, int row) const {
     static constexpr float kWeights[] = {1, kTileMiddleWeight, 1};
     const TracedSurface& at = tiles_[size_t(row) * tileColumns() + size_t(column)].at;
-    glm::vec4 sum(0);
+    NearLight sum;
+    float weights = 0;
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, int(tileRows()) - 1); ++y)
       for (int x = std::max(column - 1, 0); x <= std::min(column + 1, int(tileColumns()) - 1); ++x) {
         const Tile& other = tiles_[size_t(y) * tileColumns() + size_t(x)];
         if (other.narrow || !sameSurface(at, other.at)) continue;
-        sum += kWeights[x - column + 1] * kWeights[y - row + 1] * glm::vec4(glm::vec3(other.sample), 1);
+        const float weight = kWeights[x - column + 1] * kWeights[y - row + 1];
+        sum.light += weight * other.sample.light;
+        sum.gloss += weight * other.sample.gloss;
+        weights += weight;
       }
-    return glm::vec3(sum) / sum.w;
+    return {sum.light / weights, sum.gloss / weights};
   }
   static bool sameSurface(const TracedSurface& a, const TracedSurface& b) {
     return b.there && onSamePlane(a.position, a.normal, b.position, b.normal);
@@ -136,25 +184,29 @@ class Tracer {
 
   // Returns the mean over the turns. `at` becomes the surface of the first turn's pixel, from which rays also leave in
   // those turns whose pixel shows another surface.
-  glm::vec4 sampleOf(glm::uvec2 corner, uint32_t side, TracedSurface& at, Row& statistics) const {
+  Sample sampleOf(glm::uvec2 corner, uint32_t side, TracedSurface& at, Row& statistics) const {
     const glm::uvec2 block = corner / side;
     const uint32_t factor = side == 2 ? settings_.foveaFactor : 1, count = factor * settings_.samples;
     const auto seenIn = [&](uint32_t turn) {
       const glm::uvec2 pixel = corner + samplePixel(turn, side, block);
       const bool inside = pixel.x < view_.size.x && pixel.y < view_.size.y;
-      return inside ? surfaces_.look(glm::vec2(pixel) + 0.5f, statistics.rays) : TracedSurface{};
+      return inside ? look(pixel, statistics) : Seen{};
     };
-    at = seenIn(settings_.turn);
-    glm::vec3 sum(0);
+    const Seen first = seenIn(settings_.turn);
+    at = first.surface;
+    NearLight sum;
     for (uint32_t i = 0; at.there && i < count; ++i) {
-      const TracedSurface v = i < factor ? at : seenIn(settings_.turn + i / factor);
-      sum += lightAt(sameSurface(at, v) ? v : at, block, factor * settings_.turn + i, statistics);
+      const Seen seen = i < factor ? first : seenIn(settings_.turn + i / factor);
+      sum += lightAt(sameSurface(at, seen.surface) ? seen : first, block, factor * settings_.turn + i,
+                     statistics);
     }
-    return {sum / float(count), float(sampleCode(side, samplePixel(settings_.turn, side, block), at.there))};
+    const uint32_t code = sampleCode(side, samplePixel(settings_.turn, side, block), at.there);
+    return {{sum.light / float(count), sum.gloss / float(count)}, float(code)};
   }
 
   // Adjacent blocks, 4 x 4 of them, take turns in one sequence.
-  glm::vec3 lightAt(const TracedSurface& v, glm::uvec2 block, uint32_t turn, Row& statistics) const {
+  NearLight lightAt(const Seen& to, glm::uvec2 block, uint32_t turn, Row& statistics) const {
+    const TracedSurface& v = to.surface;
     const glm::uvec2 group = block / 4u, place = block % 4u;
     const uint32_t order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
     const uint32_t stream = randomStream(settings_.seed, group.x, kNearStream, group.y);
@@ -163,15 +215,17 @@ class Tracer {
     const float radius2 = settings_.area * glm::one_over_pi<float>();
     const float choice = std::max(uniformFloat(randomStream(stream, turn, kChoiceStream, order)), 1e-6f);
     const float reach = radius2 > 0 ? std::sqrt(radius2 * (kSure / choice - 1)) : kFarAway;
-    glm::vec3 light(0);
+    NearLight light;
     if (surfaces_.hasEmitters() && radius2 > 0)
-      light = fromEmitters(v, hashCombine(stream, kNearAimStream), 16 * turn + order, statistics);
+      addEmitters(light, to, hashCombine(stream, kNearAimStream), 16 * turn + order, statistics);
     if (glm::dot(direction, v.face) <= 0) return light;
     const bool tracesOutside = surfaces_.hasEnvironment() && radius2 > 0;
     const TracedSurface hit =
         surfaces_.arrive(v.origin, direction, tracesOutside ? kFarAway : reach, statistics.rays);
-    if (tracesOutside && hit.isOutside())
-      return light + hit.brighter * sharedLight(v, surfaces_.towardsOutside(v, direction));
+    if (tracesOutside && hit.isOutside()) {
+      light.add(to, hit.brighter * sharedLight(v, surfaces_.towardsOutside(v, direction)), direction);
+      return light;
+    }
     if (!hit.there || settings_.mapAlone) return light;
     const float distance = glm::distance(hit.position, v.position);
     if (tracesOutside && distance > reach) return light;
@@ -187,10 +241,12 @@ class Tracer {
                                     settings_.cellWidth, statistics);
     if (const glm::vec3 emitted = surfaces_.emitted(hit); emitted != glm::vec3(0)) {
       const float cosine = cosineDensity(v, direction);
-      light += emitted * (cosine / (cosine * probability +
-                                    float(settings_.emitterPoints) * surfaces_.emitterDensity(v, hit)));
+      const float points = float(settings_.emitterPoints);
+      light.add(to, emitted * (cosine / (cosine * probability + points * surfaces_.emitterDensity(v, hit))),
+                direction);
     }
-    return light + radiance * (partAt(distance) / probability);
+    light.add(to, radiance * (partAt(distance) / probability), direction);
+    return light;
   }
 
   // The part of a ray aimed at emissive surfaces, in the balance heuristic beside the cosine-weighted one, which may
@@ -198,18 +254,19 @@ class Tracer {
   // (Talbot et al., "Importance Resampling for Global Illumination", EGSR 2005). The points share out the emitters, and
   // those of consecutive samples follow low-discrepancy sequences. For the environment there are as many
   // cosine-weighted points beside them.
-  glm::vec3 fromEmitters(const TracedSurface& v, uint32_t stream, uint32_t index, Row& statistics) const {
+  void addEmitters(NearLight& sum, const Seen& to, uint32_t stream, uint32_t index, Row& statistics) const {
+    const TracedSurface& v = to.surface;
     const uint32_t points = settings_.emitterPoints;
     const float place = uniformFloat(hashCombine(stream, 0) + index * kGoldenRatio);
     WeightedChoice choice(uniformFloat(hashCombine(stream, 1) + index * kSilverRatio));
     SurfaceTracer::EmitterRay chosen;
     glm::vec3 light(0);
-    const auto consider = [&](const SurfaceTracer::EmitterRay& to) {
-      if (!to.there || (settings_.mapAlone && to.triangle != kNoIndex)) return;
-      const glm::vec3 its = sharedLight(v, to) / float(points);
+    const auto consider = [&](const SurfaceTracer::EmitterRay& ray) {
+      if (!ray.there || (settings_.mapAlone && ray.triangle != kNoIndex)) return;
+      const glm::vec3 its = sharedLight(v, ray) / float(points);
       const float part = its.r + its.g + its.b;
       if (!(part > 0) || !choice.takes(part)) return;
-      chosen = to;
+      chosen = ray;
       light = its;
     };
     const auto pointOf = [&](uint32_t i) { return streamSequence(hashCombine(stream, i + 2), index); };
@@ -219,8 +276,9 @@ class Tracer {
     }
     for (uint32_t i = points; surfaces_.hasEnvironment() && i < 2 * points; ++i)
       consider(surfaces_.towardsOutside(v, cosineDirection(v.normal, pointOf(i))));
-    if (!choice.any()) return glm::vec3(0);
-    return light * surfaces_.visibility(v, chosen, statistics.rays) * choice.inverseProbability();
+    if (!choice.any()) return;
+    sum.add(to, light * surfaces_.visibility(v, chosen, statistics.rays) * choice.inverseProbability(),
+            chosen.direction);
   }
 
   // The light along a ray over the densities of all ways to choose it, as far as each counts. Beside the points on
@@ -249,7 +307,7 @@ class Tracer {
   const View& view_;
   const NearFieldSettings& settings_;
   SurfaceTracer surfaces_;
-  std::span<glm::vec4> image_;
+  std::span<glm::vec4> image_, gloss_;
   uint32_t columns_, rows_;
   Fovea fovea_;
   std::vector<Tile> tiles_;
@@ -288,8 +346,9 @@ glm::uvec2 samplePixel(uint32_t turn, uint32_t side, glm::uvec2 block) {
 }
 
 NearFieldStatistics traceNearField(const Frame& frame, const View& view, const RayScene& rays,
-                                   const NearFieldSettings& settings, std::span<glm::vec4> image) {
-  Tracer tracer(frame, view, rays, settings, image);
+                                   const NearFieldSettings& settings, std::span<glm::vec4> image,
+                                   std::span<glm::vec4> gloss) {
+  Tracer tracer(frame, view, rays, settings, image, gloss);
   const NearFieldStatistics statistics =
       traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row& sum) { tracer.traceTiles(row, sum); });
   traceRows(tracer.tileRows(), settings, [&](uint32_t row, Row&) { tracer.spreadTiles(row); });
@@ -300,7 +359,7 @@ NearFieldStatistics traceNearFieldPixels(const Frame& frame, const View& view, c
                                          const NearFieldSettings& settings,
                                          std::span<const glm::uvec2> pixels, std::span<glm::vec4> light) {
   constexpr size_t kChunk = 256;
-  const Tracer tracer(frame, view, rays, settings, {});
+  const Tracer tracer(frame, view, rays, settings, {}, {});
   return traceRows(uint32_t((pixels.size() + kChunk - 1) / kChunk), settings, [&](uint32_t row, Row& sum) {
     const size_t end = std::min((row + 1) * kChunk, pixels.size());
     for (size_t i = row * kChunk; i < end; ++i) light[i] = tracer.pixelLight(pixels[i], sum);

@@ -30,6 +30,8 @@ struct NearFieldSettings {
   // If given, light of further bounces comes from here where it is known, and what is gathered is added.
   GatherCache* cache = nullptr;
   float cellWidth = 0;  // of its cells, m
+  // Texels of the G-buffer, in half precision, for the lobes of surfaces.
+  std::span<const uint64_t> normal, specular;
 };
 
 struct NearFieldStatistics {
@@ -48,9 +50,10 @@ struct NearFieldStatistics {
 // image: one texel per block of 2 x 2 pixels, in rows of (size.x + 1) / 2. rgb: irradiance / pi at one pixel of the
 // block or, outside the fovea and not close to an emissive surface, of the `spacing` x `spacing` pixels that hold it;
 // 0 if there is no sample. a: sampleCode().
+// gloss: if not empty, the same with the mean of the light under the lobe of the surface in place of irradiance / pi.
 NearFieldStatistics traceNearField(const scene::Frame& frame, const scene::View& view,
                                    const scene::RayScene& rays, const NearFieldSettings& settings,
-                                   std::span<glm::vec4> image);
+                                   std::span<glm::vec4> image, std::span<glm::vec4> gloss = {});
 
 // The same light at single pixels, each with `samples` rays of its own; `foveaRadius` and `spacing` are not used.
 //

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "fovea/error.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -41,6 +43,12 @@ class TemporalAccumulation : public Pass {
         "the mean is there, if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
+    d.input("gloss", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "rgb: other light at the same pixels as `samples` (`gloss` of pass near-field)")
+        .when(fullMaterials());
+    d.input("gloss_history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "`gloss_mean` of the previous frame")
+        .when(fullMaterials());
     d.input("change", changeBuffer(), Usage::TexelRead,
             "y: s, after which a history of n samples is worth n / (1 + n s), as light has changed; z: share "
             "of their history that samples have lost (pass eye-paths)")
@@ -50,6 +58,12 @@ class TemporalAccumulation : public Pass {
         .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
+    d.output("gloss_mean",
+             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
+                     max(fullMaterials() * height, 1)),
+             Usage::ColorAttachment,
+             "rgb: mean of `gloss`, in its unit; a: as in `mean`; undefined if that is not wired; a single "
+             "texel unless materials are full");
     d.parameter(
         "frames", real(16, 1, 1000),
         "length of the mean: each sample has at least the weight of one in this many; for blocks larger than "
@@ -66,13 +80,26 @@ class TemporalAccumulation : public Pass {
                 "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
+    declareMaterials(d, "with `full` there may be `gloss`");
     // Samples are for blocks if a texel of them covers several pixels.
-    const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1);
-    d.fullscreen("temporal-accumulation/temporal_accumulation.frag", {"mean"})
-        .define("BLOCKS", blocks)
-        .define("CHANGES", wired("change"))
-        .tiles("tiles");
+    const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1), gloss = wired("gloss");
+    const auto accumulate = [&](const char* name, std::vector<std::string> means) -> StepSpec& {
+      return d.fullscreen("temporal-accumulation/temporal_accumulation.frag", std::move(means))
+          .called(name)
+          .define("BLOCKS", blocks)
+          .define("CHANGES", wired("change"))
+          .tiles("tiles");
+    };
+    accumulate("mean", {"mean"}).when(!gloss).define("GLOSS", 0);
+    accumulate("mean with gloss", {"mean", "gloss_mean"}).when(gloss).define("GLOSS", 1);
     return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    if (ctx.has("gloss") != ctx.has("gloss_history"))
+      throw Error(ExitCode::BadInput,
+                  "pass `temporal-accumulation`: of `gloss` and `gloss_history` only one is wired",
+                  "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
   }
 
   void record(RecordContext& ctx) override {
@@ -80,7 +107,7 @@ class TemporalAccumulation : public Pass {
     const uint32_t pixels = ctx.extent("mean").width, texels = ctx.extent("samples").width;
     const auto shift =
         int32_t(std::bit_width((pixels + texels - 1) / texels - 1));  // a texel is 2^shift pixels wide
-    Commands commands = ctx.step("temporal_accumulation");
+    Commands commands = ctx.step(ctx.has("gloss") ? "mean with gloss" : "mean");
     const bool first = ctx.firstFrame();
     const uint32_t rays = uint32_t(p.integer("first_samples")),
                    saccade = ctx.frame().saccade > 0 ? uint32_t(p.integer("saccade_samples")) : 1;

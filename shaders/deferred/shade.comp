@@ -8,7 +8,7 @@
 // Defines: INTERLEAVE; PAGE_VPLS, at most 1024; SHADOWED 0/1; TILED 0/1; KERNEL_DISC 0/1; ACCUMULATE 0/1, 1 for all
 // pages but the first; NEAR_FIELD 0/1, 1 to add the light of pass near-field; MASKED 0/1, 1 to shade only the listed
 // blocks of BLOCK x BLOCK pixels; SCALE 1/2, see samples.glsl; GLOSS 0/1, 1 to find also the light that the surfaces of
-// full materials reflect, see common/vpl_gloss.glsl.
+// full materials reflect, see common/vpl_gloss.glsl; NEAR_GLOSS 0/1, 1 if pass near-field has found its part of that.
 #if GLOSS
 #include "common/vpl_gloss.glsl"
 #endif
@@ -40,6 +40,9 @@ layout(r32ui) uniform readonly uimage2DArray atlas;
 
 #if NEAR_FIELD
 layout(rgba16f) uniform readonly image2D nearField;
+#if NEAR_GLOSS
+layout(rgba16f) uniform readonly image2D nearGloss;
+#endif
 #endif
 
 #if GLOSS
@@ -281,23 +284,27 @@ void main() {
     ivec2 at = sampleAt(k, size);
     if (any(greaterThanEqual(at, size))) continue;
     // In units of `irradiance`, E / pi; one subset stands for all of them.
-    vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi);
+    vec3 sum = receivers[k].sum * (float(INTERLEAVE * INTERLEAVE) / kPi), gloss = sum;
+#if GLOSS
+    vec3 underLobe = receivers[k].gloss * (float(INTERLEAVE * INTERLEAVE) / receivers[k].lobe.albedo);
+    gloss = mix(sum, underLobe, receivers[k].lobe.share);
+#endif
 #if NEAR_FIELD && !ACCUMULATE
-    sum += imageLoad(nearField, samplePixel(at, pixels)).rgb;
+    vec3 near = imageLoad(nearField, samplePixel(at, pixels)).rgb;
+    sum += near;
+#if NEAR_GLOSS
+    near = imageLoad(nearGloss, samplePixel(at, pixels)).rgb;
+#endif
+    gloss += near;
 #endif
 #if ACCUMULATE
     sum += imageLoad(partial, at).rgb;
 #endif
     imageStore(partial, at, vec4(min(sum, 65504.0), 0.0));
 #if GLOSS
-    vec3 gloss = receivers[k].gloss * (float(INTERLEAVE * INTERLEAVE) / receivers[k].lobe.albedo);
-#if NEAR_FIELD && !ACCUMULATE
-    gloss += imageLoad(nearField, samplePixel(at, pixels)).rgb;
-#endif
 #if ACCUMULATE
     gloss += imageLoad(partialGloss, at).rgb;
 #endif
-    gloss = mix(sum, gloss, receivers[k].lobe.share);
     imageStore(partialGloss, at, vec4(min(gloss, 65504.0), 0.0));
 #endif
   }

@@ -1,10 +1,13 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
-// (common/rays/near_light.glsl).
+// (common/rays/near_light.glsl); LOBES 0/1, 1 if the G-buffer says how surfaces reflect light.
 #include "common/blocks.glsl"
 #include "common/device/sums.glsl"
 #include "common/rays/gather_cache.glsl"
 #include "common/rays/near_light.glsl"
 #include "common/same_surface.glsl"
+#if LOBES
+#include "receiver_lobe.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -13,6 +16,9 @@ layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
 layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
 layout(std430) readonly buffer ListedBlock { uint count; } listed;
 layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
+#if RAY_PASSAGE
+layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe; a: the same code
+#endif
 layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
 
 layout(push_constant) uniform Constants {
@@ -33,8 +39,17 @@ vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
   return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);
 }
 
+#if LOBES
+ReceiverLobe lobe;  // of the surface whose light is found
+float underLobe(vec3 direction) { return response(lobe, direction); }
+#else
+float underLobe(vec3 direction) { return 1.0; }
+#endif
+
+uvec2 pixelOf(uint turn_, uvec2 corner, uint side) { return corner + samplePixel(turn_, side, corner / side); }
+
 TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
-  uvec2 pixel = corner + samplePixel(turn_, side, corner / side);
+  uvec2 pixel = pixelOf(turn_, corner, side);
   if (any(greaterThanEqual(pixel, viewSize()))) return kNothingTraced;
   return look(vec2(pixel) + 0.5);
 }
@@ -50,15 +65,27 @@ void main() {
   // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
   TracedSurface at = seenIn(frameIndex, corner, side), v = at;
   if (part > 0u) v = seenIn(frameIndex + part, corner, side);
-  if (!v.there || !onSamePlane(at.position, at.normal, v.position, v.normal)) v = at;
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; at.there && i < rays; ++i)
-    sum += nearLight(v, block, rays * (frameIndex + part) + i, bounces, emitterPoints);
-  sum /= float(rays * parts);
+  bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
+  if (leavesFirst) v = at;
+#if LOBES
+  lobe = receiverLobe(ivec2(min(pixelOf(leavesFirst ? frameIndex : frameIndex + part, corner, side), viewSize() - 1u)),
+                      v.position);
+#endif
+  NearLight sum = NearLight(vec3(0.0), vec3(0.0));
+  for (uint i = 0u; at.there && i < rays; ++i) {
+    NearLight its = nearLight(v, block, rays * (frameIndex + part) + i, bounces, emitterPoints);
+    sum.light += its.light;
+    sum.gloss += its.gloss;
+  }
+  sum.light /= float(rays * parts);
+  sum.gloss /= float(rays * parts);
 
   uvec2 inside = samplePixel(frameIndex, side, block);
   uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
-  traced.list[index] = vec4(part > 0u ? traced.list[index].rgb + sum : sum, float(code));
+  traced.list[index] = vec4(sum.light + (part > 0u ? traced.list[index].rgb : vec3(0.0)), float(code));
+#if RAY_PASSAGE
+  tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), float(code));
+#endif
   if (wide && part == 0u) {
     uint tile = corner.y / spacing * tileCount(spacing).x + corner.x / spacing;
     tiles.list[tile] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));

@@ -21,6 +21,7 @@ const uint kEmitterPoints = 4u;
 float discArea() { return spread.list[0].x; }
 void noteLength(float distance_, float probability) {}
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v, bounces, 1u, stream); }
+float underLobe(vec3 direction) { return 1.0; }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -28,7 +29,7 @@ void main() {
   vec4 light = turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
   if (imageLoad(shadeMask, pixel).r > 0.0 && imageLoad(nearField, pixel).a == 0.0) {
     TracedSurface v = look(vec2(pixel) + 0.5);
-    if (v.there) light.rgb += nearLight(v, uvec2(pixel), turn_, bounces, kEmitterPoints) / float(samples);
+    if (v.there) light.rgb += nearLight(v, uvec2(pixel), turn_, bounces, kEmitterPoints).light / float(samples);
     light.a = float(v.there);
     atomicAdd(counters.rays, rayCount);
     if (v.there && turn_ == 0u) atomicAdd(counters.pixels, 1u);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 
 #include "tests/passes/deferred_scenes.h"
 #include "tests/passes/full_materials_reference.h"
@@ -40,9 +41,15 @@ struct Output {
   std::vector<float> irradiance, gloss, indirect;
 };
 
-Output run(const GBuffer& g, const std::vector<Vpl>& vpls, int interleave, bool disc = true) {
+// nearField, nearGloss: at all pixels; not wired if negative.
+Output run(const GBuffer& g, const std::vector<Vpl>& vpls, int interleave, bool disc = true,
+           float nearField = -1, float nearGloss = -1) {
   PassTest test("deferred");
   g.wire(test);
+  for (const auto& [port, value] : {std::pair("near_field", nearField), {"near_gloss", nearGloss}})
+    if (value >= 0)
+      test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(g.width), uint32_t(g.height), 1,
+                 std::vector<uint64_t>(g.pixels.size(), glm::packHalf4x16(glm::vec4(glm::vec3(value), 1))));
   test.scene(seenFrom(kEye)).param("materials", "full").param("kernel", disc ? "disc" : "clamp");
   test.buffer("vpls", vpls, "Vpl").param("interleave", interleave);
   test.run();
@@ -135,6 +142,39 @@ TEST(DeferredFull, DiffuseLayersGetWhatTheSurfaceLetsThrough) {
           EXPECT_NEAR(double(run(g, vpls, 1).irradiance[0]) / diffuse, want, metallic > 0 ? 0.01 : 0.06)
               << roughness << " " << f90 << " " << metallic << " " << cosine;
         }
+}
+
+// What rays have found under the lobe of a surface of any roughness comes on top of what VPLs have. Without it, what they
+// have found of its irradiance does.
+TEST(DeferredFull, AddsTheNearFieldUnderTheLobe) {
+  const auto vpls = randomVpls(50);
+  for (const float roughness : {0.2f, 0.5f, 0.8f}) {
+    const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), 0, roughness));
+    const Output none = run(g, vpls, 1), one = run(g, vpls, 1, true, 3), both = run(g, vpls, 1, true, 3, 7);
+    for (size_t i = 0; i < none.gloss.size(); i += 4) {
+      const auto near = [&](const std::vector<float>& with, const std::vector<float>& without, float added) {
+        ASSERT_NEAR(with[i], without[i] + added, 2e-3f * with[i]) << roughness << " " << i;
+      };
+      near(one.irradiance, none.irradiance, 3);
+      near(both.irradiance, none.irradiance, 3);
+      near(one.gloss, none.gloss, 3);
+      near(both.gloss, none.gloss, 7);
+    }
+  }
+}
+
+// More VPLs than one page holds.
+TEST(DeferredFull, PagesAddUp) {
+  const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), 0, 0.5f));
+  const auto vpls = randomVpls(2500);
+  const Output out = run(g, vpls, 1);
+  for (size_t i = 0; i < g.pixels.size(); ++i) {
+    const glm::dvec3 lobe = underLobe(g.pixels[i], vpls, true);
+    for (int c = 0; c < 3; ++c) {
+      const double want = glm::mix(double(out.irradiance[4 * i + size_t(c)]), lobe[c], shareOf(g.pixels[i]));
+      ASSERT_NEAR(out.gloss[4 * i + size_t(c)], want, 0.01 * want) << i;
+    }
+  }
 }
 
 // All pixels of a block see the same sum in the end, and interleaving only mixes neighbours.

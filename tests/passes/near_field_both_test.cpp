@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fovea/test.h"
+#include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "tests/passes/scene_of_everything.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr uint32_t kWidth = 63, kHeight = 45;  // neither fills its last tiles
 
 struct Result {
-  std::vector<glm::vec4> samples;
+  std::vector<glm::vec4> samples, gloss;
   float area;
   double rays, shaded, gathered;
 };
@@ -29,6 +30,17 @@ Result run(const char* type, const std::string& what, uint32_t frames) {
       .param("first_samples", 3)
       .param("saccade_samples", 3);
   test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
+  if (what != "diffuse") {  // normals and roughnesses that vary
+    std::vector<uint64_t> normal, specular;
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+      const auto part = [i](uint32_t k) { return uniformFloat(randomStream(5, i, k, 0)); };
+      normal.push_back(glm::packHalf4x16(glm::vec4(part(0) - 0.5f, part(1) - 0.5f, 1, 1)));
+      const float f0 = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 0.04f : 0.8f;
+      specular.push_back(glm::packHalf4x16(glm::vec4(glm::vec3(f0), part(2))));
+    }
+    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, normal);
+    test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, specular);
+  }
   test.beforeFrame([](PassTest& t, scene::Frame& frame) {
     if (frame.index == 2) t.buffer("change", std::vector<glm::vec4>{{0.1f, 0.5f, 0.6f, 0}}, "LightChange");
     frame.cameraCut = frame.index == 4;
@@ -36,12 +48,16 @@ Result run(const char* type, const std::string& what, uint32_t frames) {
   });
   test.run(frames);
   Result result{{},
+                {},
                 test.values<glm::vec4>("spread")[0].x,
                 test.counter("rays"),
                 test.counter("shaded"),
                 test.counter("gathered")};
   for (const uint64_t texel : test.values<uint64_t>("samples"))
     result.samples.push_back(glm::unpackHalf4x16(texel));
+  if (what == "diffuse") return result;
+  for (const uint64_t texel : test.values<uint64_t>("gloss"))
+    result.gloss.push_back(glm::unpackHalf4x16(texel));
   return result;
 }
 
@@ -53,7 +69,18 @@ TEST(NearFieldBoth, FindTheSameLight) {
       const Result host = run("near-field-host", materials, frames),
                    device = run("near-field-device", materials, frames);
       ASSERT_EQ(host.samples.size(), device.samples.size());
-      int different = 0, lit = 0, wide = 0;
+      ASSERT_EQ(host.gloss.size(), materials == "diffuse" ? 0 : host.samples.size());
+      ASSERT_EQ(device.gloss.size(), host.gloss.size());
+      int different = 0, lit = 0, wide = 0, differentGloss = 0, ofItsOwn = 0;
+      for (size_t i = 0; i < host.gloss.size(); ++i) {
+        const glm::vec4 a = host.gloss[i], b = device.gloss[i], light = host.samples[i];
+        EXPECT_EQ(a.a, light.a) << materials << " " << frames << " texel " << i;
+        EXPECT_EQ(b.a, device.samples[i].a) << materials << " " << frames << " texel " << i;
+        differentGloss += !(glm::length(glm::vec3(a - b)) <= 0.015f * glm::length(glm::vec3(a)) + 1e-6f);
+        ofItsOwn += glm::length(glm::vec3(a - light)) > 0.1f * glm::length(glm::vec3(light));
+      }
+      EXPECT_LE(differentGloss, int(host.gloss.size()) / 50) << materials << " " << frames;
+      EXPECT_GE(ofItsOwn, int(host.gloss.size()) / 4) << materials << " " << frames;
       for (size_t i = 0; i < host.samples.size(); ++i) {
         const glm::vec4 a = host.samples[i], b = device.samples[i];
         EXPECT_EQ(a.a, b.a) << materials << " " << frames << " texel " << i;

@@ -1,6 +1,8 @@
 // Compares near-field light from full materials with their BSDF.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <glm/gtc/packing.hpp>
 #include <vector>
 
 #include "framework/base/random.h"
@@ -71,6 +73,70 @@ TEST(NearFieldFull, MetalSendsLightInItsLobe) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[i][c], want[c], 0.04 * want[c]) << i;
   }
   EXPECT_GT(lit, 3);
+}
+
+// What a lamp that shines adds to the mean under the lobe of each pixel: the integral of the microfacets' reflection of
+// it. A floor that is seen at a grazing angle has its highlight towards the wall behind.
+TEST(NearFieldFull, LampsShineUnderLobes) {
+  scene::Scene s;
+  const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0.0f));
+  s.materials[lamp].emission = {4, 2, 1};
+  addQuad(s, grey, {-3, -1, -6}, {0, 0, 6}, {6, 0, 0});
+  addQuad(s, lamp, {-1, 0.2f, -6}, {2, 0, 0}, {0, 1, 0});
+  const Room room = lookInto(std::move(s), 8, glm::ivec2(8));
+  const scene::RayScene rays(room.scene, room.geometry);
+  const scene::Frame frame = scene::makeFrame(room.scene, room.geometry, glm::uvec2(8), 0, 1);
+  const scene::View& view = frame.views[0];
+  for (const float roughness : {0.4f, 0.6f, 0.9f}) {
+    const auto half = [](glm::vec4 v) { return glm::packHalf4x16(v); };
+    const std::vector<uint64_t> normal(64, half({0, 1, 0, 1})),
+        specular(64, half({0.001f, 0.001f, 0.001f, roughness}));
+    passes::NearFieldSettings settings;
+    settings.foveaRadius = 2;
+    settings.samples = 4096;
+    settings.area = 1e-6f;  // nothing is left but the lamp
+    settings.fullMaterials = true;
+    settings.normal = normal;
+    settings.specular = specular;
+    std::vector<glm::vec4> diffuse(16), gloss(16);
+    passes::traceNearField(frame, view, rays, settings, diffuse, gloss);
+    int lit = 0;
+    double ratios[2] = {1e9, 0};
+    for (uint32_t i = 0; i < 16; ++i) {
+      glm::dvec3 want(0), wantDiffuse(0);
+      bool floor = true;
+      for (uint32_t k = 0; k < 4; ++k) {
+        const Seen seen = room.pixels[(2 * (i / 4) + k / 2) * 8 + 2 * (i % 4) + k % 2];
+        floor = floor && seen.there && seen.normal.y > 0.9f;
+        if (!floor) break;
+        const glm::vec3 n(0, 1, 0), v = glm::normalize(view.eye - seen.position);
+        const float alpha = scene::ggxAlpha(roughness);
+        const double albedo = double(scene::AlbedoTable::schlick().at(v.y, roughness).total());
+        constexpr int kSide = 40;
+        for (int c = 0; c < kSide * kSide; ++c) {
+          const glm::vec3 at(-1 + 2 * (float(c % kSide) + 0.5f) / kSide,
+                             0.2f + (float(c / kSide) + 0.5f) / kSide, -6);
+          const glm::vec3 to = at - seen.position, l = glm::normalize(to), h = glm::normalize(l + v);
+          const auto turned = [](glm::vec3 d) { return glm::vec3(d.x, d.z, d.y); };  // the normal becomes z
+          const double arrives = double(l.y * l.z * -1 / glm::dot(to, to)) * 2 / (kSide * kSide) / 4;
+          wantDiffuse += glm::dvec3(4, 2, 1) * arrives / glm::pi<double>();
+          want += glm::dvec3(4, 2, 1) * arrives *
+                  double(scene::ggxReflection(turned(l), turned(v), turned(h), alpha)) / albedo;
+        }
+      }
+      if (!floor || gloss[i].a == 0) continue;
+      ++lit;
+      EXPECT_EQ(gloss[i].a, diffuse[i].a);
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(diffuse[i][c], wantDiffuse[c], 0.03 * wantDiffuse[c]) << roughness << " " << i;
+        EXPECT_NEAR(gloss[i][c], want[c], 0.04 * want[c]) << roughness << " " << i;
+      }
+      ratios[0] = std::min(ratios[0], want.r / wantDiffuse.r);
+      ratios[1] = std::max(ratios[1], want.r / wantDiffuse.r);
+    }
+    EXPECT_GT(lit, 3);
+    EXPECT_GT(ratios[1], roughness < 0.5f ? 3 : 1.2) << "the highlight is in the picture";
+  }
 }
 
 }  // namespace

@@ -440,5 +440,29 @@ TEST_P(NearFieldPasses, SpacingIsAPowerOfTwo) {
   }
 }
 
+// The G-buffer has to be that of the view, and to know full materials.
+TEST_P(NearFieldPasses, RefusesAnotherGBuffer) {
+  const struct {
+    uint32_t normal, specular;
+    const char* says;
+  } cases[] = {{8, 8, "`gbuffer` has 8x8 pixels, its view has 16x16"},
+               {16, 1, "those of the G-buffer are not"}};
+  for (const auto& [normal, specular, says] : cases) {
+    PassTest test(GetParam());
+    test.viewSize(16, 16).scene(shiningRoom(false)).param("materials", "full");
+    test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, normal, normal, 1,
+               std::vector<uint64_t>(normal * normal));
+    test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, specular, specular, 1,
+               std::vector<uint64_t>(specular * specular));
+    try {
+      test.run();
+      FAIL() << "no error";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::BadInput);
+      EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fovea::test

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fovea/error.h"
 #include "framework/base/random.h"
 #include "passes/near-field-host/near_field_tracer.h"
 #include "tests/passes/eye_scene.h"
@@ -322,6 +323,63 @@ TEST(TemporalAccumulation, OnlyInItsTiles) {
     std::vector<float> want = accumulate(eye, samples, history);
     clearOutside(want, 4);
     EXPECT_EQ(accumulate(eye, samples, history, 1, ownPlaces(), 0, -1, kSomeTiles), want);
+  }
+}
+
+// Other light at the same pixels gets a mean of the same samples with the same weights.
+TEST(TemporalAccumulation, GlossHasTheSameMean) {
+  const Eye eye({0, 0, 0});
+  for (const int block : {1, 2}) {
+    std::vector<glm::vec4> samples, history(size_t(kSize.x * kSize.y));
+    for (int i = 0; i < kSize.x * kSize.y / (block * block); ++i)
+      samples.emplace_back(0.25f * float(i % 7), 1, 2,
+                           block == 1 ? 0 : passes::sampleCode(2, {i % 2, 0}, i % 5 != 0));
+    for (size_t i = 0; i < history.size(); ++i) history[i] = glm::vec4(1, 0.5f * float(i % 3), 2, i % 4);
+    const auto doubled = [](std::vector<glm::vec4> image) {
+      for (glm::vec4& v : image) v = glm::vec4(2.0f * glm::vec3(v), v.a);
+      return image;
+    };
+    PassTest test("temporal-accumulation");
+    test.param("frames", 8.0).param("first_samples", 1).param("materials", "full");
+    eye.seen.wire(test);
+    test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
+    const auto wire = [&](const char* port, int width, const std::vector<glm::vec4>& values) {
+      test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(kSize.x / width), uint32_t(kSize.y / width), 1,
+                 halves(values));
+    };
+    wire("samples", block, samples);
+    wire("history", 1, history);
+    wire("gloss", block, doubled(samples));
+    wire("gloss_history", 1, doubled(history));
+    test.scene(eye.scene).run();
+    const auto mean = test.floats("mean"), gloss = test.floats("gloss_mean"),
+               alone = accumulate(eye, samples, history);
+    ASSERT_EQ(gloss.size(), mean.size());
+    for (size_t i = 0; i < mean.size(); ++i) {
+      ASSERT_EQ(mean[i], alone[i]) << i;
+      ASSERT_NEAR(gloss[i], mean[i] * (i % 4 == 3 ? 1.0f : 2.0f), 2e-3f * mean[i]) << i;
+    }
+  }
+}
+
+TEST(TemporalAccumulation, GlossNeedsAHistory) {
+  const Eye eye({0, 0, 0});
+  PassTest test("temporal-accumulation");
+  test.param("materials", "full");
+  eye.seen.wire(test);
+  test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
+  const auto wire = [&](const char* port, glm::ivec2 size) {
+    test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(size.x), uint32_t(size.y), 1,
+               halves(everywhere(size, kNoSample)));
+  };
+  wire("samples", kSize / 2);
+  wire("gloss", kSize / 2);
+  wire("history", kSize);
+  try {
+    test.scene(eye.scene).run();
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("only one is wired"), std::string::npos) << e.what();
   }
 }
 

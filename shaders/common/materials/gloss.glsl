@@ -3,6 +3,7 @@
 #ifndef FOVEA_GLOSS_GLSL
 #define FOVEA_GLOSS_GLSL
 
+#include "common/records/mirror.h"
 #include "common/scene.glsl"
 
 // The mean of Fresnel's curve over the directions, weighted by their cosine: Schlick's and that of a dielectric with an
@@ -29,11 +30,9 @@ Gloss glossOf(vec4 specular, float normalA, float albedoA, float emissionA) {
 float dielectricF90(Gloss g) { return clamp((g.f90 - g.metallic) / max(1.0 - g.metallic, 1e-3), 0.0, 1.0); }
 
 // Whether most of what a surface reflects is in its lobe. specular: as gbuffer stores it.
-bool looksMetallic(vec4 specular) { return max(max(specular.r, specular.g), specular.b) > 0.15; }
+bool looksMetallic(vec4 specular) { return max(max(specular.r, specular.g), specular.b) > kMetallicF0; }
 
-// The share of the light under the lobe of a surface that rays find (pass reflections), and not VPLs. From a roughness
-// on, which is larger for metals as their lobe shows more, it falls to 0.
-const float kTracedDielectric = 0.3, kTracedMetal = 0.7, kTracedFade = 0.15;
+// The share of the light under the lobe of a surface that rays find (pass reflections), and not VPLs.
 float tracedShare(vec4 specular) {
   float last = (looksMetallic(specular) ? kTracedMetal : kTracedDielectric) + kTracedFade;
   return specular.rgb == vec3(0.0) ? 0.0 : clamp((last - specular.a) / kTracedFade, 0.0, 1.0);

@@ -4,11 +4,23 @@
 #include "common/records/near_field.h"
 
 // Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of
-// the length of a ray and how probable that was, and the mean radiance that reaches a surface after `bounces`
-// reflections.
+// the length of a ray and how probable that was, the mean radiance that reaches a surface after `bounces` reflections,
+// and what light from a direction, which is unit, adds to the mean of the light under the lobe of the surface for each
+// unit of irradiance / pi that it adds.
 float discArea();
 void noteLength(float distance_, float probability);
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream);
+float underLobe(vec3 direction);
+
+// Light that arrives: irradiance / pi, and the mean under the lobe of the surface.
+struct NearLight {
+  vec3 light, gloss;
+};
+
+void add(inout NearLight sum, vec3 light, vec3 direction) {
+  sum.light += light;
+  sum.gloss += underLobe(direction) * light;
+}
 
 uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
 
@@ -30,7 +42,7 @@ vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
 // The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the
 // light that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR
 // 2005). The points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
-vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
+void addPoints(inout NearLight sum, TracedSurface v, uint points, uint stream, uint index) {
   float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
   WeightedChoice choice = WeightedChoice(uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), 0.0, 0.0);
   EmitterRay chosen = kNoEmitterRay;
@@ -49,11 +61,11 @@ vec3 fromPoints(TracedSurface v, uint points, uint stream, uint index) {
     chosen = to;
     light = its;
   }
-  return isAnyChosen(choice) ? light * visibleShare(v, chosen) * inverseProbability(choice) : vec3(0.0);
+  if (isAnyChosen(choice)) add(sum, light * visibleShare(v, chosen) * inverseProbability(choice), chosen.direction);
 }
 
-// Irradiance / pi at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.
-vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint points) {
+// The light at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.
+NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint points) {
   uvec2 group = block / 4u, place = block % 4u;
   uint order = (place.x & 1u) << 3 | (place.y & 1u) << 2 | (place.x & 2u) | place.y >> 1;
   uint stream = randomStream(frame.seed, group.x, kNearStream, group.y);
@@ -61,30 +73,31 @@ vec3 nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint poin
   // Rays are traced only as far as they contribute: beyond that, a hit is worth no more than a miss.
   float choice = max(uniformFloat(randomStream(stream, turn_, kChoiceStream, order)), 1e-6), radius2 = discRadius2();
   float reach = radius2 > 0.0 ? sqrt(radius2 * (kSure / choice - 1.0)) : kFarAway;
-  vec3 light = vec3(0.0);
+  NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   if (hasEmitters() && radius2 > 0.0)
-    light = fromPoints(v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
-  if (dot(direction, v.face) <= 0.0) return light;
+    addPoints(sum, v, points, hashCombine(stream, kNearAimStream), 16u * turn_ + order);
+  if (dot(direction, v.face) <= 0.0) return sum;
   bool tracesOutside = hasEnvironmentMap() && radius2 > 0.0;
   TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : reach);
-  if (tracesOutside && hit.triangle == kNoTriangle)
-    return light + hit.brighter * sharedLight(v, rayOutside(v, direction), points);
-#if MAP_ALONE
-  return light;
-#else
+  if (tracesOutside && hit.triangle == kNoTriangle) {
+    add(sum, hit.brighter * sharedLight(v, rayOutside(v, direction), points), direction);
+    return sum;
+  }
+#if !MAP_ALONE
   float distance_ = distance(hit.position, v.position);
-  if (!hit.there || (tracesOutside && distance_ > reach)) return light;
+  if (!hit.there || (tracesOutside && distance_ > reach)) return sum;
   float probability = radius2 > 0.0 ? probabilityAt(distance_) : 1.0;
   noteLength(distance_, probability);
-  if (!(radius2 > 0.0)) return light;
+  if (!(radius2 > 0.0)) return sum;
   ++shadedCount;
   vec3 rho = reflectance(hit), shining = emitted(hit);
   vec3 radiance = directTowards(hit, -direction, rho, kBounceRoughness);
   radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
   if (shining != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);
-    light += shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit)));
+    add(sum, shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit))), direction);
   }
-  return light + radiance * (partAt(distance_) / probability);
+  add(sum, radiance * (partAt(distance_) / probability), direction);
 #endif
+  return sum;
 }

@@ -1,0 +1,91 @@
+// Tests the lobes under which pass near-field finds light: against the formula, and in a white furnace.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "framework/scene/rays/surface_tracer.h"
+#include "framework/shader_twins/paraboloid.h"
+#include "passes/near-field-host/receiver_lobe.h"
+#include "tests/passes/full_materials_reference.h"
+
+namespace fovea::test {
+namespace {
+
+using passes::ReceiverLobe;
+
+const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, 1, -0.2f));
+constexpr int kDirections = 400000;
+
+glm::vec3 toEye(float cosine) {
+  const glm::vec3 across = glm::normalize(glm::cross(kNormal, glm::vec3(1, 0, 0)));
+  return cosine * kNormal + std::sqrt(1 - cosine * cosine) * across;
+}
+
+ReceiverLobe lobe(float f0, float roughness, float cosine) {
+  return {glm::vec4(kNormal, 1), glm::vec4(glm::vec3(f0), roughness), toEye(cosine)};
+}
+
+TEST(ReceiverLobe, AddsUpToOneOverAllDirections) {
+  for (const float f0 : {0.04f, 0.9f})
+    for (const float roughness : {0.4f, 0.6f, 0.8f, 1.0f})
+      for (const float cosine : {0.1f, 0.4f, 1.0f}) {
+        const ReceiverLobe l = lobe(f0, roughness, cosine);
+        double sum = 0;
+        for (uint32_t i = 0; i < kDirections; ++i)
+          sum += double(l.response(scene::cosineDirection(kNormal, scene::streamSequence(7, i))));
+        EXPECT_NEAR(sum / kDirections, 1, 0.015) << f0 << " " << roughness << " " << cosine;
+      }
+}
+
+TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
+  const float roughness = 0.5f, cosine = 0.6f;
+  const double alpha = double(roughness) * double(roughness);
+  const glm::dvec3 n(kNormal), v(toEye(cosine));
+  const double albedo = double(scene::AlbedoTable::schlick().at(cosine, roughness).total());
+  const ReceiverLobe l = lobe(1e-4f, roughness, cosine);  // so little that none is scattered twice
+  for (uint32_t i = 0; i < 50; ++i) {
+    const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
+    const glm::dvec3 d(direction), h = glm::normalize(d + v);
+    const double nh = glm::dot(n, h), nv = glm::dot(n, v), nl = glm::dot(n, d), a2 = alpha * alpha;
+    const double density = a2 / (glm::pi<double>() * std::pow(nh * nh * (a2 - 1) + 1, 2));
+    const auto smith = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
+    const double want = glm::pi<double>() * density * 0.5 / (nl * smith(nv) + nv * smith(nl)) / albedo;
+    EXPECT_NEAR(l.response(direction), want, 2e-3 * want) << i;
+  }
+}
+
+// A white metal, whose microfacets scatter everything in the end.
+TEST(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
+  scene::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
+  for (const float cosine : {0.2f, 0.6f, 1.0f}) {
+    const glm::mat3 frame = scene::orthonormalFrame(kNormal);
+    const scene::Bsdf bsdf(white, scene::toLocal(frame, toEye(cosine)));
+    const ReceiverLobe l = lobe(1, 1, cosine);
+    for (uint32_t i = 0; i < 50; ++i) {
+      const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
+      const double want = glm::pi<double>() * double(bsdf.evaluate(scene::toLocal(frame, direction)).x) /
+                          double(glm::dot(kNormal, direction));
+      EXPECT_NEAR(l.response(direction), want, 0.01 * want) << cosine << " " << i;
+    }
+  }
+}
+
+TEST(ReceiverLobe, IsNoSmootherThanWhatIsTraced) {
+  const glm::vec3 direction = glm::reflect(-toEye(0.7f), kNormal);
+  EXPECT_EQ(lobe(0.04f, 0.05f, 0.7f).response(direction), lobe(0.04f, 0.3f, 0.7f).response(direction));
+  EXPECT_EQ(lobe(0.9f, 0.05f, 0.7f).response(direction), lobe(0.9f, 0.7f, 0.7f).response(direction));
+  EXPECT_GT(lobe(0.04f, 0.3f, 0.7f).response(direction), lobe(0.04f, 0.4f, 0.7f).response(direction));
+}
+
+TEST(ReceiverLobe, LightFromBehindAddsNothing) { EXPECT_EQ(lobe(0.04f, 0.5f, 0.7f).response(-kNormal), 0); }
+
+TEST(ReceiverLobe, WithoutOneLightIsThatOfTheDiffuseLayer) {
+  for (const glm::vec3 direction : {kNormal, -kNormal, toEye(0.2f)}) {
+    EXPECT_EQ(ReceiverLobe().response(direction), 1);
+    EXPECT_EQ(lobe(0, 0.5f, 0.7f).response(direction), 1);
+  }
+}
+
+}  // namespace
+}  // namespace fovea::test
