@@ -11,6 +11,7 @@
 #include "passes/acuity.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 #include "shaders/common/records/vpl.h"
 #include "shaders/deferred/records.h"
 
@@ -64,7 +65,7 @@ class Deferred : public Pass {
         .when(parameter("near_light"));
     d.input("near_gloss", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: the same light under the lobe of each surface, W/(sr m^2) (`gloss` of pass near-field), "
-            "for which `near_field` stands in if it is not wired")
+            "for which `near_field` stands in if it is not wired; not used with `shade`")
         .when(parameter("near_light") * fullMaterials());
     d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi from VPLs where rays have found it (pass contact-rays), to which "
@@ -130,6 +131,7 @@ class Deferred : public Pass {
                   "pass `deferred`: `shade` says which blocks to shade, so `periphery` has nothing to decide",
                   "leave `periphery` at 1, or `shade` unwired");
     checkMaterials(ctx, "deferred");
+    if (ctx.has("near_gloss")) checkNearGloss(ctx);
     preparePages(ctx, 1, pages_);
     if (ctx.evaluate(coarse()) != 0) preparePages(ctx, 2, coarsePages_);
   }
@@ -245,6 +247,14 @@ class Deferred : public Pass {
         .define("HAS_DIRECT", wired("direct"))
         .define("GLOSS", fullMaterials() * (masked + 1))
         .define("REFLECTIONS", 0);
+  }
+
+  static void checkNearGloss(PrepareContext& ctx) {
+    if (!ctx.has("near_field"))
+      throw Error(ExitCode::BadInput,
+                  "pass `deferred`: `near_gloss` is wired without the light that it is a part of",
+                  "wire near-field's mean to near_field, too, or leave `near_gloss` unwired");
+    checkSameSize(ctx, "deferred", "near_gloss", "near_field");
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {

@@ -5,6 +5,7 @@
 #include "fovea/error.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 
 namespace fovea::passes {
 
@@ -68,15 +69,8 @@ void checkNearField(const PassContext& ctx, const std::string& pass) {
 }
 
 void checkGBufferSize(const PassContext& ctx, const std::string& pass, glm::uvec2 view) {
-  if (!ctx.has("gbuffer")) return;
-  const VkExtent3D size = ctx.extent("gbuffer.normal");
-  if (view == glm::uvec2(size.width, size.height)) return;
-  const auto text = [](uint32_t width, uint32_t height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: `gbuffer` has " + text(size.width, size.height) +
-                  " pixels, its view has " + text(view.x, view.y),
+  if (ctx.has("gbuffer"))
+    checkSize(ctx, pass, "gbuffer.normal", view, "its view",
               "wire the G-buffer of the view that the pass looks through");
 }
 

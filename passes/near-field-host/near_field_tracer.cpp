@@ -42,7 +42,7 @@ struct NearLight {
 
   void add(const Seen& to, glm::vec3 its, glm::vec3 direction) {
     light += its;
-    gloss += to.lobe.response(direction) * its;
+    gloss += to.lobe.response(direction, glm::dot(to.surface.normal, direction)) * its;
   }
   NearLight& operator+=(const NearLight& other) {
     light += other.light;

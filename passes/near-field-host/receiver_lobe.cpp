@@ -4,9 +4,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include "framework/scene/materials/albedo_table.h"
+#include "framework/scene/materials/bsdf.h"
 #include "framework/scene/materials/microfacets.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "shaders/common/records/mirror.h"
+#include "shaders/common/records/near_field.h"
 
 namespace fovea::passes {
 
@@ -22,18 +24,20 @@ ReceiverLobe::ReceiverLobe(glm::vec4 normal, glm::vec4 specular, glm::vec3 toEye
   const float mean = scene::AlbedoTable::schlick().average(roughness_).total();
   // As in gloss.glsl, with the mean of the channels for a reflectance that is the same from everywhere.
   const float fresnel = std::min((specular.r + specular.g + specular.b) / 3, 1.0f);
-  const float more = fresnel * fresnel * mean / (1 - fresnel * (1 - mean)) * (1 - once);
+  const float more = scene::lostAlbedo(glm::vec3(fresnel), mean).x * (1 - once);
   const float all = std::max(fresnel * once + more, kLeastLobe * fresnel);
   once_ = glm::pi<float>() * fresnel / all;
   more_ = more / (all * std::max(1 - mean, kLeastLobe));
 }
 
-float ReceiverLobe::response(glm::vec3 direction) const {
+float ReceiverLobe::response(glm::vec3 direction, float cosine) const {
   if (once_ == 0) return 1;
   const glm::vec3 in = scene::toLocal(frame_, direction);
   if (in.z <= 0) return 0;
-  return once_ * scene::ggxReflection(in, out_, glm::normalize(in + out_), scene::ggxAlpha(roughness_)) +
-         more_ * (1 - scene::AlbedoTable::schlick().at(in.z, roughness_).total());
+  const float reflects =
+      once_ * scene::ggxReflection(in, out_, glm::normalize(in + out_), scene::ggxAlpha(roughness_)) +
+      more_ * (1 - scene::AlbedoTable::schlick().at(in.z, roughness_).total());
+  return reflects * in.z / std::max(cosine, kLeastReceived);
 }
 
 }  // namespace fovea::passes

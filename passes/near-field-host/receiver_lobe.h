@@ -13,8 +13,8 @@ class ReceiverLobe {
   ReceiverLobe(glm::vec4 normal, glm::vec4 specular, glm::vec3 toEye);
 
   // What light from a direction, which is unit, adds to the mean of the light under the lobe for each unit of
-  // irradiance / pi that it adds.
-  float response(glm::vec3 direction) const;
+  // irradiance / pi that it adds. cosine: by which that irradiance counts; its normal may not be that of shading.
+  float response(glm::vec3 direction, float cosine) const;
 
  private:
   glm::mat3 frame_{1};  // of the shading normal

@@ -1,7 +1,7 @@
 #include "passes/reflections-host/reflections_ports.h"
 
-#include "fovea/error.h"
 #include "passes/bundles.h"
+#include "passes/sizes.h"
 
 namespace fovea::passes {
 
@@ -29,15 +29,8 @@ void declareReflections(PassDeclaration& d, Usage read, Usage write) {
 }
 
 void checkReflections(const PassContext& ctx, const std::string& pass, glm::uvec2 half) {
-  const VkExtent3D mirrors = ctx.extent("mirrors");
-  if (half == glm::uvec2(mirrors.width, mirrors.height)) return;
-  const auto text = [](uint32_t width, uint32_t height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: `mirrors` has " + text(mirrors.width, mirrors.height) +
-                  " texels, half its view has " + text(half.x, half.y),
-              "wire mirrors of the view that the pass looks through");
+  checkSize(ctx, pass, "mirrors", half, "half its view",
+            "wire mirrors of the view that the pass looks through");
 }
 
 }  // namespace fovea::passes

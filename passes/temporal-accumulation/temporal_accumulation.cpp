@@ -9,6 +9,7 @@
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/sizes.h"
 
 namespace fovea::passes {
 namespace {
@@ -100,6 +101,9 @@ class TemporalAccumulation : public Pass {
       throw Error(ExitCode::BadInput,
                   "pass `temporal-accumulation`: of `gloss` and `gloss_history` only one is wired",
                   "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
+    if (!ctx.has("gloss")) return;
+    checkSameSize(ctx, "temporal-accumulation", "gloss", "samples");
+    checkSameSize(ctx, "temporal-accumulation", "gloss_history", "mean");
   }
 
   void record(RecordContext& ctx) override {

@@ -31,12 +31,13 @@ ReceiverLobe receiverLobe(ivec2 pixel, vec3 position) {
 }
 
 // What light from a direction, which is unit, adds to the mean of the light under the lobe for each unit of
-// irradiance / pi that it adds.
-float response(ReceiverLobe lobe, vec3 direction) {
+// irradiance / pi that it adds. cosine: by which that irradiance counts; its normal may not be that of shading.
+float response(ReceiverLobe lobe, vec3 direction, float cosine) {
   if (lobe.once == 0.0) return 1.0;
-  float cosine = dot(lobe.normal, direction);
-  if (cosine <= 0.0) return 0.0;
+  float bent = dot(lobe.normal, direction);
+  if (bent <= 0.0) return 0.0;
   vec3 halfway = normalize(direction + lobe.out_);
-  return lobe.once * ggxReflection(lobe.normal, direction, lobe.out_, halfway, ggxAlpha(lobe.roughness)) +
-         lobe.more * (1.0 - mirrorAlbedo(cosine, lobe.roughness).all);
+  float reflects = lobe.once * ggxReflection(lobe.normal, direction, lobe.out_, halfway, ggxAlpha(lobe.roughness)) +
+                   lobe.more * (1.0 - mirrorAlbedo(bent, lobe.roughness).all);
+  return reflects * bent / max(cosine, kLeastReceived);
 }

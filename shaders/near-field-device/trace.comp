@@ -17,7 +17,7 @@ layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
 layout(std430) readonly buffer ListedBlock { uint count; } listed;
 layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
 #if RAY_PASSAGE
-layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe; a: the same code
+layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe
 #endif
 layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
 
@@ -41,9 +41,9 @@ vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
 
 #if LOBES
 ReceiverLobe lobe;  // of the surface whose light is found
-float underLobe(vec3 direction) { return response(lobe, direction); }
+float underLobe(vec3 direction, float cosine) { return response(lobe, direction, cosine); }
 #else
-float underLobe(vec3 direction) { return 1.0; }
+float underLobe(vec3 direction, float cosine) { return 1.0; }
 #endif
 
 uvec2 pixelOf(uint turn_, uvec2 corner, uint side) { return corner + samplePixel(turn_, side, corner / side); }
@@ -84,7 +84,7 @@ void main() {
   uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
   traced.list[index] = vec4(sum.light + (part > 0u ? traced.list[index].rgb : vec3(0.0)), float(code));
 #if RAY_PASSAGE
-  tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), float(code));
+  tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), 0.0);
 #endif
   if (wide && part == 0u) {
     uint tile = corner.y / spacing * tileCount(spacing).x + corner.x / spacing;

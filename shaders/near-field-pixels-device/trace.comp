@@ -21,7 +21,7 @@ const uint kEmitterPoints = 4u;
 float discArea() { return spread.list[0].x; }
 void noteLength(float distance_, float probability) {}
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v, bounces, 1u, stream); }
-float underLobe(vec3 direction) { return 1.0; }
+float underLobe(vec3 direction, float cosine) { return 1.0; }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

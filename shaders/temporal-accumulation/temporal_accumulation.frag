@@ -118,9 +118,10 @@ struct Around {
 };
 
 void add(inout Around around, Sample s, bool wanted) {
-  around.sum += s.value * float(wanted);
-  around.count += float(wanted);
-  if (wanted && luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
+  if (!wanted) return;
+  around.sum += s.value;
+  around.count += 1.0;
+  if (luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
 }
 
 // Mean of single rays without the brightest, if there are others: one that hits something sunlit would be a firefly.

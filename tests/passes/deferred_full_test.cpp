@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 
+#include "fovea/error.h"
 #include "tests/passes/deferred_scenes.h"
 #include "tests/passes/full_materials_reference.h"
 
@@ -148,18 +149,32 @@ TEST(DeferredFull, DiffuseLayersGetWhatTheSurfaceLetsThrough) {
 // have found of its irradiance does.
 TEST(DeferredFull, AddsTheNearFieldUnderTheLobe) {
   const auto vpls = randomVpls(50);
-  for (const float roughness : {0.2f, 0.5f, 0.8f}) {
-    const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), 0, roughness));
-    const Output none = run(g, vpls, 1), one = run(g, vpls, 1, true, 3), both = run(g, vpls, 1, true, 3, 7);
-    for (size_t i = 0; i < none.gloss.size(); i += 4) {
-      const auto near = [&](const std::vector<float>& with, const std::vector<float>& without, float added) {
-        ASSERT_NEAR(with[i], without[i] + added, 2e-3f * with[i]) << roughness << " " << i;
-      };
-      near(one.irradiance, none.irradiance, 3);
-      near(both.irradiance, none.irradiance, 3);
-      near(one.gloss, none.gloss, 3);
-      near(both.gloss, none.gloss, 7);
+  for (const float metallic : {0.0f, 1.0f})
+    for (const float roughness : {0.2f, 0.5f, 0.8f}) {
+      const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), metallic, roughness));
+      const Output none = run(g, vpls, 1), one = run(g, vpls, 1, true, 3), both = run(g, vpls, 1, true, 3, 7);
+      for (size_t i = 0; i < none.gloss.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const auto near = [&](const std::vector<float>& with, const std::vector<float>& without,
+                              float added) {
+          ASSERT_NEAR(with[i], without[i] + added, 2e-3f * with[i])
+              << metallic << " " << roughness << " " << i;
+        };
+        near(one.irradiance, none.irradiance, 3);
+        near(both.irradiance, none.irradiance, 3);
+        near(one.gloss, none.gloss, 3);
+        near(both.gloss, none.gloss, 7);
+      }
     }
+}
+
+TEST(DeferredFull, RefusesAPartOfTheNearFieldAlone) {
+  const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), 0, 0.5f));
+  try {
+    run(g, randomVpls(50), 1, true, -1, 7);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("`near_gloss` is wired without"), std::string::npos) << e.what();
   }
 }
 
@@ -167,11 +182,12 @@ TEST(DeferredFull, AddsTheNearFieldUnderTheLobe) {
 TEST(DeferredFull, PagesAddUp) {
   const GBuffer g = floorOf(bsdfParameters(glm::vec3(0.5f), 0, 0.5f));
   const auto vpls = randomVpls(2500);
-  const Output out = run(g, vpls, 1);
+  const Output out = run(g, vpls, 1, true, 3, 7);
   for (size_t i = 0; i < g.pixels.size(); ++i) {
     const glm::dvec3 lobe = underLobe(g.pixels[i], vpls, true);
     for (int c = 0; c < 3; ++c) {
-      const double want = glm::mix(double(out.irradiance[4 * i + size_t(c)]), lobe[c], shareOf(g.pixels[i]));
+      const double light = double(out.irradiance[4 * i + size_t(c)]) - 3;
+      const double want = 7 + glm::mix(light, lobe[c], shareOf(g.pixels[i]));
       ASSERT_NEAR(out.gloss[4 * i + size_t(c)], want, 0.01 * want) << i;
     }
   }

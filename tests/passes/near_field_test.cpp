@@ -445,7 +445,7 @@ TEST_P(NearFieldPasses, RefusesAnotherGBuffer) {
   const struct {
     uint32_t normal, specular;
     const char* says;
-  } cases[] = {{8, 8, "`gbuffer` has 8x8 pixels, its view has 16x16"},
+  } cases[] = {{8, 8, "`gbuffer.normal` has 8x8 pixels, its view has 16x16"},
                {16, 1, "those of the G-buffer are not"}};
   for (const auto& [normal, specular, says] : cases) {
     PassTest test(GetParam());

@@ -362,24 +362,35 @@ TEST(TemporalAccumulation, GlossHasTheSameMean) {
   }
 }
 
-TEST(TemporalAccumulation, GlossNeedsAHistory) {
+// What is wired as gloss has to be there as a whole: passes with diffuse materials make a single texel of it.
+TEST(TemporalAccumulation, GlossNeedsAHistoryAndItsSize) {
   const Eye eye({0, 0, 0});
-  PassTest test("temporal-accumulation");
-  test.param("materials", "full");
-  eye.seen.wire(test);
-  test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
-  const auto wire = [&](const char* port, glm::ivec2 size) {
-    test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(size.x), uint32_t(size.y), 1,
-               halves(everywhere(size, kNoSample)));
-  };
-  wire("samples", kSize / 2);
-  wire("gloss", kSize / 2);
-  wire("history", kSize);
-  try {
-    test.scene(eye.scene).run();
-    FAIL() << "no error";
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("only one is wired"), std::string::npos) << e.what();
+  const struct {
+    glm::ivec2 gloss, history;
+    const char* says;
+  } cases[] = {{kSize / 2, {0, 0}, "only one is wired"},
+               {{1, 1}, kSize, "`gloss` has 1x1 pixels, `samples` has"},
+               {kSize / 2, {1, 1}, "`gloss_history` has 1x1 pixels, `mean` has"}};
+  for (const auto& [gloss, glossHistory, says] : cases) {
+    PassTest test("temporal-accumulation");
+    test.param("materials", "full");
+    eye.seen.wire(test);
+    test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
+    const auto wire = [&](const char* port, glm::ivec2 size) {
+      if (size.x > 0)
+        test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(size.x), uint32_t(size.y), 1,
+                   halves(everywhere(size, kNoSample)));
+    };
+    wire("samples", kSize / 2);
+    wire("gloss", gloss);
+    wire("history", kSize);
+    wire("gloss_history", glossHistory);
+    try {
+      test.scene(eye.scene).run();
+      FAIL() << "no error";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(says), std::string::npos) << e.what();
+    }
   }
 }
 

@@ -13,13 +13,11 @@ constexpr float kCoatIor = 1.5f;  // KHR_materials_clearcoat
 
 float mean(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
 
-// The albedo of light scattered more than once among microfacets, as a share of what single scattering loses (Kulla
-// and Conty 2017). fresnel: mean reflectance; mirror: mean albedo of a mirror.
+}  // namespace
+
 glm::vec3 lostAlbedo(glm::vec3 fresnel, float mirror) {
   return fresnel * fresnel * mirror / (glm::vec3(1) - fresnel * (1 - mirror));
 }
-
-}  // namespace
 
 Bsdf::Bsdf(const BsdfParameters& parameters, glm::vec3 out)
     : p_(parameters),

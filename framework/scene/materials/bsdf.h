@@ -25,6 +25,10 @@
 
 namespace fovea::scene {
 
+// The albedo of light scattered more than once among microfacets, as a share of what single scattering loses (Kulla
+// and Conty 2017). fresnel: mean reflectance; mirror: mean albedo of a mirror.
+glm::vec3 lostAlbedo(glm::vec3 fresnel, float mirror);
+
 // A material at a point, with its textures looked up.
 struct BsdfParameters {
   glm::vec3 baseColor{1};

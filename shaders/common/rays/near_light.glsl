@@ -6,20 +6,20 @@
 // Who includes this says how large the discs are, m^2 (if 0, rays find out their length and no light), what comes of
 // the length of a ray and how probable that was, the mean radiance that reaches a surface after `bounces` reflections,
 // and what light from a direction, which is unit, adds to the mean of the light under the lobe of the surface for each
-// unit of irradiance / pi that it adds.
+// unit of irradiance / pi that it adds, which counts by `cosine`.
 float discArea();
 void noteLength(float distance_, float probability);
 vec3 furtherLight(TracedSurface v, uint bounces, uint stream);
-float underLobe(vec3 direction);
+float underLobe(vec3 direction, float cosine);
 
 // Light that arrives: irradiance / pi, and the mean under the lobe of the surface.
 struct NearLight {
   vec3 light, gloss;
 };
 
-void add(inout NearLight sum, vec3 light, vec3 direction) {
+void add(inout NearLight sum, TracedSurface v, vec3 light, vec3 direction) {
   sum.light += light;
-  sum.gloss += underLobe(direction) * light;
+  sum.gloss += underLobe(direction, dot(v.normal, direction)) * light;
 }
 
 uint shadedCount = 0u;  // rays at whose ends this invocation has evaluated the light
@@ -61,7 +61,7 @@ void addPoints(inout NearLight sum, TracedSurface v, uint points, uint stream, u
     chosen = to;
     light = its;
   }
-  if (isAnyChosen(choice)) add(sum, light * visibleShare(v, chosen) * inverseProbability(choice), chosen.direction);
+  if (isAnyChosen(choice)) add(sum, v, light * visibleShare(v, chosen) * inverseProbability(choice), chosen.direction);
 }
 
 // The light at v. Adjacent blocks, 4 x 4 of them, take turns in one sequence.
@@ -80,7 +80,7 @@ NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint
   bool tracesOutside = hasEnvironmentMap() && radius2 > 0.0;
   TracedSurface hit = arrive(v.origin, direction, tracesOutside ? kFarAway : reach);
   if (tracesOutside && hit.triangle == kNoTriangle) {
-    add(sum, hit.brighter * sharedLight(v, rayOutside(v, direction), points), direction);
+    add(sum, v, hit.brighter * sharedLight(v, rayOutside(v, direction), points), direction);
     return sum;
   }
 #if !MAP_ALONE
@@ -95,9 +95,9 @@ NearLight nearLight(TracedSurface v, uvec2 block, uint turn_, uint bounces, uint
   radiance += rho * furtherLight(hit, bounces - 1u, randomStream(stream, turn_, kNearGatherStream, order));
   if (shining != vec3(0.0)) {
     float cosine = cosineDensity(v, direction);
-    add(sum, shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit))), direction);
+    add(sum, v, shining * (cosine / (cosine * probability + float(points) * aimedDensity(v, hit))), direction);
   }
-  add(sum, radiance * (partAt(distance_) / probability), direction);
+  add(sum, v, radiance * (partAt(distance_) / probability), direction);
 #endif
   return sum;
 }
