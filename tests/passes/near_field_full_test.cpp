@@ -109,7 +109,7 @@ TEST(NearFieldFull, LampsShineUnderLobes) {
         const Seen seen = room.pixels[(2 * (i / 4) + k / 2) * 8 + 2 * (i % 4) + k % 2];
         floor = floor && seen.there && seen.normal.y > 0.9f;
         if (!floor) break;
-        const glm::vec3 n(0, 1, 0), v = glm::normalize(view.eye - seen.position);
+        const glm::vec3 v = glm::normalize(view.eye - seen.position);
         const float alpha = scene::ggxAlpha(roughness);
         const double albedo = double(scene::AlbedoTable::schlick().at(v.y, roughness).total());
         constexpr int kSide = 40;
