@@ -25,7 +25,7 @@ void checkSameSize(const graph::PassContext& ctx, const std::string& pass, const
                    const std::string& other) {
   const VkExtent3D size = ctx.extent(other);
   checkSize(ctx, pass, port, {size.width, size.height}, "`" + other + "`",
-            "give it and the pass that makes `" + port + "` the same `materials`");
+            "give pass `" + pass + "` and the one that makes `" + port + "` the same `materials`");
 }
 
 }  // namespace fovea::passes

@@ -84,6 +84,7 @@ class NearFieldDevice : public Pass {
     withRays("near-field-device/tiles.comp").define("MAP_ALONE", is("light", "map")).over("tiles");
     withRays("near-field-device/trace.comp")
         .define("MAP_ALONE", is("light", "map"))
+        .define("GLOSS", fullMaterials())
         .define("LOBES", wired("gbuffer"));
     d.step("near-field-device/end.comp").groups(1);
     withRays("near-field-device/merge.comp").threads(scene::kGatherCells);

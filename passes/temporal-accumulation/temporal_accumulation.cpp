@@ -103,7 +103,9 @@ class TemporalAccumulation : public Pass {
                   "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
     if (!ctx.has("gloss")) return;
     checkSameSize(ctx, "temporal-accumulation", "gloss", "samples");
-    checkSameSize(ctx, "temporal-accumulation", "gloss_history", "mean");
+    const VkExtent3D mean = ctx.extent("mean");
+    checkSize(ctx, "temporal-accumulation", "gloss_history", {mean.width, mean.height}, "`mean`",
+              "wire `gloss_mean` of the previous frame");
   }
 
   void record(RecordContext& ctx) override {

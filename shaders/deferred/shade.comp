@@ -103,7 +103,8 @@ Block blockOf(Receiver receivers[kPixels], bool valid[kPixels]) {
   high = subgroupMax(high);
   normalLow = subgroupMin(normalLow);
   normalHigh = subgroupMax(normalHigh);
-  Block b = Block(0.5 * (low + high), 0.5 * (high - low), 0.5 * (normalLow + normalHigh), 0.5 * (normalHigh - normalLow), 1e30);
+  Block b = Block(0.5 * (low + high), 0.5 * (high - low), 0.5 * (normalLow + normalHigh),
+                  0.5 * (normalHigh - normalLow), 1e30);
   for (int k = 0; k < kPixels; ++k)
     b.plane = valid[k] ? min(b.plane, dot(receivers[k].normal, receivers[k].position - b.centre)) : b.plane;
   b.plane = subgroupMin(b.plane);

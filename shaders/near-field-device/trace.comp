@@ -1,5 +1,6 @@
 // A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
-// (common/rays/near_light.glsl); LOBES 0/1, 1 if the G-buffer says how surfaces reflect light.
+// (common/rays/near_light.glsl); GLOSS 0/1, 1 to find also the light under lobes; LOBES 0/1, 1 if the G-buffer says what
+// these are.
 #include "common/blocks.glsl"
 #include "common/device/sums.glsl"
 #include "common/rays/gather_cache.glsl"
@@ -16,7 +17,7 @@ layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
 layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
 layout(std430) readonly buffer ListedBlock { uint count; } listed;
 layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
-#if RAY_PASSAGE
+#if GLOSS
 layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe
 #endif
 layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
@@ -83,7 +84,7 @@ void main() {
   uvec2 inside = samplePixel(frameIndex, side, block);
   uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
   traced.list[index] = vec4(sum.light + (part > 0u ? traced.list[index].rgb : vec3(0.0)), float(code));
-#if RAY_PASSAGE
+#if GLOSS
   tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), 0.0);
 #endif
   if (wide && part == 0u) {

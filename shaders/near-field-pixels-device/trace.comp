@@ -1,4 +1,5 @@
-// A part of the light of each pixel of the mask where it is not known: that of one ray. Define: RAY_PASSAGE 0/1 (common/rays/trace.glsl).
+// A part of the light of each pixel of the mask where it is not known: that of one ray. Define: RAY_PASSAGE 0/1
+// (common/rays/trace.glsl).
 #define MAP_ALONE 0
 #include "common/rays/near_light.glsl"
 

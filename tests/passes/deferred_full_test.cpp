@@ -145,8 +145,8 @@ TEST(DeferredFull, DiffuseLayersGetWhatTheSurfaceLetsThrough) {
         }
 }
 
-// What rays have found under the lobe of a surface of any roughness comes on top of what VPLs have. Without it, what they
-// have found of its irradiance does.
+// What rays have found under the lobe of a surface of any roughness comes on top of what VPLs have. Without it, what
+// they have found of its irradiance does.
 TEST(DeferredFull, AddsTheNearFieldUnderTheLobe) {
   const auto vpls = randomVpls(50);
   for (const float metallic : {0.0f, 1.0f})

@@ -1,4 +1,4 @@
-// What passes reflections-host and reflections-device agree on.
+// What passes reflections-host and reflections-device agree on, and which lobes they trace.
 #pragma once
 
 #include "shared.h"
@@ -11,8 +11,8 @@ SHARED_CONSTANT uint kMirrorStream = 0x6d697272u, kMirrorLightStream = 0x6d696c6
 // The code of a sample where nothing reflects; its bit 10 says that there is none.
 SHARED_CONSTANT float kNoMirror = -1024.0f;
 
-// The share of the light under a lobe that rays find, and not VPLs, falls to 0 from these roughnesses on, over kTracedFade.
-// It is larger for metals, as their lobe shows more; these have a channel of F0 above kMetallicF0.
+// The share of the light under a lobe that rays find, and not VPLs, falls to 0 from these roughnesses on, over
+// kTracedFade. It is larger for metals, as their lobe shows more; these have a channel of F0 above kMetallicF0.
 SHARED_CONSTANT float kTracedDielectric = 0.3f, kTracedMetal = 0.7f, kTracedFade = 0.15f, kMetallicF0 = 0.15f;
 
 SHARED_CONSTANT float kMirrorCellWidth =
