@@ -18,7 +18,6 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
       .makeOptional();
   d.input("gbuffer", "gbuffer", gbufferMembers(read, {"normal", "specular"}),
           "surfaces seen by the eye, whose lobes `gloss` is for; if not wired, it is the same as `samples`")
-      .makeOptional()
       .when(fullMaterials());
   const SizeExpr width = ceilDiv(viewWidth(), 2), height = ceilDiv(viewHeight(), 2);
   d.output("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), write,

@@ -25,8 +25,8 @@ class GpuScene : public FrameDescriptors {
   // Uploads everything and waits for the upload. Throws Error(OutOfMemory) naming what did not fit, and
   // Error(BadInput) if there are more than kMaxLights lights, if these need more than kMaxShadowLayers shadow maps, or if
   // a texture is larger than the device supports.
-  // fullMaterials: whether a pass asks for all that glTF says of materials. Their base colours
-  // are then those of materials/bounced.h, with which metals are not black.
+  // fullMaterials: whether a pass asks for all that glTF says of materials. Their base colours are then those of
+  // materials/bounced.h, with which metals are not black.
   // rays: whether a pass traces rays on the device; otherwise they meet nothing.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
            bool fullMaterials = false, bool rays = false);
