@@ -1,10 +1,10 @@
 #include "passes/bundles.h"
 
 #include "fovea/error.h"
-#include "shaders/common/records/eye_paths.h"
-#include "shaders/common/records/shadow.h"
-#include "shaders/common/records/voxel.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/eye_paths.h"
+#include "shaders/records/shadow.h"
+#include "shaders/records/voxel.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::passes {
 
@@ -92,7 +92,7 @@ std::vector<MemberSpec> voxelOutput(const SizeExpr& r, const SizeExpr& room) {
                  Usage::StorageRead | Usage::StorageWrite,
                  "one bit for each cell of a brick of 4 x 4 x 2 cells: it holds a voxel"),
           member("surface", buffer("VoxelSide", sizeof(scene::VoxelSide), room * 2), Usage::StorageWrite,
-                 "two sides per voxel, see shaders/common/voxel.glsl; a side with area 0 is empty"),
+                 "two sides per voxel, see shaders/voxels/voxel.glsl; a side with area 0 is empty"),
           member("info", buffer("VoxelInfo", sizeof(scene::VoxelInfo)),
                  Usage::StorageRead | Usage::StorageWrite, "numbers of voxels")};
 }
@@ -125,7 +125,7 @@ std::vector<MemberSpec> shadowMapOutput(const SizeExpr& size, const SizeExpr& la
                  "depth, 1 nearest to the light, 0 where nothing is hit; layers in the order of the lights"),
           member("views", buffer("ShadowView", sizeof(scene::ShadowView), scene::kMaxShadowLayers),
                  Usage::StorageWrite | Usage::Uniform,
-                 "projection of each layer (shaders/common/shadow.glsl); unused entries are undefined")};
+                 "projection of each layer (shaders/vpls/shadow.glsl); unused entries are undefined")};
 }
 std::vector<MemberSpec> shadowMapMembers() {
   const std::vector<MemberSpec> output = shadowMapOutput(1, 1);

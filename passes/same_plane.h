@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "shaders/common/records/contact.h"
+#include "shaders/records/contact.h"
 
 namespace fovea::passes {
 

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Shaders = std::map<std::string, std::string>;  // name in #include -> text
 
 std::optional<std::string> readShader(const std::string& name) {
-  for (const fs::path& folder : dataFolders("shaders")) {
+  for (const fs::path& folder : shaderFolders()) {
     std::error_code ignored;
     if (!fs::is_regular_file(folder / name, ignored)) continue;
     std::ifstream in(folder / name, std::ios::binary);
@@ -46,12 +46,17 @@ void addShader(const std::string& name, Shaders& shaders) {
     addShader((*found)[1], shaders);
 }
 
+bool isShader(const fs::path& file) {
+  const fs::path kind = file.extension();
+  return kind == ".comp" || kind == ".frag" || kind == ".vert" || kind == ".glsl";
+}
+
 void addShadersIn(const std::string& part, Shaders& shaders) {
   std::error_code ignored;
-  for (const fs::path& folder : dataFolders("shaders"))
+  for (const fs::path& folder : shaderFolders())
     for (fs::recursive_directory_iterator entry(folder / part, ignored), end; entry != end;
          entry.increment(ignored))
-      if (entry->is_regular_file(ignored))
+      if (isShader(entry->path()))
         addShader(entry->path().lexically_relative(folder).string(), shaders);
 }
 
@@ -78,7 +83,8 @@ std::string passCode(const std::string& type) {
 
 std::string frameworkCode() {
   Shaders shaders;
-  for (const char* part : {"animate", "subdivide"}) addShadersIn(part, shaders);
+  for (const char* kernel : {"animate", "refit", "refit_emitters", "subdivide"})
+    addShader(std::string("scene/") + kernel + ".comp", shaders);
   return codeOf(kFrameworkSources, shaders);
 }
 

@@ -8,7 +8,7 @@ set(ignored "framework/scene/(builtin|gltf/|file/|load|export/|subdivision/cage_
 set(execution "framework/graph/run/")
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/framework/*.cpp ${SOURCE}/framework/*.h ${SOURCE}/passes/*.cpp
-  ${SOURCE}/passes/*.h ${SOURCE}/benchmarks/runner/*.cpp ${SOURCE}/benchmarks/runner/*.h ${SOURCE}/shaders/common/* ${SOURCE}/shaders/*.h)
+  ${SOURCE}/passes/*.h ${SOURCE}/benchmarks/runner/*.cpp ${SOURCE}/benchmarks/runner/*.h ${SOURCE}/shaders/*.h)
 list(FILTER files EXCLUDE REGEX "${ignored}")
 list(SORT files)
 
@@ -18,8 +18,8 @@ foreach(file ${files})
   file(STRINGS ${SOURCE}/${file} lines REGEX "^#include \"")
   list(TRANSFORM lines REPLACE "^#include \"([^\"]+)\".*" "\\1")
   list(TRANSFORM lines REPLACE "^fovea/" "framework/include/fovea/")
-  if(file MATCHES "^shaders/")
-    list(TRANSFORM lines REPLACE "^common/" "shaders/common/")
+  if(file MATCHES "^shaders/|/records[.]h$")
+    list(TRANSFORM lines REPLACE "^([.][.]/)+shaders/" "shaders/")
     cmake_path(GET file PARENT_PATH folder)
     list(TRANSFORM lines REPLACE "^([a-z_]+[.]h)$" "${folder}/\\1")
   endif()
@@ -74,7 +74,7 @@ foreach(type ${folders})
     string(APPEND entries "    {\"${type}\", \"${hash}\"},\n")
   endif()
 endforeach()
-code(framework "framework/gpu/|${execution}" "framework/(base|scene|shader_twins|include)/|shaders/common/")
+code(framework "framework/gpu/|${execution}" "framework/(base|scene|shader_twins|include)/|shaders/")
 code(measures "benchmarks/runner/(job|compared|timings)[.]|framework/session/graph_run[.]" "framework/(image|include)/")
 set(commit "")
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short HEAD OUTPUT_VARIABLE commit ERROR_QUIET

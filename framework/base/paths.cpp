@@ -93,4 +93,10 @@ std::vector<fs::path> dataFolders(std::string_view kind) {
   return list;
 }
 
+std::vector<fs::path> shaderFolders() {
+  std::vector<fs::path> list = dataFolders("shaders");
+  for (const fs::path& folder : dataFolders("passes")) addFolder(list, folder);
+  return list;
+}
+
 }  // namespace fovea

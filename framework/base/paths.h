@@ -19,6 +19,8 @@ std::vector<std::filesystem::path> dataDirectories();
 // The existing sub-folders of one kind: "shaders", "graphs" or "scenes". In the source tree,
 // scenes are in samples/scenes.
 std::vector<std::filesystem::path> dataFolders(std::string_view kind);
+// Where shaders are looked for: the library that passes include, then the folders of the passes themselves.
+std::vector<std::filesystem::path> shaderFolders();
 
 // The paths in an environment variable, separated by colons.
 std::vector<std::filesystem::path> pathsInVariable(const char* name);

@@ -1,5 +1,5 @@
 // Random numbers as a hash of (seed, frame, pass, index): the same everywhere, in any order, on any thread.
-// shaders/common/random.glsl holds the same functions for shaders; tests/unit/random_test.cpp keeps them equal.
+// shaders/sampling/random.glsl holds the same functions for shaders; tests/unit/random_test.cpp keeps them equal.
 #pragma once
 
 #include <cstdint>

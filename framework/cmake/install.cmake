@@ -10,7 +10,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/graphs DES
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/samples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea
   FILES_MATCHING PATTERN "*.json" PATTERN "*.csv" PATTERN "*.md")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/passes DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea
-  FILES_MATCHING PATTERN "*.pass.json" PATTERN "*.comp" PATTERN "*.frag")
+  FILES_MATCHING PATTERN "*.pass.json" PATTERN "*.comp" PATTERN "*.frag" PATTERN "*.vert" PATTERN "*.glsl" PATTERN "records.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/benchmarks/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)
 install(FILES ${PROJECT_SOURCE_DIR}/benchmarks/paper.json ${PROJECT_SOURCE_DIR}/benchmarks/report.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/benchmarks)

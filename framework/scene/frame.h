@@ -65,11 +65,11 @@ Frame makeFrame(const Scene& scene, const Geometry& geometry, glm::uvec2 size, u
 // point. `geometry` must be what flatten() made of Frame::scene. Allocates nothing.
 void moveObjects(const Frame& frame, Geometry& geometry);
 
-// The binding of set 1 that shaders use that trace rays (shaders/common/rays/trace.glsl).
+// The binding of set 1 that shaders use that trace rays (shaders/rays/trace.glsl).
 inline constexpr const char* kRayBinding = "rayNodes";
 
 // What a graph needs from the scene on the device: descriptor set 1, the same for every pass of a frame
-// (shaders/common/scene.glsl), and the vertices of everything that moves. `slot` is the number of a frame in flight.
+// (shaders/scene/scene.glsl), and the vertices of everything that moves. `slot` is the number of a frame in flight.
 class FrameDescriptors {
  public:
   virtual ~FrameDescriptors() = default;

@@ -1,4 +1,4 @@
-// Evaluates a light at a point. This is the one definition on the CPU; sampleLight in shaders/common/scene.glsl
+// Evaluates a light at a point. This is the one definition on the CPU; sampleLight in shaders/scene/scene.glsl
 // does the same.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Texture and material look-ups on the CPU, the reference for shaders/common/scene.glsl.
+// Texture and material look-ups on the CPU, the reference for shaders/scene/scene.glsl.
 #include <array>
 #include <cmath>
 

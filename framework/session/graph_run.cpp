@@ -13,7 +13,7 @@ namespace fovea::session {
 
 std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
   auto device = std::make_unique<gpu::Device>(options);
-  for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
+  for (const auto& folder : shaderFolders()) device->shaders().addSearchPath(folder);
   return device;
 }
 

@@ -55,7 +55,7 @@ gpu::Device& testDevice() {
       if (ending) lastMessages.push_back(message);
     };
     device = new gpu::Device(options);
-    for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
+    for (const auto& folder : shaderFolders()) device->shaders().addSearchPath(folder);
   }
   return *device;
 }

@@ -1,4 +1,4 @@
-// The C++ version of shaders/common/fovea.glsl, which explains the formulas; both must be changed together. It
+// The C++ version of shaders/sampling/fovea.glsl, which explains the formulas; both must be changed together. It
 // computes the fovea on the image plane, the weight of a pixel, and random pixels in the fovea.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "framework/base/random.h"
-#include "shaders/common/records/fovea.h"
+#include "shaders/records/fovea.h"
 
 namespace fovea::scene {
 

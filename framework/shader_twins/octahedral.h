@@ -1,4 +1,4 @@
-// The C++ version of shaders/common/octahedral.glsl: both must be changed together.
+// The C++ version of shaders/scene/octahedral.glsl: both must be changed together.
 #pragma once
 
 #include <algorithm>

@@ -1,11 +1,11 @@
-// The C++ version of shaders/common/paraboloid.glsl, which explains the mapping of paraboloid maps; both must
+// The C++ version of shaders/vpls/paraboloid.glsl, which explains the mapping of paraboloid maps; both must
 // be changed together.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "shaders/common/records/paraboloid.h"
+#include "shaders/records/paraboloid.h"
 
 namespace fovea::scene {
 

@@ -1,4 +1,4 @@
-// The C++ version of shaders/common/voxel.glsl: both must be changed together. It places the voxel grid in which
+// The C++ version of shaders/voxels/voxel.glsl: both must be changed together. It places the voxel grid in which
 // VPLs are found.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "shaders/common/records/voxel.h"
+#include "shaders/records/voxel.h"
 
 namespace fovea::scene {
 
@@ -18,7 +18,7 @@ inline VoxelGrid voxelGrid(glm::vec3 boundsMin, glm::vec3 boundsMax, int resolut
   return {boundsMin - pad, (longest + 2.0f * pad) / float(resolution), resolution};
 }
 
-// Side of a voxel, 0 or 1, to which a surface with this geometric normal belongs; shaders/common/voxel.glsl says how
+// Side of a voxel, 0 or 1, to which a surface with this geometric normal belongs; shaders/voxels/voxel.glsl says how
 // it is chosen.
 inline uint32_t voxelSideOf(glm::vec3 normal) {
   const glm::vec3 a = glm::abs(normal);

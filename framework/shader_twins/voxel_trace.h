@@ -1,4 +1,4 @@
-// The C++ version of shaders/common/voxel_trace.glsl, which explains the method; both must be changed together. It
+// The C++ version of shaders/voxels/voxel_trace.glsl, which explains the method; both must be changed together. It
 // traces rays through the voxels up to the first surface met.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <span>
 
 #include "framework/shader_twins/voxel_grid.h"
-#include "shaders/common/records/voxel.h"
+#include "shaders/records/voxel.h"
 
 namespace fovea::scene {
 

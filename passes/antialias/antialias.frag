@@ -3,14 +3,14 @@
 // the mean lies outside the colours around the pixel, to which it is clipped (Salvi, "An Excursion in Temporal
 // Supersampling", GDC 2016).
 //
-// Where surfaces let light through, a pixel shows now this one and now that (shaders/common/materials/passage.glsl).
+// Where surfaces let light through, a pixel shows now this one and now that (shaders/materials/passage.glsl).
 // The mean of all is what the eye should see, so it is one of light as it is; the box is that of more pixels, which
 // show each surface by its share; and the mean follows the surface that the pixel shows, as there is no telling which
 // is the nearest. With ONLY_VEILS 1 nothing else is smoothed.
-#include "common/finite.glsl"
-#include "common/materials/gloss.glsl"
-#include "common/motion.glsl"
-#include "common/pixel_ray.glsl"
+#include "device/finite.glsl"
+#include "materials/gloss.glsl"
+#include "scene/motion.glsl"
+#include "scene/pixel_ray.glsl"
 
 // Images rather than textures, which cost several times as much on a CPU device.
 layout(rgba16f) uniform readonly image2D radiance;

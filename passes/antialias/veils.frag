@@ -1,5 +1,5 @@
 // Whether a tile has a pixel at which something lets light through. TILE: its width in pixels.
-#include "common/materials/gloss.glsl"
+#include "materials/gloss.glsl"
 
 layout(rgba16f) uniform readonly image2D gbufferNormal;
 layout(location = 0) out float tiles;

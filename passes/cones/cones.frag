@@ -1,9 +1,9 @@
-// Irradiance of every pixel by cones through the voxels, as pass radiance gathers it at VPLs (common/cone.glsl). Cones as
+// Irradiance of every pixel by cones through the voxels, as pass radiance gathers it at VPLs (voxels/cone.glsl). Cones as
 // narrow as they must be to miss their own wall leave gaps, so pixels and frames turn them differently, for a mean.
-#include "common/random.glsl"
-#include "common/scene.glsl"
+#include "sampling/random.glsl"
+#include "scene/scene.glsl"
 #define CONE_GATHER
-#include "common/cone.glsl"
+#include "voxels/cone.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

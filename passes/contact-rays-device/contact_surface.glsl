@@ -1,6 +1,6 @@
 // The surfaces of pixels in contact (pass contacts).
-#include "common/octahedral.glsl"
-#include "common/pixel_ray.glsl"
+#include "scene/octahedral.glsl"
+#include "scene/pixel_ray.glsl"
 
 layout(rg32ui) uniform readonly uimage2D contacts;
 

@@ -1,7 +1,7 @@
 // The weights of VPLs: what they send, times the chance that a ray reaches them.
-#include "common/records/contact.h"
-#include "common/records/vpl.h"
-#include "common/scene.glsl"
+#include "records/contact.h"
+#include "records/vpl.h"
+#include "scene/scene.glsl"
 #include "contact_sources.glsl"
 
 layout(local_size_x = 64) in;

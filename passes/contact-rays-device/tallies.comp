@@ -1,5 +1,5 @@
 // What is remembered of the rays to each VPL.
-#include "common/records/contact.h"
+#include "records/contact.h"
 
 layout(local_size_x = 64) in;
 

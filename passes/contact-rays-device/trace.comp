@@ -1,12 +1,12 @@
 // Irradiance / pi from VPLs of one subset, chosen by the light they would send if nothing hid them and by the chance
 // that nothing does. Over the frames, subsets and places in the sum follow one low-discrepancy sequence (Roberts 2018).
 // Where there is no history it is the mean of several such estimates, which take the places of the frames before, each
-// in the next subset. Defines: RAY_PASSAGE 0/1 (common/rays/trace.glsl); HISTORY 0/1, 1 if `origin` says where there is
+// in the next subset. Defines: RAY_PASSAGE 0/1 (rays/trace.glsl); HISTORY 0/1, 1 if `origin` says where there is
 // none.
-#include "common/random.glsl"
-#include "common/history.glsl"
-#include "common/records/contact.h"
-#include "common/rays/visibility.glsl"
+#include "sampling/random.glsl"
+#include "scene/history.glsl"
+#include "records/contact.h"
+#include "rays/visibility.glsl"
 #include "contact_sources.glsl"
 #include "contact_surface.glsl"
 

@@ -20,8 +20,8 @@
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/same_plane.h"
-#include "shaders/common/records/contact.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/contact.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

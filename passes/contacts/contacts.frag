@@ -1,6 +1,6 @@
 // Marks the pixels over whose tangent plane a surface close by rises, so that it may hide light from them.
-#include "common/scene.glsl"
-#include "common/fovea.glsl"
+#include "scene/scene.glsl"
+#include "sampling/fovea.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

@@ -12,8 +12,8 @@
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
-#include "shaders/common/records/vpl.h"
-#include "shaders/deferred/records.h"
+#include "shaders/records/vpl.h"
+#include "passes/deferred/records.h"
 
 namespace fovea::passes {
 namespace {

@@ -7,7 +7,7 @@
 #include "passes/bundles.h"
 #include "passes/emit/light_paths.h"
 #include "passes/materials.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::passes {
 namespace {

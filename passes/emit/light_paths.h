@@ -7,7 +7,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::passes {
 

@@ -5,7 +5,7 @@
 #include "passes/bundles.h"
 #include "passes/eye-paths-host/eye_path_ports.h"
 #include "passes/materials.h"
-#include "shaders/common/records/eye_paths.h"
+#include "shaders/records/eye_paths.h"
 
 namespace fovea::passes {
 namespace {

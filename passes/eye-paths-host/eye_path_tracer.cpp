@@ -12,7 +12,7 @@
 #include "framework/scene/lights.h"
 #include "framework/scene/rays/surface_tracer.h"
 #include "framework/shader_twins/fovea.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/rays.h"
 
 namespace fovea::passes {
 namespace {

@@ -12,7 +12,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/shader_twins/fovea.h"
-#include "shaders/common/records/eye_paths.h"
+#include "shaders/records/eye_paths.h"
 
 namespace fovea::passes {
 

@@ -18,7 +18,7 @@ namespace {
 
 using namespace graph;
 
-// MATERIAL_DETAIL of common/materials/full_material.glsl that a material asks for.
+// MATERIAL_DETAIL of materials/full_material.glsl that a material asks for.
 int detailOf(const scene::Material& m) {
   const bool extended =
       m.specularTexture || m.specularColorTexture || m.transmission > 0 || m.clearcoat > 0 ||

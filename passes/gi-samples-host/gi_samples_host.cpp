@@ -15,7 +15,7 @@
 #include "passes/gi-samples-host/gi_samples_ports.h"
 #include "passes/materials.h"
 #include "passes/near-field-host/near_field_tracer.h"
-#include "shaders/common/records/reservoir.h"
+#include "shaders/records/reservoir.h"
 
 namespace fovea::passes {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "passes/bundles.h"
 #include "passes/materials.h"
-#include "shaders/common/records/reservoir.h"
+#include "shaders/records/reservoir.h"
 
 namespace fovea::passes {
 

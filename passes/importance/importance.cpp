@@ -5,7 +5,7 @@
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/hemisphere_rays.h"
+#include "shaders/records/hemisphere_rays.h"
 
 namespace fovea::passes {
 namespace {

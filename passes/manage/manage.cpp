@@ -9,7 +9,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
-#include "shaders/manage/records.h"
+#include "passes/manage/records.h"
 
 namespace fovea::passes {
 namespace {

@@ -31,7 +31,7 @@ class Mipmap : public Pass {
     const SizeExpr width = size * (SizeExpr(1) + SizeExpr(5) * parameter("directional"));
     d.output("mips", "voxel-mips", voxelMipOutput(width, size, kAllMips),
              "level 0 has cells of 2x2x2 voxels; levels that are not exactly half the size of the one before "
-             "are 0 (shaders/common/cone.glsl)")
+             "are 0 (shaders/voxels/cone.glsl)")
         .keep(Lifetime::Scene);  // so that cells that stay empty need not be stored
     // One bit for each cell of level 1 and above: something below it changed.
     const SizeExpr half = ceilDiv(size, 2);

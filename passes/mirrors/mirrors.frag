@@ -1,6 +1,6 @@
 // Picks the pixel of each block from which a ray of pass reflections leaves, if its surface is smooth enough for one.
-#include "common/blocks.glsl"
-#include "common/materials/gloss.glsl"
+#include "scene/blocks.glsl"
+#include "materials/gloss.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

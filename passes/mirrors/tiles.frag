@@ -1,5 +1,5 @@
 // Whether a tile contains a smooth surface. TILE: its width in pixels.
-#include "common/materials/gloss.glsl"
+#include "materials/gloss.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferSpecular;

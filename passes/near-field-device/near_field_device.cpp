@@ -3,8 +3,8 @@
 #include "framework/scene/frame.h"
 #include "passes/materials.h"
 #include "passes/near-field-host/near_field_ports.h"
-#include "shaders/common/records/gather_cache.h"
-#include "shaders/common/records/near_field.h"
+#include "shaders/records/gather_cache.h"
+#include "shaders/records/near_field.h"
 
 namespace fovea::passes {
 namespace {

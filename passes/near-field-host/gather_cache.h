@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "shaders/common/records/gather_cache.h"
+#include "shaders/records/gather_cache.h"
 
 namespace fovea::passes {
 

@@ -12,7 +12,7 @@
 #include "passes/materials.h"
 #include "passes/near-field-host/near_field_ports.h"
 #include "passes/near-field-host/near_field_tracer.h"
-#include "shaders/common/records/near_field.h"
+#include "shaders/records/near_field.h"
 
 namespace fovea::passes {
 namespace {

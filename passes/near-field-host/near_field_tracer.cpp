@@ -16,8 +16,8 @@
 #include "passes/near-field-host/cached_light.h"
 #include "passes/near-field-host/receiver_lobe.h"
 #include "passes/same_plane.h"
-#include "shaders/common/records/near_field.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/near_field.h"
+#include "shaders/records/rays.h"
 
 namespace fovea::passes {
 namespace {

@@ -7,8 +7,8 @@
 #include "framework/scene/materials/bsdf.h"
 #include "framework/scene/materials/microfacets.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/mirror.h"
-#include "shaders/common/records/near_field.h"
+#include "shaders/records/mirror.h"
+#include "shaders/records/near_field.h"
 
 namespace fovea::passes {
 

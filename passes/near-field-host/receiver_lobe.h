@@ -1,5 +1,5 @@
 // The lobe in which a surface that the eye sees reflects light, as the G-buffer keeps it; the same as
-// shaders/near-field-device/receiver_lobe.glsl.
+// passes/near-field-device/receiver_lobe.glsl.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,7 +1,7 @@
 // What probes see where: the mean distance and its square for each direction, of the rays around it, blended with those
 // of the previous frames (Majercik et al. 2019, sections 4.2 and 4.3).
-#include "common/device/texels.glsl"
-#include "common/probes/layout.glsl"
+#include "device/texels.glsl"
+#include "probes/layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,8 +1,8 @@
 // Irradiance of probes: a cosine-weighted mean of the rays' radiance for each direction, blended with that of the
 // previous frames (Majercik et al., "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", JCGT 8(2),
 // 2019, section 4.2).
-#include "common/device/texels.glsl"
-#include "common/probes/layout.glsl"
+#include "device/texels.glsl"
+#include "probes/layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,7 +1,7 @@
 // Where each probe shall stand, and whether it is inside geometry (Majercik et al., "Scaling Probe-Based Real-Time
 // Dynamic Global Illumination for Production", JCGT 10(2), 2021, sections 4 and 5).
-#include "common/device/texels.glsl"
-#include "common/probes/layout.glsl"
+#include "device/texels.glsl"
+#include "probes/layout.glsl"
 
 layout(local_size_x = 64) in;
 

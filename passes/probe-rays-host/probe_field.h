@@ -1,12 +1,12 @@
 // The light that probes know, for passes on the CPU: the C++ version of passes/probe-sample/probe_sample.frag and
-// shaders/common/probes/, which must be changed together with it.
+// shaders/probes/, which must be changed together with it.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 
-#include "shaders/common/records/probes.h"
+#include "shaders/records/probes.h"
 
 namespace fovea::passes {
 

@@ -3,7 +3,7 @@
 #include "fovea/error.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
-#include "shaders/common/records/probes.h"
+#include "shaders/records/probes.h"
 
 namespace fovea::passes {
 
@@ -19,7 +19,7 @@ void declareProbeRays(PassDeclaration& d, ProbeRayUsages usages) {
   const SizeExpr side = parameter("probes"), rays = parameter("rays");
   d.output("rays", "probe-rays",
            {member("grid", buffer("ProbeGrid", sizeof(scene::ProbeGrid)), usages.output,
-                   "where the cells of the probes lie (shaders/common/records/probes.h)"),
+                   "where the cells of the probes lie (shaders/records/probes.h)"),
             member("directions", buffer("ProbeDirection", sizeof(glm::vec4), rays), usages.output,
                    "xyz: directions of the rays, unit, the same for all probes"),
             member("hits", buffer("ProbeHit", sizeof(glm::vec4), side * side * side * rays), usages.output,

@@ -1,6 +1,6 @@
 // The light of probes at each pixel.
-#include "common/probes/light.glsl"
-#include "common/scene.glsl"
+#include "probes/light.glsl"
+#include "scene/scene.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

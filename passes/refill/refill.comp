@@ -1,6 +1,6 @@
 // One work group: the candidates that hit something fill the slots in their order.
-#include "common/scene.glsl"
-#include "common/vpl.glsl"
+#include "scene/scene.glsl"
+#include "vpls/vpl.glsl"
 #include "manage/new_vpl.glsl"
 #define GROUP 64
 #include "manage/group.glsl"

@@ -1,7 +1,7 @@
 // What smooth surfaces reflect, with rays on the device.
 #include "fovea/pass.h"
 #include "passes/reflections-host/reflections_ports.h"
-#include "shaders/common/records/gather_cache.h"
+#include "shaders/records/gather_cache.h"
 
 namespace fovea::passes {
 namespace {

@@ -17,7 +17,7 @@
 #include "framework/shader_twins/paraboloid.h"
 #include "passes/near-field-host/cached_light.h"
 #include "passes/reflections-host/reflections_ports.h"
-#include "shaders/common/records/mirror.h"
+#include "shaders/records/mirror.h"
 
 namespace fovea::passes {
 namespace {

@@ -8,7 +8,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
-#include "shaders/reproject/records.h"
+#include "passes/reproject/records.h"
 
 namespace fovea::passes {
 namespace {

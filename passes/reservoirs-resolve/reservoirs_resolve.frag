@@ -1,5 +1,5 @@
 // The light that the sample of each pixel's reservoir stands for.
-#include "common/reservoir.glsl"
+#include "sampling/reservoir.glsl"
 
 layout(rgba32f) uniform readonly image2D gbufferPosition;
 layout(rgba16f) uniform readonly image2D gbufferNormal;

@@ -12,7 +12,7 @@
 #include "framework/shader_twins/octahedral.h"
 #include "passes/materials.h"
 #include "passes/reservoirs-visibility-host/reservoirs_visibility_ports.h"
-#include "shaders/common/records/reservoir.h"
+#include "shaders/records/reservoir.h"
 
 namespace fovea::passes {
 namespace {

@@ -3,7 +3,7 @@
 #include "fovea/error.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
-#include "shaders/common/records/reservoir.h"
+#include "shaders/records/reservoir.h"
 
 namespace fovea::passes {
 

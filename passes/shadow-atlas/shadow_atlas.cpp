@@ -25,7 +25,7 @@
 #include "framework/scene/motion/movers.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "passes/bundles.h"
-#include "shaders/shadow-atlas/records.h"
+#include "passes/shadow-atlas/records.h"
 
 namespace fovea::passes {
 namespace {
@@ -92,7 +92,7 @@ PassDeclaration ShadowAtlas::declaration() {
                         ceilDiv(countOf("vpls"), tiles)),
            Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
            "bits of a float: distance in m to the nearest surface in the direction of the texel's centre, "
-           "infinity if there is none (shaders/common/paraboloid.glsl)")
+           "infinity if there is none (shaders/vpls/paraboloid.glsl)")
       .keep(Lifetime::View);
   const SizeExpr batches = ceilDiv(countOf("vpls"), kBatch), triangles = environment("scene.triangles");
   d.scratch("refreshed", buffer("uint", 4, countOf("vpls")), Usage::StorageRead | Usage::StorageWrite,

@@ -8,7 +8,7 @@
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "passes/bundles.h"
-#include "shaders/voxelize/records.h"
+#include "passes/voxelize/records.h"
 
 namespace fovea::passes {
 namespace {

@@ -7,8 +7,8 @@
 #include "fovea/pass.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
-#include "shaders/common/records/eye_paths.h"
-#include "shaders/vpl-intensity/records.h"
+#include "shaders/records/eye_paths.h"
+#include "passes/vpl-intensity/records.h"
 
 namespace fovea::passes {
 namespace {

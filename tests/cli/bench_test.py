@@ -164,14 +164,15 @@ class Suites(CliTest):
         """Results that depend on it are no longer comparable; the others are."""
         self.suite(measures=["time"])
         self.succeeds("bench", "tiny.json", "-o", "out", "-q")
-        shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
-        with open(self.folder / "data/shaders/deferred/blocks.glsl", "a") as file:
+        for folder in ("shaders", "passes"):
+            shutil.copytree(SOURCE / folder, self.folder / "data" / folder)
+        with open(self.folder / "data/passes/deferred/blocks.glsl", "a") as file:
             file.write("// a remark\n")
-        with open(self.folder / "data/shaders/common/scene.glsl", "a") as file:
+        with open(self.folder / "data/shaders/scene/scene.glsl", "a") as file:
             file.write("\n")
         data = {"FOVEA_DATA": str(self.folder / "data")}
         self.assertIn("4 of 4 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", env=data).stdout)
-        with open(self.folder / "data/shaders/deferred/blocks.glsl", "a") as file:
+        with open(self.folder / "data/passes/deferred/blocks.glsl", "a") as file:
             file.write("#define CHANGED\n")
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--only", "ir_1000", says=["passes.deferred"], env=data)
         self.assertIn("2 of 2 jobs are done", self.succeeds("bench", "tiny.json", "-o", "out", "--only", "direct", env=data).stdout)
@@ -188,9 +189,10 @@ class Suites(CliTest):
         self.assertEqual(set(made["reference"]), {"path-trace", "parameters of path-trace"})
         # A change of a shader that the path tracer does not use makes no new reference.
         references = sorted((self.folder / "out/references").iterdir())
-        shutil.copytree(SOURCE / "shaders", self.folder / "data/shaders")
-        for name in ("tonemap/tonemap.frag", "gbuffer/resolve.frag", "animate/animate.comp"):
-            with open(self.folder / "data/shaders" / name, "a") as file:
+        for folder in ("shaders", "passes"):
+            shutil.copytree(SOURCE / folder, self.folder / "data" / folder)
+        for name in ("passes/tonemap/tonemap.frag", "passes/gbuffer/resolve.frag", "shaders/scene/animate.comp"):
+            with open(self.folder / "data" / name, "a") as file:
                 file.write("#define CHANGED\n")
         data = {"FOVEA_DATA": str(self.folder / "data")}
         self.fails(BAD_INPUT, "bench", "tiny.json", "-o", "out", "--only", "direct", says=["passes.gbuffer"], env=data)

@@ -11,7 +11,7 @@ unset FOVEA_DATA
 prefix=$work/prefix
 
 cmake --install "$build" --prefix "$prefix" >"$work/log" || { cat "$work/log"; exit 1; }
-for file in bin/fovea share/fovea/graphs/direct.json share/fovea/shaders/tonemap/tonemap.frag share/fovea/scenes; do
+for file in bin/fovea share/fovea/graphs/direct.json share/fovea/passes/tonemap/tonemap.frag share/fovea/scenes; do
   [ -e "$prefix/$file" ] || { echo "the installation lacks $file"; exit 1; }
 done
 

@@ -288,7 +288,7 @@ class FrameLimit(CliTest):
             "outputs": {"image": {"doc": "it", "format": "rgba8"}},
             "steps": [{"shader": "ponder.frag", "colors": ["image"]}]})
         self.write("passes/ponder.frag", """#version 460
-#include "common/scene.glsl"
+#include "scene/scene.glsl"
 layout(set = 0, binding = 0) uniform sampler2D picture;
 layout(location = 0) out vec4 color;
 void main() {

@@ -201,7 +201,7 @@ TEST(Animate, WithoutPosesThingsRest) {
     ASSERT_LT(glm::distance(glm::vec3(v.positions[i]), g.positions[i]), 1e-5f) << i;
 }
 
-// ---- Points attached to a triangle (common/scene.glsl) ----------------------------------------------------
+// ---- Points attached to a triangle (scene/scene.glsl) ----------------------------------------------------
 
 // Results of attach() and its relatives for points around the triangles that come after the static ones, among those
 // that voxels see. With `coarse`, these differ from the triangles of the picture.

@@ -1,4 +1,4 @@
-// Compares the choice of light sources on the device (shaders/common/rays/emitters.glsl) with that on the host.
+// Compares the choice of light sources on the device (shaders/rays/emitters.glsl) with that on the host.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::vector<Answer> askDevice(GpuScene& scene, const Frame& frame, const std::ve
   const char* source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 #define RAY_PASSAGE 0
-#include "common/rays/emitters.glsl"
+#include "rays/emitters.glsl"
 layout(local_size_x = 64) in;
 struct Query { vec3 position; float choice; vec3 normal; uint other; vec2 u, unused; };
 struct Answer {

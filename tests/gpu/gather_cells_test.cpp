@@ -1,4 +1,4 @@
-// Tests the cells in which light is remembered on the device (shaders/common/rays/gather_cache.glsl).
+// Tests the cells in which light is remembered on the device (shaders/rays/gather_cache.glsl).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/frame.h"
 #include "framework/session/test_device.h"
-#include "shaders/common/records/gather_cache.h"
+#include "shaders/records/gather_cache.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/shapes.h"
 
@@ -83,7 +83,7 @@ void main() {
     const std::string head = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 #define RAY_PASSAGE 0
-#include "common/rays/gather_cache.glsl"
+#include "rays/gather_cache.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Constants { uint count; float ageing; };
 )";

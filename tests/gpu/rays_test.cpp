@@ -1,4 +1,4 @@
-// Compares rays through the triangles on the device (shaders/common/rays/trace.glsl) with RayScene.
+// Compares rays through the triangles on the device (shaders/rays/trace.glsl) with RayScene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ std::vector<Answer> traceOnDevice(GpuScene& scene, const Frame& frame, const std
   const std::string source = std::string("#version 460\n") +
                              "#extension GL_GOOGLE_include_directive : require\n#define RAY_PASSAGE " +
                              (passage ? "1" : "0") + R"(
-#include "common/rays/visibility.glsl"
+#include "rays/visibility.glsl"
 layout(local_size_x = 64) in;
 struct Query { vec3 origin; float near; vec3 direction; float far; };
 struct Answer { uint triangle; float distance, u, v; vec3 share; uint occluded; };

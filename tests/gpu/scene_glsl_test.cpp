@@ -1,4 +1,4 @@
-// Compares shaders/common/scene.glsl with its CPU twins: textures, materials, lights and geometry.
+// Compares shaders/scene/scene.glsl with its CPU twins: textures, materials, lights and geometry.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -125,7 +125,7 @@ TEST(SceneGlsl, QuotientsAndRootsAreThoseOfTheCpu) {
                  "float offBy(float x) { return x == 0.0 ? x : intBitsToFloat(floatBitsToInt(x) + " +
                      std::to_string(off) +
                      "); }\n#define DEVICE_QUOTIENT(a, b) offBy((a) / (b))\n"
-                     "#define DEVICE_ROOT(x) offBy(sqrt(x))\n#include \"common/device/exact.glsl\"");
+                     "#define DEVICE_ROOT(x) offBy(sqrt(x))\n#include \"device/exact.glsl\"");
     for (size_t i = 0; i < queries.size(); ++i) {
       const glm::vec4 q = queries[i], r = results[3 * i];
       ASSERT_EQ(r.x, q.x / q.y) << q.x << " / " << q.y << " off by " << off;

@@ -58,8 +58,8 @@ inline std::vector<glm::vec4> evaluate(scene::GpuScene& scene, const scene::Fram
   const std::string source = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 )" + head + R"(
-#include "common/materials/passage.glsl"
-#include "common/scene.glsl"
+#include "materials/passage.glsl"
+#include "scene/scene.glsl"
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Queries { vec4 queries[]; };
 layout(std430) writeonly buffer Answers { vec4 answers[]; };

@@ -9,7 +9,7 @@
 #include "framework/base/paths.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/graph_run.h"
 #include "tests/support/shapes.h"

@@ -13,7 +13,7 @@
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
 #include "places.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/graph_run.h"
 

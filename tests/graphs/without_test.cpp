@@ -43,7 +43,7 @@ void expectTheSame(const char* graph, const scene::Scene& scene, const std::vect
   gpu::DeviceOptions options = testDeviceOptions();
   options.without = without;
   gpu::Device device(options);
-  for (const auto& folder : dataFolders("shaders")) device.shaders().addSearchPath(folder);
+  for (const auto& folder : shaderFolders()) device.shaders().addSearchPath(folder);
   const GraphRun run = render(graph, scene, device, set), expected = render(graph, scene, testDevice(), set);
   for (const auto& [name, output] : expected.outputs)
     EXPECT_EQ(run.outputs.at(name).bytes, output.bytes) << graph << ", output " << name;

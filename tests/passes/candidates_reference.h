@@ -14,7 +14,7 @@
 #include "framework/shader_twins/fovea.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_trace.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

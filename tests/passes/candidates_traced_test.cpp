@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "shaders/common/records/eye_paths.h"
+#include "shaders/records/eye_paths.h"
 #include "tests/passes/candidates_reference.h"
 #include "tests/support/shapes.h"
 

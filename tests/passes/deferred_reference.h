@@ -11,7 +11,7 @@
 
 #include "fovea/test.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::test {
 

@@ -10,7 +10,7 @@
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
 #include "passes/emit/light_paths.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {

@@ -6,7 +6,7 @@
 
 #include "fovea/test.h"
 #include "framework/scene/frame.h"
-#include "shaders/common/records/eye_paths.h"
+#include "shaders/records/eye_paths.h"
 #include "tests/passes/scene_of_everything.h"
 
 namespace fovea::test {

@@ -8,7 +8,7 @@
 #include "fovea/test.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
-#include "shaders/common/records/eye_paths.h"
+#include "shaders/records/eye_paths.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {

@@ -8,7 +8,7 @@
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "passes/eye-paths-host/eye_path_tracer.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/rays.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 #include "tests/support/path_reference.h"

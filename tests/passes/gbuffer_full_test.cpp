@@ -10,7 +10,7 @@
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/materials/surface_materials.h"
 #include "framework/scene/scene.h"
-#include "shaders/common/records/scene.h"
+#include "shaders/records/scene.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/ray_reference.h"
 

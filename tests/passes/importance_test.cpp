@@ -14,8 +14,8 @@
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_trace.h"
-#include "shaders/common/records/hemisphere_rays.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/hemisphere_rays.h"
+#include "shaders/records/vpl.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::test {
 

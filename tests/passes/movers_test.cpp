@@ -10,7 +10,7 @@
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_grid.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"
 

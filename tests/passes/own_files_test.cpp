@@ -115,7 +115,7 @@ void writeRays(const std::filesystem::path& folder, const std::string& type, con
     "steps": [{ "shader": "stopped.frag", "colors": ["stopped"] }] })";
   std::ofstream(folder / "stopped.frag") << R"(
 #define RAY_PASSAGE 0
-#include "common/rays/trace.glsl"
+#include "rays/trace.glsl"
 layout(location = 0) out float stopped;
 void main() {
   vec3 origin = vec3(gl_FragCoord.xy - 2.0, 0.0);

@@ -9,7 +9,7 @@
 
 #include "fovea/test.h"
 #include "framework/base/random.h"
-#include "shaders/common/records/probes.h"
+#include "shaders/records/probes.h"
 
 namespace fovea::test {
 

@@ -9,7 +9,7 @@
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
 

@@ -8,7 +8,7 @@
 #include "fovea/error.h"
 #include "framework/scene/environment/environment_map.h"
 #include "passes/near-field-host/near_field_tracer.h"
-#include "shaders/common/records/mirror.h"
+#include "shaders/records/mirror.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/scene_of_everything.h"
 #include "tests/passes/vpl_intensity_reference.h"

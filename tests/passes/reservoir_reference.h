@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "framework/base/random.h"
-#include "shaders/common/records/reservoir.h"
+#include "shaders/records/reservoir.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 

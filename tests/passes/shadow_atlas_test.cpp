@@ -17,7 +17,7 @@
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"
 

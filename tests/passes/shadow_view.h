@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "shaders/common/records/shadow.h"
+#include "shaders/records/shadow.h"
 
 namespace fovea::test {
 

@@ -11,7 +11,7 @@
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_trace.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/support/voxels.h"
 
 namespace fovea::test {

@@ -12,7 +12,7 @@
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/paraboloid.h"
 #include "framework/shader_twins/voxel_trace.h"
-#include "shaders/common/records/hemisphere_rays.h"
+#include "shaders/records/hemisphere_rays.h"
 #include "tests/passes/shadow_view.h"
 #include "tests/support/voxels.h"
 
@@ -122,7 +122,7 @@ inline void setMips(PassTest& test, const MipRun& run) {
               m.levels);
 }
 
-// ---- The gather of shaders/common/cone.glsl, with its own filter ------------------------------------------
+// ---- The gather of shaders/voxels/cone.glsl, with its own filter ------------------------------------------
 
 inline glm::vec4 filterMips(const Mips& m, glm::vec3 p, int face, uint32_t level) {
   const float size = float(m.sizeAt(level)), cell = float(1u << level);

@@ -10,7 +10,7 @@
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "framework/scene/scene.h"
-#include "shaders/common/records/vpl.h"
+#include "shaders/records/vpl.h"
 
 namespace fovea::test {
 

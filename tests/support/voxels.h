@@ -11,7 +11,7 @@
 
 namespace fovea::test {
 
-// The bundle "voxels" as arrays; see shaders/common/voxel.glsl.
+// The bundle "voxels" as arrays; see shaders/voxels/voxel.glsl.
 struct VoxelArrays {
   scene::VoxelGrid grid;
   int resolution = 1;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/hemisphere_rays.h"
+#include "shaders/records/hemisphere_rays.h"
 
 namespace fovea::scene {
 namespace {

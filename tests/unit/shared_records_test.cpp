@@ -10,17 +10,17 @@
 
 #include "framework/gpu/shader/shader.h"
 #include "places.h"
-#include "shaders/common/records/eye_paths.h"
-#include "shaders/common/records/rays.h"
-#include "shaders/common/records/reservoir.h"
-#include "shaders/common/records/scene.h"
-#include "shaders/common/records/shadow.h"
-#include "shaders/common/records/voxel.h"
-#include "shaders/common/records/vpl.h"
-#include "shaders/manage/records.h"
-#include "shaders/shadow-atlas/records.h"
-#include "shaders/voxelize/records.h"
-#include "shaders/vpl-intensity/records.h"
+#include "shaders/records/eye_paths.h"
+#include "shaders/records/rays.h"
+#include "shaders/records/reservoir.h"
+#include "shaders/records/scene.h"
+#include "shaders/records/shadow.h"
+#include "shaders/records/voxel.h"
+#include "shaders/records/vpl.h"
+#include "passes/manage/records.h"
+#include "passes/shadow-atlas/records.h"
+#include "passes/voxelize/records.h"
+#include "passes/vpl-intensity/records.h"
 
 namespace fovea {
 namespace {
@@ -54,7 +54,8 @@ void expectLayout(const std::string& header, const std::string& record, size_t b
                   const std::map<std::string, size_t>& members) {
   SCOPED_TRACE(record);
   gpu::ShaderCompiler compiler({});
-  compiler.addSearchPath(std::filesystem::path(FOVEA_SOURCE_DIR) / "shaders");
+  for (const char* folder : {"shaders", "passes"})
+    compiler.addSearchPath(std::filesystem::path(FOVEA_SOURCE_DIR) / folder);
   const auto shader =
       compiler.compileSource(record + ".comp", "#include \"" + header +
                                                    "\"\n"
@@ -76,7 +77,7 @@ void expectLayout(const std::string& header, const std::string& record, size_t b
 
 TEST(SharedRecords, Vpls) {
   using namespace scene;
-  const char* header = "common/records/vpl.h";
+  const char* header = "records/vpl.h";
   expectLayout(header, "Vpl", sizeof(Vpl),
                {AT(Vpl, position), AT(Vpl, area), AT(Vpl, normal), AT(Vpl, unused0), AT(Vpl, intensity),
                 AT(Vpl, unused1)});
@@ -92,7 +93,7 @@ TEST(SharedRecords, Vpls) {
 
 TEST(SharedRecords, Voxels) {
   using namespace scene;
-  const char* header = "common/records/voxel.h";
+  const char* header = "records/voxel.h";
   expectLayout(
       header, "VoxelSide", sizeof(VoxelSide),
       {AT(VoxelSide, position), AT(VoxelSide, area), AT(VoxelSide, normal), AT(VoxelSide, object),
@@ -107,7 +108,7 @@ TEST(SharedRecords, Voxels) {
 
 TEST(SharedRecords, Scene) {
   using namespace scene;
-  const char* header = "common/records/scene.h";
+  const char* header = "records/scene.h";
   expectLayout(header, "FrameBlock", sizeof(FrameBlock),
                {AT(FrameBlock, index),
                 AT(FrameBlock, seed),
@@ -167,7 +168,7 @@ TEST(SharedRecords, Scene) {
                 AT(TangentRecord, unused0), AT(TangentRecord, corner2), AT(TangentRecord, unused1)});
   expectLayout(header, "VertexDetail", sizeof(VertexDetail),
                {AT(VertexDetail, color), AT(VertexDetail, uv), AT(VertexDetail, unused)});
-  expectLayout("common/records/shadow.h", "ShadowView", sizeof(ShadowView),
+  expectLayout("records/shadow.h", "ShadowView", sizeof(ShadowView),
                {AT(ShadowView, worldToClip), AT(ShadowView, right), AT(ShadowView, texelWidth),
                 AT(ShadowView, up), AT(ShadowView, texelHeight), AT(ShadowView, bias),
                 AT(ShadowView, relativeBias), AT(ShadowView, depthScale), AT(ShadowView, unused)});
@@ -175,7 +176,7 @@ TEST(SharedRecords, Scene) {
 
 TEST(SharedRecords, EyePaths) {
   using namespace passes;
-  const char* header = "common/records/eye_paths.h";
+  const char* header = "records/eye_paths.h";
   expectLayout(header, "EyePathStart", sizeof(EyePathStart),
                {AT(EyePathStart, position), AT(EyePathStart, there), AT(EyePathStart, normal),
                 AT(EyePathStart, unused0), AT(EyePathStart, face), AT(EyePathStart, unused1)});
@@ -186,13 +187,13 @@ TEST(SharedRecords, EyePaths) {
 
 TEST(SharedRecords, Rays) {
   using namespace scene;
-  expectLayout("common/records/rays.h", "BvhNode", sizeof(BvhNode),
+  expectLayout("records/rays.h", "BvhNode", sizeof(BvhNode),
                {AT(BvhNode, low), AT(BvhNode, first), AT(BvhNode, high), AT(BvhNode, count)});
 }
 
 TEST(SharedRecords, Reservoirs) {
   using passes::Reservoir;
-  expectLayout("common/records/reservoir.h", "Reservoir", sizeof(Reservoir),
+  expectLayout("records/reservoir.h", "Reservoir", sizeof(Reservoir),
                {AT(Reservoir, position), AT(Reservoir, count), AT(Reservoir, radiance), AT(Reservoir, weight),
                 AT(Reservoir, normal), AT(Reservoir, unused)});
 }

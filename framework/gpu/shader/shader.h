@@ -67,7 +67,7 @@ struct CompiledShader {
 // The stage follows from the file name: .comp, .vert or .frag. Without #version, a shader is GLSL 4.60. #include,
 // #pragma once and texelFetch on plain textures (GL_EXT_samplerless_texture_functions) are always available.
 // Resources of set 0 need no layout(binding): `uniform texture2D radiance;` is found by its name, and pipelines make
-// the numbers of their stages consistent. Resources of set 1 (shaders/common/scene.glsl) have explicit numbers. Safe
+// the numbers of their stages consistent. Resources of set 1 (shaders/scene/scene.glsl) have explicit numbers. Safe
 // to call from several threads.
 class ShaderCompiler {
  public:

@@ -263,7 +263,7 @@ std::string passFileSchema() {
   Json schema = objectOf({{"$schema", text},
                           {"doc", described("what the pass does, in one line", text)},
                           {"view", described("whether it renders from a camera", {{"type", "boolean"}})},
-                          {"rays", described("whether its shaders trace rays, with common/rays/trace.glsl",
+                          {"rays", described("whether its shaders trace rays, with rays/trace.glsl",
                                              {{"type", "boolean"}})},
                           {"inputs", portSchema(input)},
                           {"updated", portSchema(input)},

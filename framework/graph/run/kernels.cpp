@@ -238,7 +238,7 @@ Kernel PrepareContext::graphics(const GraphicsKernelDesc& d) {
 
 Kernel PrepareContext::fullscreen(const std::string& fragment, const std::vector<std::string>& colors,
                                   gpu::Defines defines) {
-  Kernel kernel = graphics({.vertex = "common/fullscreen.vert",
+  Kernel kernel = graphics({.vertex = "device/fullscreen.vert",
                             .fragment = fragment,
                             .defines = std::move(defines),
                             .colors = colors});

@@ -157,7 +157,7 @@ MemoryNeed deviceMemory(gpu::Device& device, const BoundResource& resource) {
 }
 
 void addShaderFolders(gpu::ShaderCompiler& compiler, const Registry& registry) {
-  for (const auto& path : dataFolders("shaders")) compiler.addSearchPath(path);
+  for (const auto& path : shaderFolders()) compiler.addSearchPath(path);
   for (const auto& path : registry.pluginShaderPaths()) compiler.addSearchPath(path);
 }
 

@@ -46,7 +46,7 @@ StepAccess bindingAccess(const BoundPass& pass, uint32_t access, const gpu::Refl
   Usage usage = Usage(uint32_t(pass.accesses[access].usage) & uint32_t(usageOf(binding.kind)));
   // A port that only reads is not written, whatever the shader could do.
   if (binding.readOnly || !pass.accesses[access].writes) usage = without(usage, Usage::StorageWrite);
-  // Where texel buffers are too small, storage buffers take their place (common/device/texels.glsl).
+  // Where texel buffers are too small, storage buffers take their place (device/texels.glsl).
   if (binding.kind == gpu::BindingKind::StorageBuffer && binding.readOnly && !any(usage, Usage::StorageRead))
     usage = usage | Usage(uint32_t(pass.accesses[access].usage) & uint32_t(Usage::TexelRead));
   if (binding.writeOnly) usage = without(usage, Usage::StorageRead);
@@ -82,7 +82,7 @@ gpu::Defines stepDefines(const StepSpec& step, const PassContext& context) {
   gpu::Defines defines;
   for (const auto& [macro, value] : step.defines) defines[macro] = std::to_string(context.evaluate(value));
   if (context.has(step.tileMask))
-    defines["FOVEA_TILE_MASK"] = shaderName(step.tileMask);  // common/fullscreen.vert
+    defines["FOVEA_TILE_MASK"] = shaderName(step.tileMask);  // device/fullscreen.vert
   return defines;
 }
 

@@ -310,7 +310,7 @@ struct PassDeclaration {
   std::string doc;   // one line
   PassKind kind;
   bool usesView = false;     // renders from a camera, which `view` in the graph file selects
-  bool tracesRays = false;   // on the device: its shaders include common/rays/trace.glsl
+  bool tracesRays = false;   // on the device: its shaders include rays/trace.glsl
   bool sideEffects = false;  // never culled
   // Whether record() decides in each frame which steps run and in what order. A plan then knows the steps, but not what
   // they wait for, which is found while they are recorded.

@@ -390,7 +390,7 @@ struct ObjectTransform {
   // Its vertices move individually (Object::deforms). Points on it are stored by their place in a triangle instead.
   bool deforms = false;
 
-  // These equal the functions of the same names in shaders/common/scene.glsl.
+  // These equal the functions of the same names in shaders/scene/scene.glsl.
   glm::vec3 fromObject(glm::vec3 position) const { return glm::vec3(toWorld * glm::vec4(position, 1)); }
   glm::vec3 intoObject(glm::vec3 position) const { return glm::vec3(toObject * glm::vec4(position, 1)); }
   glm::vec3 normalFromObject(glm::vec3 n) const {

@@ -112,7 +112,7 @@ struct Animator::Impl {
         vertices(uint32_t(g.positions.size()) - g.staticVertices()),
         objectCount(uint32_t(g.objects.size())),
         still(objectsAt(scene, g, 0, 0)),
-        pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("animate/animate.comp")}) {
+        pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("scene/animate.comp")}) {
     jointCount = uint32_t(still.joints.size()), weightCount = uint32_t(still.weights.size());
     makeTables(scene, g);
     slots.resize(slotCount);

@@ -1,5 +1,5 @@
 // Computes the vertices of everything that moves on the device: the morph targets, joints and transforms of a frame
-// (shaders/animate/animate.comp), then the stencils of cages that deform. The result equals that of moveObjects().
+// (shaders/scene/animate.comp), then the stencils of cages that deform. The result equals that of moveObjects().
 #pragma once
 
 #include <vulkan/vulkan.h>

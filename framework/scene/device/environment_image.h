@@ -1,4 +1,4 @@
-// The environment map of a scene as shaders read it (common/scene.glsl, environmentRadiance).
+// The environment map of a scene as shaders read it (scene/scene.glsl, environmentRadiance).
 #pragma once
 
 #include "framework/gpu/resources.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/scene/scene.h"
-#include "shaders/common/records/scene.h"
+#include "shaders/records/scene.h"
 
 namespace fovea::scene {
 

@@ -16,7 +16,7 @@
 #include "framework/scene/device/rays/ray_tables.h"
 #include "framework/scene/lights.h"
 #include "framework/scene/materials/bounced.h"
-#include "shaders/common/records/shadow.h"
+#include "shaders/records/shadow.h"
 
 namespace fovea::scene {
 
@@ -320,7 +320,7 @@ constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));
 constexpr uint32_t kTexelBindings =
     uint32_t(std::ranges::count(kBindings, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER));
 
-// Storage buffers take the place of texel buffers where these are too small (common/device/texels.glsl).
+// Storage buffers take the place of texel buffers where these are too small (device/texels.glsl).
 VkDescriptorType typeOf(uint32_t binding, const gpu::Device& device) {
   const bool texels = kBindings[binding] == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
   return texels && device.lacks("maxTexelBufferElements") ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER

@@ -1,4 +1,4 @@
-// The scene on the device: descriptor set 1, the same for every pass of a frame (shaders/common/scene.glsl).
+// The scene on the device: descriptor set 1, the same for every pass of a frame (shaders/scene/scene.glsl).
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -8,7 +8,7 @@
 
 #include "framework/scene/device/draw_runs.h"
 #include "framework/scene/frame.h"
-#include "shaders/common/records/scene.h"
+#include "shaders/records/scene.h"
 
 namespace fovea::gpu {
 class Device;

@@ -34,7 +34,7 @@ struct Subdivider::Impl {
   gpu::Pipeline pipeline;
 
   Impl(gpu::Device& d, std::span<const Stencils> stencils)
-      : device(d), pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("subdivide/subdivide.comp")}) {
+      : device(d), pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("scene/subdivide.comp")}) {
     static_assert(sizeof(Stencils::Range) == 8 && sizeof(Stencils::Entry) == 16);
     std::vector<Stencils::Range> allRanges;
     std::vector<Stencils::Entry> allEntries;

@@ -1,5 +1,5 @@
 // Evaluates subdivision surfaces that deform on the device: stencil tables and the kernel that applies them
-// every frame (shaders/subdivide/subdivide.comp).
+// every frame (shaders/scene/subdivide.comp).
 #pragma once
 
 #include <vulkan/vulkan.h>

@@ -5,7 +5,7 @@
 #include "framework/base/random.h"
 #include "framework/scene/materials/albedo_table.h"
 #include "framework/scene/materials/microfacets.h"
-#include "shaders/common/records/scene.h"
+#include "shaders/records/scene.h"
 
 namespace fovea::scene {
 namespace {

@@ -1,5 +1,5 @@
 // Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass. The
-// same as shaders/common/materials/passage.glsl.
+// same as shaders/materials/passage.glsl.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ inline Bounds boundsOf(const Object& object, const ObjectTransform& place) {
 
 // World-space boxes that enclose all dynamic objects; a box with low > high is unused. Each object has a box to
 // itself while there are enough of them, and the others share the last one. A hidden object counts as the point to
-// which its vertices collapse. shaders/common/movers.glsl reads them.
+// which its vertices collapse. shaders/scene/movers.glsl reads them.
 struct MoverBoxes {
   static constexpr size_t kCount = 3;  // MOVER_BOXES in the shaders
   // Low and high corner of each box; w is 0.

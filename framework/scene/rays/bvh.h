@@ -1,12 +1,12 @@
 // A bounding volume hierarchy over triangles, in which rays are traced on the host in portable bundles
-// (ray_tracer_bvh.cpp) and on the device (shaders/common/rays/trace.glsl).
+// (ray_tracer_bvh.cpp) and on the device (shaders/rays/trace.glsl).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "framework/scene/scene.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/rays.h"
 
 namespace fovea::scene {
 

@@ -9,7 +9,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "shaders/common/records/emitters.h"
+#include "shaders/records/emitters.h"
 
 namespace fovea::scene {
 
@@ -44,7 +44,7 @@ class Emitters {
   // emit towards it.
   float density(uint32_t triangle, const Receiver& receiver) const;
 
-  // What shaders need to choose the same points (shaders/common/rays/emitters.glsl).
+  // What shaders need to choose the same points (shaders/rays/emitters.glsl).
   std::vector<EmitterRecord> records() const;
   std::span<const EmitterNode> nodes() const { return nodes_; }
 

@@ -10,7 +10,7 @@
 #include "framework/base/hash.h"
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/ray_tracer.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/rays.h"
 
 namespace fovea::scene {
 namespace {

@@ -1,5 +1,5 @@
 // Traces rays through the project's own bounding volume hierarchy, with the watertight ray/triangle test of Woop, Benthin
-// and Wald (JCGT 2013), as shaders/common/rays/trace.glsl does on the device. About ten times slower than Embree.
+// and Wald (JCGT 2013), as shaders/rays/trace.glsl does on the device. About ten times slower than Embree.
 #include <array>
 #include <cmath>
 #include <limits>

@@ -12,8 +12,8 @@
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/visibility.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "shaders/common/records/rays.h"
-#include "shaders/common/records/scene.h"
+#include "shaders/records/rays.h"
+#include "shaders/records/scene.h"
 
 namespace fovea::scene {
 

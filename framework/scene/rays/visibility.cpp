@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/scene/materials/passage.h"
-#include "shaders/common/records/rays.h"
+#include "shaders/records/rays.h"
 
 namespace fovea::scene {
 

@@ -1,5 +1,5 @@
 #extension GL_GOOGLE_include_directive : enable
-#include "common/random.glsl"
+#include "sampling/random.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform utexture2D a;
 #ifdef HAS_B

@@ -73,7 +73,7 @@ struct EmitterTables::Impl {
         geometry.emissive, [&](uint32_t triangle) { return triangle >= geometry.staticTriangles; });
     if (const uint32_t count = list[0].x; moves && count > 0) {
       nodes = 2 * std::bit_ceil(count);
-      refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("animate/refit_emitters.comp")});
+      refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("scene/refit_emitters.comp")});
     }
     texels = longTable(d, "light sources that rays are aimed at", std::move(list));
   }

@@ -1,5 +1,5 @@
 // Emissive triangles and the environment map on the device, as light sources at which shaders aim rays
-// (shaders/common/rays/emitters.glsl). Private to framework/scene.
+// (shaders/rays/emitters.glsl). Private to framework/scene.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -29,7 +29,7 @@ class EmitterTables {
   // tables.
   void record(VkCommandBuffer cmd, gpu::Buffer& positions, gpu::Buffer& triangles);
 
-  gpu::Buffer& texels() const;  // uvec4 each; shaders/common/records/emitters.h
+  gpu::Buffer& texels() const;  // uvec4 each; shaders/records/emitters.h
 
  private:
   struct Impl;

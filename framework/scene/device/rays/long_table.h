@@ -1,5 +1,5 @@
 // Tables that rays read, which may have more texels than a device of few maxTexelBufferElements allows
-// (shaders/common/device/texels.glsl). Private to framework/scene.
+// (shaders/device/texels.glsl). Private to framework/scene.
 #pragma once
 
 #include <algorithm>

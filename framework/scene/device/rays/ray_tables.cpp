@@ -66,7 +66,7 @@ struct RayTables::Impl {
     nodes = longTable(device, "nodes that rays meet", std::move(tables.nodes));
     triangles = longTable(device, "triangles that rays meet", std::move(tables.triangles));
     if (moving.order.empty()) return;
-    refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("animate/refit.comp")});
+    refit = gpu::Pipeline(d, gpu::ComputePipelineDesc{d.shaders().compile("scene/refit.comp")});
     for (size_t i = moving.levels.size() - 1; i-- > 1;)
       levels.push_back({base + moving.levels[i], moving.levels[i + 1] - moving.levels[i]});
     levels.push_back({kBvhMoving, 1});

@@ -1,4 +1,4 @@
-// The scene's bounding volume hierarchies on the device, where shaders trace rays (shaders/common/rays/trace.glsl): one
+// The scene's bounding volume hierarchies on the device, where shaders trace rays (shaders/rays/trace.glsl): one
 // of the triangles that never move, and one of all others. Private to framework/scene.
 #pragma once
 

@@ -247,7 +247,7 @@ Json subGraphsJson(const graph::Plan& plan, const graph::Description& descriptio
 std::filesystem::path findMessageFile(const std::string& name) {
   std::error_code ec;
   if (std::filesystem::is_regular_file(name, ec)) return name;
-  for (const char* kind : {"shaders", "graphs", "scenes"})
+  for (const char* kind : {"shaders", "passes", "graphs", "scenes"})
     for (const std::filesystem::path& folder : dataFolders(kind))
       for (const std::filesystem::path& at : {folder / name, folder.parent_path() / name})
         if (std::filesystem::is_regular_file(at, ec)) return at;

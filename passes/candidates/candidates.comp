@@ -1,0 +1,142 @@
+// One attempt per invocation: a pixel of the region, the surface it shows, and one diffuse bounce from there. The
+// voxel side hit by the bounce becomes a candidate; it need not be visible to the eye. TRACED 1: every fourth attempt
+// first takes an eye path at random, and the candidate lies where that ends, with the light found there. Voxels know
+// only direct light, none of surfaces that shine, and their averages close gaps that light comes through.
+#include "device/texels.glsl"
+#include "scene/scene.glsl"
+#include "vpls/paraboloid.glsl"
+#include "sampling/diffuse_bounce.glsl"
+#include "sampling/random.glsl"
+#include "sampling/fovea.glsl"
+#include "voxels/voxel_trace.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform texture2D gbufferPosition;
+uniform texture2D gbufferNormal;
+uniform texture2D gbufferFace;
+#if TWO_EYES
+uniform texture2D gbuffer2Position;
+uniform texture2D gbuffer2Normal;
+uniform texture2D gbuffer2Face;
+#endif
+#if HAS_RADIANCE
+LARGE_TEXELS(vec4, radiance);
+#endif
+#if TRACED
+#include "scene/eye_paths.glsl"
+uniform samplerBuffer tracedEnds;
+#endif
+layout(std430) writeonly buffer Candidates { Candidate candidates[]; };
+layout(std430) buffer Counters { uint counters[]; };  // in the order below
+
+const uint kRays = 0u, kCandidates = 1u, kEscaped = 2u, kBackground = 3u;
+const uint kCandidateStream = 0x63616e64u, kPathStream = 0x63617074u;  // keep the random numbers of this pass apart from others
+
+layout(push_constant) uniform Push {
+  vec2 secondGaze;
+  float foveaRadius;
+  uint region;
+  uint imageShare64ths;
+  uint seed;
+  uint streamFrame;
+  uint count;
+};
+
+struct Seen {  // the surface shown by a pixel
+  vec3 position, normal, face;
+  bool background;
+};
+
+Seen seenAt(texture2D position, texture2D normal, texture2D face, vec2 gaze, uint stream, uint from) {
+  ivec2 size = textureSize(position, 0);
+  ivec2 pixel = regionSample(from, makeFovea(gaze, vec2(size), foveaRadius), size, stream);
+  vec4 place = texelFetch(position, pixel, 0);
+  return Seen(place.xyz, texelFetch(normal, pixel, 0).xyz, octDecode(texelFetch(face, pixel, 0).xy), !(place.w > 0.0));
+}
+
+#if TRACED
+// The side of the voxel at `position` whose surface faces most as `normal` says.
+uint sideAt(vec3 position, vec3 normal) {
+  VoxelGrid grid = voxelsGrid();
+  uint voxel = voxelAt(grid, ivec3(floor(worldToVoxel(grid, position)))), found = kNoSide;
+  float best = 0.0;
+  for (uint side = 2u * voxel - 2u; voxel > 0u && side < 2u * voxel; ++side) {
+    VoxelSide s = loadSide(side);
+    float cosine = dot(s.normal, normal);
+    if (s.area > 0.0 && cosine > best) {
+      best = cosine;
+      found = side;
+    }
+  }
+  return found;
+}
+#endif
+
+// The candidate on a voxel side, at a place of its surface.
+Candidate candidateOn(uint number, vec3 place) {
+  VoxelSide side = loadSide(number);
+  Candidate candidate = kNoCandidate;
+  candidate.position = place;
+  candidate.side = number;
+  candidate.normal = side.normal;
+  candidate.object = side.object;
+  candidate.reflectance = side.reflectance;
+#if HAS_RADIANCE
+  candidate.luminance = texelOf(radiance, int(number)).w;
+#endif
+  uint object = uint(side.object);
+  if (objectDeforms(object)) {  // its place on the surface does not change
+    candidate.localPosition = attach(uint(side.triangle), place);
+    candidate.position = attachedPosition(candidate.localPosition);
+  } else {
+    candidate.localPosition = toObject(object, place);
+  }
+  return candidate;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  Candidate candidate = kNoCandidate;
+  uint stream = randomStream(seed, streamFrame, kCandidateStream, i);
+#if TRACED
+  if (i % 4u == 3u) {
+    uint paths = uint(textureSize(tracedEnds)) / 3u;
+    EyePathEnd end = loadEyePathEnd(tracedEnds, randomStream(seed, streamFrame, kPathStream, i) % paths);
+    uint side = end.kind > 0.0 ? sideAt(end.position, end.normal) : kNoSide;
+    if (side != kNoSide) {
+      candidate = candidateOn(side, end.position);
+      candidate.luminance = end.weight * luminanceOf(end.radiance);
+      candidates[i] = candidate;
+      atomicAdd(counters[kCandidates], 1u);
+      return;
+    }
+  }
+#endif
+  uint number, from = regionOf(region, imageShare64ths, TWO_EYES != 0 ? i / 2u : i, number);
+#if TWO_EYES
+  Seen seen;
+  if ((i & 1u) == 0u)
+    seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
+  else
+    seen = seenAt(gbuffer2Position, gbuffer2Normal, gbuffer2Face, secondGaze, stream, from);
+#else
+  Seen seen = seenAt(gbufferPosition, gbufferNormal, gbufferFace, view.gaze, stream, from);
+#endif
+  if (seen.background) {
+    atomicAdd(counters[kBackground], 1u);
+    candidates[i] = candidate;
+    return;
+  }
+  vec3 direction = diffuseBounce(normalize(seen.normal), seen.face, streamPoint(stream, kRegionDraws));
+  VoxelHit hit = traceVoxels(voxelsGrid(), seen.position, direction, seen.face);
+  atomicAdd(counters[kRays], 1u);
+  if (hit.side == kNoSide) {
+    atomicAdd(counters[kEscaped], 1u);
+    candidates[i] = candidate;
+    return;
+  }
+  atomicAdd(counters[kCandidates], 1u);
+  candidates[i] = candidateOn(hit.side, loadSide(hit.side).position);
+}

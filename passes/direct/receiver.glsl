@@ -1,0 +1,61 @@
+// A surface that the eye sees and what it makes of the light of one of the scene's lights. Define: GLOSS 0/1, 1 for full
+// materials: in place of rho / pi stands all that a surface reflects.
+#if GLOSS
+#include "materials/gloss.glsl"
+#endif
+#include "scene/scene.glsl"
+
+// Images rather than textures, because on lavapipe a load from a texture costs several times as much.
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(rg16_snorm) uniform readonly image2D gbufferFace;
+layout(rgba16f) uniform readonly image2D gbufferAlbedo;
+layout(rgba16f) uniform readonly image2D gbufferEmission;
+#if GLOSS
+layout(rgba16f) uniform readonly image2D gbufferSpecular;
+#endif
+
+struct Receiver {
+  vec4 place;  // xyz: position; w: distance from the eye, 0 in the background
+  vec3 normal, face;
+  vec3 albedo, emission;
+#if GLOSS
+  Reflector reflector;
+#endif
+};
+
+Receiver receiverAt(ivec2 p) {
+  Receiver r;
+  vec4 normal = imageLoad(gbufferNormal, p), albedo = imageLoad(gbufferAlbedo, p),
+       emission = imageLoad(gbufferEmission, p);
+  r.place = imageLoad(gbufferPosition, p);
+  r.normal = normal.xyz;
+  r.face = octDecode(imageLoad(gbufferFace, p).xy);
+  r.albedo = albedo.rgb;
+  r.emission = emission.rgb;
+#if GLOSS
+  Gloss gloss = glossOf(imageLoad(gbufferSpecular, p), normal.a, albedo.a, emission.a);
+  r.reflector = reflectorOf(gloss, normal.xyz, normalize(view.eye - r.place.xyz));
+#endif
+  return r;
+}
+
+// What the surface reflects of light that nothing hides: the irradiance or, with full materials, the radiance towards the
+// eye.
+vec3 response(Receiver r, LightSample e) {
+  vec3 irradiance = e.irradiance * max(dot(r.normal, e.direction), 0.0);
+#if GLOSS
+  return irradiance * reflected(r.reflector, e.direction, r.albedo);
+#else
+  return irradiance;
+#endif
+}
+
+// Radiance towards the eye from the sum of the responses.
+vec3 radianceOf(Receiver r, vec3 sum) {
+#if GLOSS
+  return min(r.emission + sum, 65504.0);
+#else
+  return min(r.emission + r.albedo * sum * (1.0 / kPi), 65504.0);
+#endif
+}

@@ -1,0 +1,38 @@
+// What the rays of this frame need to know. Define: CHANGE 0/1, whether the input is there.
+#include "records/near_field.h"
+#include "scene/scene.glsl"
+
+layout(local_size_x = 1) in;
+
+#if CHANGE
+layout(std430) readonly buffer ChangeBlock { vec4 list[]; } change;
+#endif
+layout(std430) buffer StateBlock { NearFieldState value; } state;
+layout(std430) writeonly buffer SpreadBlock { vec4 list[]; } spread;
+
+layout(push_constant) uniform Constants {
+  float share;
+  uint vpls;
+  uint saccadeSamples;
+  float saccade;
+  uint onlyLength;  // 1: no light is found
+  uint isFirst;
+};
+
+void main() {
+#if CHANGE
+  vec4 changed = change.list[0];
+#else
+  vec4 changed = vec4(0.0);
+#endif
+  // The diagonal stands for the mean length as long as no surface sees another: what the sky sends is found all the
+  // same.
+  float known = state.value.meanLength > 0.0 ? state.value.meanLength : diagonal();
+  state.value.area = onlyLength != 0u ? 0.0 : share * known * known / float(vpls);
+  state.value.cellWidth = kNearCellWidth * known;
+  state.value.ageing = changed.y;
+  float lost = saccade > 0.0 ? 1.0 : changed.z;
+  state.value.foveaRays = isFirst != 0u ? 1u : uint(floor(mix(1.0, float(saccadeSamples), lost) + 0.5));
+  state.value.hits = state.value.hitsHigh = state.value.diagonals = state.value.diagonalsHigh = 0u;
+  spread.list[0] = vec4(state.value.area, 0.0, 0.0, 0.0);
+}

@@ -1,0 +1,97 @@
+// A part of the sample of each block in the list, or all of it: that of one turn. Defines: RAY_PASSAGE and MAP_ALONE
+// (rays/near_light.glsl); GLOSS 0/1, 1 to find also the light under lobes; LOBES 0/1, 1 if the G-buffer says what
+// these are.
+#include "scene/blocks.glsl"
+#include "device/sums.glsl"
+#include "rays/gather_cache.glsl"
+#include "rays/near_light.glsl"
+#include "scene/same_surface.glsl"
+#if LOBES
+#include "receiver_lobe.glsl"
+#endif
+
+layout(local_size_x = 64) in;
+
+layout(std430) buffer StateBlock { NearFieldState value; } state;
+layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
+layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
+layout(std430) readonly buffer ListedBlock { uint count; } listed;
+layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
+#if GLOSS
+layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe
+#endif
+layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
+
+layout(push_constant) uniform Constants {
+  uint spacing;
+  uint bounces;
+  uint emitterPoints;
+  uint frameIndex;
+  uint part;   // number of this turn
+  uint parts;  // number of turns
+};
+
+float discArea() { return state.value.area; }
+void noteLength(float distance_, float probability) {
+  ADD_TO_SUM(state.value.hits, state.value.hitsHigh, 1.0 / probability);
+  ADD_TO_SUM(state.value.diagonals, state.value.diagonalsHigh, distance_ / (diagonal() * probability));
+}
+vec3 furtherLight(TracedSurface v, uint bounces, uint stream) {
+  return gatheredLight(v, bounces, stream, state.value.cellWidth, state.value.ageing);
+}
+
+#if LOBES
+ReceiverLobe lobe;  // of the surface whose light is found
+float underLobe(vec3 direction, float cosine) { return response(lobe, direction, cosine); }
+#else
+float underLobe(vec3 direction, float cosine) { return 1.0; }
+#endif
+
+uvec2 pixelOf(uint turn_, uvec2 corner, uint side) { return corner + samplePixel(turn_, side, corner / side); }
+
+TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
+  uvec2 pixel = pixelOf(turn_, corner, side);
+  if (any(greaterThanEqual(pixel, viewSize()))) return kNothingTraced;
+  return look(vec2(pixel) + 0.5);
+}
+
+void main() {
+  uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (number >= listed.count) return;
+  uint item = items.list[number], index = item & ~kWideItem;
+  bool wide = item != index;
+  uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x), corner = 2u * texel;
+  uint side = wide ? spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;
+  uvec2 block = corner / side;
+  // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
+  TracedSurface at = seenIn(frameIndex, corner, side), v = at;
+  if (part > 0u) v = seenIn(frameIndex + part, corner, side);
+  bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
+  if (leavesFirst) v = at;
+#if LOBES
+  lobe = receiverLobe(ivec2(min(pixelOf(leavesFirst ? frameIndex : frameIndex + part, corner, side), viewSize() - 1u)),
+                      v.position);
+#endif
+  NearLight sum = NearLight(vec3(0.0), vec3(0.0));
+  for (uint i = 0u; at.there && i < rays; ++i) {
+    NearLight its = nearLight(v, block, rays * (frameIndex + part) + i, bounces, emitterPoints);
+    sum.light += its.light;
+    sum.gloss += its.gloss;
+  }
+  sum.light /= float(rays * parts);
+  sum.gloss /= float(rays * parts);
+
+  uvec2 inside = samplePixel(frameIndex, side, block);
+  uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
+  traced.list[index] = vec4(sum.light + (part > 0u ? traced.list[index].rgb : vec3(0.0)), float(code));
+#if GLOSS
+  tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), 0.0);
+#endif
+  if (wide && part == 0u) {
+    uint tile = corner.y / spacing * tileCount(spacing).x + corner.x / spacing;
+    tiles.list[tile] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));
+  }
+  atomicAdd(counters.rays, rayCount);
+  atomicAdd(counters.shaded, shadedCount);
+  atomicAdd(counters.gathered, gatherCount);
+}

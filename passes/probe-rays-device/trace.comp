@@ -1,0 +1,49 @@
+// What each ray of each probe meets and the light found there, as passes/probe-rays-host finds it. Defines: RAY_PASSAGE
+// 0/1 (rays/trace.glsl); FEEDBACK 0/1, whether surfaces reflect the light that probes know.
+#include "probes/light.glsl"
+#include "rays/gather.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430) readonly buffer RaysGridBlock { ProbeGrid value; } raysGrid;
+layout(std430) readonly buffer RaysDirectionsBlock { vec4 list[]; } raysDirections;
+layout(std430) readonly buffer SharesBlock { uint list[]; } shares;
+layout(std430) writeonly buffer RaysHitsBlock { vec4 list[]; } raysHits;
+layout(std430) buffer CountersBlock { uint rays, probes, inside; } counters;
+
+layout(push_constant) uniform Constants { float bias; };
+
+// What ray `index` of all finds.
+vec4 hitOf(vec3 origin, vec3 direction, uint index) {
+  TracedSurface v = arrive(origin, direction, kFarAway);
+  if (v.triangle == kNoTriangle)
+    return vec4(hasEnvironmentMap() ? v.brighter * environmentRadiance(direction) : vec3(0.0), kFarAway);
+  float distance_ = distance(v.position, origin);
+  if (!v.there) return vec4(vec3(0.0), -kBackShortened * distance_);
+  // Light that does not come from the scene's lights: what probes knew after the previous frame has one bounce more in
+  // each frame.
+#if FEEDBACK
+  vec3 light = probeLight(raysGrid.value, bias, v.position, v.normal, -direction);
+#else
+  uint stream = randomStream(frame.seed, frame.index, kProbeEmitterStream, 0u);
+  vec3 light = gather(v, 0u, 1u, hashCombine(stream, index));
+#endif
+  vec3 rho = reflectance(v);
+  return vec4(emitted(v) + diffuseLight(v, rho) + rho * light, distance_);
+}
+
+void main() {
+  // An image of probes times rays, as there may be more than one dimension has.
+  uint rays = uint(raysDirections.list.length()), ray = gl_GlobalInvocationID.x, probe = gl_GlobalInvocationID.y;
+  if (ray >= rays) return;
+  uint index = probe * rays + ray, share = shares.list[probe];
+  vec4 hit = vec4(0.0);
+  if (share > 0u && ray % share == 0u) {
+    ProbeGrid grid = raysGrid.value;
+    Probe state = loadProbe(probesStates, int(probe));
+    vec3 origin = grid.origin + grid.spacing * vec3(probeCell(grid, int(probe))) + state.offset;
+    hit = hitOf(origin, raysDirections.list[ray].xyz, index);
+    atomicAdd(counters.rays, rayCount);
+  }
+  raysHits.list[index] = hit;
+}

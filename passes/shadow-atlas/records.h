@@ -1,0 +1,59 @@
+// Records and constants of pass shadow-atlas.
+#pragma once
+
+#include "../../shaders/records/shared.h"
+
+SHARED_BEGIN(fovea::passes::atlas)
+
+SHARED_CONSTANT uint kBatch =
+    16u;  // VPLs that share one reading of a triangle; their records are in a uniform buffer
+SHARED_CONSTANT uint kMovers = 4u;       // spheres around objects that may have changed a map (changed.comp)
+SHARED_CONSTANT uint kCullGroup = 128u;  // triangles per work group of cull.comp
+// Dispatches are folded into rows, since one dimension is limited to 65,535 groups.
+SHARED_CONSTANT uint kGroupsPerRow = 4096u;
+
+// The positions and poses with which a map was drawn.
+struct DrawnMap {
+  vec3 position SHARED_ZERO;
+  float unused0 SHARED_ZERO;
+  vec3 normal SHARED_ZERO;
+  float unused1 SHARED_ZERO;
+  vec4 movers[kMovers];  // xyz: centre, w: radius of a sphere around dynamic objects, negative if unused
+  uint poses[kMovers];   // unchanged as long as those keep their pose
+};
+SHARED_SIZE(DrawnMap, 32 + 20 * kMovers)
+SHARED_OFFSET(DrawnMap, movers, 32)
+
+struct VplView {
+  vec3 position SHARED_ZERO;  // world space, m
+  uint slot SHARED_ZERO;      // of the atlas
+  vec3 tangent SHARED_ZERO;   // the VPL's frame; all 0 in an unused record, which then sees nothing
+  float unused0 SHARED_ZERO;
+  vec3 bitangent SHARED_ZERO;
+  float unused1 SHARED_ZERO;
+  vec3 normal SHARED_ZERO;
+  float unused2 SHARED_ZERO;
+};
+SHARED_SIZE(VplView, 64)
+SHARED_OFFSET(VplView, normal, 48)
+
+// Arguments of an indirect dispatch, and the number of pairs it works on.
+struct WorkList {
+  uint x SHARED_ZERO;
+  uint y SHARED_ZERO;
+  uint z SHARED_ZERO;
+  uint count SHARED_ZERO;
+};
+SHARED_SIZE(WorkList, 16)
+
+// Work on one batch over a range of triangles. Each pair is in one of the four lists.
+struct Step {
+  WorkList cull;
+  WorkList small;        // boxes of up to kSmallTexels, one invocation per pair
+  WorkList large;        // eight invocations per pair
+  WorkList maskedSmall;  // the same for materials with an alpha mask
+  WorkList maskedLarge;
+};
+SHARED_SIZE(Step, 80)
+
+SHARED_END

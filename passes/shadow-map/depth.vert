@@ -1,0 +1,18 @@
+// One instance per layer.
+#include "device/vertex.glsl"
+#include "scene/scene.glsl"
+#include "vpls/shadow.glsl"
+
+layout(std140) uniform MapsViews { ShadowView view[kMaxShadowLayers]; } mapsViews;
+
+#if TESTED
+layout(location = 0) out vec2 uv;
+#endif
+
+void main() {
+  uint vertex = drawnVertex();
+  gl_Position = mapsViews.view[drawnLayer()].worldToClip * vec4(scenePosition(vertex), 1.0);
+#if TESTED
+  uv = sceneUv(vertex);
+#endif
+}

@@ -1,0 +1,180 @@
+// Running mean at every pixel of samples that some or all pixels get in a frame. A pixel takes over the previous
+// frame's mean from where its surface was then, and adds its own sample, or that of its block if it was taken on the
+// same surface. Defines: BLOCKS 0/1, 1 if a texel of `samples` stands for several pixels; CHANGES 0/1, 1 if `change`
+// says by how much light has changed; GLOSS 0/1, 1 if there is other light at the same pixels.
+#include "device/half.glsl"
+#include "scene/same_surface.glsl"
+
+// Images rather than textures, which cost several times as much on a CPU device.
+layout(rgba32f) uniform readonly image2D gbufferPosition;
+layout(rgba16f) uniform readonly image2D gbufferNormal;
+layout(r32ui) uniform readonly uimage2D origin;
+layout(rgba16f) uniform readonly image2D samples;
+layout(rgba16f) uniform readonly image2D history;
+#if CHANGES
+uniform samplerBuffer change;  // y: ageing, z: share of the history that is lost
+#endif
+layout(location = 0) out vec4 mean;
+
+// What a mean is formed of.
+#if GLOSS
+layout(rgba16f) uniform readonly image2D gloss;
+layout(rgba16f) uniform readonly image2D glossHistory;
+layout(location = 1) out vec4 glossMean;
+#define Light mat2x3
+Light withGloss(vec3 light, ivec2 texel) { return mat2x3(light, imageLoad(gloss, texel).rgb); }
+#else
+#define Light vec3
+Light withGloss(vec3 light, ivec2 texel) { return light; }
+#endif
+
+layout(push_constant) uniform Constants {
+  float weight;          // of a sample
+  float frames;          // length of the mean
+#if BLOCKS
+  float planeTolerance;  // relative to the distance from the eye
+  float leastCos;
+  int shift;             // a texel of `samples` is 2^shift pixels wide
+  float wideWeight;      // of a sample whose block is wider than that
+  float changedWeight;   // of a sample if all light has changed
+#else
+  float mostOfOthers;    // frames that the history of another estimate may count
+#endif
+};
+
+const uint kNone = 0xffffffffu;
+
+#if CHANGES
+float ageing() { return texelFetch(change, 0).y; }
+float lost() { return texelFetch(change, 0).z; }
+#else
+float ageing() { return 0.0; }
+float lost() { return 0.0; }
+#endif
+
+struct Mean {
+  Light light;
+  float count;  // of samples that it is worth, 0 if there is none
+};
+
+Mean fromHistory(ivec2 p) {
+  uint from = imageLoad(origin, p).r;
+  ivec2 at = ivec2(from & 0xffffu, from >> 16);
+  vec4 old = from == kNone ? vec4(0.0) : imageLoad(history, at);
+#if GLOSS
+  Light light = mat2x3(old.rgb, from == kNone ? vec3(0.0) : imageLoad(glossHistory, at).rgb);
+#else
+  Light light = old.rgb;
+#endif
+  return Mean(light, old.a / (1.0 + old.a * ageing()));
+}
+
+Light mixed(Light a, Light b, float share) {
+#if GLOSS
+  return mat2x3(mix(a[0], b[0], share), mix(a[1], b[1], share));
+#else
+  return mix(a, b, share);
+#endif
+}
+
+void store(Mean result) {
+#if GLOSS
+  glossMean = vec4(nearestHalf(result.light[1]), result.count);
+  mean = vec4(nearestHalf(result.light[0]), result.count);
+#else
+  mean = vec4(nearestHalf(result.light), result.count);
+#endif
+}
+
+#if BLOCKS
+struct Sample {
+  Light value;
+  int side;     // width of its block
+  bool found;   // whether there is a sample
+  bool wanted;  // whether the block's surface asks for samples at all
+  bool own;     // whether it lies on the pixel's surface
+};
+
+// Decodes sampleCode() of passes/near-field. It avoids divisions, which a CPU device executes one lane at a time.
+Sample sampleAt(ivec2 p, vec4 position, vec3 normal, ivec2 size) {
+  ivec2 inside = clamp(p, ivec2(0), size - 1);
+  vec4 value = imageLoad(samples, inside >> shift);
+  int code = int(abs(value.a)), side = max(code & 15, 1);
+  bool found = p == inside && code >> 10 == 0;
+  ivec2 from = min((inside & -side) + ivec2(code >> 4 & 7, code >> 7 & 7), size - 1);
+  bool own = found && sameSurface(position.xyz, normal, normal, imageLoad(gbufferPosition, from),
+                                  imageLoad(gbufferNormal, from).xyz, planeTolerance * position.w, leastCos);
+  return Sample(withGloss(value.rgb, inside >> shift), side, found, value.a >= 0.0, own);
+}
+
+float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+float luminanceOf(mat2x3 light) { return luminanceOf(light[0] + light[1]); }
+
+// Sum of samples, their number, and the brightest one.
+struct Around {
+  Light sum;
+  float count;
+  Light brightest;
+};
+
+void add(inout Around around, Sample s, bool wanted) {
+  if (!wanted) return;
+  around.sum += s.value;
+  around.count += 1.0;
+  if (luminanceOf(s.value) > luminanceOf(around.brightest)) around.brightest = s.value;
+}
+
+// Mean of single rays without the brightest, if there are others: one that hits something sunlit would be a firefly.
+// Samples that are means of several rays would lose light that way, and need it less.
+Light robustMean(Around around, float weight) {
+  bool dropped = weight < 2.0 && around.count > 1.0;
+  return (around.sum - around.brightest * float(dropped)) / max(around.count - float(dropped), 1.0);
+}
+
+// Initial value where there is no mean yet: the mean of the samples on the pixel's surface in the surrounding blocks
+// of the same width; narrower ones lie where light changes quickly. If there are none, samples of other surfaces are
+// used, but with no weight.
+Mean fromAround(ivec2 p, vec4 position, vec3 normal, ivec2 size, int side, float weight) {
+  Around own = Around(Light(0.0), 0.0, Light(0.0)), all = own;
+  for (int i = 0; i < 9; ++i) {
+    Sample s = sampleAt(p + max(side, 1 << shift) * (ivec2(i % 3, i / 3) - 1), position, normal, size);
+    add(own, s, s.own && s.side == side);
+    add(all, s, s.found);
+  }
+  Mean result = Mean(robustMean(own, weight), own.count * weight);
+  if (own.count == 0.0) result.light = robustMean(all, weight);
+  return result;
+}
+
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy), size = imageSize(gbufferPosition);
+  vec4 position = imageLoad(gbufferPosition, p);
+  vec3 normal = imageLoad(gbufferNormal, p).xyz;
+  bool surface = position.w > 0.0;
+  Mean old = fromHistory(p);
+  Sample s = sampleAt(p, position, normal, size);
+  // All pixels of a larger block change at once, so they change less each time.
+  float most = frames * float(max(s.side >> shift, 1));
+  bool wide = s.side >> shift > 1;
+  float its = wide ? wideWeight : max(weight, round(mix(1.0, changedWeight, lost())));
+  // Where the gaze has jumped. Only wide blocks leave counts above `frames`, by the ratio of the widths; each of their
+  // samples covers as many narrow blocks as the square of it.
+  if (!wide && its > 1.0 && old.count > frames) old.count = frames * frames / old.count;
+  float count = s.own ? min(old.count + its, most) : old.count;
+  Mean result = Mean(old.light, count);
+  if (s.own) result.light = mixed(old.light, s.value, min(its / count, 1.0));
+  if (surface && s.wanted && !(old.count > 0.0)) result = fromAround(p, position, normal, size, s.side, its);
+  if (!surface) result = Mean(Light(0.0), 0.0);
+  store(result);
+}
+#else
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy);
+  Mean old = fromHistory(p);
+  vec4 its = imageLoad(samples, p);  // a: by how many times the mean is longer than `frames`, if above 1
+  // After a jump of the gaze, what comes from a mean that was not longer is another estimate, and a worse one.
+  if (its.a > 1.0 && old.count <= frames) old.count = min(old.count, mostOfOthers);
+  float count = min(old.count + weight, frames * max(its.a, 1.0));
+  store(Mean(mixed(old.light, withGloss(its.rgb, p), min(weight / count, 1.0)), count));
+}
+#endif

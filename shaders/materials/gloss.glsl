@@ -1,0 +1,138 @@
+// What the surface of a full material reflects: GGX microfacets as in framework/scene/materials/bsdf.h, with what the
+// G-buffer keeps of the material. A clear coat is part of the same lobe.
+#ifndef FOVEA_GLOSS_GLSL
+#define FOVEA_GLOSS_GLSL
+
+#include "records/mirror.h"
+#include "scene/scene.glsl"
+
+// The mean of Fresnel's curve over the directions, weighted by their cosine: Schlick's and that of a dielectric with an
+// index of refraction of 1.5, which stands for all dielectrics.
+const float kMetalCurve = 1.0 / 21.0, kDielectricCurve = 0.0539357;
+
+// Whether a pixel may show another surface in the next frame, as one of them lets light through. normalA: as gbuffer
+// stores it.
+bool isVeiled(float normalA) { return normalA < 0.0; }
+
+struct Gloss {
+  vec3 f0;  // reflectance at normal incidence, and for each channel at grazing incidence
+  float f90;
+  float roughness;  // perceptual
+  float metallic;
+  float dielectricF0;  // that of the part that is no metal, beneath which lies the diffuse layer; of all channels
+};
+
+// As gbuffer stores it in `specular` and in the alpha of `normal`, `albedo` and `emission`.
+Gloss glossOf(vec4 specular, float normalA, float albedoA, float emissionA) {
+  return Gloss(specular.rgb, abs(normalA), specular.a, albedoA, emissionA);
+}
+
+float dielectricF90(Gloss g) { return clamp((g.f90 - g.metallic) / max(1.0 - g.metallic, 1e-3), 0.0, 1.0); }
+
+// Whether most of what a surface reflects is in its lobe. specular: as gbuffer stores it.
+bool looksMetallic(vec4 specular) { return max(max(specular.r, specular.g), specular.b) > kMetallicF0; }
+
+// The share of the light under the lobe of a surface that rays find (pass reflections), and not VPLs.
+float tracedShare(vec4 specular) {
+  float last = (looksMetallic(specular) ? kTracedMetal : kTracedDielectric) + kTracedFade;
+  return specular.rgb == vec3(0.0) ? 0.0 : clamp((last - specular.a) / kTracedFade, 0.0, 1.0);
+}
+
+float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3); }
+
+// ---- Albedos -----------------------------------------------------------------------------------------------------
+
+// The albedo of light that arrives from one direction, or its mean over all of them.
+struct MirrorAlbedo {
+  float all;                      // of a perfect mirror that scatters light once
+  float metalF90, dielectricF90;  // the part of it that a Fresnel curve gives to F90
+};
+
+MirrorAlbedo mirrorAlbedoOf(vec4 texel) { return MirrorAlbedo(texel.x, texel.y, texel.z); }
+
+vec4 albedoRow(int row, float column) {
+  float x = clamp(column, 0.0, 1.0) * float(kAlbedoSide - 1u), first = min(floor(x), float(kAlbedoSide - 2u));
+  int i = int(frame.firstAlbedo) + row * int(kAlbedoSide) + int(first);
+  return mix(texelOf(sceneMaterials, i), texelOf(sceneMaterials, i + 1), x - first);
+}
+
+MirrorAlbedo mirrorAlbedo(float cosine, float roughness) {
+  float column = (sqrt(max(cosine, 0.0)) - kAlbedoLeastRoot) / (1.0 - kAlbedoLeastRoot);
+  float y = clamp(roughness, 0.0, 1.0) * float(kAlbedoSide - 1u), first = min(floor(y), float(kAlbedoSide - 2u));
+  return mirrorAlbedoOf(mix(albedoRow(int(first), column), albedoRow(int(first) + 1, column), y - first));
+}
+
+MirrorAlbedo meanMirrorAlbedo(float roughness) { return mirrorAlbedoOf(albedoRow(int(kAlbedoSide), roughness)); }
+
+// Light that is scattered more than once, as a share of what single scattering loses. fresnel: mean reflectance;
+// mirror: mean albedo of a mirror.
+vec3 lostAlbedo(vec3 fresnel, float mirror) { return fresnel * fresnel * mirror / (1.0 - fresnel * (1.0 - mirror)); }
+vec3 lostAlbedo(Gloss g, MirrorAlbedo mean) {
+  vec3 f0 = g.metallic > 0.0 ? vec3(g.dielectricF0) : g.f0;
+  vec3 metalF0 = clamp((g.f0 - (1.0 - g.metallic) * f0) / max(g.metallic, 1e-3), 0.0, 1.0);
+  return mix(lostAlbedo(mix(f0, vec3(dielectricF90(g)), kDielectricCurve), mean.all),
+             lostAlbedo(mix(metalF0, vec3(1.0), kMetalCurve), mean.all), g.metallic);
+}
+
+// What the surface reflects of light from one direction, or on average if `a` is the mean.
+vec3 surfaceAlbedo(Gloss g, MirrorAlbedo a, MirrorAlbedo mean) {
+  float high = mix(a.dielectricF90, a.metalF90, g.metallic);
+  return min(g.f0 * (a.all - high) + g.f90 * high + lostAlbedo(g, mean) * (1.0 - a.all), 1.0);
+}
+
+// The same for its dielectric part, in one channel. f90: of that part.
+float dielectricAlbedo(float f0, float f90, MirrorAlbedo a, MirrorAlbedo mean) {
+  float lost = lostAlbedo(vec3(mix(f0, f90, kDielectricCurve)), mean.all).x;
+  return min(f0 * (a.all - a.dielectricF90) + f90 * a.dielectricF90 + lost * (1.0 - a.all), 1.0);
+}
+
+// ---- Light from one direction --------------------------------------------------------------------------------------
+
+// Fresnel's curve between F0 at normal and F90 at grazing incidence: Schlick's for metals, for dielectrics a polynomial
+// that is within 0.002 of the exact one.
+float fresnelCurve(float cosine, float metallic) {
+  float u = 1.0 - clamp(cosine, 0.0, 1.0), u2 = u * u, u4 = u2 * u2;
+  float dielectric = u2 * (-0.03423537 + u * (0.48114462 - 0.04706973 * u2)) + 0.60016048 * u4 * u4;
+  return mix(dielectric, u4 * u, metallic);
+}
+
+// Distribution of microfacets (Walter et al. 2007) and height-correlated masking (Heitz 2014), per sr. Directions are
+// unit.
+float ggxReflection(vec3 normal, vec3 from, vec3 to, vec3 halfway, float alpha) {
+  vec3 across = cross(normal, halfway);  // the sine is exact where the cosine is almost 1
+  float a2 = alpha * alpha, cosine = dot(normal, halfway), s = dot(across, across) + a2 * cosine * cosine;
+  float in_ = max(dot(normal, from), 1e-6), out_ = max(dot(normal, to), 1e-6);
+  float masking = in_ * sqrt(a2 + (1.0 - a2) * out_ * out_) + out_ * sqrt(a2 + (1.0 - a2) * in_ * in_);
+  return a2 / (kPi * s * s) * 0.5 / masking;
+}
+
+// A pixel as light from analytic lights finds it.
+struct Reflector {
+  Gloss gloss;
+  vec3 normal, out_;  // out_: to the eye
+  MirrorAlbedo mean;
+  vec3 lost;  // of the lobe of light that is scattered more than once, times what the direction `out_` loses
+  float dielectricF90, layer;  // layer: 1 / (1 - mean albedo above the diffuse layer)
+};
+
+Reflector reflectorOf(Gloss g, vec3 normal, vec3 toEye) {
+  MirrorAlbedo mean = meanMirrorAlbedo(g.roughness), a = mirrorAlbedo(dot(normal, toEye), g.roughness);
+  vec3 lost = lostAlbedo(g, mean) * (max(1.0 - a.all, 0.0) / (kPi * max(1.0 - mean.all, 1e-6)));
+  float f90 = dielectricF90(g);
+  float layer = 1.0 / max(1.0 - dielectricAlbedo(g.dielectricF0, f90, mean, mean), 1e-6);
+  return Reflector(g, normal, toEye, mean, lost, f90, layer);
+}
+
+// Radiance towards the eye for each unit of irradiance from a direction. albedo: reflectance of the diffuse layer as
+// the eye sees it.
+vec3 reflected(Reflector r, vec3 direction, vec3 albedo) {
+  Gloss g = r.gloss;
+  MirrorAlbedo a = mirrorAlbedo(dot(r.normal, direction), g.roughness);
+  vec3 halfway = normalize(direction + r.out_);
+  vec3 fresnel = mix(g.f0, vec3(g.f90), fresnelCurve(dot(direction, halfway), g.metallic));
+  vec3 single = fresnel * ggxReflection(r.normal, direction, r.out_, halfway, ggxAlpha(g.roughness));
+  float through = (1.0 - dielectricAlbedo(g.dielectricF0, r.dielectricF90, a, r.mean)) * r.layer;
+  return single + r.lost * max(1.0 - a.all, 0.0) + albedo * (through / kPi);
+}
+
+#endif

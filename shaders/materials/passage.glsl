@@ -1,0 +1,90 @@
+// Where surfaces let light through: holes of alpha masks, and with full materials alphaMode BLEND and thin glass. The
+// same as framework/scene/materials/passage.h.
+#ifndef FOVEA_PASSAGE_GLSL
+#define FOVEA_PASSAGE_GLSL
+
+#include "materials/gloss.glsl"
+#include "sampling/random.glsl"
+
+// Texels of a SurfaceRecord and of its textures in it.
+const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
+          kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
+          kClearcoatRoughnessTexture = 22;
+
+// What glass makes of the light that goes through it.
+vec3 glassColor(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  return min(texelOf(sceneMaterials, surface).rgb * sampleSceneTexture(first + kColorTexture, uv).rgb, 1.0);
+}
+
+// The share of light that goes straight through thin glass; materials are full. cosine: between light and normal.
+float passage(uint material, vec2 uv, float cosine) {
+  int surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
+  vec4 color = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1),
+       factors = texelOf(sceneMaterials, surface + 2),
+       metalAndRoughness = sampleSceneTexture(surface + kMetallicRoughnessTexture, uv);
+  float enters = factors.z * sampleSceneTexture(surface + kTransmissionTexture, uv).r *
+                 (1.0 - color.a * metalAndRoughness.b);
+  MirrorAlbedo a = mirrorAlbedo(cosine, factors.x * metalAndRoughness.g);
+  float f0 = dot(min(specular.rgb, 1.0), vec3(1.0 / 3.0));
+  float reflects = specular.a * (f0 * (a.all - a.dielectricF90) + a.dielectricF90);
+  return clamp(dot(glassColor(material, uv), vec3(1.0 / 3.0)) * enters * (1.0 - reflects), 0.0, kMostPassed);
+}
+
+// The colour that light takes on in glass, relative to the mean of its channels.
+vec3 glassTint(uint material, vec2 uv) {
+  vec3 color = max(glassColor(material, uv), kDarkestGlass);
+  return color / dot(color, vec3(1.0 / 3.0));
+}
+
+// The share of light that the surface stops before any of it enters glass: alpha of BLEND, 0 or 1 of MASK, else 1.
+float coverage(uint material, vec2 uv, uint flags, float cutoff) {
+  if (cutoff == 0.0) return 1.0;
+  int first = int(material) * kMaterialTexels;
+  float alpha = texelOf(sceneMaterials, first).a * sampleSceneTexture(first + kColorTexture, uv).a;
+  return (flags & kMaterialBlended) != 0u ? clamp(alpha, 0.0, 1.0) : float(alpha >= cutoff);
+}
+
+float coverage(uint material, vec2 uv) {
+  int first = int(material) * kMaterialTexels;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  return coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+}
+
+// Whether a surface stops a ray at uv. chance: uniform in [0, 1); rays that pass with half the probability or more do
+// at one half.
+bool stops(uint material, vec2 uv, float cosine, float chance) {
+  int first = int(material) * kMaterialTexels;
+  float cutoff = texelOf(sceneMaterials, first + 1).a;
+  if (cutoff == 0.0) return true;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  float stopped = coverage(material, uv, flags, cutoff);
+  // Few materials are glass.
+  if ((flags & kMaterialTransmits) != 0u)
+    stopped *= 1.0 - passage(material, uv, cosine);
+  return stopped > chance;
+}
+
+// The share of light that passes the surface in either way, by channels; materials are full.
+vec3 transmittance(uint material, vec2 uv, float cosine) {
+  int first = int(material) * kMaterialTexels;
+  uint flags = uint(texelOf(sceneMaterials, first + kColorTexture).w);
+  float covered = coverage(material, uv, flags, texelOf(sceneMaterials, first + 1).a);
+  vec3 share = vec3(1.0 - covered);
+  if ((flags & kMaterialTransmits) != 0u)
+    share += covered * passage(material, uv, cosine) * glassTint(material, uv);
+  return share;
+}
+
+// Whether a ray passes, see framework/scene/materials/passage.h.
+float passageChance(uint key, uvec2 pixel, uint turn_) {
+  uvec2 at = (key & 8u) != 0u ? pixel.yx : pixel;
+  uint along = (key & 16u) != 0u ? 0u - at.y : at.y;
+  return uniformFloat(key + at.x * kPassageAcross + along * kPassageAlong +
+                      turn_ * (kPassageTurn + (key & 7u) * kPassageTurns));
+}
+
+// For what is looked up once and has no direction, such as a voxel.
+const float kEitherWay = 0.5, kMeanCosine = 0.67;
+
+#endif

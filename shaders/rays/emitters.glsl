@@ -1,0 +1,263 @@
+// Emissive triangles and the scene's environment map as light sources that rays are aimed at, as scene::Emitters and
+// scene::EnvironmentMap choose among them on the host. Needs RAY_PASSAGE (rays/trace.glsl).
+#ifndef FOVEA_RAYS_EMITTERS_GLSL
+#define FOVEA_RAYS_EMITTERS_GLSL
+
+#include "rays/trace.glsl"
+#include "records/emitters.h"
+
+layout(set = 1, binding = 13) LARGE_TEXELS(uvec4, rayEmitters);
+
+// The surface that is lit.
+struct Receiver {
+  vec3 position;  // world space, m
+  vec3 normal;    // unit
+};
+
+uvec4 emitterHeader() { return texelOf(rayEmitters, 0); }
+uint emitterCount() { return emitterHeader().x; }
+
+// ---- Bounds of the light that emitters send ------------------------------------------------------------------------
+
+struct Emitter {
+  uint triangle;
+  bool bothSides;
+  float power, area, radius2;  // radius2: square of the distance between the centre and the farthest corner, m^2
+  vec3 centre, normal;
+};
+
+Emitter emitterAt(uint place) {
+  uvec4 record = texelOf(rayEmitters, int(1u + place));
+  uint index = record.x & ~kEmitterBothSides;
+  uvec4 triangle = sceneTriangle(index);
+  vec3 a = scenePosition(triangle.x), b = scenePosition(triangle.y), c = scenePosition(triangle.z);
+  vec3 across = cross(b - a, c - a), centre = (a + b + c) / 3.0;
+  float twice = length(across), area = 0.5 * twice;
+  float radius2 = max(dot(a - centre, a - centre), max(dot(b - centre, b - centre), dot(c - centre, c - centre)));
+  vec3 normal = twice > 0.0 ? across / twice : vec3(0.0);
+  return Emitter(index, record.x != index, uintBitsToFloat(record.y) * area, area, radius2, centre, normal);
+}
+
+// x: cosine of an angle from 0 to pi, y: its sine. The difference is no less than 0.
+vec2 angleOf(float cosine) { return vec2(cosine, sqrt(max(1.0 - cosine * cosine, 0.0))); }
+vec2 angleLess(vec2 a, vec2 b) {
+  if (a.x >= b.x) return vec2(1.0, 0.0);
+  return vec2(a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y);
+}
+
+float nodeWeight(uint node, Receiver r) {
+  int first = int(emitterHeader().y + 3u * node);
+  vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, first)), cone = uintBitsToFloat(texelOf(rayEmitters, first + 1));
+  float power = uintBitsToFloat(texelOf(rayEmitters, first + 2).x);
+  vec3 to = r.position - sphere.xyz;
+  float d2 = dot(to, to);
+  if (d2 <= sphere.w) return power / max(sphere.w, 1e-20);
+  float inverse_ = inversesqrt(d2), sine = sqrt(sphere.w) * inverse_;
+  vec2 bounds = vec2(sqrt(max(1.0 - sine * sine, 0.0)), sine);
+  float emitting = angleLess(angleLess(angleOf(dot(to, cone.xyz) * inverse_), angleOf(cone.w)), bounds).x;
+  float receiving = angleLess(angleOf(-dot(to, r.normal) * inverse_), bounds).x;
+  if (emitting < -kConeRounding || receiving < -kConeRounding) return 0.0;
+  return power * max(emitting, kLeastEmitterCosine) * max(receiving, kLeastEmitterCosine) / d2;
+}
+
+float emitterWeight(Emitter e, Receiver r) {
+  vec3 to = r.position - e.centre;
+  float above = dot(to, e.normal);
+  if (!e.bothSides && !(above > 0.0)) return 0.0;
+  float d2 = max(dot(to, to), max(e.radius2, 1e-20)), d = sqrt(d2), radius = sqrt(e.radius2);
+  float receiving = radius - dot(to, r.normal);
+  if (receiving < -kConeRounding * d) return 0.0;
+  float emitting = min(abs(above) + 0.1 * radius, d), least = kLeastEmitterCosine * d;
+  return e.power * max(emitting, least) * max(min(receiving, d), least) / (d2 * d2);
+}
+
+// ---- The tree ------------------------------------------------------------------------------------------------------
+
+// The probability of turning to the first half of a node, below 0 if neither half sends light.
+float firstHalf(uint node, Receiver r) {
+  float first = nodeWeight(2u * node, r), second = nodeWeight(2u * node + 1u, r);
+  return first + second > 0.0 ? first / (first + second) : -1.0;
+}
+
+uint middleOf(uvec2 range) { return range.x + (range.y - range.x) / 2u; }
+bool isEmitterLeaf(uvec2 range) { return range.y - range.x <= kEmittersInLeaf; }
+
+float leafWeight(uvec2 range, Receiver r) {
+  float total = 0.0;
+  for (uint i = range.x; i < range.y; ++i) total += emitterWeight(emitterAt(i), r);
+  return total;
+}
+
+struct EmitterPoint {
+  uint triangle;   // kNoTriangle if no emitter faces the receiver
+  vec3 position;   // world space, m
+  vec3 normal;     // unit, on the side of the receiver
+  vec3 radiance;   // W/(sr m^2)
+  float density;   // probability density of the choice, per m^2
+};
+
+const EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+
+// A point that may light the receiver. choice, u: uniform in [0, 1). The choice is rescaled after each decision, so one
+// number is enough.
+EmitterPoint sampleEmitters(Receiver r, float choice, vec2 u) {
+  EmitterPoint p = kNoEmitterPoint;
+  uvec2 range = uvec2(0u, emitterCount());
+  float probability = 1.0;
+  for (uint node = 1u; !isEmitterLeaf(range);) {
+    float first = firstHalf(node, r);
+    if (first < 0.0) return p;
+    bool second = choice >= first;
+    choice = second ? (choice - first) / (1.0 - first) : choice / first;
+    probability *= second ? 1.0 - first : first;
+    node = 2u * node + uint(second);
+    range = second ? uvec2(middleOf(range), range.y) : uvec2(range.x, middleOf(range));
+  }
+  float total = leafWeight(range, r), reached = 0.0, own = 0.0;
+  Emitter chosen;
+  for (uint i = range.x; i < range.y && (own == 0.0 || choice * total >= reached); ++i) {
+    Emitter e = emitterAt(i);
+    float weight = emitterWeight(e, r);
+    if (!(weight > 0.0)) continue;
+    chosen = e;
+    own = weight;
+    reached += weight;
+  }
+  if (!(own > 0.0)) return p;
+  float root = sqrt(u.x);
+  vec2 weights = vec2(root * (1.0 - u.y), root * u.y);
+  uvec4 triangle = sceneTriangle(chosen.triangle);
+  p.triangle = chosen.triangle;
+  p.position = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z)) *
+               vec3(1.0 - weights.x - weights.y, weights);
+  p.normal = dot(chosen.normal, r.position - chosen.centre) > 0.0 ? chosen.normal : -chosen.normal;
+  p.radiance = materialEmission(materialOf(triangle), uvAt(triangle, weights));
+  p.density = probability * own / (total * chosen.area);
+  return p;
+}
+
+// The place of a triangle in the order of the leaves, or the number of emitters if it is none.
+uint placeOfEmitter(uint triangle) {
+  uint first = 0u, last = emitterCount(), count = last;
+  while (first < last) {
+    uint middle = first + (last - first) / 2u;
+    uvec4 record = texelOf(rayEmitters, int(1u + middle));
+    if (record.z == triangle) return record.w;
+    if (record.z < triangle) first = middle + 1u;
+    else last = middle;
+  }
+  return count;
+}
+
+// Density with which sampleEmitters() chooses points of a triangle for this receiver, per m^2; 0 if the triangle does
+// not emit towards it.
+float emitterDensity(uint triangle, Receiver r) {
+  uvec2 range = uvec2(0u, emitterCount());
+  uint place = placeOfEmitter(triangle);
+  if (place >= range.y) return 0.0;
+  float probability = 1.0;
+  for (uint node = 1u; !isEmitterLeaf(range);) {
+    float first = firstHalf(node, r);
+    if (first < 0.0) return 0.0;
+    bool second = place >= middleOf(range);
+    probability *= second ? 1.0 - first : first;
+    node = 2u * node + uint(second);
+    range = second ? uvec2(middleOf(range), range.y) : uvec2(range.x, middleOf(range));
+  }
+  Emitter e = emitterAt(place);
+  float own = emitterWeight(e, r);
+  return own > 0.0 ? probability * own / (leafWeight(range, r) * e.area) : 0.0;
+}
+
+bool isNear(vec3 point, float reach, vec3 centre, float radius2) {
+  float radius = reach + sqrt(radius2);
+  return dot(point - centre, point - centre) <= radius * radius;
+}
+
+// Whether an emitter is within `reach` metres of a point, by the bounding spheres of triangles.
+bool isEmitterWithin(vec3 point, float reach) {
+  if (emitterCount() == 0u) return false;
+  const uint kDeepest = 32u;
+  uvec3 stack[kDeepest];  // node, and the range of its emitters
+  stack[0] = uvec3(1u, 0u, emitterCount());
+  for (uint size = 1u; size > 0u;) {
+    uvec3 top = stack[--size];
+    uvec2 range = top.yz;
+    vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().y + 3u * top.x)));
+    // The bounding sphere of a triangle may extend beyond that of its node, but no farther than this.
+    if (!isNear(point, reach, sphere.xyz, 9.0 * sphere.w)) continue;
+    if (isEmitterLeaf(range)) {
+      for (uint i = range.x; i < range.y; ++i) {
+        Emitter e = emitterAt(i);
+        if (isNear(point, reach, e.centre, e.radius2)) return true;
+      }
+    } else {
+      stack[size++] = uvec3(2u * top.x, range.x, middleOf(range));
+      stack[size++] = uvec3(2u * top.x + 1u, middleOf(range), range.y);
+    }
+  }
+  return false;
+}
+
+// ---- The environment map -------------------------------------------------------------------------------------------
+
+// Value i of the map's cumulative light.
+float mapValue(uint i) {
+  return uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().z + i / 4u))[i & 3u]);
+}
+float mapShare(uint first, uint i) { return mapValue(first + i) - (i > 0u ? mapValue(first + i - 1u) : 0.0); }
+uint firstMapRow() {
+  ivec2 size = textureSize(sceneEnvironment, 0);
+  return uint(size.x * size.y);
+}
+bool isMapBlack() { return !(mapValue(firstMapRow() + uint(textureSize(sceneEnvironment, 0).y) - 1u) > 0.0); }
+
+// The first of `count` cumulative values that exceeds u, and how far u lies between it and the one before.
+uint chooseInMap(uint first, uint count, float u, out float within) {
+  uint low = 0u, high = count - 1u;
+  while (low < high) {
+    uint middle = (low + high) / 2u;
+    if (mapValue(first + middle) > u) high = middle;
+    else low = middle + 1u;
+  }
+  float before = low > 0u ? mapValue(first + low - 1u) : 0.0;
+  within = clamp((u - before) / (mapValue(first + low) - before), 0.0, 1.0 - 1.0 / 16777216.0);
+  return low;
+}
+
+float mapDensityIn(uvec2 texel) {
+  uvec2 size = uvec2(textureSize(sceneEnvironment, 0));
+  float step_ = kPi / float(size.y);
+  float solidAngle = 2.0 * kPi / float(size.x) * 2.0 * sin(0.5 * step_) * sin((float(texel.y) + 0.5) * step_);
+  return mapShare(texel.y * size.x, texel.x) * mapShare(firstMapRow(), texel.y) / solidAngle;
+}
+
+// The probability density with which sampleMap() chooses a direction, per sr.
+float mapDensity(vec3 direction) {
+  vec2 size = vec2(textureSize(sceneEnvironment, 0));
+  float around = (atan(direction.x, -direction.z) + frame.environmentTurn) / (2.0 * kPi) + 0.5;
+  vec2 place = vec2(fract(around), acos(clamp(direction.y, -1.0, 1.0)) / kPi) * size;
+  return mapDensityIn(uvec2(min(place, size - 1.0)));
+}
+
+struct MapSample {
+  vec3 direction, radiance;
+  float density;  // 0: the map is black
+};
+
+// A direction in proportion to the light from there, to within the size of a texel. u: uniform in [0, 1).
+MapSample sampleMap(vec2 u) {
+  if (isMapBlack()) return MapSample(vec3(0.0), vec3(0.0), 0.0);
+  uvec2 size = uvec2(textureSize(sceneEnvironment, 0));
+  vec2 within;
+  uint row = chooseInMap(firstMapRow(), size.y, u.y, within.y);
+  uint column = chooseInMap(row * size.x, size.x, u.x, within.x);
+  float step_ = kPi / float(size.y);
+  float y = mix(cos(float(row) * step_), cos(float(row + 1u) * step_), within.y);  // uniform in the texel's solid angle
+  float around = ((float(column) + within.x) / float(size.x) - 0.5) * 2.0 * kPi - frame.environmentTurn;
+  float across = sqrt(max(1.0 - y * y, 0.0));
+  vec3 direction = vec3(across * sin(around), y, -across * cos(around));
+  return MapSample(direction, environmentRadiance(direction), mapDensityIn(uvec2(column, row)));
+}
+
+#endif

@@ -1,0 +1,120 @@
+// How surfaces reflect light, as scene::Reflection knows it on the host. Define: RAY_PASSAGE 0/1
+// (rays/trace.glsl), 1 with full materials.
+#ifndef FOVEA_RAYS_REFLECTION_GLSL
+#define FOVEA_RAYS_REFLECTION_GLSL
+
+#include "rays/surfaces.glsl"
+#if RAY_PASSAGE
+#include "materials/full_material.glsl"
+#include "materials/visible_normals.glsl"
+#endif
+
+// Irradiance from the scene's lights.
+vec3 irradianceAt(TracedSurface v) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < frame.lightCount; ++i) {
+    LightSample l = sampleLight(lights[i], v.position);
+    float cosine = dot(v.normal, l.direction);
+    if (dot(v.face, l.direction) <= 0.0 || cosine <= 0.0 || l.irradiance == vec3(0.0)) continue;
+    sum += l.irradiance * cosine * lightAlong(v.origin, l.direction, l.distance);
+  }
+  return sum;
+}
+
+// Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
+vec3 diffuseLight(TracedSurface v, vec3 rho) { return rho / kPi * irradianceAt(v); }
+
+float meanChannel(vec3 colour) { return (colour.r + colour.g + colour.b) / 3.0; }
+
+#if RAY_PASSAGE
+
+// How a surface reflects light in one direction. Coats are a part of the lobe, unlike on the host.
+struct Reflection {
+  Reflector reflector;
+  vec3 albedo;  // of the diffuse layer, as it looks from there
+  vec3 emission;
+  float chooseDiffuse;  // probability with which sampleReflection() takes a direction for the diffuse layer
+};
+
+// out_: unit; rho: its reflectance, with diffuse materials; leastRoughness: v is treated as at least this rough.
+Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
+  uvec4 triangle = sceneTriangle(v.triangle);
+  vec3 weights = vec3(1.0 - v.weights.x - v.weights.y, v.weights), a = scenePosition(triangle.x);
+  vec3 edgeB = scenePosition(triangle.y) - a, edgeC = scenePosition(triangle.z) - a;
+  TextureCoordinates at = textureCoordinates(triangle, weights, v.uv);
+  float side = dot(cross(edgeB, edgeC), v.face) < 0.0 ? -1.0 : 1.0;
+  int record = int(frame.firstSurface) + int(v.material) * kSurfaceTexels;
+  vec3 normal = normalTowards(mappedNormal(record, v.triangle, weights, edgeB, edgeC, v.normal, side, at), out_);
+  FullSurface s = fullSurface(v.material, triangle, weights, at, dot(normal, out_), leastRoughness);
+  Reflector r = reflectorOf(s.gloss, normal, out_);
+  // The lobe and the rest are chosen by their albedos.
+  MirrorAlbedo mirror = mirrorAlbedo(dot(normal, out_), s.gloss.roughness);
+  vec3 lost = lostAlbedo(s.gloss, r.mean) * max(1.0 - mirror.all, 0.0);
+  float lobe = meanChannel(surfaceAlbedo(s.gloss, mirror, r.mean) - s.gloss.metallic * lost);
+  float others = meanChannel(s.albedo + lost);
+  return Reflection(r, s.albedo, s.emission, others / (others + max(lobe, 1e-3)));
+}
+
+// Light from a direction, which is unit, is reflected by this factor: f cos, per sr.
+vec3 reflectedFrom(Reflection r, vec3 direction) {
+  float cosine = dot(r.reflector.normal, direction);
+  return cosine > 0.0 ? cosine * reflected(r.reflector, direction, r.albedo) : vec3(0.0);
+}
+
+// Density with which sampleReflection() chooses a direction, per sr.
+float reflectionDensity(Reflection r, vec3 direction) {
+  float cosine = dot(r.reflector.normal, direction), alpha = ggxAlpha(r.reflector.gloss.roughness);
+  if (!(cosine > 0.0)) return 0.0;
+  vec3 out_ = r.reflector.out_, halfway = normalize(direction + out_), across = cross(r.reflector.normal, halfway);
+  float c = dot(r.reflector.normal, halfway), a2 = alpha * alpha, s = dot(across, across) + a2 * c * c;
+  float z = dot(r.reflector.normal, out_);
+  float lambda = smithLambda(vec3(sqrt(max(1.0 - z * z, 0.0)), 0.0, z), alpha);
+  float lobe = a2 / (kPi * s * s * (1.0 + lambda) * 4.0 * z);
+  return mix(lobe, cosine / kPi, r.chooseDiffuse);
+}
+
+// A direction in which light may arrive, unit. choice, u: uniform in [0, 1).
+vec3 sampleReflection(Reflection r, float choice, vec2 u) {
+  if (choice < r.chooseDiffuse) return cosineDirection(r.reflector.normal, u);
+  mat3 axes = orthonormalFrame(r.reflector.normal);
+  vec3 out_ = toLocal(axes, r.reflector.out_);
+  vec3 h = sampleVisibleNormal(out_, ggxAlpha(r.reflector.gloss.roughness), u);
+  return toWorld(axes, normalize(2.0 * dot(out_, h) * h - out_));
+}
+
+// Radiance that leaves v after one reflection of light from the scene's lights.
+vec3 directLight(TracedSurface v, Reflection r) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < frame.lightCount; ++i) {
+    LightSample l = sampleLight(lights[i], v.position);
+    if (dot(v.face, l.direction) <= 0.0 || l.irradiance == vec3(0.0)) continue;
+    vec3 response = l.irradiance * reflectedFrom(r, l.direction);
+    if (response != vec3(0.0)) sum += response * lightAlong(v.origin, l.direction, l.distance);
+  }
+  return v.brighter * sum;
+}
+
+// Radiance from v in the direction `out_` (unit), from where it is seen: emitted, or light of the scene's lights after
+// one reflection, as scene::SurfaceTracer::seen() finds it.
+vec3 seenLight(TracedSurface v, vec3 out_, float leastRoughness) {
+  Reflection r = reflectionOf(v, out_, vec3(0.0), leastRoughness);
+  return v.brighter * r.emission + directLight(v, r);
+}
+
+#else
+
+struct Reflection {
+  vec3 rho;  // reflectance
+};
+Reflection reflectionOf(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) { return Reflection(rho); }
+vec3 directLight(TracedSurface v, Reflection r) { return diffuseLight(v, r.rho); }
+
+#endif
+
+// The same in the direction `out_`; the parameters are those of reflectionOf().
+vec3 directTowards(TracedSurface v, vec3 out_, vec3 rho, float leastRoughness) {
+  if (frame.lightCount == 0u) return vec3(0.0);
+  return directLight(v, reflectionOf(v, out_, rho, leastRoughness));
+}
+
+#endif

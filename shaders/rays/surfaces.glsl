@@ -1,0 +1,159 @@
+// Single rays through the triangles and the surfaces that they meet, as scene::SurfaceTracer finds them on the host.
+// Define: RAY_PASSAGE 0/1 (rays/trace.glsl).
+#ifndef FOVEA_RAYS_SURFACES_GLSL
+#define FOVEA_RAYS_SURFACES_GLSL
+
+#include "vpls/paraboloid.glsl"
+#include "scene/pixel_ray.glsl"
+#include "sampling/random.glsl"
+#include "rays/emitters.glsl"
+#include "rays/visibility.glsl"
+
+// A surface as seen by the ray that reached it.
+struct TracedSurface {
+  bool there;     // false on a black back, too
+  uint triangle;  // kNoTriangle if the ray has met nothing
+  uint material;
+  vec2 weights;   // barycentric, of the triangle's second and third vertex
+  vec3 position;  // world space, m
+  vec3 origin;    // start of rays that leave it, just off the surface
+  vec3 normal, face;  // shading and geometric, unit, on the side reached
+  vec2 uv;
+  // The factor on its light that makes up for the rays that glass has let through, and what glass before it makes of
+  // the light on its way along the ray; the latter alone if the ray met nothing.
+  vec3 brighter;
+};
+
+uint rayCount = 0u;  // rays that this invocation has traced
+
+Receiver receiverOf(TracedSurface v) { return Receiver(v.origin, v.normal); }
+
+// ---- Random directions ---------------------------------------------------------------------------------------------
+
+vec3 cosineDirection(vec3 normal, vec2 u) {
+  float r = sqrt(u.x), phi = 2.0 * kPi * u.y;
+  return toWorld(orthonormalFrame(normal), vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x)));
+}
+
+// ---- What rays meet ------------------------------------------------------------------------------------------------
+
+const TracedSurface kNothingTraced = TracedSurface(false, kNoTriangle, 0u, vec2(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
+                                                   vec3(0.0), vec2(0.0), vec3(1.0));
+
+// direction: unit.
+TracedSurface surfaceOf(RayHit hit, vec3 direction) {
+  TracedSurface v = kNothingTraced;
+  if (hit.triangle == kNoTriangle) return v;
+  uvec4 triangle = sceneTriangle(hit.triangle);
+  vec3 weights = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
+  vec3 a = scenePosition(triangle.x), b = scenePosition(triangle.y), c = scenePosition(triangle.z);
+  v.triangle = hit.triangle;
+  v.material = materialOf(triangle);
+  v.weights = hit.weights;
+  v.position = mat3(a, b, c) * weights;
+  vec3 face = cross(b - a, c - a);
+  float size = length(face);
+  face = size > 0.0 ? face / size : vec3(0.0, 1.0, 0.0);
+  vec3 normal = mat3(sceneNormal(triangle.x), sceneNormal(triangle.y), sceneNormal(triangle.z)) * weights;
+  normal = dot(normal, normal) > 1e-24 ? normalize(normal) : face;
+  if (dot(normal, face) < 0.0) normal = -normal;
+  bool front = dot(face, direction) < 0.0;
+  uint flags = uint(texelOf(sceneMaterials, int(v.material) * kMaterialTexels + kColorTexture).w);
+  v.there = front || (flags & kMaterialDoubleSided) != 0u;
+  v.normal = front ? normal : -normal;
+  v.face = front ? face : -face;
+  v.origin = v.position + (v.face - direction) * rayEpsilon();
+  v.uv = uvAt(triangle, hit.weights);
+#if RAY_PASSAGE
+  if ((flags & kMaterialTransmits) != 0u)
+    v.brighter /= 1.0 - passage(v.material, v.uv, abs(dot(v.normal, direction)));
+#endif
+  return v;
+}
+
+#if RAY_PASSAGE
+uint materialFlags(TracedSurface v) {
+  return uint(texelOf(sceneMaterials, int(v.material) * kMaterialTexels + kColorTexture).w);
+}
+bool isGlass(TracedSurface v) { return (materialFlags(v) & kMaterialTransmits) != 0u; }
+
+// Whether a ray passes a surface that it meets. direction: unit; chance: uniform in [0, 1).
+bool passesSurface(TracedSurface v, vec3 direction, float chance) {
+  return (materialFlags(v) & (kMaterialBlended | kMaterialTransmits)) != 0u &&
+         !stops(v.material, v.uv, abs(dot(v.normal, direction)), chance);
+}
+#endif
+
+// Different for every ray and frame.
+uint keyOfRay(vec3 origin, vec3 direction) {
+  uint key = randomStream(frame.seed, frame.index, kPassedRayStream, 0u);
+  for (int i = 0; i < 3; ++i) key = hashCombine(key, floatBitsToUint(origin[i]));
+  for (int i = 0; i < 3; ++i) key = hashCombine(key, floatBitsToUint(direction[i]));
+  return key;
+}
+
+// The surface that the eye sees at a point of the picture, pixels (centres at +0.5). Where surfaces let a part of the
+// light through, it is the one that pass gbuffer shows in this frame.
+TracedSurface look(vec2 at) {
+  vec3 direction = normalize(pixelRay(at)), tint = vec3(1.0);
+  Ray ray = Ray(view.eye, direction, 0.0, kFarAway);
+  uint key = hashCombine(frame.seed, kPassageStream);
+  TracedSurface v = kNothingTraced;
+  for (uint pane = 0u; pane < kMaxPanes; ++pane) {
+    ++rayCount;
+    RayHit hit = intersect(ray);
+    v = surfaceOf(hit, direction);
+#if RAY_PASSAGE
+    float chance = passageChance(hashCombine(key, hit.triangle), uvec2(at), frame.index);
+    bool passed = hit.triangle != kNoTriangle && (!v.there || passesSurface(v, direction, chance));
+    if (!passed) break;
+    if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
+#else
+    if (hit.triangle == kNoTriangle || v.there) break;
+#endif
+    ray = beyond(ray, hit);
+    v = kNothingTraced;
+  }
+  v.brighter *= tint;
+  return v;
+}
+
+// The surface met within `reach` metres. direction: unit. Where surfaces let a part of the light through, the ray
+// passes with the probability of the light that does.
+TracedSurface arrive(vec3 origin, vec3 direction, float reach) {
+  Ray ray = Ray(origin, direction, 0.0, reach);
+#if RAY_PASSAGE
+  uint key = keyOfRay(origin, direction);
+  vec3 tint = vec3(1.0);
+  TracedSurface v = kNothingTraced;
+  for (uint pane = 0u; pane < kMaxPanes; ++pane) {
+    ++rayCount;
+    RayHit hit = intersect(ray);
+    v = surfaceOf(hit, direction);
+    if (hit.triangle == kNoTriangle ||
+        !passesSurface(v, direction, uniformFloat(hashCombine(key, hit.triangle))))
+      break;
+    if (v.there && isGlass(v)) tint *= glassTint(v.material, v.uv);
+    ray = beyond(ray, hit);
+    v = kNothingTraced;
+  }
+  v.brighter *= tint;
+  return v;
+#else
+  ++rayCount;
+  return surfaceOf(intersect(ray), direction);
+#endif
+}
+
+vec3 lightAlong(vec3 origin, vec3 direction, float distance_) {
+  return visibility(Ray(origin, direction, 0.0, distance_ < kFarAway ? distance_ * kShadowEnd : kFarAway), rayCount);
+}
+
+// ---- Light ---------------------------------------------------------------------------------------------------------
+
+vec3 reflectance(TracedSurface v) { return v.brighter * materialReflectance(v.material, v.uv).rgb; }
+vec3 emitted(TracedSurface v) {
+  return emitterCount() == 0u ? vec3(0.0) : v.brighter * materialEmission(v.material, v.uv);
+}
+
+#endif

@@ -1,0 +1,23 @@
+// Blocks of pixels that share a sample (passes/near-field-host/near_field_tracer.h): tiles of `spacing` x `spacing`
+// pixels, and texels of 2 x 2 pixels in them.
+#ifndef FOVEA_BLOCKS_GLSL
+#define FOVEA_BLOCKS_GLSL
+
+#include "scene/scene.glsl"
+
+uvec2 viewSize() { return uvec2(view.size); }
+uvec2 texelCount() { return (viewSize() + 1u) / 2u; }
+uvec2 tileCount(uint spacing) { return (viewSize() + spacing - 1u) / spacing; }
+
+// The pixel whose turn it is in a block; the same as passes::samplePixel().
+uvec2 samplePixel(uint turn_, uint side, uvec2 block) {
+  turn_ += (block.x & 1u) * 2u ^ (block.y & 1u) * 3u;
+  uvec2 p = uvec2(0u);
+  for (uint bit = side / 2u; bit > 0u; bit /= 2u, turn_ /= 4u) {
+    p.x += (turn_ & 1u) * bit;
+    p.y += ((turn_ ^ turn_ >> 1) & 1u) * bit;
+  }
+  return p;
+}
+
+#endif

@@ -1,0 +1,18 @@
+// Reads the bundle `eye-paths`.
+#ifndef FOVEA_EYE_PATHS_GLSL
+#define FOVEA_EYE_PATHS_GLSL
+
+#include "records/eye_paths.h"
+
+// EyePathEnd::kind: without direct light, of a surface that shines, of one lit by such surfaces.
+const float kUnlit = 1.0, kShining = 3.0, kGlowing = 4.0;
+
+EyePathEnd loadEyePathEnd(samplerBuffer list, uint path) {
+  int first = 3 * int(path);
+  vec4 a = texelFetch(list, first), b = texelFetch(list, first + 1), c = texelFetch(list, first + 2);
+  return EyePathEnd(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
+}
+
+float luminanceOf(vec3 colour) { return dot(colour, vec3(0.2126, 0.7152, 0.0722)); }
+
+#endif

@@ -1,0 +1,41 @@
+// Where visible surfaces were in the previous frame.
+#ifndef FOVEA_MOTION_GLSL
+#define FOVEA_MOTION_GLSL
+
+#include "scene/scene.glsl"
+
+// How a point of a triangle whose vertices move has moved since the previous frame, m in world space.
+vec3 movedSince(vec3 position, uvec4 triangle) {
+  mat3 now = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z));
+  mat3 before = mat3(scenePreviousPosition(triangle.x), scenePreviousPosition(triangle.y),
+                     scenePreviousPosition(triangle.z));
+  vec3 b = now[1] - now[0], c = now[2] - now[0], p = position - now[0], normal = cross(b, c);
+  float area2 = dot(normal, normal);
+  vec2 weights = vec2(dot(cross(p, c), normal), dot(cross(b, p), normal)) / max(area2, 1e-30);
+  weights = area2 > 0.0 ? weights : vec2(1.0 / 3.0);
+  return (now - before) * vec3(1.0 - weights.x - weights.y, weights);
+}
+
+// How a surface has moved since the previous frame: what moves along with it was at turn * point + way.
+struct Motion {
+  mat3 turn;
+  vec3 way;
+};
+
+// id, triangle: of the G-buffer at `position`.
+Motion motionOf(vec3 position, uint id, uint triangle) {
+  uint object = id >> 16;
+  Motion motion = Motion(mat3(1.0), vec3(0.0));
+  if (object != 0u && objectDeforms(object)) {
+    motion.way = -movedSince(position, sceneTriangle(triangle));
+  } else if (object != 0u) {
+    mat4x3 fromObject = previousObjectTransform(object), toObject = inverseObjectTransform(object);
+    motion.turn = mat3(fromObject) * mat3(toObject);
+    motion.way = fromObject * vec4(toObject[3], 1.0);
+  }
+  return motion;
+}
+
+vec3 pointBefore(Motion motion, vec3 point) { return motion.turn * point + motion.way; }
+
+#endif
