@@ -68,6 +68,8 @@ void moveObjects(const Frame& frame, Geometry& geometry);
 // The binding of set 1 that shaders use that trace rays (shaders/rays/trace.glsl).
 inline constexpr const char* kRayBinding = "rayNodes";
 
+class HostScene;
+
 // What a graph needs from the scene on the device: descriptor set 1, the same for every pass of a frame
 // (shaders/scene/scene.glsl), and the vertices of everything that moves. `slot` is the number of a frame in flight.
 class FrameDescriptors {
@@ -80,6 +82,9 @@ class FrameDescriptors {
   // Writes this frame's uniforms into the slot. Neither waits for the device nor allocates.
   virtual void update(const Frame& frame, uint32_t slot) = 0;
   virtual bool moves() const = 0;  // whether recordMoves() does anything
+  // The scene for kernels that run on the host, brought to this frame, whose geometry has moved already; nullptr if it
+  // was not asked for.
+  virtual const HostScene* host(const Frame&) { return nullptr; }
   // Records the commands that bring moving vertices to the frame with which the slot was updated. The caller's
   // barriers must order them (transfer and compute stages) after all earlier readers and before all later ones.
   virtual void recordMoves(VkCommandBuffer cmd, uint32_t slot) const = 0;

@@ -11,6 +11,10 @@
 
 namespace fovea::session {
 
+bool raysOnHost(RaysOn rays, const gpu::Device* device) {
+  return rays == RaysOn::Auto ? !device || device->isCpu() : rays == RaysOn::Host;
+}
+
 std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
   auto device = std::make_unique<gpu::Device>(options);
   for (const auto& folder : shaderFolders()) device->shaders().addSearchPath(folder);
@@ -18,8 +22,9 @@ std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
 }
 
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
-                                    const scene::Geometry& geometry, glm::uvec2 size) {
+                                    const scene::Geometry& geometry, glm::uvec2 size, RaysOn rays) {
   graph::Environment environment = graph::deviceEnvironment(device);
+  environment.raysOnHost = raysOnHost(rays, device);
   environment.views = scene::frameViews({size.x, size.y});
   environment.quantities = scene::quantities(scene, geometry);
   environment.texts.emplace_back("scene.materials", scene.fullMaterials ? "full" : "diffuse");
@@ -59,12 +64,22 @@ bool wantsFullMaterials(const graph::Plan& plan) {
   return false;
 }
 
-// Whether the scene on the device has to have what rays meet.
-bool wantsRays(const graph::Plan& plan) {
+// Where the scene has to have what rays meet. A pass that traces rays in none of its declared steps does so in kernels
+// of its own, on the device.
+scene::RaysWanted raysOf(const graph::Plan& plan) {
+  scene::RaysWanted rays;
   const std::vector<graph::BoundPass>& passes = plan.graph->passes;
-  for (size_t i = 0; i < passes.size(); ++i)
-    if (plan.passLive[i] && passes[i].declaration->tracesRays) return true;
-  return false;
+  for (size_t i = 0; i < passes.size(); ++i) {
+    if (!plan.passLive[i] || !passes[i].declaration->tracesRays) continue;
+    bool any = false;
+    for (const graph::PlannedStep& step : plan.steps[i]) {
+      if (!step.tracesRays) continue;
+      any = true;
+      (step.host ? rays.host : rays.device) = true;
+    }
+    rays.device |= !any;
+  }
+  return rays;
 }
 
 // Parts of graphs have inputs that the graph around them wires.
@@ -93,7 +108,7 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
                             size.y, limit),
                 "render a smaller picture");
   graph::BoundGraph made =
-      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size), messages);
+      graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size, options_.rays), messages);
   graph::replaceFormats(device_, made);
   for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
   auto bound = std::make_shared<const graph::BoundGraph>(std::move(made));
@@ -106,7 +121,8 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
 void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
   if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
-  const bool full = wantsFullMaterials(*plan_), rays = wantsRays(*plan_);
+  const bool full = wantsFullMaterials(*plan_);
+  const scene::RaysWanted rays = raysOf(*plan_);
   const bool sameScene =
       before && before->gpuScene_->fullMaterials() == full && before->gpuScene_->rays() == rays;
   gpuScene_ = sameScene

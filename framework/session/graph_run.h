@@ -16,13 +16,23 @@
 
 namespace fovea::session {
 
+// Where passes trace rays, with the same results but for rounding.
+enum class RaysOn {
+  Auto,    // on the host if the device is a CPU, which traces rays much faster by itself
+  Host,    // with Embree, or the project's own tracer in portable bundles
+  Device,  // in compute shaders
+};
+// device: nullptr stands for a CPU.
+bool raysOnHost(RaysOn rays, const gpu::Device* device);
+
 // Opens a device and lets it look for shaders in the data folders.
 std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options);
 
 // The environment to which a graph is bound: the views of every frame, the device's limits (unknown if `device` is
 // nullptr) and the scene's quantities and texts.
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
-                                    const scene::Geometry& geometry, glm::uvec2 size);
+                                    const scene::Geometry& geometry, glm::uvec2 size,
+                                    RaysOn rays = RaysOn::Auto);
 
 // The value of a parameter, or `otherwise` if no pass of the graph has it. If several passes have
 // it, the last one decides.
@@ -47,6 +57,7 @@ class GraphRun {
     bool givesInputs = false;
     // Whether what passes make can be read back in the middle of a frame (graph::Executor::observe).
     bool observable = false;
+    RaysOn rays = RaysOn::Auto;
   };
   // Binds and compiles. Warnings are added to `messages`; throws Error(BadInput) with every mistake. Device, scene
   // and geometry must outlive the run, which moves the geometry.

@@ -3,7 +3,7 @@
 // first takes an eye path at random, and the candidate lies where that ends, with the light found there. Voxels know
 // only direct light, none of surfaces that shine, and their averages close gaps that light comes through.
 #include "device/texels.glsl"
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 #include "vpls/paraboloid.glsl"
 #include "sampling/diffuse_bounce.glsl"
 #include "sampling/random.glsl"

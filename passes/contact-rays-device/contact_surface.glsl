@@ -2,7 +2,7 @@
 #include "scene/octahedral.glsl"
 #include "scene/pixel_ray.glsl"
 
-layout(rg32ui) uniform readonly uimage2D contacts;
+IMAGE(rg32ui, readonly, uimage2D, contacts);
 
 struct ContactSurface {
   vec3 position, normal;  // world space, m; unit
@@ -11,7 +11,7 @@ struct ContactSurface {
 bool inContact(ivec2 pixel) { return imageLoad(contacts, pixel).x != 0u; }
 
 ContactSurface contactSurface(ivec2 pixel) {
-  uvec2 contact = imageLoad(contacts, pixel).xy;
+  uvec2 contact = uvec2(imageLoad(contacts, pixel));
   return ContactSurface(view.eye + uintBitsToFloat(contact.x) * normalize(pixelRay(pixel)),
                         octDecode(unpackSnorm2x16(contact.y)));
 }

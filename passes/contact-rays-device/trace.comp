@@ -12,19 +12,19 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std430) readonly buffer SourcesBlock { ContactSource list[]; } sources;
-layout(std430) buffer CountsBlock { uvec2 list[]; } counts;  // rays to each VPL, and those that reached it
+LIST(readonly, ContactSource, sources);
+LIST(restrict, uvec2, counts);  // rays to each VPL, and those that reached it
 #if HISTORY
-layout(r32ui) uniform readonly uimage2D origin;
+IMAGE(r32ui, readonly, uimage2D, origin);
 #endif
-layout(rgba32f) uniform writeonly image2D unfiltered;
-layout(std430) buffer CountersBlock { uint pixels, rays; } counters;
+IMAGE(rgba32f, writeonly, image2D, unfiltered);
+COUNTERS { uint pixels, rays; } counters;
 
 layout(push_constant) uniform Constants {
   uint rays;
   uint firstSamples;
   uint frameIndex;
-};
+} constants;
 
 // cos_s cos_l / (d^2 + A / pi) / d^2, in the form in which pass deferred has it, times the weight.
 float unhidden(ContactSource light, ContactSurface s) {
@@ -44,8 +44,8 @@ vec3 lightOf(uint subset, ContactSurface s, float offset) {
   vec3 light = vec3(0.0);
   uint chosen = subset;
   float before = 0.0, own = unhidden(sources.list[subset], s);
-  for (uint k = 0u; k < rays; ++k) {
-    float place = (float(k) + offset) / float(rays) * sum;
+  for (uint k = 0u; k < constants.rays; ++k) {
+    float place = (float(k) + offset) / float(constants.rays) * sum;
     for (uint i = chosen + kContactSubsets; i < end && before + own <= place; i += kContactSubsets) {
       float next = unhidden(sources.list[i], s);
       if (!(next > 0.0)) continue;
@@ -59,27 +59,27 @@ vec3 lightOf(uint subset, ContactSurface s, float offset) {
     atomicAdd(counts.list[chosen].y, 1u);
     light += share * sources.list[chosen].color;
   }
-  return light * (sum * float(kContactSubsets) / (float(rays) * kPi));
+  return light * (sum * float(kContactSubsets) / (float(constants.rays) * kPi));
 }
 
 uint samplesAt(ivec2 p) {
 #if HISTORY
-  if (imageLoad(origin, p).r == kNone) return firstSamples;
+  if (imageLoad(origin, p).r == kNone) return constants.firstSamples;
 #endif
   return 1u;
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 p = ivec2(gl_GlobalInvocationID);
   if (any(greaterThanEqual(p, imageSize(unfiltered))) || !inContact(p)) return;
   uint samples = samplesAt(p);
   atomicAdd(counters.pixels, 1u);
-  atomicAdd(counters.rays, samples * rays);
+  atomicAdd(counters.rays, samples * constants.rays);
   ContactSurface surface = contactSurface(p);
   uint stream = randomStream(frame.seed, uint(p.x), kContactStream, uint(p.y));
-  uint first = min(uint(streamSequence(stream, frameIndex).y * float(kContactSubsets)), kContactSubsets - 1u);
+  uint first = min(uint(streamSequence(stream, constants.frameIndex).y * float(kContactSubsets)), kContactSubsets - 1u);
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < samples; ++i)
-    sum += lightOf((first + i) % kContactSubsets, surface, streamSequence(stream, frameIndex - i).x);
+    sum += lightOf((first + i) % kContactSubsets, surface, streamSequence(stream, constants.frameIndex - i).x);
   imageStore(unfiltered, p, vec4(min(sum / float(samples), 65504.0), 0.0));
 }

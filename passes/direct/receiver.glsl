@@ -6,13 +6,13 @@
 #include "scene/scene.glsl"
 
 // Images rather than textures, because on lavapipe a load from a texture costs several times as much.
-layout(rgba32f) uniform readonly image2D gbufferPosition;
-layout(rgba16f) uniform readonly image2D gbufferNormal;
-layout(rg16_snorm) uniform readonly image2D gbufferFace;
-layout(rgba16f) uniform readonly image2D gbufferAlbedo;
-layout(rgba16f) uniform readonly image2D gbufferEmission;
+IMAGE(rgba32f, readonly, image2D, gbufferPosition);
+IMAGE(rgba16f, readonly, image2D, gbufferNormal);
+IMAGE(rg16_snorm, readonly, image2D, gbufferFace);
+IMAGE(rgba16f, readonly, image2D, gbufferAlbedo);
+IMAGE(rgba16f, readonly, image2D, gbufferEmission);
 #if GLOSS
-layout(rgba16f) uniform readonly image2D gbufferSpecular;
+IMAGE(rgba16f, readonly, image2D, gbufferSpecular);
 #endif
 
 struct Receiver {
@@ -29,13 +29,13 @@ Receiver receiverAt(ivec2 p) {
   vec4 normal = imageLoad(gbufferNormal, p), albedo = imageLoad(gbufferAlbedo, p),
        emission = imageLoad(gbufferEmission, p);
   r.place = imageLoad(gbufferPosition, p);
-  r.normal = normal.xyz;
-  r.face = octDecode(imageLoad(gbufferFace, p).xy);
-  r.albedo = albedo.rgb;
-  r.emission = emission.rgb;
+  r.normal = vec3(normal);
+  r.face = octDecode(vec2(imageLoad(gbufferFace, p)));
+  r.albedo = vec3(albedo);
+  r.emission = vec3(emission);
 #if GLOSS
   Gloss gloss = glossOf(imageLoad(gbufferSpecular, p), normal.a, albedo.a, emission.a);
-  r.reflector = reflectorOf(gloss, normal.xyz, normalize(view.eye - r.place.xyz));
+  r.reflector = reflectorOf(gloss, vec3(normal), normalize(view.eye - vec3(r.place)));
 #endif
   return r;
 }

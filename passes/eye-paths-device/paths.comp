@@ -6,21 +6,21 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) readonly buffer PathsStartsBlock { EyePathStart list[]; } pathsStarts;
-layout(std430) buffer PathsEndsBlock { EyePathEnd list[]; } pathsEnds;
-layout(std430) readonly buffer TurnsBlock { uint list[]; } turns;  // kPathsAnew and kPathsWait
-layout(std430) buffer CountersBlock { uint rays, ends; } counters;
+LIST(readonly, EyePathStart, pathsStarts);
+LIST(restrict, EyePathEnd, pathsEnds);
+LIST(readonly, uint, turns);  // kPathsAnew and kPathsWait
+COUNTERS { uint rays, ends; } counters;
 #if LATE
-layout(std430) readonly buffer MemoryBlock { EyePathMemory value; } memory;
+VALUE(readonly, EyePathMemory, memory);
 #else
-layout(std430) writeonly buffer DifferencesBlock { EyePathDifference list[]; } differences;
+LIST(writeonly, EyePathDifference, differences);
 #endif
 
 layout(push_constant) uniform Constants {
   uint points;
   uint bounces;
   uint gathered;
-};
+} constants;
 
 const EyePathEnd kNoEnd = EyePathEnd(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
@@ -54,7 +54,7 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
   shining = emitted(v);
 #endif
   float direct = meanChannel(radiance), kind = meanChannel(shining) > direct ? 3.0 : radiance == vec3(0.0) ? 1.0 : 2.0;
-  vec3 indirect = passedOn(v, reflection, bounces - 1u, gathered,
+  vec3 indirect = passedOn(v, reflection, constants.bounces - 1u, constants.gathered,
                            randomStream(frame.seed, turn_, kPathGatherStream, point));
   if (hasEmitters() && kind < 3.0 && meanChannel(indirect) > direct) kind = 4.0;
   float weight = 1.0;
@@ -68,7 +68,7 @@ EyePathEnd endOf(EyePathStart start, uint point, uint turn_, uint paths) {
 void main() {
   uint path = gl_GlobalInvocationID.x, all = uint(pathsEnds.list.length());
   if (path >= all) return;
-  uint point = path % points, turn_ = path / points, paths = (all - point + points - 1u) / points;
+  uint point = path % constants.points, turn_ = path / constants.points, paths = (all - point + constants.points - 1u) / constants.points;
   bool waits = (turns.list[point] & kPathsWait) != 0u, anew = (turns.list[point] & kPathsAnew) != 0u;
 #if LATE
   if (!waits || uniformFloat(point * kGoldenRatio) >= memory.value.outOfTurn) return;

@@ -6,9 +6,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) buffer PathsStartsBlock { EyePathStart list[]; } pathsStarts;
-layout(std430) writeonly buffer TurnsBlock { uint list[]; } turns;  // kPathsAnew and kPathsWait
-layout(std430) buffer CountersBlock { uint rays, ends; } counters;
+LIST(restrict, EyePathStart, pathsStarts);
+LIST(writeonly, uint, turns);  // kPathsAnew and kPathsWait
+COUNTERS { uint rays, ends; } counters;
 
 layout(push_constant) uniform Constants {
   uint region;
@@ -19,7 +19,7 @@ layout(push_constant) uniform Constants {
   uint traceFrames;
   float strayNow;  // image widths
   uint frameIndex;
-};
+} constants;
 
 const float kRounding = 1e-6;  // of a unit vector
 
@@ -31,12 +31,12 @@ EyePathStart startAt(vec2 pixel) {
 
 // Whether the eye still sees the start, and close to `pixel`, where it belongs.
 bool belongs(EyePathStart start, vec2 pixel) {
-  if (strayNow == 0.0 || start.there == 0.0) return false;
+  if (constants.strayNow == 0.0 || start.there == 0.0) return false;
   vec4 clip = view.worldToClip * vec4(start.position, 1.0);
   if (!(clip.w > 0.0)) return false;
-  vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * view.size;
+  vec2 at = (vec2(clip) / clip.w * 0.5 + 0.5) * view.size;
   bool inside = all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, view.size));
-  if (!inside || distance(at, pixel) > strayNow * view.size.x) return false;
+  if (!inside || distance(at, pixel) > constants.strayNow * view.size.x) return false;
   TracedSurface v = look(at);
   float reach = max(4.0 * rayEpsilon(), kSamePlace * distance(start.position, view.eye));
   return v.there && distance(v.position, start.position) <= reach;
@@ -44,7 +44,7 @@ bool belongs(EyePathStart start, vec2 pixel) {
 
 // Whether the surface (or the background) is still where the start was found, as objects may have moved. The start
 // follows one that moves or turns slowly: paths from below it would meet its inside.
-bool stands(inout EyePathStart start) {
+bool stands(INOUT(EyePathStart) start) {
   if (start.there == 0.0) return true;
   float reach = 4.0 * rayEpsilon();
   Ray ray = Ray(start.position + reach * start.face, -start.face, 0.0, 2.0 * reach);
@@ -61,15 +61,15 @@ bool stands(inout EyePathStart start) {
 
 void main() {
   uint point = gl_GlobalInvocationID.x;
-  if (point >= points) return;
-  Fovea fovea = makeFovea(view.gaze, view.size, foveaRadius);
-  vec2 pixel = vec2(screenPoint(region, imageShare64ths, point, points, fovea, ivec2(view.size))) + 0.5;
+  if (point >= constants.points) return;
+  Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
+  vec2 pixel = vec2(screenPoint(constants.region, constants.imageShare64ths, point, constants.points, fovea, ivec2(view.size))) + 0.5;
   EyePathStart start = pathsStarts.list[point];
-  bool anew = point % renew == frameIndex % renew && !belongs(start, pixel);
+  bool anew = point % constants.renew == constants.frameIndex % constants.renew && !belongs(start, pixel);
   if (!anew) anew = !stands(start);
   if (anew) start = startAt(pixel);
   pathsStarts.list[point] = start;
-  bool waits = !anew && point % traceFrames != frameIndex % traceFrames;
+  bool waits = !anew && point % constants.traceFrames != constants.frameIndex % constants.traceFrames;
   turns.list[point] = (anew ? kPathsAnew : 0u) | (waits ? kPathsWait : 0u);
   atomicAdd(counters.rays, rayCount);
 }

@@ -9,8 +9,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std430) writeonly buffer ReservoirsBlock { Reservoir list[]; } reservoirs;
-layout(std430) buffer CountersBlock { uint rays, samples; } counters;
+LIST(writeonly, Reservoir, reservoirs);
+COUNTERS { uint rays, samples; } counters;
 
 layout(push_constant) uniform Constants {
   uint depth;
@@ -19,7 +19,7 @@ layout(push_constant) uniform Constants {
   float foveaRadius;
   uint paths;
   uint frameIndex;
-};
+} constants;
 
 const Reservoir kNothing = Reservoir(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
@@ -32,11 +32,11 @@ struct Choice {
 // Light that leaves a surface by paths of at most `depth` edges to the eye, of which two are known.
 vec3 radianceOf(TracedSurface hit, uint stream) {
   vec3 rho = reflectance(hit);
-  return emitted(hit) + diffuseLight(hit, rho) + rho * gather(hit, depth - 3u, 1u, stream);
+  return emitted(hit) + diffuseLight(hit, rho) + rho * gather(hit, constants.depth - 3u, 1u, stream);
 }
 
 // aimedAt: the triangle at which the ray is aimed, if it is. A ray that meets something else instead does not count.
-void consider(inout Choice choice, TracedSurface v, vec3 direction, bool isAimed, uint aimedAt, uint stream) {
+void consider(INOUT(Choice) choice, TracedSurface v, vec3 direction, bool isAimed, uint aimedAt, uint stream) {
   float cosine = dot(v.normal, direction);
   if (cosine <= 0.0 || dot(v.face, direction) <= 0.0) return;
   TracedSurface hit = arrive(v.origin, direction, kFarAway);
@@ -61,13 +61,13 @@ Reservoir sampleAt(uvec2 pixel) {
   TracedSurface v = look(vec2(pixel) + 0.5);
   if (!v.there) return kNothing;
   uint stream = randomStream(frame.seed, pixel.x, kGiSampleStream, pixel.y);
-  WeightedChoice among = WeightedChoice(uniformFloat(randomStream(stream, frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0);
+  WeightedChoice among = WeightedChoice(uniformFloat(randomStream(stream, constants.frameIndex, kGiChoiceStream, 0u)), 0.0, 0.0);
   Choice choice = Choice(among, kNothing, 1.0);
   // Every second ray is the aimed one.
-  for (uint i = 0u; i < 2u * paths; ++i) {
+  for (uint i = 0u; i < 2u * constants.paths; ++i) {
     bool isAimed = (i & 1u) != 0u;
     if (isAimed && !hasEmitters()) continue;
-    uint path = frameIndex * paths + i / 2u, gatherStream = randomStream(stream, path, kGiGatherStream, 0u);
+    uint path = constants.frameIndex * constants.paths + i / 2u, gatherStream = randomStream(stream, path, kGiGatherStream, 0u);
     EmitterRay ray = kNoEmitterRay;
     if (isAimed) ray = aimedRay(v, randomStream(stream, path, kGiAimStream, 0u));
     else ray.direction = cosineDirection(v.normal, streamSequence(stream, path));
@@ -76,19 +76,19 @@ Reservoir sampleAt(uvec2 pixel) {
   }
   choice.chosen.count = 1.0;
   if (isAnyChosen(choice.among))
-    choice.chosen.weight = inverseProbability(choice.among) / (choice.density * float(paths));
+    choice.chosen.weight = inverseProbability(choice.among) / (choice.density * float(constants.paths));
   return choice.chosen;
 }
 
 void main() {
-  uvec2 pixel = gl_GlobalInvocationID.xy, size = viewSize();
+  uvec2 pixel = uvec2(gl_GlobalInvocationID), size = viewSize();
   if (any(greaterThanEqual(pixel, size))) return;
-  Fovea fovea = makeFovea(view.gaze, view.size, foveaRadius);
+  Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
   bool seen = distance(vec2(pixel) + 0.5, fovea.centre) <= fovea.radius;
-  uint width = seen ? spacing : max(spacing, outsideSpacing);
+  uint width = seen ? constants.spacing : max(constants.spacing, constants.outsideSpacing);
   uvec2 block = pixel / width;
   Reservoir found = kNothing;
-  if (pixel == width * block + samplePixel(frameIndex, width, block)) {
+  if (pixel == width * block + samplePixel(constants.frameIndex, width, block)) {
     found = sampleAt(pixel);
     atomicAdd(counters.rays, rayCount);
     if (found.count > 0.0) atomicAdd(counters.samples, 1u);

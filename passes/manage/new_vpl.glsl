@@ -1,4 +1,4 @@
-// The VPL that a candidate becomes, in its first frame. Needs scene/scene.glsl and vpls/vpl.glsl.
+// The VPL that a candidate becomes, in its first frame. Needs scene/objects.glsl and vpls/vpl.glsl.
 #ifndef FOVEA_MANAGE_NEW_VPL_GLSL
 #define FOVEA_MANAGE_NEW_VPL_GLSL
 

@@ -1,6 +1,6 @@
 // One slot per invocation: the VPL stays with its new importance, a candidate moves in, or the slot is empty. Define:
 // RATED 0/1: whether the candidates have an importance.
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 #include "vpls/vpl.glsl"
 #include "manage/memory.glsl"
 #include "manage/turnover.glsl"

@@ -2,8 +2,8 @@
 // passes/near-field-host/receiver_lobe.h.
 #include "materials/gloss.glsl"
 
-layout(rgba16f) uniform readonly image2D gbufferNormal;
-layout(rgba16f) uniform readonly image2D gbufferSpecular;
+IMAGE(rgba16f, readonly, image2D, gbufferNormal);
+IMAGE(rgba16f, readonly, image2D, gbufferSpecular);
 
 struct ReceiverLobe {
   vec3 normal, out_;  // unit; out_: to the eye, not behind the surface
@@ -16,15 +16,15 @@ struct ReceiverLobe {
 // position: of the surface at the pixel.
 ReceiverLobe receiverLobe(ivec2 pixel, vec3 position) {
   vec4 specular = imageLoad(gbufferSpecular, pixel);
-  vec3 normal = normalize(imageLoad(gbufferNormal, pixel).xyz), out_ = normalize(view.eye - position);
-  if (specular.rgb == vec3(0.0)) return ReceiverLobe(normal, out_, 1.0, 0.0, 0.0);
+  vec3 normal = normalize(vec3(imageLoad(gbufferNormal, pixel))), out_ = normalize(view.eye - position);
+  if (vec3(specular) == vec3(0.0)) return ReceiverLobe(normal, out_, 1.0, 0.0, 0.0);
   float facing = dot(normal, out_);
   if (facing < kLeastLobe) out_ = normalize(out_ + (kLeastLobe - facing) * normal);
   // What is smoother than this is traced (pass mirrors).
   float roughness = max(specular.a, looksMetallic(specular) ? kTracedMetal : kTracedDielectric);
   float once = mirrorAlbedo(dot(normal, out_), roughness).all, mean = meanMirrorAlbedo(roughness).all;
   // With the mean of the channels for a reflectance that is the same from everywhere.
-  float fresnel = min(dot(specular.rgb, vec3(1.0 / 3.0)), 1.0);
+  float fresnel = min(dot(vec3(specular), vec3(1.0 / 3.0)), 1.0);
   float more = lostAlbedo(vec3(fresnel), mean).x * (1.0 - once);
   float all = max(fresnel * once + more, kLeastLobe * fresnel);
   return ReceiverLobe(normal, out_, roughness, kPi * fresnel / all, more / (all * max(1.0 - mean, kLeastLobe)));

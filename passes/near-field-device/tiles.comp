@@ -7,16 +7,16 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) writeonly buffer TilesBlock { NearFieldTile list[]; } tiles;
-layout(std430) writeonly buffer ItemsBlock { uint list[]; } items;
-layout(std430) buffer ListedBlock { uint count; } listed;
-layout(std430) buffer DispatchBlock { uint groups[3]; } dispatch;
-layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
+LIST(writeonly, NearFieldTile, tiles);
+LIST(writeonly, uint, items);
+VALUE(restrict, uint, listed);
+LIST(restrict, uint, dispatch);
+COUNTERS { uint rays, shaded, gathered; } counters;
 
 layout(push_constant) uniform Constants {
   float foveaRadius;
   uint spacing;
-};
+} constants;
 
 const uint kItemsInGroup = 64u;   // of trace.comp
 const uint kMostGroups = 32768u;  // in a row of its dispatch
@@ -27,28 +27,28 @@ bool isCloseToEmitter(uvec2 corner) {
   return false;
 #else
   if (emitterCount() == 0u) return false;
-  ivec2 middle = min(ivec2(corner + spacing / 2u), ivec2(viewSize()) - 1);
+  ivec2 middle = min(ivec2(corner + constants.spacing / 2u), ivec2(viewSize()) - 1);
   TracedSurface v = look(vec2(middle) + 0.5);
   if (!v.there || emitted(v) != vec3(0.0)) return false;
   float angle = distance(normalize(pixelRay(middle + ivec2(1, 0))), normalize(pixelRay(middle)));
-  return isEmitterWithin(v.position, kClose * float(spacing) * angle * distance(v.position, view.eye));
+  return isEmitterWithin(v.position, kClose * float(constants.spacing) * angle * distance(v.position, view.eye));
 #endif
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x, columns = tileCount(spacing).x;
+  uint index = gl_GlobalInvocationID.x, columns = tileCount(constants.spacing).x;
   if (index >= uint(tiles.list.length())) return;
-  uvec2 corner = spacing * uvec2(index % columns, index / columns), texels = texelCount();
-  Fovea fovea = makeFovea(view.gaze, view.size, foveaRadius);
-  vec2 nearest = clamp(fovea.centre, vec2(corner), vec2(corner + spacing));
+  uvec2 corner = constants.spacing * uvec2(index % columns, index / columns), texels = texelCount();
+  Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
+  vec2 nearest = clamp(fovea.centre, vec2(corner), vec2(corner + constants.spacing));
   bool narrow = distance(nearest, fovea.centre) <= fovea.radius || isCloseToEmitter(corner);
   tiles.list[index] = NearFieldTile(vec3(0.0), uint(narrow), vec3(0.0), 0u);
 
-  uvec2 first = corner / 2u, end = narrow ? min(first + spacing / 2u, texels) : first + 1u;
-  uint number = (end.x - first.x) * (end.y - first.y), at = atomicAdd(listed.count, number);
+  uvec2 first = corner / 2u, end = narrow ? min(first + constants.spacing / 2u, texels) : first + 1u;
+  uint number = (end.x - first.x) * (end.y - first.y), at = atomicAdd(listed.value, number);
   uint groups = (at + number + kItemsInGroup - 1u) / kItemsInGroup;
-  atomicMax(dispatch.groups[0], min(groups, kMostGroups));
-  atomicMax(dispatch.groups[1], (groups + kMostGroups - 1u) / kMostGroups);
+  atomicMax(dispatch.list[0], min(groups, kMostGroups));
+  atomicMax(dispatch.list[1], (groups + kMostGroups - 1u) / kMostGroups);
   for (uint y = first.y; y < end.y; ++y)
     for (uint x = first.x; x < end.x; ++x) items.list[at++] = (y * texels.x + x) | (narrow ? 0u : kWideItem);
   atomicAdd(counters.rays, rayCount);

@@ -12,15 +12,15 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) buffer StateBlock { NearFieldState value; } state;
-layout(std430) buffer TilesBlock { NearFieldTile list[]; } tiles;
-layout(std430) readonly buffer ItemsBlock { uint list[]; } items;
-layout(std430) readonly buffer ListedBlock { uint count; } listed;
-layout(std430) buffer TracedBlock { vec4 list[]; } traced;  // rgb: irradiance / pi; a: code, see passes::sampleCode()
+VALUE(restrict, NearFieldState, state);
+LIST(restrict, NearFieldTile, tiles);
+LIST(readonly, uint, items);
+VALUE(readonly, uint, listed);
+LIST(restrict, vec4, traced);  // rgb: irradiance / pi; a: code, see passes::sampleCode()
 #if GLOSS
-layout(std430) buffer TracedGlossBlock { vec4 list[]; } tracedGloss;  // rgb: under the lobe
+LIST(restrict, vec4, tracedGloss);  // rgb: under the lobe
 #endif
-layout(std430) buffer CountersBlock { uint rays, shaded, gathered; } counters;
+COUNTERS { uint rays, shaded, gathered; } counters;
 
 layout(push_constant) uniform Constants {
   uint spacing;
@@ -29,7 +29,7 @@ layout(push_constant) uniform Constants {
   uint frameIndex;
   uint part;   // number of this turn
   uint parts;  // number of turns
-};
+} constants;
 
 float discArea() { return state.value.area; }
 void noteLength(float distance_, float probability) {
@@ -57,38 +57,38 @@ TracedSurface seenIn(uint turn_, uvec2 corner, uint side) {
 
 void main() {
   uint number = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
-  if (number >= listed.count) return;
+  if (number >= listed.value) return;
   uint item = items.list[number], index = item & ~kWideItem;
   bool wide = item != index;
   uvec2 texel = uvec2(index % texelCount().x, index / texelCount().x), corner = 2u * texel;
-  uint side = wide ? spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;
+  uint side = wide ? constants.spacing : 2u, rays = side == 2u ? state.value.foveaRays : 1u;
   uvec2 block = corner / side;
   // Rays leave from the surface of the first turn's pixel, too, where another pixel shows another surface.
-  TracedSurface at = seenIn(frameIndex, corner, side), v = at;
-  if (part > 0u) v = seenIn(frameIndex + part, corner, side);
+  TracedSurface at = seenIn(constants.frameIndex, corner, side), v = at;
+  if (constants.part > 0u) v = seenIn(constants.frameIndex + constants.part, corner, side);
   bool leavesFirst = !v.there || !onSamePlane(at.position, at.normal, v.position, v.normal);
   if (leavesFirst) v = at;
 #if LOBES
-  lobe = receiverLobe(ivec2(min(pixelOf(leavesFirst ? frameIndex : frameIndex + part, corner, side), viewSize() - 1u)),
+  lobe = receiverLobe(ivec2(min(pixelOf(leavesFirst ? constants.frameIndex : constants.frameIndex + constants.part, corner, side), viewSize() - 1u)),
                       v.position);
 #endif
   NearLight sum = NearLight(vec3(0.0), vec3(0.0));
   for (uint i = 0u; at.there && i < rays; ++i) {
-    NearLight its = nearLight(v, block, rays * (frameIndex + part) + i, bounces, emitterPoints);
+    NearLight its = nearLight(v, block, rays * (constants.frameIndex + constants.part) + i, constants.bounces, constants.emitterPoints);
     sum.light += its.light;
     sum.gloss += its.gloss;
   }
-  sum.light /= float(rays * parts);
-  sum.gloss /= float(rays * parts);
+  sum.light /= float(rays * constants.parts);
+  sum.gloss /= float(rays * constants.parts);
 
-  uvec2 inside = samplePixel(frameIndex, side, block);
+  uvec2 inside = samplePixel(constants.frameIndex, side, block);
   uint code = side | inside.x << 4 | inside.y << 7 | (at.there ? 0u : 1u << 10);
-  traced.list[index] = vec4(sum.light + (part > 0u ? traced.list[index].rgb : vec3(0.0)), float(code));
+  traced.list[index] = vec4(sum.light + (constants.part > 0u ? vec3(traced.list[index]) : vec3(0.0)), float(code));
 #if GLOSS
-  tracedGloss.list[index] = vec4(sum.gloss + (part > 0u ? tracedGloss.list[index].rgb : vec3(0.0)), 0.0);
+  tracedGloss.list[index] = vec4(sum.gloss + (constants.part > 0u ? vec3(tracedGloss.list[index]) : vec3(0.0)), 0.0);
 #endif
-  if (wide && part == 0u) {
-    uint tile = corner.y / spacing * tileCount(spacing).x + corner.x / spacing;
+  if (wide && constants.part == 0u) {
+    uint tile = corner.y / constants.spacing * tileCount(constants.spacing).x + corner.x / constants.spacing;
     tiles.list[tile] = NearFieldTile(at.position, 0u, at.normal, uint(at.there));
   }
   atomicAdd(counters.rays, rayCount);

@@ -5,17 +5,17 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(r8) uniform readonly image2D shadeMask;
-layout(rgba16f) uniform readonly image2D nearField;
-layout(rgba32f) uniform image2D traced;
-layout(std430) readonly buffer SpreadBlock { vec4 list[]; } spread;
-layout(std430) buffer CountersBlock { uint rays, pixels; } counters;
+IMAGE(r8, readonly, image2D, shadeMask);
+IMAGE(rgba16f, readonly, image2D, nearField);
+IMAGE(rgba32f, restrict, image2D, traced);
+LIST(readonly, vec4, spread);
+COUNTERS { uint rays, pixels; } counters;
 
 layout(push_constant) uniform Constants {
   uint samples;
   uint bounces;
   uint turn_;  // number of this ray, from 0 on in each frame: without a mean over frames, new rays would flicker
-};
+} constants;
 
 const uint kEmitterPoints = 4u;
 
@@ -25,15 +25,15 @@ vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v,
 float underLobe(vec3 direction, float cosine) { return 1.0; }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(gl_GlobalInvocationID);
   if (any(greaterThanEqual(pixel, imageSize(traced)))) return;
-  vec4 light = turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
+  vec4 light = constants.turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
   if (imageLoad(shadeMask, pixel).r > 0.0 && imageLoad(nearField, pixel).a == 0.0) {
     TracedSurface v = look(vec2(pixel) + 0.5);
-    if (v.there) light.rgb += nearLight(v, uvec2(pixel), turn_, bounces, kEmitterPoints).light / float(samples);
+    if (v.there) light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light / float(constants.samples), 0.0);
     light.a = float(v.there);
     atomicAdd(counters.rays, rayCount);
-    if (v.there && turn_ == 0u) atomicAdd(counters.pixels, 1u);
+    if (v.there && constants.turn_ == 0u) atomicAdd(counters.pixels, 1u);
   }
   imageStore(traced, pixel, light);
 }

@@ -5,13 +5,13 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) readonly buffer RaysGridBlock { ProbeGrid value; } raysGrid;
-layout(std430) readonly buffer RaysDirectionsBlock { vec4 list[]; } raysDirections;
-layout(std430) readonly buffer SharesBlock { uint list[]; } shares;
-layout(std430) writeonly buffer RaysHitsBlock { vec4 list[]; } raysHits;
-layout(std430) buffer CountersBlock { uint rays, probes, inside; } counters;
+VALUE(readonly, ProbeGrid, raysGrid);
+LIST(readonly, vec4, raysDirections);
+LIST(readonly, uint, shares);
+LIST(writeonly, vec4, raysHits);
+COUNTERS { uint rays, probes, inside; } counters;
 
-layout(push_constant) uniform Constants { float bias; };
+layout(push_constant) uniform Constants { float bias; } constants;
 
 // What ray `index` of all finds.
 vec4 hitOf(vec3 origin, vec3 direction, uint index) {
@@ -23,7 +23,7 @@ vec4 hitOf(vec3 origin, vec3 direction, uint index) {
   // Light that does not come from the scene's lights: what probes knew after the previous frame has one bounce more in
   // each frame.
 #if FEEDBACK
-  vec3 light = probeLight(raysGrid.value, bias, v.position, v.normal, -direction);
+  vec3 light = probeLight(raysGrid.value, constants.bias, v.position, v.normal, -direction);
 #else
   uint stream = randomStream(frame.seed, frame.index, kProbeEmitterStream, 0u);
   vec3 light = gather(v, 0u, 1u, hashCombine(stream, index));
@@ -42,7 +42,7 @@ void main() {
     ProbeGrid grid = raysGrid.value;
     Probe state = loadProbe(probesStates, int(probe));
     vec3 origin = grid.origin + grid.spacing * vec3(probeCell(grid, int(probe))) + state.offset;
-    hit = hitOf(origin, raysDirections.list[ray].xyz, index);
+    hit = hitOf(origin, vec3(raysDirections.list[ray]), index);
     atomicAdd(counters.rays, rayCount);
   }
   raysHits.list[index] = hit;

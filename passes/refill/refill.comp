@@ -1,5 +1,5 @@
 // One work group: the candidates that hit something fill the slots in their order.
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 #include "vpls/vpl.glsl"
 #include "manage/new_vpl.glsl"
 #define GROUP 64

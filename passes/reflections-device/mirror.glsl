@@ -4,7 +4,7 @@
 #include "scene/pixel_ray.glsl"
 #include "records/mirror.h"
 
-layout(rgba32ui) uniform readonly uimage2D mirrors;
+IMAGE(rgba32ui, readonly, uimage2D, mirrors);
 
 struct Mirror {
   bool there;  // if not, nothing is known of it

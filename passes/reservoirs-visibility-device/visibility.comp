@@ -5,18 +5,18 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba32f) uniform readonly image2D gbufferPosition;
-layout(rg16_snorm) uniform readonly image2D gbufferFace;
-layout(r32ui) uniform readonly uimage2D gbufferId;
-layout(rgba32f) uniform readonly image2D otherGbufferPosition;
-layout(rg16_snorm) uniform readonly image2D otherGbufferFace;
+IMAGE(rgba32f, readonly, image2D, gbufferPosition);
+IMAGE(rg16_snorm, readonly, image2D, gbufferFace);
+IMAGE(r32ui, readonly, uimage2D, gbufferId);
+IMAGE(rgba32f, readonly, image2D, otherGbufferPosition);
+IMAGE(rg16_snorm, readonly, image2D, otherGbufferFace);
 LARGE_TEXELS(vec4, own);
 LARGE_TEXELS(vec4, others);
-layout(r32ui) uniform readonly uimage2D sources;
-layout(r32ui) uniform writeonly uimage2D seen;
-layout(std430) buffer CountersBlock { uint rays, hidden; } counters;
+IMAGE(r32ui, readonly, uimage2D, sources);
+IMAGE(r32ui, writeonly, uimage2D, seen);
+COUNTERS { uint rays, hidden; } counters;
 
-layout(push_constant) uniform Constants { uint previous; };
+layout(push_constant) uniform Constants { uint previous; } constants;
 
 const uint kNone = 0xffffffffu;  // in place of a pixel: none
 
@@ -35,9 +35,9 @@ bool sees(vec3 position, vec3 face, Reservoir r) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy), size = imageSize(gbufferPosition);
+  ivec2 p = ivec2(gl_GlobalInvocationID), size = imageSize(gbufferPosition);
   if (any(greaterThanEqual(p, size))) return;
-  vec3 position = imageLoad(gbufferPosition, p).xyz, face = octDecode(imageLoad(gbufferFace, p).xy);
+  vec3 position = vec3(imageLoad(gbufferPosition, p)), face = octDecode(vec2(imageLoad(gbufferFace, p)));
   bool moves = imageLoad(gbufferId, p).r >> 16 != 0u;
   Reservoir mine = loadReservoir(own, p.y * size.x + p.x);
   int each = imageSize(sources).x / size.x;
@@ -46,9 +46,9 @@ void main() {
     uint source = imageLoad(sources, ivec2(p.x * each + k, p.y)).r;
     if (source == kNone) continue;
     ivec2 q = ivec2(source & 0xffffu, source >> 16);
-    bool mineSees = sees(position, face, loadReservoir(others, q.y * size.x + q.x)), itsSees = previous != 0u && moves;
+    bool mineSees = sees(position, face, loadReservoir(others, q.y * size.x + q.x)), itsSees = constants.previous != 0u && moves;
     if (!itsSees)
-      itsSees = sees(imageLoad(otherGbufferPosition, q).xyz, octDecode(imageLoad(otherGbufferFace, q).xy), mine);
+      itsSees = sees(vec3(imageLoad(otherGbufferPosition, q)), octDecode(vec2(imageLoad(otherGbufferFace, q))), mine);
     bits |= uint(mineSees) << 2 * k | uint(itsSees) << (2 * k + 1);
   }
   imageStore(seen, p, uvec4(bits, 0u, 0u, 0u));

@@ -5,15 +5,15 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(rgba16f) uniform image2D direct;
-layout(std430) buffer CountersBlock { uint pixels, rays; } counters;
+IMAGE(rgba16f, restrict, image2D, direct);
+COUNTERS { uint pixels, rays; } counters;
 
 layout(push_constant) uniform Constants {
   ivec4 fine;  // corners of the part of the picture where pixels are decided
-};
+} constants;
 
 vec3 lightFrom(LightRecord light, Receiver r, vec3 origin) {
-  LightSample e = sampleLight(light, r.place.xyz);
+  LightSample e = sampleLight(light, vec3(r.place));
   if (dot(r.normal, e.direction) <= 0.0 || dot(r.face, e.direction) <= 0.0 || e.irradiance == vec3(0.0))
     return vec3(0.0);
   atomicAdd(counters.rays, 1u);
@@ -22,15 +22,15 @@ vec3 lightFrom(LightRecord light, Receiver r, vec3 origin) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 p = ivec2(gl_GlobalInvocationID);
   if (any(greaterThanEqual(p, imageSize(direct)))) return;
-  if (any(lessThan(p, fine.xy)) || any(greaterThanEqual(p, fine.zw))) return;
+  if (any(lessThan(p, ivec2(constants.fine))) || any(greaterThanEqual(p, ivec2(constants.fine.z, constants.fine.w)))) return;
   vec4 before = imageLoad(direct, p);
   if (before.a == 1.0) return;
   atomicAdd(counters.pixels, 1u);
   Receiver r = receiverAt(p);
-  vec3 sum = vec3(0.0), origin = r.place.xyz + (r.face + normalize(view.eye - r.place.xyz)) * rayEpsilon();
+  vec3 sum = vec3(0.0), origin = vec3(r.place) + (r.face + normalize(view.eye - vec3(r.place))) * rayEpsilon();
   uint lightCount = r.place.w > 0.0 ? frame.lightCount : 0u;
   for (uint i = 0u; i < lightCount; ++i) sum += lightFrom(lights[i], r, origin);
-  imageStore(direct, p, vec4(r.place.w > 0.0 ? radianceOf(r, sum) : before.rgb, 1.0));
+  imageStore(direct, p, vec4(r.place.w > 0.0 ? radianceOf(r, sum) : vec3(before), 1.0));
 }

@@ -1,7 +1,7 @@
 // Handles a cell that a triangle overlaps: without ACCUMULATE it is marked, with it the piece of the triangle is
 // added to the voxel's sums.
 #include "materials/passage.glsl"
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 #include "voxels/voxel.glsl"
 #include "voxelize/state.glsl"
 #include "voxelize/triangle.glsl"

@@ -1,6 +1,6 @@
 // One slot per invocation: the VPL moves with its object and takes over the surface data of the
 // voxel that it reaches.
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 #include "voxels/voxel_trace.glsl"
 
 layout(local_size_x = 64) in;

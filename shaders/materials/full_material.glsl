@@ -33,9 +33,9 @@ vec4 extensionTexture(int texel, TextureCoordinates at) {
 TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
   vec2 second = uv;
   if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
-    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz) + 1;
-    second = mat3x2(texelOf(sceneMaterials, texel.x).xy, texelOf(sceneMaterials, texel.y).xy,
-                    texelOf(sceneMaterials, texel.z).xy) * weights;
+    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle) + 1;
+    second = mat3x2(vec2(texelOf(sceneMaterials, texel.x)), vec2(texelOf(sceneMaterials, texel.y)),
+                    vec2(texelOf(sceneMaterials, texel.z))) * weights;
   }
   return TextureCoordinates(uv, second);
 }
@@ -43,9 +43,9 @@ TextureCoordinates textureCoordinates(uvec4 triangle, vec3 weights, vec2 uv) {
 vec3 vertexColor(uvec4 triangle, vec3 weights) {
   vec3 color = vec3(1.0);
   if (MATERIAL_DETAIL == 2 && frame.firstDetail != 0u) {
-    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle.xyz);
-    color = mat3(texelOf(sceneMaterials, texel.x).rgb, texelOf(sceneMaterials, texel.y).rgb,
-                 texelOf(sceneMaterials, texel.z).rgb) * weights;
+    ivec3 texel = int(frame.firstDetail) + 2 * ivec3(triangle);
+    color = mat3(vec3(texelOf(sceneMaterials, texel.x)), vec3(texelOf(sceneMaterials, texel.y)),
+                 vec3(texelOf(sceneMaterials, texel.z))) * weights;
   }
   return color;
 }
@@ -67,17 +67,18 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
   if (mapped) {
     int first = int(frame.firstTangent) + 3 * int(triangle);
     vec4 a = texelOf(sceneMaterials, first);
-    vec3 b = texelOf(sceneMaterials, first + 1).xyz, c = texelOf(sceneMaterials, first + 2).xyz;
+    vec3 b = vec3(texelOf(sceneMaterials, first + 1)), c = vec3(texelOf(sceneMaterials, first + 2));
     vec3 across = cross(edgeB, edgeC);
     float area = length(across);
     across *= area > 0.0 ? inversesqrt(area) : 0.0;
-    vec3 t = mat3(cornerTangent(a.xyz, edgeB, edgeC, across), cornerTangent(b, edgeB, edgeC, across),
+    vec3 t = mat3(cornerTangent(vec3(a), edgeB, edgeC, across), cornerTangent(b, edgeB, edgeC, across),
                   cornerTangent(c, edgeB, edgeC, across)) * weights;
     t -= normal * dot(normal, t);
     float d = length(t);
     vec3 tangent = t / max(d, 1e-6), bitangent = a.w * cross(normal, tangent);
-    vec3 m = 2.0 * mapTexture(surface + kNormalTexture, at).rgb - 1.0;
-    m.xy *= texelOf(sceneMaterials, surface + 2).y;
+    vec3 m = 2.0 * vec3(mapTexture(surface + kNormalTexture, at)) - 1.0;
+    float scale = texelOf(sceneMaterials, surface + 2).y;
+    m *= vec3(scale, scale, 1.0);
     vec3 n = side * m.x * tangent + m.y * bitangent + m.z * normal;
     float size = length(n);
     bent = d > 1e-6 && size > 1e-6 ? n / size : normal;
@@ -117,12 +118,12 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
   vec4 base = texelOf(sceneMaterials, surface), specular = texelOf(sceneMaterials, surface + 1);
   vec4 factors = texelOf(sceneMaterials, surface + 2), coat = texelOf(sceneMaterials, surface + 3);
-  vec3 color = base.rgb * textureAt(first + kColorTexture, at).rgb * vertexColor(triangle, weights);
+  vec3 color = vec3(base) * vec3(textureAt(first + kColorTexture, at)) * vertexColor(triangle, weights);
   color = min(color, 1.0);
   vec4 metallicRoughness = mapTexture(surface + kMetallicRoughnessTexture, at);
   float metallic = base.a * metallicRoughness.b, roughness = max(factors.x * metallicRoughness.g, leastRoughness);
   float f90 = specular.a * extensionTexture(surface + kSpecularTexture, at).a;
-  vec3 f0 = min(specular.rgb * extensionTexture(surface + kSpecularColorTexture, at).rgb, 1.0) * f90;
+  vec3 f0 = min(vec3(specular) * vec3(extensionTexture(surface + kSpecularColorTexture, at)), 1.0) * f90;
   float transmission = factors.z * extensionTexture(surface + kTransmissionTexture, at).r;
 
   Gloss g = Gloss(mix(f0, color, metallic), mix(f90, 1.0, metallic), roughness, metallic, dot(f0, vec3(1.0 / 3.0)));
@@ -147,9 +148,9 @@ FullSurface fullSurface(uint material, uvec4 triangle, vec3 weights, TextureCoor
     g.roughness = mix(roughness, coatRoughness, reflects / max(reflects + below, 1e-6));
   }
 
-  vec3 emission = texelOf(sceneMaterials, first + 1).rgb;
+  vec3 emission = vec3(texelOf(sceneMaterials, first + 1));
   if (emission != vec3(0.0))
-    emission *= textureAt(first + kEmissionTexture, at).rgb;
+    emission *= vec3(textureAt(first + kEmissionTexture, at));
   if (factors.w > 0.0) return FullSurface(vec3(0.0), Gloss(vec3(0.0), 0.0, 1.0, 0.0, 0.0), color);
   return FullSurface(albedo, g, emission);
 }

@@ -24,7 +24,7 @@ struct Gloss {
 
 // As gbuffer stores it in `specular` and in the alpha of `normal`, `albedo` and `emission`.
 Gloss glossOf(vec4 specular, float normalA, float albedoA, float emissionA) {
-  return Gloss(specular.rgb, abs(normalA), specular.a, albedoA, emissionA);
+  return Gloss(vec3(specular), abs(normalA), specular.a, albedoA, emissionA);
 }
 
 float dielectricF90(Gloss g) { return clamp((g.f90 - g.metallic) / max(1.0 - g.metallic, 1e-3), 0.0, 1.0); }
@@ -35,7 +35,7 @@ bool looksMetallic(vec4 specular) { return max(max(specular.r, specular.g), spec
 // The share of the light under the lobe of a surface that rays find (pass reflections), and not VPLs.
 float tracedShare(vec4 specular) {
   float last = (looksMetallic(specular) ? kTracedMetal : kTracedDielectric) + kTracedFade;
-  return specular.rgb == vec3(0.0) ? 0.0 : clamp((last - specular.a) / kTracedFade, 0.0, 1.0);
+  return vec3(specular) == vec3(0.0) ? 0.0 : clamp((last - specular.a) / kTracedFade, 0.0, 1.0);
 }
 
 float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3); }

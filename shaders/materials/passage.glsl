@@ -14,7 +14,7 @@ const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7
 // What glass makes of the light that goes through it.
 vec3 glassColor(uint material, vec2 uv) {
   int first = int(material) * kMaterialTexels, surface = int(frame.firstSurface) + int(material) * kSurfaceTexels;
-  return min(texelOf(sceneMaterials, surface).rgb * sampleSceneTexture(first + kColorTexture, uv).rgb, 1.0);
+  return min(vec3(texelOf(sceneMaterials, surface)) * vec3(sampleSceneTexture(first + kColorTexture, uv)), 1.0);
 }
 
 // The share of light that goes straight through thin glass; materials are full. cosine: between light and normal.
@@ -26,7 +26,7 @@ float passage(uint material, vec2 uv, float cosine) {
   float enters = factors.z * sampleSceneTexture(surface + kTransmissionTexture, uv).r *
                  (1.0 - color.a * metalAndRoughness.b);
   MirrorAlbedo a = mirrorAlbedo(cosine, factors.x * metalAndRoughness.g);
-  float f0 = dot(min(specular.rgb, 1.0), vec3(1.0 / 3.0));
+  float f0 = dot(min(vec3(specular), 1.0), vec3(1.0 / 3.0));
   float reflects = specular.a * (f0 * (a.all - a.dielectricF90) + a.dielectricF90);
   return clamp(dot(glassColor(material, uv), vec3(1.0 / 3.0)) * enters * (1.0 - reflects), 0.0, kMostPassed);
 }
@@ -78,7 +78,7 @@ vec3 transmittance(uint material, vec2 uv, float cosine) {
 
 // Whether a ray passes, see framework/scene/materials/passage.h.
 float passageChance(uint key, uvec2 pixel, uint turn_) {
-  uvec2 at = (key & 8u) != 0u ? pixel.yx : pixel;
+  uvec2 at = (key & 8u) != 0u ? uvec2(pixel.y, pixel.x) : pixel;
   uint along = (key & 16u) != 0u ? 0u - at.y : at.y;
   return uniformFloat(key + at.x * kPassageAcross + along * kPassageAlong +
                       turn_ * (kPassageTurn + (key & 7u) * kPassageTurns));

@@ -20,7 +20,7 @@ float probeReach(ProbeGrid grid) { return kProbeReach * sqrt(3.0) * grid.spacing
 
 Probe loadProbe(samplerBuffer probes, int probe) {
   vec4 a = texelFetch(probes, 2 * probe), b = texelFetch(probes, 2 * probe + 1);
-  return Probe(a.xyz, a.w, b.x, b.y, b.z, b.w);
+  return Probe(vec3(a), a.w, b.x, b.y, b.z, b.w);
 }
 
 // Weight of the history of a probe that has gathered light for so many frames. The first frames count less than in a

@@ -3,8 +3,9 @@
 // together.
 #include "probes/layout.glsl"
 
-uniform texture2D probesIrradiance, probesDistance;
-uniform samplerBuffer probesStates;
+TEXTURE(texture2D, probesIrradiance);
+TEXTURE(texture2D, probesDistance);
+TEXTURE(samplerBuffer, probesStates);
 
 // Between the four texels around `place`. The 32-bit formats need not have a filter of their own.
 vec4 between(texture2D image, vec2 place) {
@@ -17,7 +18,7 @@ vec4 between(texture2D image, vec2 place) {
 
 // Chance that a probe sees a point at this distance in this direction, by Chebyshev's inequality.
 float chanceSeen(int probe, vec3 direction, float distance) {
-  vec2 seen = between(probesDistance, probePlace(probe, kDistanceSide, direction)).xy;
+  vec2 seen = vec2(between(probesDistance, probePlace(probe, kDistanceSide, direction)));
   float variance = abs(seen.y - seen.x * seen.x), behind = distance - seen.x;
   if (!(behind > 0.0)) return 1.0;
   float chance = variance / (variance + behind * behind);
@@ -45,7 +46,7 @@ vec3 probeLight(ProbeGrid grid, float bias, vec3 position, vec3 normal, vec3 tow
     vec3 linear = mix(1.0 - between_, between_, vec3(corner));
     weight *= max(linear.x * linear.y * linear.z, 1e-6);
     if (state.inside > 0.0) weight = 0.0;
-    sum += weight * vec4(between(probesIrradiance, probePlace(probe, kIrradianceSide, normal)).rgb, 1.0);
+    sum += weight * vec4(vec3(between(probesIrradiance, probePlace(probe, kIrradianceSide, normal))), 1.0);
   }
-  return sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
+  return sum.a > 0.0 ? vec3(sum) / sum.a : vec3(0.0);
 }

@@ -6,7 +6,7 @@
 #include "rays/trace.glsl"
 #include "records/emitters.h"
 
-layout(set = 1, binding = 13) LARGE_TEXELS(uvec4, rayEmitters);
+SCENE_TEXELS(13, uvec4, rayEmitters);
 
 // The surface that is lit.
 struct Receiver {
@@ -49,12 +49,12 @@ float nodeWeight(uint node, Receiver r) {
   int first = int(emitterHeader().y + 3u * node);
   vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, first)), cone = uintBitsToFloat(texelOf(rayEmitters, first + 1));
   float power = uintBitsToFloat(texelOf(rayEmitters, first + 2).x);
-  vec3 to = r.position - sphere.xyz;
+  vec3 to = r.position - vec3(sphere);
   float d2 = dot(to, to);
   if (d2 <= sphere.w) return power / max(sphere.w, 1e-20);
   float inverse_ = inversesqrt(d2), sine = sqrt(sphere.w) * inverse_;
   vec2 bounds = vec2(sqrt(max(1.0 - sine * sine, 0.0)), sine);
-  float emitting = angleLess(angleLess(angleOf(dot(to, cone.xyz) * inverse_), angleOf(cone.w)), bounds).x;
+  float emitting = angleLess(angleLess(angleOf(dot(to, vec3(cone)) * inverse_), angleOf(cone.w)), bounds).x;
   float receiving = angleLess(angleOf(-dot(to, r.normal) * inverse_), bounds).x;
   if (emitting < -kConeRounding || receiving < -kConeRounding) return 0.0;
   return power * max(emitting, kLeastEmitterCosine) * max(receiving, kLeastEmitterCosine) / d2;
@@ -182,10 +182,10 @@ bool isEmitterWithin(vec3 point, float reach) {
   stack[0] = uvec3(1u, 0u, emitterCount());
   for (uint size = 1u; size > 0u;) {
     uvec3 top = stack[--size];
-    uvec2 range = top.yz;
+    uvec2 range = uvec2(top.y, top.z);
     vec4 sphere = uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().y + 3u * top.x)));
     // The bounding sphere of a triangle may extend beyond that of its node, but no farther than this.
-    if (!isNear(point, reach, sphere.xyz, 9.0 * sphere.w)) continue;
+    if (!isNear(point, reach, vec3(sphere), 9.0 * sphere.w)) continue;
     if (isEmitterLeaf(range)) {
       for (uint i = range.x; i < range.y; ++i) {
         Emitter e = emitterAt(i);
@@ -207,13 +207,13 @@ float mapValue(uint i) {
 }
 float mapShare(uint first, uint i) { return mapValue(first + i) - (i > 0u ? mapValue(first + i - 1u) : 0.0); }
 uint firstMapRow() {
-  ivec2 size = textureSize(sceneEnvironment, 0);
+  ivec2 size = environmentSize();
   return uint(size.x * size.y);
 }
-bool isMapBlack() { return !(mapValue(firstMapRow() + uint(textureSize(sceneEnvironment, 0).y) - 1u) > 0.0); }
+bool isMapBlack() { return !(mapValue(firstMapRow() + uint(environmentSize().y) - 1u) > 0.0); }
 
 // The first of `count` cumulative values that exceeds u, and how far u lies between it and the one before.
-uint chooseInMap(uint first, uint count, float u, out float within) {
+uint chooseInMap(uint first, uint count, float u, OUT(float) within) {
   uint low = 0u, high = count - 1u;
   while (low < high) {
     uint middle = (low + high) / 2u;
@@ -226,7 +226,7 @@ uint chooseInMap(uint first, uint count, float u, out float within) {
 }
 
 float mapDensityIn(uvec2 texel) {
-  uvec2 size = uvec2(textureSize(sceneEnvironment, 0));
+  uvec2 size = uvec2(environmentSize());
   float step_ = kPi / float(size.y);
   float solidAngle = 2.0 * kPi / float(size.x) * 2.0 * sin(0.5 * step_) * sin((float(texel.y) + 0.5) * step_);
   return mapShare(texel.y * size.x, texel.x) * mapShare(firstMapRow(), texel.y) / solidAngle;
@@ -234,7 +234,7 @@ float mapDensityIn(uvec2 texel) {
 
 // The probability density with which sampleMap() chooses a direction, per sr.
 float mapDensity(vec3 direction) {
-  vec2 size = vec2(textureSize(sceneEnvironment, 0));
+  vec2 size = vec2(environmentSize());
   float around = (atan(direction.x, -direction.z) + frame.environmentTurn) / (2.0 * kPi) + 0.5;
   vec2 place = vec2(fract(around), acos(clamp(direction.y, -1.0, 1.0)) / kPi) * size;
   return mapDensityIn(uvec2(min(place, size - 1.0)));
@@ -248,7 +248,7 @@ struct MapSample {
 // A direction in proportion to the light from there, to within the size of a texel. u: uniform in [0, 1).
 MapSample sampleMap(vec2 u) {
   if (isMapBlack()) return MapSample(vec3(0.0), vec3(0.0), 0.0);
-  uvec2 size = uvec2(textureSize(sceneEnvironment, 0));
+  uvec2 size = uvec2(environmentSize());
   vec2 within;
   uint row = chooseInMap(firstMapRow(), size.y, u.y, within.y);
   uint column = chooseInMap(row * size.x, size.x, u.x, within.x);

@@ -29,13 +29,13 @@ EmitterRay aimedRay(TracedSurface v, vec3 u) {
   float share = surfaceShare();
   if (u.x >= share) {
     if (!hasEnvironmentMap()) return kNoEmitterRay;
-    MapSample s = sampleMap(u.yz);
+    MapSample s = sampleMap(vec2(u.y, u.z));
     bool lights_ = s.density > 0.0 && facesTo(v, s.direction);
     if (!lights_) return kNoEmitterRay;
     return EmitterRay(true, s.direction, kFarAway, (1.0 - share) * s.density, kNoTriangle, s.radiance);
   }
   if (emitterCount() == 0u) return kNoEmitterRay;
-  EmitterPoint p = sampleEmitters(receiverOf(v), u.x / share, u.yz);
+  EmitterPoint p = sampleEmitters(receiverOf(v), u.x / share, vec2(u.y, u.z));
   vec3 to = p.position - v.origin;
   float d2 = dot(to, to);
   if (p.triangle == kNoTriangle || !(d2 > 0.0)) return kNoEmitterRay;

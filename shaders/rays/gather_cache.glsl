@@ -12,7 +12,7 @@
 #include "rays/gather.glsl"
 #include "records/gather_cache.h"
 
-layout(std430) buffer CellsBlock { GatherCell list[]; } cells;
+LIST(restrict, GatherCell, cells);
 
 uint gatherCount = 0u;  // how often this invocation has gathered light
 

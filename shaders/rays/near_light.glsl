@@ -7,17 +7,17 @@
 // the length of a ray and how probable that was, the mean radiance that reaches a surface after `bounces` reflections,
 // and what light from a direction, which is unit, adds to the mean of the light under the lobe of the surface for each
 // unit of irradiance / pi that it adds, which counts by `cosine`.
-float discArea();
-void noteLength(float distance_, float probability);
-vec3 furtherLight(TracedSurface v, uint bounces, uint stream);
-float underLobe(vec3 direction, float cosine);
+DECLARE(float discArea());
+DECLARE(void noteLength(float distance_, float probability));
+DECLARE(vec3 furtherLight(TracedSurface v, uint bounces, uint stream));
+DECLARE(float underLobe(vec3 direction, float cosine));
 
 // Light that arrives: irradiance / pi, and the mean under the lobe of the surface.
 struct NearLight {
   vec3 light, gloss;
 };
 
-void add(inout NearLight sum, TracedSurface v, vec3 light, vec3 direction) {
+void add(INOUT(NearLight) sum, TracedSurface v, vec3 light, vec3 direction) {
   sum.light += light;
   sum.gloss += underLobe(direction, dot(v.normal, direction)) * light;
 }
@@ -42,7 +42,7 @@ vec3 sharedLight(TracedSurface v, EmitterRay to, uint points) {
 // The part of a ray aimed at emissive surfaces and at the environment map: to one of several points, chosen by the
 // light that they send if nothing hides them (Talbot et al., "Importance Resampling for Global Illumination", EGSR
 // 2005). The points share out the emitters, and those of consecutive samples follow low-discrepancy sequences.
-void addPoints(inout NearLight sum, TracedSurface v, uint points, uint stream, uint index) {
+void addPoints(INOUT(NearLight) sum, TracedSurface v, uint points, uint stream, uint index) {
   float place = uniformFloat(hashCombine(stream, 0u) + index * kGoldenRatio);
   WeightedChoice choice = WeightedChoice(uniformFloat(hashCombine(stream, 1u) + index * kSilverRatio), 0.0, 0.0);
   EmitterRay chosen = kNoEmitterRay;

@@ -19,7 +19,7 @@ Ray beyond(Ray ray, RayHit hit) {
 // The share of light that passes along the ray, by channels; the same as scene::visibility
 // (framework/scene/rays/visibility.h). rays: grows by the number of rays traced, one more for each surface that is
 // passed.
-vec3 visibility(Ray ray, inout uint rays) {
+vec3 visibility(Ray ray, INOUT(uint) rays) {
 #if RAY_PASSAGE
   vec3 share = vec3(1.0), direction = normalize(ray.direction);
   for (uint pane = 0u; pane < kMaxPanes; ++pane) {

@@ -20,7 +20,7 @@ float foveaWeight(Fovea fovea, vec2 position) {
 
 // Returns kRegionFovea or kRegionImage for sample i; `number` is the number of earlier samples in the same
 // region. imageShare64ths: parameter `image_share`.
-uint regionOf(uint region, uint imageShare64ths, uint i, out uint number) {
+uint regionOf(uint region, uint imageShare64ths, uint i, OUT(uint) number) {
   number = i;
   if (region != kRegionMixed) return region;
   uint before = i * imageShare64ths >> 6;
@@ -40,7 +40,8 @@ vec2 streamPoint(uint stream, uint draw) {
 ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
   vec2 low = vec2(0.0), high = vec2(imageSize);
   vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));  // offset from the centre to the image
-  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));  // extent of the disc at the image border
+  vec2 flipped = vec2(off.y, off.x);
+  vec2 reach = sqrt(max(fovea.radius * fovea.radius - flipped * flipped, 0.0));  // extent of the disc at the image border
   bool disc = region == kRegionFovea && dot(off, off) < fovea.radius * fovea.radius;
   if (disc) {
     vec2 boxLow = max(low, fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);
@@ -65,8 +66,8 @@ ivec2 screenPoint(uint region, uint imageShare64ths, uint i, uint points, Fovea 
   uint number, part = regionOf(region, imageShare64ths, i, number);
   vec2 high = vec2(size);
   if (part == kRegionImage) return clamp(ivec2(high * sequencePoint(number)), ivec2(0), size - 1);
-  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0));
-  vec2 reach = sqrt(max(fovea.radius * fovea.radius - off.yx * off.yx, 0.0));
+  vec2 off = max(max(-fovea.centre, fovea.centre - high), vec2(0.0)), flipped = vec2(off.y, off.x);
+  vec2 reach = sqrt(max(fovea.radius * fovea.radius - flipped * flipped, 0.0));
   vec2 boxLow = max(vec2(0.0), fovea.centre - reach), boxHigh = min(high, fovea.centre + reach);
   if (dot(off, off) < fovea.radius * fovea.radius)
     for (uint k = 0u; k < kRegionTries; ++k) {

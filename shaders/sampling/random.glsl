@@ -2,6 +2,8 @@
 #ifndef FOVEA_RANDOM_GLSL
 #define FOVEA_RANDOM_GLSL
 
+#include "device/language.glsl"
+
 uint hashPcg(uint v) {
   uint state = v * 747796405u + 2891336453u;
   uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -32,7 +34,7 @@ struct WeightedChoice {
   float random, sum, chosen;
 };
 // Whether what is offered now replaces what was chosen before. weight: above 0.
-bool takes(inout WeightedChoice choice, float weight) {
+bool takes(INOUT(WeightedChoice) choice, float weight) {
   choice.sum += weight;
   float chance = weight / choice.sum;
   bool takes_ = choice.random < chance;

@@ -11,7 +11,7 @@ const Reservoir kNoReservoir = Reservoir(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.
 #define loadReservoir(list, i) \
   reservoirOf(texelOf(list, 3 * (i)), texelOf(list, 3 * (i) + 1), texelOf(list, 3 * (i) + 2))
 #define loadCount(list, i) texelOf(list, 3 * (i)).w
-Reservoir reservoirOf(vec4 a, vec4 b, vec4 c) { return Reservoir(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w); }
+Reservoir reservoirOf(vec4 a, vec4 b, vec4 c) { return Reservoir(vec3(a), a.w, vec3(b), b.w, vec3(c), c.w); }
 
 // What a pixel shows.
 struct VisiblePoint {

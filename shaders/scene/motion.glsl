@@ -2,7 +2,7 @@
 #ifndef FOVEA_MOTION_GLSL
 #define FOVEA_MOTION_GLSL
 
-#include "scene/scene.glsl"
+#include "scene/objects.glsl"
 
 // How a point of a triangle whose vertices move has moved since the previous frame, m in world space.
 vec3 movedSince(vec3 position, uvec4 triangle) {

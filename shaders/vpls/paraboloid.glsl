@@ -24,7 +24,7 @@ vec3 toWorld(mat3 frame, vec3 v) { return frame * v; }
 
 // Projects a local vector (any length > 0, given as `len`; z > -len) to the plane of the map; |p| <=
 // 1 for the hemisphere.
-vec2 paraboloidProject(vec3 local, float len) { return local.xy * (1.0 / (len + local.z)); }
+vec2 paraboloidProject(vec3 local, float len) { return vec2(local) * (1.0 / (len + local.z)); }
 
 // Converts a point of the map's plane to the local unit direction.
 vec3 paraboloidDirection(vec2 p) {

@@ -288,6 +288,13 @@ void makeResources(Binding& b) {
   }
 }
 
+// A pass that traces rays on the host reaches its resources through copies.
+Usage usageOf(const Binding& b, const Port& port, const MemberSpec& member, bool reads, bool writes) {
+  if (!b.graph.raysOnHost || !b.graph.passes[port.pass].declaration->tracesRays) return member.usage;
+  return member.usage | (reads || writes ? Usage::TransferRead : Usage::None) |
+         (writes ? Usage::TransferWrite : Usage::None);
+}
+
 void addAccesses(Binding& b, const Port& port, std::vector<Access>& accesses) {
   const PortSpec& spec = *port.spec;
   const bool input = spec.direction == Direction::Input, inout = spec.direction == Direction::InOut;
@@ -295,14 +302,14 @@ void addAccesses(Binding& b, const Port& port, std::vector<Access>& accesses) {
     const uint32_t r = resourceOf(b, port, m);
     if (r == kNone) continue;
     BoundResource& resource = b.graph.resources[r];
-    resource.usage |= static_cast<uint32_t>(spec.members[m].usage);
     Access access;
     access.resource = r;
     access.port = port.index;
     access.member = static_cast<uint16_t>(m);
-    access.usage = spec.members[m].usage;
     access.reads = input || inout || spec.lifetime != Lifetime::Transient;  // previous contents matter
     access.writes = !input;
+    access.usage = usageOf(b, port, spec.members[m], access.reads, access.writes);
+    resource.usage |= static_cast<uint32_t>(access.usage);
     access.previous = port.previous();
     if (input && !access.previous)
       access.version = versionSeen(b, port, r);
@@ -403,6 +410,7 @@ BoundGraph bind(const Description& description, const Environment& environment, 
   BoundGraph graph;
   graph.name = description.name;
   graph.description = description.description;
+  graph.raysOnHost = environment.raysOnHost;
   const auto values = std::make_shared<std::vector<Value>>();  // complete before anyone reads them
   const auto accesses = std::make_shared<std::vector<Access>>();
   graph.values = values;

@@ -51,6 +51,7 @@ struct Environment {
   const Registry* registry = nullptr;                       // Registry::global() if nullptr
   std::vector<std::pair<std::string, int64_t>> quantities;  // "scene.triangles", ...; at least 1 each
   std::vector<std::pair<std::string, std::string>> texts;   // what "$scene.materials" and the like stand for
+  bool raysOnHost = false;  // where passes that trace rays do so: BoundGraph::raysOnHost
   uint32_t maxImageDimension2D = 0, maxImageDimension3D = 0, maxImageArrayLayers = 0;
   uint64_t maxStorageBufferRange = 0;
   uint64_t maxUniformBufferRange = 0;  // not checked: larger uniform buffers are bound page by page

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/graph/compile/bound.h"
+#include "framework/graph/run/host_kernel.h"
 
 namespace fovea::graph {
 
@@ -50,6 +51,8 @@ struct PlannedStep {
   uint32_t step = kNone;  // PassDeclaration::steps
   Dependency before;
   std::vector<StepAccess> accesses;
+  bool tracesRays = false;
+  HostKernel host = nullptr;  // runs it, if it is not the device
 };
 
 // The place of a transient resource in its heap.

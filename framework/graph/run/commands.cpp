@@ -222,7 +222,17 @@ void Commands::flush(const uint32_t* indirect) {
                        constants_);
 }
 
+// In place of the device.
+void Commands::runOnHost(uint32_t x, uint32_t y, uint32_t z, const uint32_t* indirect, uint64_t offset) {
+  PassInstance& pass = context_.pass_;
+  checkConstants();
+  pass.beginRow(context_.cmd_, kernel_.label);
+  pass.host.run(pass, kernel_, {constants_, kernel_.pipeline->interface().pushConstantBytes}, {x, y, z},
+                indirect ? std::optional(*indirect) : std::nullopt, offset, context_.cmd_);
+}
+
 void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) {
+  if (kernel_.host) return runOnHost(x, y, z);
   flush();
   vkCmdDispatch(context_.cmd_, x, y, z);
 }
@@ -240,6 +250,7 @@ void Commands::dispatchOver(std::string_view port) {
 
 void Commands::dispatchIndirect(std::string_view bufferPort, uint64_t offset) {
   const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
+  if (kernel_.host) return runOnHost(0, 0, 0, &access, offset);
   flush(&access);
   vkCmdDispatchIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset);
 }

@@ -36,14 +36,20 @@ Label PassInstance::label(std::string_view name) {
   return static_cast<Label>(labels.size() - 1);
 }
 
-void PassInstance::beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
-                                bool together) {
+void PassInstance::beginRow(VkCommandBuffer cmd, Label of) {
   if (begun.empty()) throw Error(ExitCode::Internal, "a command outside of a pass");
   if (begun.size() == 1 && begun.back().label == kNone) begun.back().label = of;
   if (begun.back().label != of && state->stepTimestamps > 0) {
     --state->stepTimestamps;
     begun.push_back({of, writeTimestamp(*state, cmd)});
   }
+}
+
+void PassInstance::beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
+                                bool together) {
+  beginRow(cmd, of);
+  if (host.bringToDevice(*this, cmd)) tracker.reset();
+  host.note(accesses);
   if (const Dependency wait = tracker.before(accesses, together))
     gpu::memoryBarrier(cmd, wait.srcStage, wait.srcAccess, wait.dstStage, wait.dstAccess);
 }

@@ -152,7 +152,7 @@ void Executor::Impl::bindViews(const scene::Frame& frame) {
 }
 
 void Executor::Impl::beginSegment(FrameSlot& slot) {
-  cmd = slot.commands[segment];
+  cmd = slot.command(segment);
   device.begin(cmd);
 }
 
@@ -259,14 +259,18 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
     device.endLabel(cmd);  // a label cannot span two command buffers
     waited = runHostPass(slot, pass, frame);
   } else {
+    pass.host.begin(pass);
+    if (pass.host) device.endLabel(cmd);
     RecordContext context(pass, cmd, frame, frameCount);
     guarded(pass.origin(), "record()", [&] { pass.pass->record(context); });
-    device.endLabel(cmd);
+    pass.host.bringToDevice(pass, cmd);
+    if (!pass.host) device.endLabel(cmd);
   }
   recorded.end = writeTimestamp(state, cmd);
   recorded.steps = pass.begun;
   recorded.cpuMs = millisecondsSince(start) - waited.value_or(0);
-  recorded.hostMs = waited ? recorded.cpuMs : 0;
+  recorded.hostMs = waited ? recorded.cpuMs : pass.host.milliseconds();
+  recorded.hostCounts.assign(pass.host.counters().begin(), pass.host.counters().end());
   recorded.counterValues = pass.counterValues;
   recorded.counterSet = pass.counterSet;
   if (slot.observe) slot.recordObserved(cmd, pass);
@@ -353,6 +357,11 @@ void Executor::submit(const scene::Frame& frame, bool readOutputs, bool observe)
   e.state.sharedSet = e.descriptors.set(slotIndex);
   e.bindViews(frame);
 
+  e.state.hostScene = e.plan->graph->raysOnHost ? e.descriptors.host(frame) : nullptr;
+  e.state.finishAndBegin = [&] {
+    e.submitSegment(slot, false);
+    return e.cmd;
+  };
   e.segment = 0;
   e.beginSegment(slot);
   e.state.timestamps->beginFrame(e.cmd, slot.number);
@@ -422,8 +431,9 @@ ElementTypes Executor::elementTypes() const {
 }
 
 bool Executor::readsGeometry() const {
-  return std::any_of(impl_->passes.begin(), impl_->passes.end(),
-                     [](const auto& pass) { return pass->bound->declaration->kind == PassKind::Host; });
+  return std::any_of(impl_->passes.begin(), impl_->passes.end(), [](const auto& pass) {
+    return pass->bound->declaration->kind == PassKind::Host || pass->host;
+  });
 }
 
 uint64_t Executor::residentBytes() const { return impl_->device.allocatedBytes() - impl_->residentAtStart; }

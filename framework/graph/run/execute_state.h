@@ -3,6 +3,7 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "framework/graph/compile/plan.h"
 #include "framework/graph/pass/guard.h"
 #include "framework/graph/run/execute.h"
+#include "framework/graph/run/host_steps.h"
 #include "framework/graph/steps/steps.h"
 
 namespace fovea::graph {
@@ -55,6 +57,8 @@ struct ExecutorState {
   gpu::Buffer dummyBuffer;  // stands in for optional inputs that are not wired
   std::vector<VkDeviceMemory> heaps;
   HostProgress hostProgress;
+  // Submits the commands recorded so far, waits for them, and begins new ones.
+  std::function<VkCommandBuffer()> finishAndBegin;
   std::optional<gpu::TimestampRing> timestamps;
 
   // State of the current frame.
@@ -64,6 +68,7 @@ struct ExecutorState {
   bool started = false;         // whether a frame has been submitted
   bool cameraCut = false;       // in this frame
   uint32_t stepTimestamps = 0;  // left for boundaries between steps
+  const scene::HostScene* hostScene = nullptr;
 
   uint32_t copyIndex(const Access& access) const {
     if (!plan->graph->resources[access.resource].history) return 0;
@@ -96,6 +101,7 @@ struct KernelState {
   Label label = 0;
   std::shared_ptr<gpu::Pipeline> pipeline;  // shared with an executor that takes over from this one
   std::string key;                          // of the pipeline, in ExecutorState::pipelines
+  HostKernel host = nullptr;                // runs it, if it is not the device
   std::vector<StepAccess> accesses;         // through its bindings, except those made by hand
   std::vector<KernelBinding> bindings;
   std::vector<KernelConstant> constants;
@@ -153,6 +159,7 @@ struct PassInstance {
   std::vector<bool> counterSet;
   uint64_t counterOffset = 0;        // bytes into ExecutorState::counters
   std::vector<HostStaging> staging;  // host passes: one per access
+  HostSteps host;                    // steps that run there, of other passes
   bool fresh = true;                 // nothing that it keeps was taken over
   uint32_t viewIndex = 0;            // index into Frame::views, this frame
   uint32_t viewOffset = 0;           // of that view in the shared set's dynamic uniform buffer
@@ -161,7 +168,9 @@ struct PassInstance {
   const Access& access(std::string_view path) const;  // throws Error(Internal) with the nearest port
   const ResourceDesc& desc(const Access& a) const { return state->plan->graph->resources[a.resource].desc; }
   Label label(std::string_view name);
-  // Begins the time of a step, unless it is that of the command before, and waits for what the accesses depend on.
+  // Begins the time of a step, unless it is that of the command before.
+  void beginRow(VkCommandBuffer cmd, Label of);
+  // The same, and waits for what the accesses depend on.
   void beginCommand(VkCommandBuffer cmd, Label of, std::span<const StepAccess> accesses,
                     bool together = false);
   // Whether kept and history resources that it uses were zeroed in this frame.

@@ -20,16 +20,6 @@ uint32_t outputResource(const BoundGraph& graph, const std::string& name) {
               nearest.empty() ? "" : "did you mean `" + nearest + "`?");
 }
 
-// One segment for the start, and one for each host pass that has to wait for the GPU.
-uint32_t segmentCount(const PassInstances& instances) {
-  return uint32_t(1 + std::count_if(instances.begin(), instances.end(), [](const auto& instance) {
-                    const BoundPass& pass = *instance->bound;
-                    return pass.declaration->kind == PassKind::Host &&
-                           std::any_of(pass.accesses.begin(), pass.accesses.end(),
-                                       [](const Access& a) { return a.reads; });
-                  }));
-}
-
 // The entry of this name; it is added if there is none.
 StepTiming& stepTiming(std::vector<StepTiming>& steps, const std::string& name) {
   for (StepTiming& step : steps)
@@ -47,13 +37,6 @@ FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instance
   VkCommandPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   poolInfo.queueFamilyIndex = device.queueFamily();
   gpu::check(vkCreateCommandPool(device.handle(), &poolInfo, nullptr, &pool), "creating a command pool");
-  commands.resize(segmentCount(instances));
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-  allocate.commandPool = pool;
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = uint32_t(commands.size());
-  gpu::check(vkAllocateCommandBuffers(device.handle(), &allocate, commands.data()),
-             "allocating command buffers");
   VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   gpu::check(vkCreateFence(device.handle(), &fenceInfo, nullptr, &fence), "creating a fence");
   counters = gpu::Buffer(device, {"counters readback", state.counters.bytes(),
@@ -66,6 +49,18 @@ FrameSlot::FrameSlot(ExecutorState& executorState, const PassInstances& instance
                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::Readback})});
   }
   passes.resize(instances.size());
+}
+
+VkCommandBuffer FrameSlot::command(uint32_t segment) {
+  while (commands.size() <= segment) {
+    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    allocate.commandPool = pool;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    gpu::check(vkAllocateCommandBuffers(state.device->handle(), &allocate, &commands.emplace_back()),
+               "allocating a command buffer");
+  }
+  return commands[segment];
 }
 
 FrameSlot::~FrameSlot() {
@@ -120,8 +115,10 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
     for (size_t c = 0; c < declared.size(); ++c) {
       uint32_t counted;
       std::memcpy(&counted, gpuCounters + pass.counterOffset + c * sizeof(uint32_t), sizeof(counted));
+      const uint64_t onHost = c < recorded.hostCounts.size() ? recorded.hostCounts[c] : 0;
       result.counters.emplace_back(pass.bound->name + "." + declared[c].name,
-                                   recorded.counterSet[c] ? recorded.counterValues[c] : double(counted));
+                                   recorded.counterSet[c] ? recorded.counterValues[c]
+                                                          : double(counted) + double(onHost));
     }
   }
   if (readOutputs) {

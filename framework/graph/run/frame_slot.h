@@ -27,6 +27,7 @@ struct RecordedPass {
   std::vector<StepBegin> steps;  // in order; a step may begin more than once
   std::vector<double> counterValues;
   std::vector<bool> counterSet;
+  std::vector<uint64_t> hostCounts;  // by steps that ran on the host
 };
 
 struct FrameSlot {
@@ -44,7 +45,7 @@ struct FrameSlot {
 
   ExecutorState& state;
   VkCommandPool pool = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands;  // one per segment; host passes with GPU inputs split the frame
+  std::vector<VkCommandBuffer> commands;  // one per segment: what needs results of the device on the host splits the frame
   VkFence fence = VK_NULL_HANDLE;
   gpu::Buffer counters;  // readback
   std::vector<Output> outputs;
@@ -66,6 +67,8 @@ struct FrameSlot {
   FrameSlot(const FrameSlot&) = delete;
   FrameSlot& operator=(const FrameSlot&) = delete;
 
+  // The command buffer of a segment, which is made when a frame has so many for the first time.
+  VkCommandBuffer command(uint32_t segment);
   // Replaces what is observed; the slot must not be busy. Throws as Executor::observe does.
   void setObserved(const std::vector<Observation>& observations, const PassInstances& instances);
   // Copies what is observed of a pass; to be recorded right after it.

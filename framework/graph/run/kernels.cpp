@@ -11,7 +11,6 @@
 #include "fovea/error.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/run/execute_state.h"
-#include "framework/scene/frame.h"
 
 namespace fovea::graph {
 
@@ -168,11 +167,9 @@ std::string keyOf(const gpu::GraphicsPipelineDesc& d) {
 
 // Rays would meet nothing, as the scene keeps no tree of its triangles on the device that no pass asks for.
 void checkRays(const PassInstance& pass, const gpu::CompiledShader& shader, const std::string& name) {
-  if (pass.bound->declaration->tracesRays) return;
-  for (const gpu::ReflectedBinding& b : shader.reflection.bindings)
-    if (b.set == 1 && b.name.starts_with(scene::kRayBinding))
-      bindingError(pass, name, "it traces rays, which the pass does not declare",
-                   "write `\"rays\": true` in the pass's file, or `declaration.rays()`");
+  if (!pass.bound->declaration->tracesRays && tracesRays(shader))
+    bindingError(pass, name, "it traces rays, which the pass does not declare",
+                 "write `\"rays\": true` in the pass's file, or `declaration.rays()`");
 }
 
 template <class Desc>
@@ -321,10 +318,12 @@ void buildSteps(PassInstance& pass, const std::vector<PlannedStep>& planned) {
                 *kernel.state_);
     written.insert(spec.targets.begin(), spec.targets.end());
     step.kernel = kernel.state_;
+    if (step.kernel) step.kernel->host = plan.host;
     labelStep(pass, step);
     pass.stepByName[spec.name] = static_cast<uint32_t>(pass.steps.size());
     pass.steps.push_back(std::move(step));
   }
+  pass.host.prepare(pass);
 }
 
 }  // namespace fovea::graph

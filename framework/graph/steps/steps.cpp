@@ -7,6 +7,7 @@
 
 #include "fovea/error.h"
 #include "framework/graph/pass/validate.h"
+#include "framework/scene/frame.h"
 
 namespace fovea::graph {
 namespace {
@@ -269,7 +270,22 @@ void checkRead(const BoundPass& pass, const StepSpec& step, const StepAccess& ac
             "write or fill it in an earlier step, or keep it from frame to frame");
 }
 
+// Whether the step traces rays, and on the host.
+void chooseProcessor(const BoundGraph& graph, const BoundPass& pass, const StepSpec& step,
+                     const PassContext& context, const ShaderLookup& shaders, PlannedStep& planned) {
+  if (!pass.declaration->tracesRays || step.action != StepSpec::Action::Dispatch) return;
+  const gpu::Defines defines = stepDefines(step, context);
+  planned.tracesRays = tracesRays(*shaders(step.shader, defines));
+  if (planned.tracesRays && graph.raysOnHost) planned.host = findHostKernel(step.shader, defines);
+}
+
 }  // namespace
+
+bool tracesRays(const gpu::CompiledShader& shader) {
+  return std::ranges::any_of(shader.reflection.bindings, [](const gpu::ReflectedBinding& b) {
+    return b.set == 1 && b.name.starts_with(scene::kRayBinding);
+  });
+}
 
 std::vector<PlannedStep> planSteps(const BoundGraph& graph, const BoundPass& pass,
                                    const ShaderLookup& shaders) {
@@ -281,6 +297,7 @@ std::vector<PlannedStep> planSteps(const BoundGraph& graph, const BoundPass& pas
   for (uint32_t i = 0; i < steps.size(); ++i) {
     if (context.evaluate(steps[i].condition) == 0) continue;
     PlannedStep step{i, {}, accessesOf(pass, steps[i], context, shaders)};
+    chooseProcessor(graph, pass, steps[i], context, shaders, step);
     if (pass.declaration->stepsByFrame) {
       planned.push_back(std::move(step));
       continue;

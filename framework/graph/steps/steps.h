@@ -57,6 +57,9 @@ uint32_t accessOfBinding(const BoundPass& pass, std::string_view binding);
 // The preprocessor macros of a step of this pass.
 gpu::Defines stepDefines(const StepSpec& step, const PassContext& context);
 
+// Whether a shader traces rays through the tables that the scene has on the device.
+bool tracesRays(const gpu::CompiledShader& shader);
+
 // How planSteps() reads a shader.
 using ShaderLookup =
     std::function<std::shared_ptr<const gpu::CompiledShader>(const std::string& file, const gpu::Defines&)>;

@@ -153,6 +153,8 @@ class Commands {
   void checkConstants() const;
   void begin(const uint32_t* indirect);
   void flush(const uint32_t* indirect = nullptr);  // access through which the command's size is read
+  void runOnHost(uint32_t groupsX, uint32_t groupsY, uint32_t groupsZ, const uint32_t* indirect = nullptr,
+                 uint64_t offset = 0);
   RecordContext& context_;
   KernelState& kernel_;
   std::byte constants_[128]{};

@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "fovea/error.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/animator.h"
 #include "framework/scene/device/environment_image.h"
-#include "framework/scene/device/full_materials.h"
 #include "framework/scene/device/gpu_textures.h"
 #include "framework/scene/device/rays/emitter_tables.h"
 #include "framework/scene/device/rays/ray_tables.h"
-#include "framework/scene/lights.h"
-#include "framework/scene/materials/bounced.h"
-#include "shaders/records/shadow.h"
+#include "framework/scene/host/host_scene.h"
+#include "framework/scene/tables/blocks.h"
+#include "framework/scene/tables/material_table.h"
 
 namespace fovea::scene {
 
@@ -25,13 +26,6 @@ namespace {
 struct LightBlock {
   LightRecord lights[kMaxLights];
 };
-
-static_assert(uint32_t(LightType::Directional) == kLightDirectional &&
-              uint32_t(LightType::Point) == kLightPoint && uint32_t(LightType::Spot) == kLightSpot);
-
-uint32_t wrapCode(Wrap wrap) {
-  return wrap == Wrap::Clamp ? kWrapClamp : wrap == Wrap::Mirror ? kWrapMirror : 0;
-}
 
 // Meyer et al. 2010; octEncode in scene.glsl.
 glm::vec2 octEncode(glm::vec3 n) {
@@ -79,70 +73,6 @@ std::vector<glm::vec4> attributeList(const Geometry& g) {
   return list;
 }
 
-void checkCount(const char* what, size_t count, size_t limit) {
-  if (count <= limit) return;
-  throw Error(ExitCode::BadInput,
-              "the scene has " + std::to_string(count) + " " + what + "; at most " + std::to_string(limit) +
-                  " are supported",
-              std::string("remove some ") + what);
-}
-
-void checkLights(std::span<const Light> lights) {
-  checkCount("lights", lights.size(), kMaxLights);
-  const uint32_t layers = shadowLayers(lights);
-  if (layers <= kMaxShadowLayers) return;
-  throw Error(ExitCode::BadInput,
-              "the lights of the scene need " + std::to_string(layers) + " shadow maps; at most " +
-                  std::to_string(kMaxShadowLayers) + " are supported",
-              "replace point lights, which need six each, by spot lights, or remove some");
-}
-
-TransformRows rowsOf(const glm::mat4& m) {
-  const glm::mat4 rows = glm::transpose(m);
-  return {rows[0], rows[1], rows[2]};
-}
-
-ObjectRecord objectEntry(const ObjectTransform& o) {
-  ObjectRecord record;
-  record.toWorld = rowsOf(o.toWorld);
-  record.previousToWorld = rowsOf(o.previousToWorld);
-  record.toObject = rowsOf(o.toObject);
-  record.visible = float(o.visible);
-  record.wasVisible = float(o.previousVisible);
-  record.deforms = float(o.deforms);
-  return record;
-}
-
-LightRecord lightEntry(const Light& light, uint32_t firstShadowLayer) {
-  const SpotCone cone = spotCone(light);
-  LightRecord record;
-  record.position = light.position;
-  record.type = uint32_t(light.type);
-  record.direction = light.direction;
-  record.range = light.range;
-  record.intensity = light.color * light.intensity;
-  record.firstShadowLayer = firstShadowLayer;
-  record.cosInner = cone.cosInner;
-  record.cosOuter = cone.cosOuter;
-  record.coneScale = cone.scale();
-  return record;
-}
-
-ViewBlock viewEntry(const View& v) {
-  ViewBlock block;
-  block.worldToView = v.worldToView;
-  block.viewToClip = v.viewToClip;
-  block.worldToClip = v.worldToClip;
-  block.clipToWorld = v.clipToWorld;
-  block.previousWorldToClip = v.previousWorldToClip;
-  block.eye = v.eye;
-  block.gaze = v.gaze;
-  block.jitterStep = v.jitter - v.previousJitter;
-  block.size = glm::max(glm::vec2(v.size), glm::vec2(1));
-  block.inverseSize = 1.0f / block.size;
-  return block;
-}
-
 uint64_t alignUp(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
 }
@@ -151,12 +81,11 @@ uint64_t alignUp(uint64_t value, uint64_t alignment) {
 
 struct GpuScene::Impl {
   gpu::Device& device;
-  uint32_t triangleCount, staticTriangles, vertexCount;
-  glm::vec3 boundsMin{0}, boundsMax{0}, environment;
-  float environmentTurn;
-  uint32_t staticVertices, firstMovingLight;
-  bool fullMaterials, rays;
+  uint32_t triangleCount, vertexCount, staticVertices;
+  bool fullMaterials;
+  RaysWanted rays;
   FullMaterials full;
+  FrameBlock block;  // what is the same in every frame
   gpu::Buffer indices, triangles, positions, attributes, previous, materials, uniforms;
   uint32_t objectCount;
   std::vector<gpu::Buffer> objects;    // one per slot
@@ -170,26 +99,22 @@ struct GpuScene::Impl {
   VkDescriptorPool pool = VK_NULL_HANDLE;
   std::vector<VkDescriptorSet> sets;
   std::vector<DrawRun> runs;
+  std::optional<HostScene> host;
 
-  Impl(gpu::Device& d, const Scene& scene, const Geometry& g, bool fullMaterials_, bool rays_)
+  Impl(gpu::Device& d, const Scene& scene, const Geometry& g, bool fullMaterials_, RaysWanted rays_)
       : device(d),
         triangleCount(uint32_t(g.triangles.size())),
-        staticTriangles(g.staticTriangles),
         vertexCount(uint32_t(g.positions.size())),
-        environment(scene.environment),
-        environmentTurn(scene.environmentMap ? scene.environmentMap->turn() : 0),
         staticVertices(g.staticVertices()),
-        firstMovingLight(g.light().firstMoving),
         fullMaterials(fullMaterials_),
         rays(rays_),
         objectCount(std::max(1u, uint32_t(g.objects.size()))),
-        rayTables(d, scene, g, rays_),
-        emitterTables(d, scene, g, fullMaterials_, rays_),
+        rayTables(d, scene, g, rays_.device),
+        emitterTables(d, scene, g, fullMaterials_, rays_.device),
         textures(d, scene, fullMaterials_),
         environmentMap(environmentImage(d, scene.environmentMap.get())),
         runs(fovea::scene::drawRuns(scene, g, fullMaterials_)) {
-    checkLights(scene.lights);
-    if (!g.empty()) boundsMin = g.boundsMin, boundsMax = g.boundsMax;
+    lightRecords(scene.lights);  // throws if there are too many
     indices = makeBuffer(device, "scene indices", indexList(g),
                          VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     static_assert(sizeof(Triangle) == 16);
@@ -202,14 +127,14 @@ struct GpuScene::Impl {
                             gpu::MemoryKind::Device});
     attributes = makeBuffer(device, "scene attributes", attributeList(g), kTexelUsage);
     materials = makeBuffer(device, "scene materials", materialList(scene, g), kTexelUsage);
+    block = sceneBlock(scene, g, full);
+    if (rays.host) host.emplace(scene, g, fullMaterials);
   }
   ~Impl() {
     vkDestroyDescriptorPool(device.handle(), pool, nullptr);
     vkDestroyDescriptorSetLayout(device.handle(), layout, nullptr);
   }
 
-  TextureRecord textureEntry(const Scene& scene, const TextureUse& use) const;
-  MaterialRecord materialEntry(const Scene& scene, const Material& m) const;
   std::vector<glm::vec4> materialList(const Scene& scene, const Geometry& g);
   void makeUniforms(uint32_t slots);
   void makeMoves(const Scene& scene, const Geometry& g, uint32_t slots);
@@ -224,53 +149,21 @@ struct GpuScene::Impl {
   }
 };
 
-TextureRecord GpuScene::Impl::textureEntry(const Scene& scene, const TextureUse& use) const {
-  const TexturePages::Place* place = textures.find(use.texture);
-  if (!place) return {};
-  const Texture& t = scene.textures[use.texture];
-  const uint32_t flags = wrapCode(use.wrapU) | wrapCode(use.wrapV) << 2 | (t.srgb ? 0 : kTextureLinear) |
-                         (use.set == 1 ? kTextureSecondSet : 0);
-  const glm::mat3x2& m = use.transform;
-  return {float(place->page),
-          float(place->x),
-          float(place->y),
-          float(flags),
-          {t.width, t.height},
-          m[2],
-          m[0],
-          m[1]};
-}
-
-MaterialRecord GpuScene::Impl::materialEntry(const Scene& scene, const Material& m) const {
-  MaterialRecord record;
-  record.baseColor = bouncedColor(m, fullMaterials);
-  record.alpha = m.baseColor.a;
-  record.emission = fullMaterials && m.unlit ? glm::vec3(0) : m.emission;
-  const bool transmits = fullMaterials && m.transmission > 0;
-  record.alphaCutoff = m.masked ? m.alphaCutoff : transmits ? -1.0f : 0.0f;
-  record.colorTexture = textureEntry(scene, m.baseColorTexture);
-  record.emissionTexture = textureEntry(scene, m.emissionTexture);
-  if (m.doubleSided) record.colorTexture.flags += float(kMaterialDoubleSided);
-  if (fullMaterials && m.blended) record.colorTexture.flags += float(kMaterialBlended);
-  if (transmits) record.colorTexture.flags += float(kMaterialTransmits);
-  return record;
-}
-
 std::vector<glm::vec4> GpuScene::Impl::materialList(const Scene& scene, const Geometry& g) {
-  static_assert(sizeof(MaterialRecord) % sizeof(glm::vec4) == 0);
-  std::vector<glm::vec4> texels(scene.materials.size() * (sizeof(MaterialRecord) / sizeof(glm::vec4)));
-  auto* records = reinterpret_cast<MaterialRecord*>(texels.data());
-  for (size_t i = 0; i < scene.materials.size(); ++i) records[i] = materialEntry(scene, scene.materials[i]);
-  if (fullMaterials)
-    full = appendFullMaterials(
-        scene, g, [&](const TextureUse& use) { return textureEntry(scene, use); }, texels);
+  const auto place = [&](uint32_t texture) -> std::optional<glm::uvec3> {
+    const TexturePages::Place* found = textures.find(texture);
+    if (!found) return std::nullopt;
+    return glm::uvec3(found->x, found->y, found->page);
+  };
+  MaterialTable table = materialTable(scene, g, fullMaterials, place);
+  full = table.full;
   const uint64_t limit = device.limits().maxTexelBufferElements;
-  if (texels.size() > limit && !device.lacks("maxTexelBufferElements"))
+  if (table.texels.size() > limit && !device.lacks("maxTexelBufferElements"))
     throw Error(ExitCode::OutOfMemory,
-                "scene materials: " + std::to_string(texels.size()) +
+                "scene materials: " + std::to_string(table.texels.size()) +
                     " elements exceed this device's maxTexelBufferElements " + std::to_string(limit),
                 "use diffuse materials");
-  return texels;
+  return std::move(table.texels);
 }
 
 void GpuScene::Impl::makeUniforms(uint32_t slots) {
@@ -297,7 +190,7 @@ void GpuScene::Impl::makeMoves(const Scene& scene, const Geometry& g, uint32_t s
 void GpuScene::Impl::storeObjects(const Frame& frame, uint32_t slot) const {
   auto* entries = static_cast<ObjectRecord*>(objects[slot].mapped());
   for (uint32_t i = 0; i < objectCount; ++i)
-    entries[i] = objectEntry(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
+    entries[i] = objectRecord(i < frame.objects.size() ? frame.objects[i] : ObjectTransform{});
 }
 
 constexpr VkDescriptorType kBindings[] = {
@@ -409,7 +302,7 @@ void GpuScene::Impl::writeSet(uint32_t slot) {
 }
 
 GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
-                   bool fullMaterials, bool rays)
+                   bool fullMaterials, RaysWanted rays)
     : impl_(std::make_unique<Impl>(device, scene, geometry, fullMaterials, rays)) {
   const uint32_t slots = std::max(1u, framesInFlight);
   impl_->makeUniforms(slots);
@@ -421,40 +314,24 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geom
 GpuScene::~GpuScene() = default;
 
 void GpuScene::update(const Frame& frame, uint32_t slot) {
-  checkLights(frame.lights);
   checkCount("views", frame.views.size(), kMaxViews);
   if (slot >= impl_->sets.size())
     throw Error(ExitCode::Internal, "no slot " + std::to_string(slot) + " of the scene");
   Impl& s = *impl_;
-  FrameBlock block;
-  block.index = uint32_t(frame.index);
-  block.seed = frame.seed;
-  block.lightCount = uint32_t(frame.lights.size());
-  block.triangleCount = s.triangleCount;
-  block.staticTriangleCount = s.staticTriangles;
-  block.vertexCount = s.vertexCount;
-  block.time = float(frame.time);
-  block.exposure = frame.exposure;
-  block.boundsMin = s.boundsMin;
-  block.boundsMax = s.boundsMax;
-  block.environment = s.environment;
-  block.environmentTurn = s.environmentTurn;
-  block.firstMovingVertex = s.staticVertices;
-  block.firstMovingTriangle = s.firstMovingLight;
-  block.firstSurface = s.full.firstSurface;
-  block.firstAlbedo = s.full.firstAlbedo;
-  block.firstTangent = s.full.firstTangent;
-  block.firstDetail = s.full.firstDetail;
-  impl_->store(slot, 0, block);
-  uint32_t layer = 0;
-  for (size_t i = 0; i < frame.lights.size(); ++i) {
-    impl_->store(slot, s.lightOffset + i * sizeof(LightRecord), lightEntry(frame.lights[i], layer));
-    layer += shadowLayers(frame.lights[i]);
-  }
+  impl_->store(slot, 0, frameBlock(s.block, frame));
+  const std::vector<LightRecord> lights = lightRecords(frame.lights);
+  std::memcpy(static_cast<std::byte*>(s.uniforms.mapped()) + slot * s.slotStride + s.lightOffset, lights.data(),
+              lights.size() * sizeof(LightRecord));
   for (size_t i = 0; i < frame.views.size(); ++i)
-    impl_->store(slot, s.viewOffset + i * s.viewStride, viewEntry(frame.views[i]));
+    impl_->store(slot, s.viewOffset + i * s.viewStride, viewBlock(frame.views[i]));
   s.storeObjects(frame, slot);
   if (s.animator) s.animator->update(frame, slot);
+}
+
+const HostScene* GpuScene::host(const Frame& frame) {
+  if (!impl_->host) return nullptr;
+  impl_->host->update(frame);
+  return &*impl_->host;
 }
 
 void GpuScene::recordMoves(VkCommandBuffer cmd, uint32_t slot) const {
@@ -477,7 +354,7 @@ gpu::Buffer& GpuScene::attributes() const { return impl_->attributes; }
 gpu::Buffer& GpuScene::previous() const { return impl_->previous; }
 gpu::Buffer& GpuScene::materials() const { return impl_->materials; }
 bool GpuScene::fullMaterials() const { return impl_->fullMaterials; }
-bool GpuScene::rays() const { return impl_->rays; }
+RaysWanted GpuScene::rays() const { return impl_->rays; }
 const std::vector<DrawRun>& GpuScene::drawRuns() const { return impl_->runs; }
 uint32_t GpuScene::triangleCount() const { return impl_->triangleCount; }
 uint32_t GpuScene::vertexCount() const { return impl_->vertexCount; }

@@ -19,6 +19,12 @@ namespace fovea::scene {
 
 inline constexpr uint32_t kMaxViews = 8;
 
+// Where passes trace rays.
+struct RaysWanted {
+  bool host = false, device = false;
+  bool operator==(const RaysWanted&) const = default;
+};
+
 // A scene may have no triangles, lights or textures.
 class GpuScene : public FrameDescriptors {
  public:
@@ -27,9 +33,9 @@ class GpuScene : public FrameDescriptors {
   // a texture is larger than the device supports.
   // fullMaterials: whether a pass asks for all that glTF says of materials. Their base colours are then those of
   // materials/bounced.h, with which metals are not black.
-  // rays: whether a pass traces rays on the device; otherwise they meet nothing.
+  // rays: where passes trace rays; elsewhere they meet nothing. On the host, scene and geometry must outlive this.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
-           bool fullMaterials = false, bool rays = false);
+           bool fullMaterials = false, RaysWanted rays = {});
   ~GpuScene() override;
 
   // Frame::geometry is not read. Throws Error(BadInput) if there are more than kMaxViews views, or as above.
@@ -38,6 +44,7 @@ class GpuScene : public FrameDescriptors {
   // positions of moving vertices, which binding 9 shows.
   void recordMoves(VkCommandBuffer cmd, uint32_t slot) const override;
   bool moves() const override;
+  const HostScene* host(const Frame& frame) override;
 
   VkDescriptorSetLayout setLayout() const override;
   VkDescriptorSet set(uint32_t slot) const override;
@@ -54,7 +61,7 @@ class GpuScene : public FrameDescriptors {
   gpu::Buffer& previous() const;    // vec4: the previous frame's positions of the vertices that move
   gpu::Buffer& materials() const;   // MaterialRecord each, then what full materials need
   bool fullMaterials() const;
-  bool rays() const;
+  RaysWanted rays() const;
   const std::vector<DrawRun>& drawRuns() const;
   uint32_t triangleCount() const;
   uint32_t vertexCount() const;

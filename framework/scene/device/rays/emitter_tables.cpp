@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
 #include "framework/gpu/barrier.h"
@@ -14,49 +12,12 @@
 #include "framework/gpu/shader/shader.h"
 #include "framework/scene/device/named_buffers.h"
 #include "framework/scene/device/rays/long_table.h"
-#include "framework/scene/environment/environment_map.h"
-#include "framework/scene/frame.h"
-#include "framework/scene/rays/emitters.h"
+#include "framework/scene/tables/emitter_table.h"
 
 namespace fovea::scene {
 namespace {
 
 constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
-
-using Texels = std::vector<glm::uvec4>;
-
-template <class Record>
-void append(std::span<const Record> records, Texels& texels) {
-  static_assert(sizeof(Record) % sizeof(glm::uvec4) == 0);
-  const size_t first = texels.size();
-  texels.resize(first + records.size_bytes() / sizeof(glm::uvec4));
-  std::memcpy(texels.data() + first, records.data(), records.size_bytes());
-}
-
-Texels texelsOf(const Scene& scene, const Geometry& geometry, bool fullMaterials) {
-  Frame frame;
-  frame.scene = &scene;
-  frame.geometry = &geometry;
-  const Emitters emitters(frame, fullMaterials);
-  const std::vector<EmitterRecord> records = emitters.records();
-  EmitterHeader header;
-  header.count = uint32_t(records.size());
-  Texels texels(1);
-  append(std::span<const EmitterRecord>(records), texels);
-  header.firstNode = uint32_t(texels.size());
-  append(emitters.nodes(), texels);
-  if (const EnvironmentMap* map = scene.environmentMap.get()) {
-    header.firstMap = uint32_t(texels.size());
-    std::vector<float> values = map->columns();
-    values.insert(values.end(), map->rows().begin(), map->rows().end());
-    values.resize((values.size() + 3) / 4 * 4);
-    for (size_t i = 0; i < values.size(); i += 4)
-      texels.emplace_back(std::bit_cast<uint32_t>(values[i]), std::bit_cast<uint32_t>(values[i + 1]),
-                          std::bit_cast<uint32_t>(values[i + 2]), std::bit_cast<uint32_t>(values[i + 3]));
-  }
-  std::memcpy(texels.data(), &header, sizeof header);
-  return texels;
-}
 
 }  // namespace
 
@@ -68,7 +29,8 @@ struct EmitterTables::Impl {
 
   Impl(gpu::Device& d, const Scene& scene, const Geometry& geometry, bool fullMaterials, bool wanted)
       : device(d) {
-    Texels list = wanted ? texelsOf(scene, geometry, fullMaterials) : Texels(1);
+    std::vector<glm::uvec4> list =
+        wanted ? emitterTable(scene, geometry, fullMaterials) : std::vector<glm::uvec4>(1);
     const bool moves = std::ranges::any_of(
         geometry.emissive, [&](uint32_t triangle) { return triangle >= geometry.staticTriangles; });
     if (const uint32_t count = list[0].x; moves && count > 0) {

@@ -1,4 +1,4 @@
-#include "framework/scene/device/full_materials.h"
+#include "framework/scene/tables/full_materials.h"
 
 #include <cstring>
 

@@ -1,0 +1,186 @@
+// Compiles a kernel of a pass for the host. The source file of a kernel (framework/cmake/host_kernels.cmake makes one for
+// each) includes this header and then, inside of a struct that derives from Kernel, the shader: what is global in GLSL is
+// a member there. The functions and types that the shader needs of GLSL are those of glm; the qualifiers become macros,
+// so that nothing may be included after this header but shaders.
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <glm/glm.hpp>
+#include <glm/gtc/packing.hpp>
+#include <glm/integer.hpp>
+#include <mutex>
+#include <type_traits>
+#include <vector>
+
+#include "framework/base/threads.h"
+#include "framework/host/images.h"
+#include "framework/scene/host/host_scene.h"
+// All records that kernels know; those of namespaces cannot be included inside of a struct.
+#include "shaders/records/contact.h"
+#include "shaders/records/emitters.h"
+#include "shaders/records/eye_paths.h"
+#include "shaders/records/fovea.h"
+#include "shaders/records/gather_cache.h"
+#include "shaders/records/hemisphere_rays.h"
+#include "shaders/records/mirror.h"
+#include "shaders/records/near_field.h"
+#include "shaders/records/paraboloid.h"
+#include "shaders/records/probes.h"
+#include "shaders/records/rays.h"
+#include "shaders/records/reservoir.h"
+#include "shaders/records/scene.h"
+#include "shaders/records/vpl.h"
+
+namespace fovea::host {
+
+using namespace glm;
+using namespace fovea::scene;
+using namespace fovea::passes;
+using std::uint32_t;
+
+inline uint atomicAdd(uint& memory, uint value) { return std::atomic_ref(memory).fetch_add(value); }
+inline uint atomicMax(uint& memory, uint value) {
+  std::atomic_ref<uint> reference(memory);
+  uint before = reference.load();
+  while (before < value && !reference.compare_exchange_weak(before, value)) {
+  }
+  return before;
+}
+inline uint atomicCompSwap(uint& memory, uint expected, uint value) {
+  std::atomic_ref(memory).compare_exchange_strong(expected, value);
+  return expected;
+}
+
+// What every kernel finds: the scene's tables (shaders/scene/tables.glsl), rays, and the ports of its pass.
+class Kernel {
+ public:
+  // passing: what rays do at surfaces that let light through.
+  Kernel(const graph::HostDispatch& dispatch, Passing passing)
+      : frame(dispatch.scene->frame()),
+        view(dispatch.scene->view(dispatch.view)),
+        lights(dispatch.scene->lights()),
+        sceneMaterials(dispatch.scene->materials()),
+        rayEmitters(dispatch.scene->emitters()),
+        gl_WorkGroupSize(dispatch.groupSize[0], dispatch.groupSize[1], dispatch.groupSize[2]),
+        gl_NumWorkGroups(dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]),
+        dispatch_(dispatch),
+        scene_(*dispatch.scene),
+        geometry_(dispatch.scene->geometry()),
+        rays_(dispatch.scene->rays(passing)) {}
+
+  uvec3 gl_GlobalInvocationID{0};
+
+ protected:
+  const FrameBlock& frame;
+  const ViewBlock& view;
+  const LightRecord* lights;
+  const vec4* sceneMaterials;
+  const uvec4* rayEmitters;
+  const uvec3 gl_WorkGroupSize, gl_NumWorkGroups;
+
+  uvec4 sceneTriangle(uint triangle) const {
+    const Triangle& t = geometry_.triangles[triangle];
+    return {t.v[0], t.v[1], t.v[2], t.materialAndObject};
+  }
+  const vec3& scenePosition(uint vertex) const { return geometry_.positions[vertex]; }
+  const vec3& sceneNormal(uint vertex) const { return geometry_.normals[vertex]; }
+  const vec2& sceneUv(uint vertex) const { return geometry_.uvs[vertex]; }
+  vec4 sceneTexel(ivec3 p, bool linear) const { return scene_.texel(p, linear); }
+  ivec2 environmentSize() const { return scene_.environmentSize(); }
+  vec3 environmentTexel(ivec2 p) const { return scene_.environmentTexel(p); }
+
+  void traceOnHost(vec3 origin, vec3 direction, float near, float far, bool any, uint& triangle,
+                   float& distance, vec2& weights) const {
+    const fovea::scene::Ray ray{origin, direction, near, far};
+    if (any) {
+      if (rays_.occluded(ray)) triangle = 0;
+      return;
+    }
+    const fovea::scene::RayHit hit = rays_.intersect(ray);
+    if (!hit) return;
+    triangle = hit.triangle;
+    distance = hit.distance;
+    weights = {hit.u, hit.v};
+  }
+
+  // The port to which a member of the kernel is bound.
+  template <class T>
+  T port(const char* name) const {
+    return T(dispatch_.port(name));
+  }
+
+ private:
+  const graph::HostDispatch& dispatch_;
+  const HostScene& scene_;
+  const Geometry& geometry_;
+  const RayScene& rays_;
+};
+
+// Adds what one invocation has counted.
+template <class K>
+void count(const K& kernel, std::vector<uint64_t>& sums) {
+  if constexpr (requires { kernel.counters; }) {
+    constexpr size_t kCount = sizeof(kernel.counters) / sizeof(uint32_t);
+    uint32_t counted[kCount];
+    std::memcpy(counted, &kernel.counters, sizeof counted);
+    sums.resize(kCount);
+    for (size_t i = 0; i < kCount; ++i) sums[i] += counted[i];
+  }
+}
+
+// Calls main() for each invocation, as a device does: with what is global to the shader as it was at first.
+template <class K>
+void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
+  K first(dispatch, passing);
+  if constexpr (requires { first.constants; })
+    std::memcpy(&first.constants, dispatch.constants.data(),
+                std::min(sizeof first.constants, dispatch.constants.size()));
+  const uvec3 groups(dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
+  const uvec3 size(dispatch.groupSize[0], dispatch.groupSize[1], dispatch.groupSize[2]);
+  const uint32_t all = groups.x * groups.y * groups.z;
+  std::atomic<uint32_t> next = 0;
+  std::mutex mutex;
+  onThreads(std::min(threadCount(0), all), [&] {
+    std::vector<uint64_t> sums;
+    for (uint32_t group = next++; group < all; group = next++) {
+      const uvec3 at(group % groups.x, group / groups.x % groups.y, group / groups.x / groups.y);
+      for (uint z = 0; z < size.z; ++z)
+        for (uint y = 0; y < size.y; ++y)
+          for (uint x = 0; x < size.x; ++x) {
+            K kernel(first);
+            kernel.gl_GlobalInvocationID = at * size + uvec3(x, y, z);
+            kernel.main();
+            count(kernel, sums);
+          }
+    }
+    const std::scoped_lock lock(mutex);
+    for (size_t i = 0; i < std::min(sums.size(), dispatch.counters.size()); ++i)
+      dispatch.counters[i] += sums[i];
+  });
+}
+
+}  // namespace fovea::host
+
+// ---- The language (shaders/device/language.glsl) --------------------------------------------------------------------
+
+#define FOVEA_LANGUAGE_GLSL
+#define FOVEA_DEVICE_TEXELS_GLSL
+#define FOVEA_TABLES_GLSL
+
+#define INOUT(type) type&
+#define OUT(type) type&
+#define DECLARE(function)
+#define IMAGE(format, access, type, name) type name = port<type>(#name)
+#define LIST(access, type, name) List<type> name = port<List<type>>(#name)
+#define VALUE(access, type, name) Single<type> name = port<Single<type>>(#name)
+#define TEXTURE(type, name) type name = port<type>(#name)
+#define LARGE_TEXELS(type, name) Texels<type> name = port<Texels<type>>(#name)
+#define SCENE_TEXELS(number, type, name)
+#define texelOf(name, i) name[i]
+#define COUNTERS struct Counters
+#define layout(...)
+#define uniform struct
+#define precise
+#define in

@@ -1,0 +1,55 @@
+// The bindings of descriptor set 1, and how they are read. The host has its own (framework/scene/host/host_scene.h), so that
+// everything that is written on top of these functions serves both.
+#ifndef FOVEA_TABLES_GLSL
+#define FOVEA_TABLES_GLSL
+
+#include "device/language.glsl"
+#include "device/texels.glsl"
+#include "records/scene.h"
+#include "scene/octahedral.glsl"
+
+layout(set = 1, binding = 0) uniform FrameUniform { FrameBlock frame; };
+layout(set = 1, binding = 1) uniform ViewUniform { ViewBlock view; };
+layout(set = 1, binding = 2) uniform LightUniform { LightRecord lights[kMaxLights]; };
+
+SCENE_TEXELS(3, uvec4, sceneTriangles);     // xyz: vertices, w: material | object << 16
+SCENE_TEXELS(4, vec4, scenePositions);      // xyz world
+SCENE_TEXELS(5, vec4, sceneAttributes);     // xy: octahedral normal, zw: uv
+SCENE_TEXELS(6, vec4, sceneMaterials);      // MaterialRecord
+layout(set = 1, binding = 7) uniform sampler2DArray sceneTextures;      // pages of 8-bit texels as stored
+SCENE_TEXELS(8, vec4, sceneObjects);        // ObjectRecord
+SCENE_TEXELS(9, vec4, scenePrevious);       // xyz world, last frame, vertices that may move
+layout(set = 1, binding = 10) uniform sampler2D sceneEnvironment;       // equirectangular map, one texel if there is none
+
+// ---- Geometry ----------------------------------------------------------------------------------------------------
+
+uvec4 sceneTriangle(uint triangle) { return texelOf(sceneTriangles, int(triangle)); }
+vec3 scenePosition(uint vertex) { return texelOf(scenePositions, int(vertex)).xyz; }
+vec3 scenePreviousPosition(uint vertex) {  // in the previous frame
+  if (vertex < frame.firstMovingVertex) return scenePosition(vertex);
+  return texelOf(scenePrevious, int(vertex - frame.firstMovingVertex)).xyz;
+}
+vec3 sceneNormal(uint vertex) { return octDecode(texelOf(sceneAttributes, int(vertex)).xy); }
+vec2 sceneUv(uint vertex) { return texelOf(sceneAttributes, int(vertex)).zw; }
+
+// ---- Textures ----------------------------------------------------------------------------------------------------
+
+// Linear light from an 8-bit sRGB colour, to within 4e-7: a polynomial in the square root, fitted to the
+// codes. The decoders of sRGB image formats may be inaccurate (lavapipe's by 1% in the dark), and a table
+// costs one look-up per channel.
+vec3 srgbToLinear(vec3 code) {
+  vec3 s = sqrt(code);
+  vec3 power = ((0.009480046 * s - 0.07493101) * s + 0.79743385) * s + 0.17218539;
+  power = (((power * s + 0.06789335) * s + 0.026256947) * s + 0.00088151894) * s + 0.00079976703;
+  return mix(power, code * (1.0 / 12.92), lessThanEqual(code, vec3(0.04045)));
+}
+
+vec4 sceneTexel(ivec3 p, bool linear) {
+  vec4 texel = texelFetch(sceneTextures, p, 0);
+  return vec4(mix(srgbToLinear(texel.rgb), texel.rgb, bvec3(linear)), texel.a);
+}
+
+ivec2 environmentSize() { return textureSize(sceneEnvironment, 0); }  // of the map, texels; one texel if there is none
+vec3 environmentTexel(ivec2 p) { return texelFetch(sceneEnvironment, p, 0).rgb; }
+
+#endif
