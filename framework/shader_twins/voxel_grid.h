@@ -1,5 +1,5 @@
 // The C++ version of shaders/common/voxel.glsl: both must be changed together. It places the voxel grid in which
-// VPLs are found.
+// secondary lights are found.
 #pragma once
 
 #include <algorithm>
