@@ -35,8 +35,8 @@ void checkNearFieldPixels(const PassContext& ctx, glm::uvec2 size) {
     const VkExtent3D extent = ctx.extent(port);
     if (size == glm::uvec2(extent.width, extent.height)) continue;
     throw Error(ExitCode::BadInput,
-                "`" + port + "` has " + text(extent.width, extent.height) + " pixels, its view " +
-                    text(size.x, size.y),
+                std::string("`") + port + "` has " + text(extent.width, extent.height) +
+                    " pixels, its view " + text(size.x, size.y),
                 "wire images of the view that the pass looks through");
   }
 }
