@@ -12,6 +12,7 @@
 
 #include "fovea/error.h"
 #include "fovea/scene.h"
+#include "fovea/scenes.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
@@ -140,6 +141,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fovea::scenes::registerAll();
   try {
     return run(argc, argv);
   } catch (const fovea::Error& e) {

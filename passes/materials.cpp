@@ -20,13 +20,12 @@ scene::Passing passingOf(const Parameters& parameters) {
 
 SizeExpr fullMaterials() { return parameter("materials"); }
 
-void checkMaterials(const PassContext& ctx, const std::string& pass) {
+void checkMaterials(const PassContext& ctx) {
   const VkExtent3D specular = ctx.extent("gbuffer.specular"), normal = ctx.extent("gbuffer.normal");
   if (!fullMaterials(ctx.parameters()) ||
       (specular.width == normal.width && specular.height == normal.height))
     return;
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: materials are `full`, but those of the G-buffer are not",
+  throw Error(ExitCode::BadInput, "materials are `full`, but those of the G-buffer are not",
               "give both passes the same `materials`");
 }
 

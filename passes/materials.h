@@ -20,6 +20,6 @@ scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();
 // Throws Error(BadInput) if the pass asks for full materials, but the one that made its input `gbuffer` did not.
-void checkMaterials(const graph::PassContext& ctx, const std::string& pass);
+void checkMaterials(const graph::PassContext& ctx);
 
 }  // namespace fovea::passes

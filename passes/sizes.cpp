@@ -11,21 +11,20 @@ std::string text(uint32_t width, uint32_t height) {
 
 }  // namespace
 
-void checkSize(const graph::PassContext& ctx, const std::string& pass, const std::string& port,
-               glm::uvec2 size, const std::string& of, const std::string& remedy) {
+void checkSize(const graph::PassContext& ctx, const std::string& port, glm::uvec2 size, const std::string& of,
+               const std::string& remedy) {
   const VkExtent3D its = ctx.extent(port);
   if (size == glm::uvec2(its.width, its.height)) return;
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: `" + port + "` has " + text(its.width, its.height) + " pixels, " + of +
-                  " has " + text(size.x, size.y),
-              remedy);
+  throw Error(
+      ExitCode::BadInput,
+      "`" + port + "` has " + text(its.width, its.height) + " pixels, " + of + " has " + text(size.x, size.y),
+      remedy);
 }
 
-void checkSameSize(const graph::PassContext& ctx, const std::string& pass, const std::string& port,
-                   const std::string& other) {
+void checkSameSize(const graph::PassContext& ctx, const std::string& port, const std::string& other) {
   const VkExtent3D size = ctx.extent(other);
-  checkSize(ctx, pass, port, {size.width, size.height}, "`" + other + "`",
-            "give pass `" + pass + "` and the one that makes `" + port + "` the same `materials`");
+  checkSize(ctx, port, {size.width, size.height}, "`" + other + "`",
+            "give this pass and the one that makes `" + port + "` the same `materials`");
 }
 
 }  // namespace fovea::passes

@@ -45,7 +45,7 @@ for package in glslang-dev libspirv-cross-c-shared-dev libdraco-dev libglm-dev n
 while read -r name file; do
   case "$name" in
     libc.so.*|libm.so.*|libdl.so.*|libpthread.so.*|librt.so.*|libresolv.so.*|libvulkan.so.*|ld-linux*|linux-vdso*) continue ;;
-    libfovea.so.*) continue ;;
+    libfovea.so.*|libfovea-*.so.*) continue ;;
     libstdc++.so.*|libgcc_s.so.*) cp -L "$file" "$stage/lib/fallback/$name" ;;
     *) cp -L "$file" "$stage/lib/$name" ;;
   esac

@@ -283,7 +283,7 @@ class Flattener {
   NodePoses poses_;
   Geometry out_;
   Object object_;
-  bool coarse_ = false;  // whether something is coarser for voxels and VPL maps
+  bool coarse_ = false;  // whether something is coarser for voxels and maps of secondary lights
   bool secondUvs_ = false, colors_ = false, tangents_ = false;    // whether any primitive has them
   uint32_t jointCount_ = 0, weightCount_ = 0;                     // totals of the objects so far
   std::map<uint32_t, uint32_t> firstJoint_;                       // of skins

@@ -1,4 +1,4 @@
-// Gives scenes of many triangles a coarser mesh for voxels and the shadow maps of VPLs.
+// Gives scenes of many triangles a coarser mesh for voxels and the shadow maps of secondary lights.
 #include <meshoptimizer.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace fovea::scene {
 namespace {
 
-// Drawing every triangle into the maps of a thousand VPLs takes a minute for each three million triangles on a CPU, and
-// maps of 128 x 128 texels show little of the difference.
+// Drawing every triangle into the maps of a thousand lights takes a minute for each three million triangles on a CPU,
+// and maps of 128 x 128 texels show little of the difference.
 constexpr uint64_t kTooMany = uint64_t(1) << 20, kEnough = kTooMany / 2;
 constexpr size_t kFewest = 64;  // that a primitive keeps
 

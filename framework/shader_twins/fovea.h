@@ -56,7 +56,7 @@ inline glm::ivec2 regionSample(uint32_t region, const Fovea& fovea, glm::ivec2 i
   return glm::clamp(glm::ivec2(position), glm::ivec2(0), imageSize - 1);
 }
 
-// Pixel of point i of the `points` fixed points on screen from which the density of VPLs is estimated; the same
+// Pixel of point i of the `points` fixed points on screen from which the density of lights is estimated; the same
 // points as those of the shader that does so. share64ths: share of the points taken from the whole image for
 // `kRegionMixed`, in 64ths.
 inline glm::ivec2 screenPoint(uint32_t region, uint32_t share64ths, uint32_t i, uint32_t points,

@@ -1,5 +1,5 @@
 // The C++ version of shaders/voxels/voxel.glsl: both must be changed together. It places the voxel grid in which
-// VPLs are found.
+// secondary lights are found.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "shaders/records/voxel.h"
+#include "shaders/common/records/voxel.h"
 
 namespace fovea::scene {
 

@@ -48,7 +48,7 @@ class Compose : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkMaterials(ctx, "compose"); }
+  void prepare(PrepareContext& ctx) override { checkMaterials(ctx); }
 };
 
 FOVEA_PASS(Compose);

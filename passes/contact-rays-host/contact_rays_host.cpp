@@ -259,14 +259,13 @@ class ContactRaysHost : public Pass {
     const uint32_t width = ctx.extent("contacts").width, height = ctx.extent("contacts").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
-                  "pass `contact-rays-host`: `contacts` has " + std::to_string(width) + "x" +
-                      std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
-                      std::to_string(size.y),
+                  "`contacts` has " + std::to_string(width) + "x" + std::to_string(height) +
+                      " pixels, its view " + std::to_string(size.x) + "x" + std::to_string(size.y),
                   "wire contacts of the view that the pass looks through");
     if (!origin.empty() && origin.size() != contacts.size())
       throw Error(ExitCode::BadInput,
-                  "pass `contact-rays-host`: `origin` has " + std::to_string(origin.size()) +
-                      " pixels, `contacts` " + std::to_string(contacts.size()),
+                  "`origin` has " + std::to_string(origin.size()) + " pixels, `contacts` " +
+                      std::to_string(contacts.size()),
                   "make both from the same G-buffer");
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(ctx.parameters()));
     for (size_t s = 0; s < kSubsets; ++s) {

@@ -119,8 +119,7 @@ class Deferred : public Pass {
     const Parameters& p = ctx.parameters();
     const int64_t interleave = p.integer("interleave");
     if ((interleave & (interleave - 1)) != 0)
-      throw Error(ExitCode::BadInput,
-                  "pass `deferred`: interleave " + std::to_string(interleave) + " is not a power of two",
+      throw Error(ExitCode::BadInput, "interleave " + std::to_string(interleave) + " is not a power of two",
                   "use 1, 2, 4 or 8");
     count_ = uint32_t(ctx.count("vpls"));
     side_ = uint32_t(ctx.evaluate(subsets()));
@@ -128,9 +127,9 @@ class Deferred : public Pass {
     if (masked_) checkMask(ctx, uint32_t(interleave));
     if (masked_ && ctx.evaluate(coarse()) != 0)
       throw Error(ExitCode::BadInput,
-                  "pass `deferred`: `shade` says which blocks to shade, so `periphery` has nothing to decide",
+                  "`shade` says which blocks to shade, so `periphery` has nothing to decide",
                   "leave `periphery` at 1, or `shade` unwired");
-    checkMaterials(ctx, "deferred");
+    checkMaterials(ctx);
     if (ctx.has("near_gloss")) checkNearGloss(ctx);
     preparePages(ctx, 1, pages_);
     if (ctx.evaluate(coarse()) != 0) preparePages(ctx, 2, coarsePages_);
@@ -251,16 +250,14 @@ class Deferred : public Pass {
 
   static void checkNearGloss(PrepareContext& ctx) {
     if (!ctx.has("near_field"))
-      throw Error(ExitCode::BadInput,
-                  "pass `deferred`: `near_gloss` is wired without the light that it is a part of",
+      throw Error(ExitCode::BadInput, "`near_gloss` is wired without the light that it is a part of",
                   "wire near-field's mean to near_field, too, or leave `near_gloss` unwired");
-    checkSameSize(ctx, "deferred", "near_gloss", "near_field");
+    checkSameSize(ctx, "near_gloss", "near_field");
   }
 
   static void checkMask(PrepareContext& ctx, uint32_t interleave) {
     if (!ctx.has("base"))
-      throw Error(ExitCode::BadInput,
-                  "pass `deferred`: `shade` leaves pixels out, but nothing is wired to `base`",
+      throw Error(ExitCode::BadInput, "`shade` leaves pixels out, but nothing is wired to `base`",
                   "wire reproject.irradiance to base");
     const VkExtent3D size = ctx.extent("gbuffer.position"), mask = ctx.extent("shade.mask"),
                      base = ctx.extent("base");
@@ -268,13 +265,12 @@ class Deferred : public Pass {
         uint64_t((size.width + interleave - 1) / interleave) * ((size.height + interleave - 1) / interleave);
     if (mask.width != size.width || mask.height != size.height || base.width != size.width ||
         base.height != size.height)
-      throw Error(ExitCode::BadInput,
-                  "pass `deferred`: `shade` and `base` are of another size than the image",
+      throw Error(ExitCode::BadInput, "`shade` and `base` are of another size than the image",
                   "make them from the same G-buffer");
     if (ctx.count("shade.blocks") != blocks)
       throw Error(ExitCode::BadInput,
-                  "pass `deferred`: `shade` lists blocks of another size than " + std::to_string(interleave) +
-                      " x " + std::to_string(interleave) + " pixels",
+                  "`shade` lists blocks of another size than " + std::to_string(interleave) + " x " +
+                      std::to_string(interleave) + " pixels",
                   "give both passes the same `interleave`");
   }
 
@@ -296,8 +292,8 @@ class Deferred : public Pass {
       const uint64_t perLayer = std::max(maps.width / std::max(maps.height, 1u), 1u);
       if (perLayer * ctx.layers("atlas") < count_)
         throw Error(ExitCode::BadInput,
-                    "pass `deferred`: the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) +
-                        " maps for " + std::to_string(count_) + " VPLs",
+                    "the atlas holds " + std::to_string(perLayer * ctx.layers("atlas")) + " maps for " +
+                        std::to_string(count_) + " VPLs",
                     "wire the same VPLs to the atlas and to the shading");
       defines["TILED"] = std::to_string(int(perLayer > 1));
     }

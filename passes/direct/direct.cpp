@@ -51,7 +51,7 @@ class Direct : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkMaterials(ctx, "direct"); }
+  void prepare(PrepareContext& ctx) override { checkMaterials(ctx); }
 
   void record(RecordContext& ctx) override {
     const std::vector<scene::Light>& lights = ctx.frame().lights;

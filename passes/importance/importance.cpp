@@ -71,10 +71,10 @@ void Importance::prepare(PrepareContext& ctx) {
   const Parameters& p = ctx.parameters();
   const bool cones = p.text("method") == "cones", luminance = p.flag("luminance");
   if (luminance && !ctx.has("radiance"))
-    throw Error(ExitCode::BadInput, "pass `importance`: parameter `luminance` needs the input `radiance`",
+    throw Error(ExitCode::BadInput, "parameter `luminance` needs the input `radiance`",
                 "wire `radiance` to light-inject, or set luminance to false");
   if (cones && !ctx.has("mips"))
-    throw Error(ExitCode::BadInput, "pass `importance`: method `cones` needs the input `mips`",
+    throw Error(ExitCode::BadInput, "method `cones` needs the input `mips`",
                 "wire `mips` to mipmap, or set method to `rays`");
 }
 

@@ -45,10 +45,10 @@ class NearFieldDevice : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkNearField(ctx, "near-field-device"); }
+  void prepare(PrepareContext& ctx) override { checkNearField(ctx); }
 
   void record(RecordContext& ctx) override {
-    checkGBufferSize(ctx, "near-field-device", ctx.view().size);
+    checkGBufferSize(ctx, ctx.view().size);
     const std::string& light = ctx.parameters().text("light");
     if (light == "none") {
       ctx.clear("samples", {});

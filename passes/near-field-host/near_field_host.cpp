@@ -41,7 +41,7 @@ class NearFieldHost : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkNearField(ctx, "near-field-host"); }
+  void prepare(PrepareContext& ctx) override { checkNearField(ctx); }
 
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();
@@ -58,7 +58,7 @@ class NearFieldHost : public Pass {
     settings.seed = frame.seed;
     settings.fullMaterials = fullMaterials(p);
     settings.mapAlone = p.text("light") == "map";
-    checkGBufferSize(ctx, "near-field-host", ctx.view().size);
+    checkGBufferSize(ctx, ctx.view().size);
     if (ctx.has("gbuffer")) {
       settings.normal = ctx.inputAs<uint64_t>("gbuffer.normal");
       settings.specular = ctx.inputAs<uint64_t>("gbuffer.specular");

@@ -58,18 +58,17 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
             "those of them at whose ends light of further bounces was gathered rather than known");
 }
 
-void checkNearField(const PassContext& ctx, const std::string& pass) {
+void checkNearField(const PassContext& ctx) {
   const auto spacing = uint32_t(ctx.parameters().integer("spacing"));
   if (!std::has_single_bit(spacing))
-    throw Error(ExitCode::BadInput,
-                "pass `" + pass + "`: spacing " + std::to_string(spacing) + " is not a power of two",
+    throw Error(ExitCode::BadInput, "spacing " + std::to_string(spacing) + " is not a power of two",
                 "use 2, 4 or 8");
-  if (ctx.has("gbuffer")) checkMaterials(ctx, pass);
+  if (ctx.has("gbuffer")) checkMaterials(ctx);
 }
 
-void checkGBufferSize(const PassContext& ctx, const std::string& pass, glm::uvec2 view) {
+void checkGBufferSize(const PassContext& ctx, glm::uvec2 view) {
   if (ctx.has("gbuffer"))
-    checkSize(ctx, pass, "gbuffer.normal", view, "its view",
+    checkSize(ctx, "gbuffer.normal", view, "its view",
               "wire the G-buffer of the view that the pass looks through");
 }
 

@@ -11,8 +11,8 @@ namespace fovea::passes {
 // read, write: how the pass uses its input and its outputs.
 void declareNearField(graph::PassDeclaration& d, graph::Usage read, graph::Usage write);
 // Throws Error(BadInput) if the blocks of pixels have no possible width, or if the G-buffer lacks full materials.
-void checkNearField(const graph::PassContext& ctx, const std::string& pass);
+void checkNearField(const graph::PassContext& ctx);
 // Throws Error(BadInput) if the G-buffer is not of this size, that of the view through which the pass looks.
-void checkGBufferSize(const graph::PassContext& ctx, const std::string& pass, glm::uvec2 view);
+void checkGBufferSize(const graph::PassContext& ctx, glm::uvec2 view);
 
 }  // namespace fovea::passes

@@ -28,7 +28,7 @@ class NearFieldPixelsDevice : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     const VkExtent3D view = ctx.extent("traced");
-    checkNearFieldPixels(ctx, "near-field-pixels-device", {view.width, view.height});
+    checkNearFieldPixels(ctx, {view.width, view.height});
   }
 
   void record(RecordContext& ctx) override {

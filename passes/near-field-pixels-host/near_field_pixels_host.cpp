@@ -33,7 +33,7 @@ class NearFieldPixelsHost : public Pass {
     const Parameters& p = ctx.parameters();
     const auto mask = ctx.inputAs<uint8_t>("shade.mask");
     const auto image = ctx.outputAs<uint64_t>("near_field");
-    checkNearFieldPixels(ctx, "near-field-pixels-host", ctx.view().size);
+    checkNearFieldPixels(ctx, ctx.view().size);
     if (frame.scene == nullptr || frame.geometry == nullptr || frame.geometry->empty()) return;
     pixels_.clear();
     const uint32_t width = ctx.view().size.x;

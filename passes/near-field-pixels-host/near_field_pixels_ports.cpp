@@ -27,7 +27,7 @@ void declareNearFieldPixels(PassDeclaration& d, std::vector<MemberSpec> mask, Us
   d.counter("pixels", "pixels that got rays");
 }
 
-void checkNearFieldPixels(const PassContext& ctx, const std::string& pass, glm::uvec2 size) {
+void checkNearFieldPixels(const PassContext& ctx, glm::uvec2 size) {
   const auto text = [](uint32_t width, uint32_t height) {
     return std::to_string(width) + "x" + std::to_string(height);
   };
@@ -35,7 +35,7 @@ void checkNearFieldPixels(const PassContext& ctx, const std::string& pass, glm::
     const VkExtent3D extent = ctx.extent(port);
     if (size == glm::uvec2(extent.width, extent.height)) continue;
     throw Error(ExitCode::BadInput,
-                "pass `" + pass + "`: `" + port + "` has " + text(extent.width, extent.height) +
+                std::string("`") + port + "` has " + text(extent.width, extent.height) +
                     " pixels, its view " + text(size.x, size.y),
                 "wire images of the view that the pass looks through");
   }

@@ -13,6 +13,6 @@ namespace fovea::passes {
 void declareNearFieldPixels(graph::PassDeclaration& d, std::vector<graph::MemberSpec> mask, graph::Usage read,
                             graph::Usage change);
 // Throws Error(BadInput) if an image has another size than the view. size: of the view, pixels.
-void checkNearFieldPixels(const graph::PassContext& ctx, const std::string& pass, glm::uvec2 size);
+void checkNearFieldPixels(const graph::PassContext& ctx, glm::uvec2 size);
 
 }  // namespace fovea::passes

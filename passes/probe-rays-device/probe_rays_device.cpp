@@ -28,7 +28,7 @@ class ProbeRaysDevice : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkProbeRays(ctx, "probe-rays-device"); }
+  void prepare(PrepareContext& ctx) override { checkProbeRays(ctx); }
 };
 
 FOVEA_PASS(ProbeRaysDevice);

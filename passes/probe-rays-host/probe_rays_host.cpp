@@ -24,7 +24,7 @@ class ProbeRaysHost : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkProbeRays(ctx, "probe-rays-host"); }
+  void prepare(PrepareContext& ctx) override { checkProbeRays(ctx); }
 
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();

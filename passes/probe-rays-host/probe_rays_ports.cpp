@@ -45,14 +45,14 @@ void declareProbeRays(PassDeclaration& d, ProbeRayUsages usages) {
   d.counter("inside", "probes inside geometry, which light nothing");
 }
 
-void checkProbeRays(const PassContext& ctx, const std::string& pass) {
+void checkProbeRays(const PassContext& ctx) {
   const uint64_t known = ctx.count("probes.states"),
                  probes = ctx.count("rays.hits") / ctx.count("rays.directions");
   if (known == probes) return;
-  throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: `probes` knows " + std::to_string(known) +
-                  " probes, the grid has room for " + std::to_string(probes),
-              "wire pass probe-blend of the same rays, in the previous frame");
+  throw Error(
+      ExitCode::BadInput,
+      "`probes` knows " + std::to_string(known) + " probes, the grid has room for " + std::to_string(probes),
+      "wire pass probe-blend of the same rays, in the previous frame");
 }
 
 }  // namespace fovea::passes

@@ -14,6 +14,6 @@ struct ProbeRayUsages {
 
 void declareProbeRays(graph::PassDeclaration& d, ProbeRayUsages usages);
 // Throws Error(BadInput) if the probes of the previous frame are not as many as the grid has room for.
-void checkProbeRays(const graph::PassContext& ctx, const std::string& pass);
+void checkProbeRays(const graph::PassContext& ctx);
 
 }  // namespace fovea::passes

@@ -36,7 +36,7 @@ class Radiance : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     if (ctx.parameters().text("terms") != "direct" && !ctx.has("mips"))
-      throw Error(ExitCode::BadInput, "pass `radiance`: the cones need the input `mips`",
+      throw Error(ExitCode::BadInput, "the cones need the input `mips`",
                   "wire `mips` to mipmap, or set terms to `direct`");
   }
 };

@@ -34,7 +34,7 @@ class ReflectionsDevice : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     const VkExtent3D half = ctx.extent("traced");
-    checkReflections(ctx, "reflections-device", {half.width, half.height});
+    checkReflections(ctx, {half.width, half.height});
   }
 
   void record(RecordContext& ctx) override {

@@ -135,7 +135,7 @@ class ReflectionsHost : public Pass {
     const auto samples = ctx.outputAs<uint64_t>("samples");
     const auto distances = ctx.outputAs<float>("distances");
     const uint32_t width = ctx.extent("mirrors").width, height = ctx.extent("mirrors").height;
-    checkReflections(ctx, "reflections-host", (ctx.view().size + 1u) / 2u);
+    checkReflections(ctx, (ctx.view().size + 1u) / 2u);
     mirrors_.clear();
     for (uint32_t i = 0; i < texels.size(); ++i)
       mirrors_.emplace_back(texels[i], glm::uvec2(i % width, i / width), ctx.view());

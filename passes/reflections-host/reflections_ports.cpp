@@ -28,9 +28,8 @@ void declareReflections(PassDeclaration& d, Usage read, Usage write) {
   d.counter("gathered", "rays at whose ends light of further bounces was gathered rather than known");
 }
 
-void checkReflections(const PassContext& ctx, const std::string& pass, glm::uvec2 half) {
-  checkSize(ctx, pass, "mirrors", half, "half its view",
-            "wire mirrors of the view that the pass looks through");
+void checkReflections(const PassContext& ctx, glm::uvec2 half) {
+  checkSize(ctx, "mirrors", half, "half its view", "wire mirrors of the view that the pass looks through");
 }
 
 }  // namespace fovea::passes

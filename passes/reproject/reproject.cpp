@@ -70,8 +70,7 @@ class Reproject : public Pass {
   void prepare(PrepareContext& ctx) override {
     const int64_t n = ctx.parameters().integer("interleave");
     if ((n & (n - 1)) != 0)
-      throw Error(ExitCode::BadInput,
-                  "pass `reproject`: interleave " + std::to_string(n) + " is not a power of two",
+      throw Error(ExitCode::BadInput, "interleave " + std::to_string(n) + " is not a power of two",
                   "use 1, 2, 4 or 8, the same as for the shading");
   }
 
@@ -127,7 +126,7 @@ class Reproject : public Pass {
     if (const scene::View* view = ctx.frame().findView(name)) return *view;
     std::string known;
     for (const scene::View& view : ctx.frame().views) known += (known.empty() ? "" : ", ") + view.name;
-    throw Error(ExitCode::BadInput, "pass `reproject`: source_view `" + name + "` is no view of the frame",
+    throw Error(ExitCode::BadInput, "source_view `" + name + "` is no view of the frame",
                 "there is: " + known);
   }
 };

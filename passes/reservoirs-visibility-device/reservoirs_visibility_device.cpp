@@ -22,9 +22,7 @@ class ReservoirsVisibilityDevice : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override {
-    checkReservoirsVisibility(ctx, "reservoirs-visibility-device");
-  }
+  void prepare(PrepareContext& ctx) override { checkReservoirsVisibility(ctx); }
 };
 
 FOVEA_PASS(ReservoirsVisibilityDevice);

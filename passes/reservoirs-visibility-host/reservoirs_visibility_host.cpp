@@ -51,7 +51,7 @@ class ReservoirsVisibilityHost : public Pass {
     return d;
   }
 
-  void prepare(PrepareContext& ctx) override { checkReservoirsVisibility(ctx, "reservoirs-visibility-host"); }
+  void prepare(PrepareContext& ctx) override { checkReservoirsVisibility(ctx); }
 
   void execute(HostContext& ctx) override {
     const scene::Frame& frame = ctx.frame();

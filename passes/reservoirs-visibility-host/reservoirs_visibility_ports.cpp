@@ -35,7 +35,7 @@ void declareReservoirsVisibility(PassDeclaration& d, Usage images, Usage lists, 
   d.counter("hidden", "rays that did not reach their sample");
 }
 
-void checkReservoirsVisibility(const PassContext& ctx, const std::string& pass) {
+void checkReservoirsVisibility(const PassContext& ctx) {
   const VkExtent3D size = ctx.extent("gbuffer.position"), other = ctx.extent("other_gbuffer.position"),
                    sources = ctx.extent("sources");
   const uint64_t pixels = uint64_t(size.width) * size.height;
@@ -45,8 +45,8 @@ void checkReservoirsVisibility(const PassContext& ctx, const std::string& pass) 
     return;
   const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
   throw Error(ExitCode::BadInput,
-              "pass `" + pass + "`: `gbuffer` has " + text(size) + " pixels, `other_gbuffer` " + text(other) +
-                  " and `sources` " + text(sources) + ", with " + std::to_string(ctx.count("own")) + " and " +
+              "`gbuffer` has " + text(size) + " pixels, `other_gbuffer` " + text(other) + " and `sources` " +
+                  text(sources) + ", with " + std::to_string(ctx.count("own")) + " and " +
                   std::to_string(ctx.count("others")) + " reservoirs",
               "wire what belongs to one view, with at most 16 sources for each pixel");
 }

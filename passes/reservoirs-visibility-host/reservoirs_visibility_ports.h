@@ -11,6 +11,6 @@ namespace fovea::passes {
 void declareReservoirsVisibility(graph::PassDeclaration& d, graph::Usage images, graph::Usage lists,
                                  graph::Usage write);
 // Throws Error(BadInput) if the sizes of the inputs do not fit each other.
-void checkReservoirsVisibility(const graph::PassContext& ctx, const std::string& pass);
+void checkReservoirsVisibility(const graph::PassContext& ctx);
 
 }  // namespace fovea::passes

@@ -38,14 +38,12 @@ class ShadowRaysDevice : public Pass {
   }
 
   void prepare(PrepareContext& ctx) override {
-    checkMaterials(ctx, "shadow-rays-device");
+    checkMaterials(ctx);
     const VkExtent3D direct = ctx.extent("direct"), seen = ctx.extent("gbuffer.position");
     if (direct.width == seen.width && direct.height == seen.height) return;
     const auto text = [](VkExtent3D e) { return std::to_string(e.width) + "x" + std::to_string(e.height); };
-    throw Error(
-        ExitCode::BadInput,
-        "pass `shadow-rays-device`: `direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),
-        "wire direct light of the view that the G-buffer shows");
+    throw Error(ExitCode::BadInput, "`direct` has " + text(direct) + " pixels, its G-buffer " + text(seen),
+                "wire direct light of the view that the G-buffer shows");
   }
 };
 

@@ -48,9 +48,8 @@ class ShadowRaysHost : public Pass {
     const uint32_t width = ctx.extent("direct").width, height = ctx.extent("direct").height;
     if (const glm::uvec2 size = ctx.view().size; size != glm::uvec2(width, height))
       throw Error(ExitCode::BadInput,
-                  "pass `shadow-rays-host`: `direct` has " + std::to_string(width) + "x" +
-                      std::to_string(height) + " pixels, its view " + std::to_string(size.x) + "x" +
-                      std::to_string(size.y),
+                  "`direct` has " + std::to_string(width) + "x" + std::to_string(height) +
+                      " pixels, its view " + std::to_string(size.x) + "x" + std::to_string(size.y),
                   "wire direct light of the view that the pass looks through");
     const Square fine = fineSquare(ctx.view(), ctx.parameters(), 1).within(ctx.extent("direct"));
     const uint32_t first = uint32_t(fine.low.x), last = uint32_t(fine.high.x), end = uint32_t(fine.high.y);

@@ -98,13 +98,12 @@ class TemporalAccumulation : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     if (ctx.has("gloss") != ctx.has("gloss_history"))
-      throw Error(ExitCode::BadInput,
-                  "pass `temporal-accumulation`: of `gloss` and `gloss_history` only one is wired",
+      throw Error(ExitCode::BadInput, "of `gloss` and `gloss_history` only one is wired",
                   "wire `gloss_mean` of the previous frame to `gloss_history`, or neither of them");
     if (!ctx.has("gloss")) return;
-    checkSameSize(ctx, "temporal-accumulation", "gloss", "samples");
+    checkSameSize(ctx, "gloss", "samples");
     const VkExtent3D mean = ctx.extent("mean");
-    checkSize(ctx, "temporal-accumulation", "gloss_history", {mean.width, mean.height}, "`mean`",
+    checkSize(ctx, "gloss_history", {mean.width, mean.height}, "`mean`",
               "wire `gloss_mean` of the previous frame");
   }
 

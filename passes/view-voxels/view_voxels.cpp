@@ -36,8 +36,7 @@ class ViewVoxels : public Pass {
     const std::string& show = ctx.parameters().text("show");
     const char* wanted = show == "radiance" ? "radiance" : show == "weight" ? "weights" : nullptr;
     if (wanted && !ctx.has(wanted))
-      throw Error(ExitCode::BadInput,
-                  "pass `view-voxels`: show `" + show + "` needs the input `" + wanted + "`",
+      throw Error(ExitCode::BadInput, "show `" + show + "` needs the input `" + wanted + "`",
                   std::string("wire `") + wanted + "` or show something else");
   }
 };

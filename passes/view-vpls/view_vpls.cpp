@@ -67,13 +67,11 @@ class ViewVpls : public Pass {
 
   void prepare(PrepareContext& ctx) override {
     if (ctx.parameters().text("show") == "luminance" && !ctx.has("vpls"))
-      throw Error(ExitCode::BadInput, "pass `view-vpls`: show `luminance` needs the input `vpls`",
+      throw Error(ExitCode::BadInput, "show `luminance` needs the input `vpls`",
                   "wire the VPLs that the shading reads, or show something else");
     if (ctx.count("state") > kMostSlots)
-      throw Error(
-          ExitCode::BadInput,
-          "pass `view-vpls`: " + std::to_string(ctx.count("state")) + " VPLs; at most 65536 can be drawn",
-          "use fewer");
+      throw Error(ExitCode::BadInput,
+                  std::to_string(ctx.count("state")) + " VPLs; at most 65536 can be drawn", "use fewer");
   }
 };
 

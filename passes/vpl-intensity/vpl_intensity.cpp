@@ -177,8 +177,8 @@ class IntensityArea : public Pass {
   void prepare(PrepareContext& ctx) override {
     if (ctx.count("vpls") <= kMostCompeting) return;
     throw Error(ExitCode::BadInput,
-                "pass `vpl-intensity-area` takes at most " + std::to_string(kMostCompeting) +
-                    " VPLs, these are " + std::to_string(ctx.count("vpls")),
+                "it takes at most " + std::to_string(kMostCompeting) + " VPLs, these are " +
+                    std::to_string(ctx.count("vpls")),
                 "use `vpl-intensity-pdf`, or fewer VPLs");
   }
 };
@@ -329,18 +329,17 @@ void IntensityImportanceArea::prepare(PrepareContext& ctx) {
   const uint64_t mapCount = uint64_t(maps.width / std::max(maps.height, 1u)) * ctx.layers("atlas");
   if (mapCount < ctx.count("vpls"))
     throw Error(ExitCode::BadInput,
-                "pass `vpl-intensity-importance-area`: the atlas holds " + std::to_string(mapCount) +
-                    " maps for " + std::to_string(ctx.count("vpls")) + " VPLs",
+                "the atlas holds " + std::to_string(mapCount) + " maps for " +
+                    std::to_string(ctx.count("vpls")) + " VPLs",
                 "wire the same VPLs to the atlas and to this pass");
   if (ctx.has("traced") && ctx.count("traced.starts") != uint64_t(p.integer("points")))
     throw Error(ExitCode::BadInput,
-                "pass `vpl-intensity-importance-area`: its paths start from " +
-                    std::to_string(ctx.count("traced.starts")) + " points, it has " +
+                "its paths start from " + std::to_string(ctx.count("traced.starts")) + " points, it has " +
                     std::to_string(p.integer("points")),
                 "give this pass and eye-paths the same number of `points`");
   if (ctx.has("spread") && !(ctx.has("traced") && p.text("kernel") == "disc"))
     throw Error(ExitCode::BadInput,
-                "pass `vpl-intensity-importance-area`: input `spread` says that other rays bring the light "
+                "input `spread` says that other rays bring the light "
                 "of what is "
                 "near, but nothing takes it from these VPLs' light",
                 "wire `traced` and choose kernel `disc`, or leave out `spread` and pass near-field, as "

@@ -13,10 +13,11 @@
 
 #include "benchmarks/runner/interrupt.h"
 #include "fovea/error.h"
+#include "fovea/passes.h"
+#include "fovea/scenes.h"
 #include "framework/base/legible.h"
 #include "framework/base/memory.h"
 #include "framework/base/threads.h"
-#include "framework/graph/pass/registry.h"
 #include "samples/fovea/commands.h"
 
 namespace fovea::cli {
@@ -87,7 +88,8 @@ ExitCode parseAndRun(int argc, char** argv) {
     if (e.get_exit_code() == 0) return ExitCode(program.exit(e));  // --help, --version
     return report(ExitCode::Usage, legible(e.what()) + "\n  -> see `" + chosenCommand(program) + " --help`");
   }
-  graph::Registry::throwIfRegistrationsFailed();
+  passes::registerAll();
+  scenes::registerAll();
   return action();
 }
 

@@ -25,17 +25,17 @@ class Plugins(CliTest):
         standard = ("standard", INTERNAL, ["std::runtime_error", "the moon is made of cheese", "the author of the plug-in"])
         number = ("number", INTERNAL, ["of type int", "the author of the plug-in"])
         memory = ("memory", OUT_OF_MEMORY, ["memory is exhausted"])
-        chosen = ("input", BAD_INPUT, ["error: the moon is not full", "-> wait for a week"])
+        chosen = ("input", BAD_INPUT, ["): the moon is not full", "-> wait for a week"])
         for type, place, cases in (("faulty-prepare", "prepare()", [standard, number, memory, chosen]),
                                    ("faulty-record", "record()", [standard, chosen]),
                                    ("faulty-execute", "execute()", [standard, chosen])):
             for throws, code, says in cases:
                 with self.subTest(type=type, throws=throws):
-                    self.fails(code, *self.render(type, throws), says=["`culprit`", f"`{type}`", str(FAULTY), place, *says])
+                    self.fails(code, *self.render(type, throws), says=[f"pass `culprit` ({type})", str(FAULTY), place, *says])
 
     def test_exception_in_the_constructor(self):
         self.fails(INTERNAL, *self.render("faulty-constructor", "nothing"),
-                   says=["`culprit`", "`faulty-constructor`", str(FAULTY), "constructor", "the moon is made of cheese"])
+                   says=["pass `culprit` (faulty-constructor)", str(FAULTY), "constructor", "the moon is made of cheese"])
 
     def test_exception_in_the_declaration(self):
         broken = PLUGINS / "broken_declaration_plugin.so"

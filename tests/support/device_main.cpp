@@ -3,6 +3,8 @@
 
 #include <iostream>
 
+#include "fovea/passes.h"
+#include "fovea/scenes.h"
 #include "framework/session/test_device.h"
 
 namespace {
@@ -25,6 +27,8 @@ extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
+  fovea::passes::registerAll();
+  fovea::scenes::registerAll();
   testing::UnitTest::GetInstance()->listeners().Append(new ValidationListener);
   const int result = RUN_ALL_TESTS();
   // Objects that were never destroyed are reported when the device is destroyed.

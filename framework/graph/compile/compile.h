@@ -28,7 +28,7 @@
 
 namespace fovea::graph {
 
-// Parses "vpl_count=500", "blur.radius=3" or "left/blur.radius=3". Throws Error(Usage) if there is no '='.
+// Parses "radius=3", "blur.radius=3" or "left/blur.radius=3". Throws Error(Usage) if there is no '='.
 Override parseOverride(std::string_view text);
 
 // Loads a graph by file name, or by bare name ("ir_1000" for ir_1000.json) from the search paths. Throws

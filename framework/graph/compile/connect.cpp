@@ -46,7 +46,7 @@ namespace {
 
 // ---- Descriptions for messages -----------------------------------------------------------------------
 
-// "an image of rgba16f", "a buffer of Vpl (64 bytes each)"; of a ResourceSpec or a ResourceDesc.
+// "an image of rgba16f", "a buffer of Light (64 bytes each)"; of a ResourceSpec or a ResourceDesc.
 template <class Resource>
 std::string describeResource(const Resource& r) {
   if (r.kind == ResourceKind::Buffer)

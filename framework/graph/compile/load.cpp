@@ -197,7 +197,7 @@ Override parseOverride(std::string_view text) {
   const size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0)
     throw Error(ExitCode::Usage, fmt::format("--set {}: expected name=value", text),
-                "e.g. --set vpl_count=500 or --set deferred.kernel=disc");
+                "e.g. --set radius=3 for the graph, or --set blur.radius=3 for a pass");
   return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 

@@ -222,7 +222,7 @@ std::optional<std::string_view> readView(Expansion& all, Scope& scope, const jso
   return std::nullopt;
 }
 
-// A type may end in a graph parameter: "vpl-intensity-$intensity". nullptr after a mistake.
+// A type may end in a graph parameter: "blur-$kernel". nullptr after a mistake.
 const json::Value* readType(Expansion& all, Scope& scope, const json::Value& type) {
   const size_t dollar = type.string.find('$');
   if (dollar == std::string::npos) return &type;

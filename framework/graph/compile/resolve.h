@@ -18,7 +18,7 @@ namespace fovea::graph {
 
 // --set name=value
 struct Override {
-  std::string name;   // "vpl_count" or "pass.param"
+  std::string name;   // "radius" or "pass.radius"
   std::string value;  // as typed
 };
 

@@ -16,10 +16,13 @@
 namespace fovea::graph {
 namespace {
 
+std::string nameOf(const PassOrigin& origin) {
+  return origin.instance.empty() ? fmt::format("pass class `{}`", origin.type)
+                                 : fmt::format("pass `{}` ({})", origin.instance, origin.type);
+}
+
 std::string describe(const PassOrigin& origin) {
-  std::string text = origin.instance.empty()
-                         ? fmt::format("pass class `{}`", origin.type)
-                         : fmt::format("pass `{}` of type `{}`", origin.instance, origin.type);
+  std::string text = nameOf(origin);
   if (!origin.plugin.empty()) text += fmt::format(" from plug-in {}", origin.plugin);
   return text;
 }
@@ -45,8 +48,15 @@ void rethrowWithOrigin(const PassOrigin& origin, std::string_view function) {
     throw;
   } catch (const Error& e) {
     std::vector<Diagnostic> messages = e.diagnostics();
-    messages.push_back(
-        {Severity::Note, {}, {}, fmt::format("{} reports this in {}", describe(origin), function), {}});
+    const std::string name = nameOf(origin);
+    for (Diagnostic& d : messages)
+      if (!d.message.starts_with(name)) d.message = name + ": " + d.message;
+    if (!origin.plugin.empty())
+      messages.push_back({Severity::Note,
+                          {},
+                          {},
+                          fmt::format("{} of plug-in {} reports this", function, origin.plugin),
+                          {}});
     throw Error(e.code(), std::move(messages));
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::OutOfMemory,

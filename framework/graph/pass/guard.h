@@ -14,8 +14,8 @@ struct PassOrigin {
 };
 
 // To be called while an exception that left `function` ("prepare()") of the pass is being handled. An Error keeps its
-// code and its messages and gains a note; std::bad_alloc becomes Error(OutOfMemory) and anything else
-// Error(Internal).
+// code. Its messages begin with the pass, by name and type, so that passes need not say who they are; from a plug-in, it
+// gains a note. std::bad_alloc becomes Error(OutOfMemory) and anything else Error(Internal).
 [[noreturn]] void rethrowWithOrigin(const PassOrigin& origin, std::string_view function);
 
 template <class Body>

@@ -15,7 +15,7 @@ std::string planDot(const Plan& plan);
 // The same facts as JSON, for programs.
 std::string planJson(const Plan& plan);
 
-// "64x32 rgba16f", "128x128x1000 d32f (array)", "1000 x 64 B Vpl"
+// "64x32 rgba16f", "128x128x1000 d32f (array)", "1000 x 64 B Light"
 std::string describe(const ResourceDesc& desc);
 // "12.5 MiB"
 std::string printBytes(uint64_t bytes);

@@ -34,9 +34,8 @@ uint32_t parameterWord(const PassInstance& pass, const KernelConstant& constant)
     default:
       break;
   }
-  throw Error(ExitCode::Internal, "pass `" + pass.bound->declaration->type + "`: push constant `" +
-                                      constant.reflected.name + "` cannot hold parameter `" + spec.name +
-                                      "`");
+  throw Error(ExitCode::Internal,
+              "push constant `" + constant.reflected.name + "` cannot hold parameter `" + spec.name + "`");
 }
 
 }  // namespace
@@ -165,9 +164,8 @@ static void fillDescriptor(PassInstance& pass, const KernelState& kernel, uint32
 void Commands::checkConstants() const {
   for (size_t i = 0; i < kernel_.constants.size(); ++i)
     if (!(constantsSet_ >> i & 1))
-      throw Error(ExitCode::Internal, "pass `" + context_.pass_.bound->name + "`: push constant `" +
-                                          kernel_.constants[i].reflected.name + "` of shader " +
-                                          kernel_.name + " was not set");
+      throw Error(ExitCode::Internal, "push constant `" + kernel_.constants[i].reflected.name +
+                                          "` of shader " + kernel_.name + " was not set");
 }
 
 // Waits for what the command reads and writes. Inside a rendering, render() has already waited.
@@ -177,8 +175,7 @@ void Commands::begin(const uint32_t* indirect) {
     const bool known = std::any_of(pass.renderKernels.begin(), pass.renderKernels.end(),
                                    [&](const Kernel& kernel) { return kernel.state_ == &kernel_; });
     if (known) return;
-    throw Error(ExitCode::Internal, "pass `" + pass.bound->name + "` draws with " + kernel_.name +
-                                        ", which it did not name to render()");
+    throw Error(ExitCode::Internal, "it draws with " + kernel_.name + ", which it did not name to render()");
   }
   std::vector<StepAccess>& touched = pass.touched;
   touched.assign(kernel_.accesses.begin(), kernel_.accesses.end());
@@ -299,9 +296,8 @@ void Commands::drawTriangles(VkBuffer indices, uint32_t first, uint32_t count, u
 
 void Commands::drawIndirect(std::string_view bufferPort, uint64_t offset, uint32_t count, uint32_t stride) {
   if (context_.pass_.layer != kNone)
-    throw Error(ExitCode::NoDevice, "pass `" + context_.pass_.bound->name +
-                                        "` draws indirectly into layers, for which the device lacks "
-                                        "shaderOutputLayer");
+    throw Error(ExitCode::NoDevice,
+                "it draws indirectly into layers, for which the device lacks shaderOutputLayer");
   const uint32_t access = accessOf(*context_.pass_.bound, bufferPort);
   flush(&access);
   vkCmdDrawIndirect(context_.cmd_, context_.buffer(bufferPort).handle(), offset, count, stride);

@@ -79,15 +79,10 @@ const scene::View& RecordContext::view() const { return frame_.views[pass_.viewI
 bool RecordContext::firstFrame() const { return pass_.firstFrame(); }
 static std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
-// The beginning of an error message; `act` is what the pass does, e.g. "fills `sums`".
-static std::string passDoes(const PassInstance& pass, const std::string& act) {
-  return "pass `" + pass.bound->name + "` (" + pass.bound->declaration->type + ") " + act;
-}
-
 static void requireKind(const PassInstance& pass, const Access& access, std::string_view port,
                         ResourceKind kind) {
   if (pass.desc(access).kind == kind) return;
-  throw Error(ExitCode::Internal, passDoes(pass, "takes " + quoted(port) + " for ") +
+  throw Error(ExitCode::Internal, "it takes " + quoted(port) + " for " +
                                       (kind == ResourceKind::Image ? "an image, but it is a buffer"
                                                                    : "a buffer, but it is an image"));
 }
@@ -107,16 +102,14 @@ gpu::Buffer& RecordContext::buffer(std::string_view port) const {
 
 static uint32_t stepIndex(const PassInstance& pass, std::string_view name) {
   if (const auto found = pass.stepByName.find(name); found != pass.stepByName.end()) return found->second;
-  throw Error(ExitCode::Internal, "pass type `" + pass.bound->declaration->type + "` declares no step `" +
-                                      std::string(name) + "`");
+  throw Error(ExitCode::Internal, "it declares no step `" + std::string(name) + "`");
 }
 
 Commands RecordContext::step(std::string_view name) {
   const uint32_t index = stepIndex(pass_, name);
   if (index == kNone || !pass_.steps[index].kernel)
     throw Error(ExitCode::Internal,
-                "pass `" + pass_.bound->name + "` runs step `" + std::string(name) +
-                    "`, which has no kernel in this plan",
+                "it runs step `" + std::string(name) + "`, which has no kernel in this plan",
                 "ask for the same condition as the declaration");
   return start(index);
 }
@@ -175,8 +168,7 @@ void RecordContext::runStep(uint32_t index) {
 
 Commands RecordContext::use(Kernel kernel) {
   if (!kernel.state_)
-    throw Error(ExitCode::Internal, "pass `" + pass_.bound->name + "` uses a kernel that was never made",
-                "make it in prepare()");
+    throw Error(ExitCode::Internal, "it uses a kernel that was never made", "make it in prepare()");
   kernel.state_->overrides.clear();
   return Commands(*this, *kernel.state_);
 }
@@ -260,7 +252,7 @@ static void requireTransfer(const PassInstance& pass, const Access& access, std:
   if (any(access.usage, usage)) return;
   const char* name = usage == Usage::TransferRead ? "TransferRead" : "TransferWrite";
   throw Error(ExitCode::Internal,
-              passDoes(pass, act()) + " without declaring Usage::" + name + " on " + quoted(port));
+              "it " + act() + " without declaring Usage::" + name + " on " + quoted(port));
 }
 
 namespace {
@@ -326,7 +318,7 @@ void RecordContext::copy(std::string_view imageFrom, std::string_view imageTo) {
           std::tie(d.width, d.height, d.depth, d.layers, d.format) ||
       source.mips > 1 || d.mips > 1)
     throw Error(ExitCode::BadInput,
-                passDoes(pass_, act()) + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
+                "it " + act() + ", but " + quoted(imageFrom) + " is " + sizeText(source) + " and " +
                     quoted(imageTo) + " is " + sizeText(d),
                 "wire images of one size and format, without mips");
   beginTransfer(pass_, cmd_, Transfer::Copy, {{&from, Usage::TransferRead}, {&to, Usage::TransferWrite}});
@@ -346,8 +338,7 @@ void RecordContext::barrier() {
 static void setCounter(PassInstance& pass, std::string_view name, double value) {
   auto it = pass.counterByName.find(name);
   if (it == pass.counterByName.end())
-    throw Error(ExitCode::Internal,
-                "pass `" + pass.bound->declaration->type + "` has no counter `" + std::string(name) + "`");
+    throw Error(ExitCode::Internal, "it has no counter `" + std::string(name) + "`");
   pass.counterValues[it->second] = value;
   pass.counterSet[it->second] = true;
 }

@@ -361,7 +361,7 @@ MemberSpec member(std::string name, ResourceSpec resource, Usage usage, std::str
 std::string memberPath(const PortSpec& port, const MemberSpec& member);
 
 // The only naming rule between JSON and shaders: snake_case and dotted paths become camelCase.
-// "surface.position" -> "surfacePosition", "vpl_count" -> "vplCount".
+// "surface.position" -> "surfacePosition", "ray_count" -> "rayCount".
 std::string shaderName(std::string_view path);
 
 }  // namespace fovea::graph

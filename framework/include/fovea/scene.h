@@ -94,7 +94,7 @@ struct Primitive {
   std::vector<glm::vec2> uvs;      // zeros where the model has none
   std::vector<uint32_t> indices;   // three per triangle
   uint32_t material = 0;
-  // A coarser triangulation of the same vertices, which voxels and VPL maps see instead of `indices`;
+  // A coarser triangulation of the same vertices, which voxels and maps of secondary lights see instead of `indices`;
   // empty if they see `indices`.
   std::vector<uint32_t> lightIndices{};
   // For meshes that deform: morph targets are applied first; then the joints of Node::skin move the result.
@@ -334,8 +334,8 @@ struct Geometry {
   // again, or sets the hash of all that rays meet but moving vertices to 0, which stands for unknown.
   uint64_t stillKey = 0;
   std::vector<uint32_t> emissive;  // numbers of the triangles whose material emits, ascending
-  // The triangles that voxels and VPL maps see if any part of the scene is coarser for them; static ones come first.
-  // If empty, they see `triangles`.
+  // The triangles that voxels and maps of secondary lights see if any part of the scene is coarser for them; static
+  // ones come first. If empty, they see `triangles`.
   std::vector<Triangle> lightTriangles;
   uint32_t staticLightTriangles = 0;
   glm::vec3 boundsMin{std::numeric_limits<float>::max()}, boundsMax{std::numeric_limits<float>::lowest()};
@@ -345,7 +345,7 @@ struct Geometry {
     return objects.size() > 1 ? objects[1].firstVertex : uint32_t(positions.size());
   }
 
-  // The triangles that voxels and VPL maps see, by their numbers on the device, where
+  // The triangles that voxels and maps of secondary lights see, by their numbers on the device, where
   // `lightTriangles` follow `triangles`.
   struct LightTriangles {
     uint32_t first, firstMoving, end;
@@ -381,7 +381,7 @@ struct View {
 };
 
 // The placement of an object (an index into Geometry::objects). Object space is the space of its node's mesh, so that
-// a point stored in it (VplState::localPosition) follows the object as it moves. Object 0 holds all static geometry;
+// a point that is stored in it follows the object as it moves. Object 0 holds all static geometry;
 // its object space is world space.
 struct ObjectTransform {
   glm::mat4 toWorld{1}, previousToWorld{1};  // affine transforms of this frame and the last one

@@ -81,7 +81,7 @@ struct SubdivisionEntry {
   SourceLocation where;
   std::string path;
   uint32_t level = 1;
-  std::optional<uint32_t> lightLevel;  // level that voxels and VPL maps see; `level` if none
+  std::optional<uint32_t> lightLevel;  // level that voxels and maps of secondary lights see; `level` if none
   bool loop = true;                    // scheme of meshes that are not cages yet; if false, Catmull-Clark
   float creaseDegrees = 180;           // edges with a larger angle stay sharp
   std::vector<std::string> meshes;     // if empty, all meshes

@@ -27,11 +27,12 @@ std::optional<uint32_t> readLightLevel(json::ObjectReader& r, std::string_view k
   const json::Value* v = r.find(key);
   if (!v) return std::nullopt;
   if (v->isInt() && v->integer >= 0 && v->integer <= int64_t(level)) return uint32_t(v->integer);
-  r.diagnostics().error(v->where.location(), r.pathOf(key),
-                        "`" + std::string(key) + "`: expected a whole number from 0 to " +
-                            std::to_string(level) + ", the picture's level, found " + v->describe(),
-                        "voxels and VPL maps may see a coarser surface than the picture shows, not a finer "
-                        "one; leave it out for the same");
+  r.diagnostics().error(
+      v->where.location(), r.pathOf(key),
+      "`" + std::string(key) + "`: expected a whole number from 0 to " + std::to_string(level) +
+          ", the picture's level, found " + v->describe(),
+      "voxels and maps of secondary lights may see a coarser surface than the picture shows, not a "
+      "finer one; leave it out for the same");
   return std::nullopt;
 }
 

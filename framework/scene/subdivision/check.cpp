@@ -38,7 +38,7 @@ class CageChecker {
                            std::to_string(SubdivisionCage::kMaxLevel));
     if (cage_.lightLevel && *cage_.lightLevel > cage_.level)
       problem("lightLevel",
-              "the level for voxels and VPL maps is " + std::to_string(*cage_.lightLevel) +
+              "the level for voxels and maps of secondary lights is " + std::to_string(*cage_.lightLevel) +
                   ", finer than that of the picture, " + std::to_string(cage_.level),
               "leave it out, or choose one from 0 to " + std::to_string(cage_.level));
     for (size_t i = 0; i < cage_.positions.size(); ++i)

@@ -43,7 +43,7 @@ struct SubdivisionCage {
   std::vector<Corner> corners;
   std::vector<uint32_t> faceMaterials;  // per face; material 0 if empty
   uint32_t level = 2;                   // levels of uniform refinement, 1..kMaxLevel
-  // Level that voxels and VPL maps see, 0..level: triangles between the limit points of the vertices of this level.
+  // Level that voxels and maps of secondary lights see, 0..level: triangles between the limit points of its vertices.
   // If absent, `level`.
   std::optional<uint32_t> lightLevel;
 
