@@ -9,6 +9,7 @@
 #include "fovea/error.h"
 #include "fovea/scene.h"
 #include "framework/graph/compile/compile.h"
+#include "framework/session/graph_run.h"
 
 namespace fovea::bench {
 
@@ -19,6 +20,7 @@ struct GraphOptions {
   std::string graph;
   std::vector<std::string> set, plugins;
   std::vector<std::string> passes;  // folders of pass files
+  session::RaysOn rays = session::RaysOn::Auto;
 };
 
 // Parses "1024x768". Throws Error(Usage) naming the limits.

@@ -121,7 +121,12 @@ struct Device::Impl {
   uint64_t limit = 0;  // 0 for the size of each heap
   uint64_t allocated = 0, peak = 0;
   uint64_t heapAllocated[VK_MAX_MEMORY_HEAPS] = {};
-  std::unordered_map<VkDeviceMemory, std::pair<uint32_t, uint64_t>> allocations;  // heap, bytes
+  struct Allocation {
+    uint32_t heap = 0;
+    uint64_t bytes = 0;
+    void* address = nullptr;  // for the host; null if it is not mapped
+  };
+  std::unordered_map<VkDeviceMemory, Allocation> allocations;
 
   PFN_vkCmdPushDescriptorSetKHR pushDescriptorSet = nullptr;
   PFN_vkSetDebugUtilsObjectNameEXT setName = nullptr;
@@ -331,6 +336,11 @@ uint64_t Device::maxBufferBytes() const { return impl_->maxBuffer; }
 VkPipelineCache Device::pipelineCache() const { return impl_->pipelineCache; }
 ShaderCompiler& Device::shaders() const { return *impl_->shaders; }
 
+// Memory that the host reaches as fast as any other.
+constexpr VkMemoryPropertyFlags kShared = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
+                                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+
 VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
                                 const std::string& what) {
   const uint32_t index = impl_->memoryType(memoryTypeBits, flags);
@@ -357,7 +367,15 @@ VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemor
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail("the driver has no more (" + mebibytes(used) + " are in use)");
   check(result, "allocating " + mebibytes(bytes) + " for `" + what + "`");
-  impl_->allocations.emplace(memory, std::pair(heap, bytes));
+  void* address = nullptr;
+  const bool shared = (impl_->memory.memoryTypes[index].propertyFlags & kShared) == kShared;
+  if (const VkResult mapped =
+          shared ? vkMapMemory(impl_->device, memory, 0, VK_WHOLE_SIZE, 0, &address) : VK_SUCCESS;
+      mapped != VK_SUCCESS) {
+    vkFreeMemory(impl_->device, memory, nullptr);
+    check(mapped, "mapping `" + what + "`");
+  }
+  impl_->allocations.emplace(memory, Impl::Allocation{heap, bytes, address});
   impl_->heapAllocated[heap] += bytes;
   impl_->allocated += bytes;
   impl_->peak = std::max(impl_->peak, impl_->allocated);
@@ -365,12 +383,23 @@ VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemor
   return memory;
 }
 
+void* Device::mapped(VkDeviceMemory memory) const {
+  const std::lock_guard lock(impl_->memoryMutex);
+  const auto it = impl_->allocations.find(memory);
+  return it == impl_->allocations.end() ? nullptr : it->second.address;
+}
+
+bool Device::sharesMemory() const {
+  const uint32_t index = impl_->memoryType(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  return index != ~0u && (impl_->memory.memoryTypes[index].propertyFlags & kShared) == kShared;
+}
+
 void Device::release(VkDeviceMemory memory, uint64_t) {
   if (!memory) return;
   const std::lock_guard lock(impl_->memoryMutex);
   if (const auto it = impl_->allocations.find(memory); it != impl_->allocations.end()) {
-    impl_->heapAllocated[it->second.first] -= it->second.second;
-    impl_->allocated -= it->second.second;
+    impl_->heapAllocated[it->second.heap] -= it->second.bytes;
+    impl_->allocated -= it->second.bytes;
     impl_->allocations.erase(it);
   }
   vkFreeMemory(impl_->device, memory, nullptr);

@@ -96,6 +96,10 @@ class Device {
   VkDeviceMemory allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemoryPropertyFlags flags,
                           const std::string& what);
   void release(VkDeviceMemory memory, uint64_t bytes);
+  // Whether the host reaches the device's own memory as it does any other, so that nothing needs a copy.
+  bool sharesMemory() const;
+  // Where the host finds memory that was allocated; null unless it is such memory.
+  void* mapped(VkDeviceMemory memory) const;
   uint64_t allocatedBytes() const;
   uint64_t peakAllocatedBytes() const;
 

@@ -24,7 +24,7 @@ VkImageCreateInfo imageInfo(const ImageDesc& desc) {
   info.mipLevels = desc.mips;
   info.arrayLayers = desc.layers;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
-  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.tiling = desc.linear ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL;
   info.usage = desc.usage;
   return info;
 }
@@ -124,7 +124,7 @@ Buffer::Buffer(Device& device, const BufferDesc& desc) : device_(&device), desc_
   vkGetBufferMemoryRequirements(device.handle(), handle(), &needs);
   memory_ = allocateFor(device, desc.memory, needs, desc.name);
   bind(memory_.get(), 0);
-  if (desc.memory != MemoryKind::Device)
+  if (!mapped_ && desc.memory != MemoryKind::Device)
     check(vkMapMemory(device.handle(), memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped_),
           "mapping buffer `" + desc.name + "`");
 }
@@ -147,6 +147,7 @@ void Buffer::create() {
 void Buffer::bind(VkDeviceMemory memory, uint64_t offset) {
   check(vkBindBufferMemory(device_->handle(), handle(), memory, offset),
         "binding buffer `" + desc_.name + "`");
+  if (auto* address = static_cast<std::byte*>(device_->mapped(memory))) mapped_ = address + offset;
 }
 
 VkBufferView Buffer::texelView(VkFormat format) {
@@ -198,6 +199,12 @@ void Image::create() {
 
 void Image::bind(VkDeviceMemory memory, uint64_t offset) {
   check(vkBindImageMemory(device_->handle(), handle(), memory, offset), "binding image `" + desc_.name + "`");
+  auto* address = static_cast<std::byte*>(device_->mapped(memory));
+  if (!desc_.linear || !address) return;
+  const VkImageSubresource first{aspect(), 0, 0};
+  VkSubresourceLayout layout{};
+  vkGetImageSubresourceLayout(device_->handle(), handle(), &first, &layout);
+  texels_ = {address + offset + layout.offset, layout.rowPitch};
 }
 
 VkImageAspectFlags Image::aspect() const {
@@ -245,6 +252,17 @@ VkImageView Image::makeView(uint32_t firstMip, uint32_t mips, uint32_t firstLaye
 }
 
 // ---- Requirements, samplers ----------------------------------------------------------------------------------
+
+bool supportsLinear(const Device& device, const ImageDesc& desc) {
+  ImageDesc linear = desc;
+  linear.linear = true;
+  const VkImageCreateInfo info = imageInfo(linear);
+  VkImageFormatProperties properties;
+  return vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.imageType, info.tiling,
+                                                  info.usage, info.flags, &properties) == VK_SUCCESS &&
+         desc.width <= properties.maxExtent.width && desc.height <= properties.maxExtent.height &&
+         desc.mips <= properties.maxMipLevels && desc.layers <= properties.maxArrayLayers;
+}
 
 VkMemoryRequirements memoryRequirements(Device& device, const BufferDesc& desc) {
   checkDesc(device, desc);

@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -47,7 +48,7 @@ class Buffer {
   VkBuffer handle() const { return handle_.get(); }
   uint64_t bytes() const { return desc_.bytes; }
   const std::string& name() const { return desc_.name; }
-  void* mapped() const { return mapped_; }  // null unless Upload or Readback
+  void* mapped() const { return mapped_; }  // null unless Upload or Readback, or Device::sharesMemory()
   // Typed view of the whole buffer for uniform or storage texel buffers; created on first use and cached.
   VkBufferView texelView(VkFormat format);
 
@@ -69,9 +70,16 @@ struct ImageDesc {
   uint32_t width = 1, height = 1, depth = 1, layers = 1, mips = 1;
   bool array = false;  // the default view is an array view even with one layer
   VkImageUsageFlags usage = 0;
+  bool linear = false;  // row after row, so that the host finds the texels if it shares the memory
 };
 
-// Move-only like Buffer; optimal tiling, device memory.
+// The texels of an image as the host finds them.
+struct TexelRows {
+  std::byte* first = nullptr;
+  uint64_t rowBytes = 0;  // from row to row
+};
+
+// Move-only like Buffer; device memory.
 class Image {
  public:
   Image() = default;
@@ -84,6 +92,7 @@ class Image {
   const std::string& name() const { return desc_.name; }
   VkExtent3D extent() const { return {desc_.width, desc_.height, desc_.depth}; }
   VkImageAspectFlags aspect() const;
+  const TexelRows& texels() const { return texels_; }  // none unless it is linear and Device::sharesMemory()
   // Views of the whole image, of one mip level (all layers), or of one layer of one mip level. They are created on
   // first use and cached.
   VkImageView view();
@@ -98,8 +107,12 @@ class Image {
   ImageDesc desc_;
   UniqueMemory memory_;  // null if it is placed
   UniqueImage handle_;
+  TexelRows texels_;
   std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t, bool>, UniqueImageView> views_;
 };
+
+// Whether an image may be linear.
+bool supportsLinear(const Device& device, const ImageDesc& desc);
 
 // Memory requirements, determined without creating memory; input to the aliasing phase.
 VkMemoryRequirements memoryRequirements(Device& device, const BufferDesc& desc);

@@ -11,18 +11,19 @@
 
 namespace fovea::host {
 
-// Texels in the formats that passes have, row after row.
+// Texels in the formats that passes have.
 struct Image {
   std::byte* texels = nullptr;
   VkFormat format = VK_FORMAT_UNDEFINED;
   glm::ivec2 size{0};
+  size_t rowBytes = 0;
 
   Image() = default;
   explicit Image(const graph::HostResource& r)
-      : texels(r.bytes.data()), format(r.format), size(int(r.width), int(r.height)) {}
+      : texels(r.bytes.data()), format(r.format), size(int(r.width), int(r.height)), rowBytes(r.rowBytes) {}
   template <class T>
   T* at(glm::ivec2 p) const {
-    return reinterpret_cast<T*>(texels) + (size_t(p.y) * size_t(size.x) + size_t(p.x));
+    return reinterpret_cast<T*>(texels + size_t(p.y) * rowBytes) + p.x;
   }
 };
 

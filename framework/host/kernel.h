@@ -137,6 +137,7 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
   if constexpr (requires { first.constants; })
     std::memcpy(&first.constants, dispatch.constants.data(),
                 std::min(sizeof first.constants, dispatch.constants.size()));
+  if constexpr (requires { first.counters; }) std::memset(&first.counters, 0, sizeof first.counters);
   const uvec3 groups(dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
   const uvec3 size(dispatch.groupSize[0], dispatch.groupSize[1], dispatch.groupSize[2]);
   const uint32_t all = groups.x * groups.y * groups.z;
@@ -169,6 +170,7 @@ void runKernel(const graph::HostDispatch& dispatch, Passing passing) {
 #define FOVEA_DEVICE_TEXELS_GLSL
 #define FOVEA_TABLES_GLSL
 
+#define CONSTANT static inline const
 #define INOUT(type) type&
 #define OUT(type) type&
 #define DECLARE(function)

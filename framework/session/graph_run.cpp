@@ -110,6 +110,7 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
   graph::BoundGraph made =
       graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size, options_.rays), messages);
   graph::replaceFormats(device_, made);
+  graph::shareWithHost(device_, made);
   for (graph::BoundResource& resource : made.resources) resource.observable = options_.observable;
   auto bound = std::make_shared<const graph::BoundGraph>(std::move(made));
   if (options_.readback) readback_ = options_.readback(*bound);

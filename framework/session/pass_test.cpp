@@ -81,6 +81,7 @@ struct PassTest::Impl {
   std::vector<std::pair<std::string, std::string>> params;  // value as JSON
   glm::uvec2 size{64, 64};
   uint32_t seed = 1;
+  session::RaysOn rays = session::RaysOn::Auto;
   std::map<std::string, InputData> inputs;
   std::function<void(PassTest&, scene::Frame&)> hook;
   scene::Scene scene;
@@ -130,6 +131,7 @@ void PassTest::Impl::build() {
   session::GraphRun::Options options;
   options.size = size;
   options.seed = seed;
+  options.rays = rays;
   options.framesInFlight = kFramesInFlight;
   options.givesInputs = true;
   options.readback = [](const graph::BoundGraph& bound) {
@@ -179,6 +181,10 @@ PassTest& PassTest::scene(scene::Scene scene) {
 }
 PassTest& PassTest::seed(uint32_t seed) {
   impl_->seed = seed;
+  return *this;
+}
+PassTest& PassTest::raysOnHost(bool onHost) {
+  impl_->rays = onHost ? session::RaysOn::Host : session::RaysOn::Device;
   return *this;
 }
 PassTest& PassTest::beforeFrame(std::function<void(PassTest&, scene::Frame&)> hook) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "framework/gpu/device.h"
 
 namespace fovea::cli {
@@ -21,6 +23,23 @@ void addPassesOption(CLI::App& command, std::vector<std::string>& folders) {
       ->type_name("DIR");
 }
 
+namespace {
+
+void addRaysOption(CLI::App& command, session::RaysOn& rays) {
+  using session::RaysOn;
+  static const std::map<std::string, RaysOn> kPlaces = {
+      {"auto", RaysOn::Auto}, {"host", RaysOn::Host}, {"device", RaysOn::Device}};
+  command
+      .add_option_function<std::string>(
+          "--rays", [&rays](const std::string& place) { rays = kPlaces.at(place); },
+          "Where passes trace rays: on the `host` with Embree, on the `device` in compute shaders, or\n"
+          "`auto`, which is the host if the device is a CPU; the results agree but for rounding")
+      ->type_name("PLACE")
+      ->check(CLI::IsMember({"auto", "host", "device"}));
+}
+
+}  // namespace
+
 void addGraphOptions(CLI::App& command, GraphOptions& options) {
   command.add_option("GRAPH", options.graph, "Graph: a file, or the bare name of a stock graph (ir_1000)")
       ->required()
@@ -30,6 +49,7 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
       ->type_name("NAME=VALUE");
   addPluginOption(command, options.plugins);
   addPassesOption(command, options.passes);
+  addRaysOption(command, options.rays);
 }
 
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without) {

@@ -29,8 +29,8 @@ ExitCode check(const CheckOptions& options) {
   const glm::uvec2 size = parseSize(options.size);
   Diagnostics messages;
   const graph::Description description = loadGraph(options.graph, messages);
-  auto bound = std::make_shared<const graph::BoundGraph>(
-      graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, size), messages));
+  auto bound = std::make_shared<const graph::BoundGraph>(graph::bind(
+      description, session::sceneEnvironment(nullptr, {}, {}, size, options.graph.rays), messages));
   gpu::ShaderCompiler compiler(gpu::defaultCacheDirectory());
   graph::addShaderFolders(compiler, graph::Registry::global());
   graph::CompileOptions compileOptions;

@@ -139,8 +139,8 @@ void Render::loadInputs() {
   description_ = loadGraph(options_.graph, messages_);
   // Binds once without the scene, to report the graph's mistakes before the scene is loaded.
   Diagnostics early = messages_;
-  const graph::BoundGraph bound =
-      graph::bind(description_, session::sceneEnvironment(nullptr, {}, {}, size_), early);
+  const graph::BoundGraph bound = graph::bind(
+      description_, session::sceneEnvironment(nullptr, {}, {}, size_, options_.graph.rays), early);
   std::vector<scene::GazeSample> trace;
   if (!options_.gazeTrace.empty()) trace = scene::readGazeCsv(options_.gazeTrace);
   progress_.stage("loading scene " + options_.scene);
@@ -188,6 +188,7 @@ void Render::buildPlan() {
   session::GraphRun::Options run;
   run.size = size_;
   run.seed = options_.seed;
+  run.rays = options_.graph.rays;
   run.readback = [this](const graph::BoundGraph& graph) { return outputs_->outputsOf(graph, size_); };
   run.hostProgress = [this](const std::string& pass, double share) {
     progress_.pass(pass, share);

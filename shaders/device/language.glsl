@@ -8,6 +8,9 @@
 #ifndef FOVEA_LANGUAGE_GLSL
 #define FOVEA_LANGUAGE_GLSL
 
+// A constant that belongs to no function.
+#define CONSTANT const
+
 // Parameters that a function changes.
 #define INOUT(type) inout type
 #define OUT(type) out type

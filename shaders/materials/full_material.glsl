@@ -88,7 +88,7 @@ vec3 mappedNormal(int surface, uint triangle, vec3 weights, vec3 edgeB, vec3 edg
 
 // Least cosine between the normal of shading and the direction to a viewer. A normal map, or interpolation on a coarse
 // mesh, may turn the normal away from a viewer who sees the surface; the normal is then bent back.
-const float kLeastCosine = 0.01;
+CONSTANT float kLeastCosine = 0.01;
 vec3 normalTowards(vec3 normal, vec3 out_) {
   float cosine = dot(normal, out_);
   return cosine < kLeastCosine ? normalize(normal + (kLeastCosine - cosine) * out_) : normal;

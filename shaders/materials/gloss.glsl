@@ -8,7 +8,7 @@
 
 // The mean of Fresnel's curve over the directions, weighted by their cosine: Schlick's and that of a dielectric with an
 // index of refraction of 1.5, which stands for all dielectrics.
-const float kMetalCurve = 1.0 / 21.0, kDielectricCurve = 0.0539357;
+CONSTANT float kMetalCurve = 1.0 / 21.0, kDielectricCurve = 0.0539357;
 
 // Whether a pixel may show another surface in the next frame, as one of them lets light through. normalA: as gbuffer
 // stores it.

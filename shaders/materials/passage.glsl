@@ -7,7 +7,7 @@
 #include "sampling/random.glsl"
 
 // Texels of a SurfaceRecord and of its textures in it.
-const int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
+CONSTANT int kSurfaceTexels = 25, kMetallicRoughnessTexture = 4, kNormalTexture = 7, kSpecularTexture = 10,
           kSpecularColorTexture = 13, kTransmissionTexture = 16, kClearcoatTexture = 19,
           kClearcoatRoughnessTexture = 22;
 
@@ -85,6 +85,6 @@ float passageChance(uint key, uvec2 pixel, uint turn_) {
 }
 
 // For what is looked up once and has no direction, such as a voxel.
-const float kEitherWay = 0.5, kMeanCosine = 0.67;
+CONSTANT float kEitherWay = 0.5, kMeanCosine = 0.67;
 
 #endif

@@ -96,7 +96,7 @@ struct EmitterPoint {
   float density;   // probability density of the choice, per m^2
 };
 
-const EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+CONSTANT EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
 // A point that may light the receiver. choice, u: uniform in [0, 1). The choice is rescaled after each decision, so one
 // number is enough.

@@ -15,7 +15,7 @@ struct EmitterRay {
   vec3 radiance;    // W/(sr m^2)
 };
 
-const EmitterRay kNoEmitterRay = EmitterRay(false, vec3(0.0), kFarAway, 0.0, kNoTriangle, vec3(0.0));
+CONSTANT EmitterRay kNoEmitterRay = EmitterRay(false, vec3(0.0), kFarAway, 0.0, kNoTriangle, vec3(0.0));
 
 bool hasEmitters() { return emitterCount() > 0u || hasEnvironmentMap(); }
 bool facesTo(TracedSurface v, vec3 direction) { return dot(v.normal, direction) > 0.0 && dot(v.face, direction) > 0.0; }

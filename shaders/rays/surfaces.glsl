@@ -37,7 +37,7 @@ vec3 cosineDirection(vec3 normal, vec2 u) {
 
 // ---- What rays meet ------------------------------------------------------------------------------------------------
 
-const TracedSurface kNothingTraced = TracedSurface(false, kNoTriangle, 0u, vec2(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
+CONSTANT TracedSurface kNothingTraced = TracedSurface(false, kNoTriangle, 0u, vec2(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
                                                    vec3(0.0), vec2(0.0), vec3(1.0));
 
 // direction: unit.

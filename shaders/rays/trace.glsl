@@ -11,7 +11,7 @@
 #include "records/rays.h"
 #include "scene/scene.glsl"
 
-const uint kNoTriangle = 0xffffffffu;
+CONSTANT uint kNoTriangle = 0xffffffffu;
 
 struct Ray {
   vec3 origin;     // world space, m

@@ -55,7 +55,7 @@ ivec2 regionSample(uint region, Fovea fovea, ivec2 imageSize, uint stream) {
   return clamp(ivec2(position), ivec2(0), imageSize - 1);
 }
 
-const uint kPointsStream = 0x77656967u;
+CONSTANT uint kPointsStream = 0x77656967u;
 
 vec2 sequencePoint(uint i) { return r2Sequence(uvec2(0x80000000u), i); }
 

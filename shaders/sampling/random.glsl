@@ -20,7 +20,7 @@ uint randomStream(uint seed, uint frameIndex, uint pass, uint index) {
 float uniformFloat(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }
 
 // Steps of the R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), in 2^-32.
-const uvec2 kR2 = uvec2(3242174889u, 2447445414u);
+CONSTANT uvec2 kR2 = uvec2(3242174889u, 2447445414u);
 vec2 r2Sequence(uvec2 start, uint i) { return vec2(uniformFloat(start.x + i * kR2.x), uniformFloat(start.y + i * kR2.y)); }
 
 // Point `turn_` of the R2 sequence, whose starting point is drawn from `stream`.

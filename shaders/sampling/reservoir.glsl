@@ -2,10 +2,11 @@
 #ifndef FOVEA_RESERVOIR_GLSL
 #define FOVEA_RESERVOIR_GLSL
 
+#include "device/language.glsl"
 #include "device/texels.glsl"
 #include "records/reservoir.h"
 
-const Reservoir kNoReservoir = Reservoir(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+CONSTANT Reservoir kNoReservoir = Reservoir(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 
 // list: declared as LARGE_TEXELS(vec4, list).
 #define loadReservoir(list, i) \

@@ -4,8 +4,8 @@
 
 #include "sampling/random.glsl"
 
-const uint kNone = 0xffffffffu;  // in place of a pixel: none
-const float kSamePlace = 1e-3;   // pixels: does not move
+CONSTANT uint kNone = 0xffffffffu;  // in place of a pixel: none
+CONSTANT float kSamePlace = 1e-3;   // pixels: does not move
 
 uint packPixel(ivec2 p) { return uint(p.x) | uint(p.y) << 16; }
 

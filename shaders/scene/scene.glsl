@@ -5,7 +5,7 @@
 #include "scene/octahedral.glsl"
 #include "scene/tables.glsl"
 
-const float kPi = 3.14159265358979;
+CONSTANT float kPi = 3.14159265358979;
 
 // Diagonal of the scene's bounds, m; above 0.
 float diagonal() { return max(distance(frame.boundsMin, frame.boundsMax), 1e-30); }
@@ -18,7 +18,7 @@ uint objectOf(uvec4 triangle) { return triangle.w >> 16; }
 // ---- Materials ---------------------------------------------------------------------------------------------------
 
 // Texels of a material and of its textures in it.
-const int kMaterialTexels = 8, kColorTexture = 2, kEmissionTexture = 5;
+CONSTANT int kMaterialTexels = 8, kColorTexture = 2, kEmissionTexture = 5;
 
 struct Material {
   vec3 baseColor;        // times (1 - metallic): diffuse reflectance where the texture is white
@@ -121,7 +121,7 @@ struct LightSample {
   float distance;   // m; directional: kFarAway
 };
 
-const float kFarAway = 1e30;
+CONSTANT float kFarAway = 1e30;
 
 // The same as scene::sampleLight (framework/scene/lights.h).
 LightSample sampleLight(LightRecord light, vec3 position) {

@@ -288,9 +288,13 @@ void makeResources(Binding& b) {
   }
 }
 
-// A pass that traces rays on the host reaches its resources through copies.
+bool tracesOnHost(const Binding& b, const Port& port) {
+  return b.graph.raysOnHost && b.graph.passes[port.pass].declaration->tracesRays;
+}
+
+// A pass that traces rays on the host may reach its resources through copies.
 Usage usageOf(const Binding& b, const Port& port, const MemberSpec& member, bool reads, bool writes) {
-  if (!b.graph.raysOnHost || !b.graph.passes[port.pass].declaration->tracesRays) return member.usage;
+  if (!tracesOnHost(b, port)) return member.usage;
   return member.usage | (reads || writes ? Usage::TransferRead : Usage::None) |
          (writes ? Usage::TransferWrite : Usage::None);
 }
@@ -310,6 +314,7 @@ void addAccesses(Binding& b, const Port& port, std::vector<Access>& accesses) {
     access.writes = !input;
     access.usage = usageOf(b, port, spec.members[m], access.reads, access.writes);
     resource.usage |= static_cast<uint32_t>(access.usage);
+    resource.onHost |= tracesOnHost(b, port);
     access.previous = port.previous();
     if (input && !access.previous)
       access.version = versionSeen(b, port, r);

@@ -25,6 +25,8 @@ struct BoundResource {
   bool history = false;     // a pass reads last frame's value; two copies swap every frame
   bool output = false;      // an output of the graph, readable by transfer at the end of the frame
   bool observable = false;  // readable by transfer after any pass (Executor::observe)
+  bool onHost = false;      // a step that runs on the host may reach it
+  bool shared = false;      // such a step reaches it where it lies (shareWithHost())
   uint32_t usage = 0;       // union of the Usage bits of all passes
   uint32_t versions = 0;    // number of versions that its writers make
   uint32_t firstSlot = 0;   // Access::slot of version 0

@@ -268,7 +268,7 @@ void Executor::Impl::runPass(FrameSlot& slot, PassInstance& pass, const scene::F
   }
   recorded.end = writeTimestamp(state, cmd);
   recorded.steps = pass.begun;
-  recorded.cpuMs = millisecondsSince(start) - waited.value_or(0);
+  recorded.cpuMs = millisecondsSince(start) - waited.value_or(pass.host.waited());
   recorded.hostMs = waited ? recorded.cpuMs : pass.host.milliseconds();
   recorded.hostCounts.assign(pass.host.counters().begin(), pass.host.counters().end());
   recorded.counterValues = pass.counterValues;

@@ -69,6 +69,8 @@ CompileOptions deviceCompileOptions(gpu::Device& device, std::shared_ptr<const B
 // Replaces formats of images that a device cannot have by wider ones (VK_FORMAT_R16G16_SNORM of
 // gpu::dispensableFeatures()).
 void replaceFormats(const gpu::Device& device, BoundGraph& graph);
+// Where the host shares the memory of the device, lets steps on the host reach resources without copies.
+void shareWithHost(const gpu::Device& device, BoundGraph& graph);
 
 // The limits of a device against which a graph is checked; unknown if `device` is nullptr. Views and quantities are
 // left to the caller.

@@ -116,9 +116,9 @@ FrameResult FrameSlot::result(std::span<const double> timestamps, const PassInst
       uint32_t counted;
       std::memcpy(&counted, gpuCounters + pass.counterOffset + c * sizeof(uint32_t), sizeof(counted));
       const uint64_t onHost = c < recorded.hostCounts.size() ? recorded.hostCounts[c] : 0;
-      result.counters.emplace_back(pass.bound->name + "." + declared[c].name,
-                                   recorded.counterSet[c] ? recorded.counterValues[c]
-                                                          : double(counted) + double(onHost));
+      result.counters.emplace_back(
+          pass.bound->name + "." + declared[c].name,
+          recorded.counterSet[c] ? recorded.counterValues[c] : double(counted) + double(onHost));
     }
   }
   if (readOutputs) {

@@ -45,7 +45,8 @@ struct FrameSlot {
 
   ExecutorState& state;
   VkCommandPool pool = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands;  // one per segment: what needs results of the device on the host splits the frame
+  std::vector<VkCommandBuffer>
+      commands;  // one per segment: what needs results of the device on the host splits the frame
   VkFence fence = VK_NULL_HANDLE;
   gpu::Buffer counters;  // readback
   std::vector<Output> outputs;

@@ -18,20 +18,21 @@ class HostScene;
 
 namespace fovea::graph {
 
-// A resource in memory of the host, tightly packed. Empty for a port that is not wired.
+// A resource in memory of the host. Empty for a port that is not wired.
 struct HostResource {
   std::span<std::byte> bytes;
   VkFormat format = VK_FORMAT_UNDEFINED;  // of an image
   uint32_t width = 0, height = 0;         // of an image, texels
+  uint64_t rowBytes = 0;                  // of an image, from row to row
 };
 
 struct HostDispatch {
   const scene::HostScene* scene = nullptr;
-  uint32_t view = 0;                                    // index into Frame::views
-  std::array<uint32_t, 3> groups{}, groupSize{};        // numbers of work groups, and of invocations in each
-  std::span<const std::byte> constants;                 // the push constants
-  std::span<uint64_t> counters;                         // of the pass, to be added to
-  std::function<HostResource(std::string_view)> port;   // by the name of the binding
+  uint32_t view = 0;                                   // index into Frame::views
+  std::array<uint32_t, 3> groups{}, groupSize{};       // numbers of work groups, and of invocations in each
+  std::span<const std::byte> constants;                // the push constants
+  std::span<uint64_t> counters;                        // of the pass, to be added to
+  std::function<HostResource(std::string_view)> port;  // by the name of the binding
 };
 
 // Runs all invocations, on several threads, and returns when they are done.

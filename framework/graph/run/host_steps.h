@@ -38,6 +38,7 @@ class HostSteps {
 
   std::span<const uint64_t> counters() const { return counters_; }  // of this frame
   double milliseconds() const { return milliseconds_; }             // that the kernels of this frame took
+  double waited() const { return waited_; }  // milliseconds in this frame, for the device
 
  private:
   struct Copy {  // of the resource behind an access
@@ -47,10 +48,10 @@ class HostSteps {
   };
   void bringToHost(PassInstance& pass, std::span<const uint32_t> accesses, VkCommandBuffer cmd);
 
-  std::vector<Copy> copies_;        // per access of the pass; empty if nothing runs on the host
-  std::vector<uint8_t> contents_;   // per access: whether it holds anything that a kernel may read
+  std::vector<Copy> copies_;       // per access of the pass; empty if nothing runs on the host
+  std::vector<uint8_t> contents_;  // per access: whether it holds anything that a kernel may read
   std::vector<uint64_t> counters_;
-  double milliseconds_ = 0;
+  double milliseconds_ = 0, waited_ = 0;
 };
 
 }  // namespace fovea::graph

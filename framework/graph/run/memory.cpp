@@ -136,6 +136,7 @@ gpu::ImageDesc imageDesc(const BoundResource& resource) {
   desc.layers = r.layers;
   desc.mips = r.mips;
   desc.array = r.array;
+  desc.linear = resource.shared;
   const uint32_t u = resource.usage;
   if (has(u, Usage::Sampled)) desc.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
   if (has(u, Usage::StorageRead) || has(u, Usage::StorageWrite)) desc.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
@@ -180,10 +181,19 @@ void replaceFormats(const gpu::Device& device, BoundGraph& graph) {
     if (resource.desc.format == VK_FORMAT_R16G16_SNORM) resource.desc.format = VK_FORMAT_R32G32_SFLOAT;
 }
 
+void shareWithHost(const gpu::Device& device, BoundGraph& graph) {
+  if (!device.sharesMemory()) return;
+  for (BoundResource& resource : graph.resources) {
+    const ResourceDesc& d = resource.desc;
+    const bool plain =
+        d.kind == ResourceKind::Buffer || (!d.volume && !d.array && d.layers == 1 && d.mips == 1 &&
+                                           gpu::supportsLinear(device, imageDesc(resource)));
+    resource.shared = resource.onHost && plain;
+  }
+}
+
 Environment deviceEnvironment(const gpu::Device* device) {
   Environment environment;
-  // A CPU traces rays much faster by itself.
-  environment.texts = {{"device.rays", device && !device->isCpu() ? "device" : "host"}};
   if (device) {
     const VkPhysicalDeviceLimits& limits = device->limits();
     environment.maxImageDimension2D = limits.maxImageDimension2D;

@@ -29,6 +29,8 @@ class PassTest {
   PassTest& viewSize(uint32_t width, uint32_t height);
   PassTest& scene(scene::Scene scene);  // by default empty, with a default camera
   PassTest& seed(uint32_t seed);
+  // Where the pass traces rays, if it does; by default on the host if the device is a CPU.
+  PassTest& raysOnHost(bool onHost);
   // Called before every frame, for instance to move objects, to cut the camera or to change an input with set().
   PassTest& beforeFrame(std::function<void(PassTest&, scene::Frame&)> hook);
 

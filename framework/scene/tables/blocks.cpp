@@ -3,6 +3,7 @@
 #include <string>
 
 #include "fovea/error.h"
+#include "framework/scene/environment/environment_map.h"
 #include "framework/scene/lights.h"
 #include "shaders/records/shadow.h"
 

@@ -38,7 +38,7 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   // Mistakes in the graph are told before a device is looked for and a scene loaded.
   Diagnostics early;
   const graph::Description description = bench::loadGraph(settings_.graph, early);
-  graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size), early);
+  graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size, settings_.graph.rays), early);
   if (!options.tev.empty()) tev_ = std::make_unique<TevStream>(exchange, options.tev);
   device_ =
       session::openDevice({.device = options.device,
@@ -77,6 +77,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   session::GraphRun::Options run;
   run.size = settings.size;
   run.seed = settings.seed;
+  run.rays = settings.graph.rays;
   run.observable = true;
   run.hostProgress = [](const std::string&, double) { return !bench::interrupted(); };
   made->run = std::make_unique<session::GraphRun>(*device_, made->description, made->scene->scene,

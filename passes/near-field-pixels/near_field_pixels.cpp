@@ -1,0 +1,78 @@
+// Light from nearby surfaces at the few pixels that are shaded anew, with rays on the device.
+
+#include <glm/glm.hpp>
+
+#include "fovea/error.h"
+#include "fovea/pass.h"
+#include "passes/bundles.h"
+#include "passes/materials.h"
+
+namespace fovea::passes {
+namespace {
+
+using namespace graph;
+
+void declarePorts(PassDeclaration& d) {
+  d.view();
+  d.input("shade", "shade-mask", shadeMaskAlone(Usage::StorageRead), "pixels whose light must be known");
+  d.input("spread", spreadBuffer(), Usage::StorageRead,
+          "x: least area of a VPL's disc, m^2, from pass near-field");
+  d.inout(
+      "near_field", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::StorageWrite,
+      "rgb: irradiance / pi, W/(sr m^2); a: 0 where it is not known; becomes 1 where a pixel of `shade` got "
+      "rays");
+  d.parameter("samples", integer(1, 1, 1024), "rays per pixel; 4 x 4 pixels distribute theirs evenly");
+  d.parameter(
+      "bounces", integer(2, 1, 64),
+      "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
+  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
+  d.counter("rays", kRaysDoc);
+  d.counter("pixels", "pixels that got rays");
+}
+
+void checkPorts(const PassContext& ctx, glm::uvec2 size) {
+  const auto text = [](uint32_t width, uint32_t height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  for (const char* port : {"shade.mask", "near_field"}) {
+    const VkExtent3D extent = ctx.extent(port);
+    if (size == glm::uvec2(extent.width, extent.height)) continue;
+    throw Error(ExitCode::BadInput,
+                std::string("`") + port + "` has " + text(extent.width, extent.height) +
+                    " pixels, its view " + text(size.x, size.y),
+                "wire images of the view that the pass looks through");
+  }
+}
+
+class NearFieldPixels : public Pass {
+ public:
+  static PassDeclaration declaration() {
+    PassDeclaration d("near-field-pixels",
+                      "light from nearby surfaces at those pixels of a mask where it is not known");
+    d.rays().recorded();
+    declarePorts(d);
+    d.scratch("traced", image2D(VK_FORMAT_R32G32B32A32_SFLOAT, viewWidth(), viewHeight()),
+              Usage::StorageRead | Usage::StorageWrite,
+              "rgb: what the rays of a pixel found; a: 1 where they did, else 0");
+    d.step("near-field-pixels/trace.comp").define("RAY_PASSAGE", fullMaterials());
+    d.step("near-field-pixels/write.comp").over("near_field");
+    return d;
+  }
+
+  void prepare(PrepareContext& ctx) override {
+    const VkExtent3D view = ctx.extent("traced");
+    checkPorts(ctx, {view.width, view.height});
+  }
+
+  void record(RecordContext& ctx) override {
+    const auto samples = uint32_t(ctx.parameters().integer("samples"));
+    for (uint32_t turn = 0; turn < samples; ++turn)
+      ctx.step("trace").constant("turn_", turn).dispatchOver("traced");
+    ctx.run("write");
+  }
+};
+
+FOVEA_PASS(NearFieldPixels);
+
+}  // namespace
+}  // namespace fovea::passes

@@ -1,0 +1,39 @@
+// A part of the light of each pixel of the mask where it is not known: that of one ray. Define: RAY_PASSAGE 0/1
+// (rays/trace.glsl).
+#define MAP_ALONE 0
+#include "rays/near_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+IMAGE(r8, readonly, image2D, shadeMask);
+IMAGE(rgba16f, readonly, image2D, nearField);
+IMAGE(rgba32f, restrict, image2D, traced);
+LIST(readonly, vec4, spread);
+COUNTERS { uint rays, pixels; } counters;
+
+layout(push_constant) uniform Constants {
+  uint samples;
+  uint bounces;
+  uint turn_;  // number of this ray, from 0 on in each frame: without a mean over frames, new rays would flicker
+} constants;
+
+CONSTANT uint kEmitterPoints = 4u;
+
+float discArea() { return spread.list[0].x; }
+void noteLength(float distance_, float probability) {}
+vec3 furtherLight(TracedSurface v, uint bounces, uint stream) { return gather(v, bounces, 1u, stream); }
+float underLobe(vec3 direction, float cosine) { return 1.0; }
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(pixel, imageSize(traced)))) return;
+  vec4 light = constants.turn_ > 0u ? imageLoad(traced, pixel) : vec4(0.0);
+  if (imageLoad(shadeMask, pixel).r > 0.0 && imageLoad(nearField, pixel).a == 0.0) {
+    TracedSurface v = look(vec2(pixel) + 0.5);
+    if (v.there) light += vec4(nearLight(v, uvec2(pixel), constants.turn_, constants.bounces, kEmitterPoints).light / float(constants.samples), 0.0);
+    light.a = float(v.there);
+    atomicAdd(counters.rays, rayCount);
+    if (v.there && constants.turn_ == 0u) atomicAdd(counters.pixels, 1u);
+  }
+  imageStore(traced, pixel, light);
+}

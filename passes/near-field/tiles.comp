@@ -1,0 +1,55 @@
+// Divides the picture into tiles and lists the blocks that have a sample, in any order. Define: RAY_PASSAGE 0/1
+// (rays/trace.glsl), MAP_ALONE 0/1, 1 if lamps send no light here.
+#include "scene/blocks.glsl"
+#include "sampling/fovea.glsl"
+#include "rays/surfaces.glsl"
+#include "records/near_field.h"
+
+layout(local_size_x = 64) in;
+
+LIST(writeonly, NearFieldTile, tiles);
+LIST(writeonly, uint, items);
+VALUE(restrict, uint, listed);
+LIST(restrict, uint, dispatch);
+COUNTERS { uint rays, shaded, gathered; } counters;
+
+layout(push_constant) uniform Constants {
+  float foveaRadius;
+  uint spacing;
+} constants;
+
+CONSTANT uint kItemsInGroup = 64u;   // of trace.comp
+CONSTANT uint kMostGroups = 32768u;  // in a row of its dispatch
+
+// Whether a lamp is so close that its light differs within a wide block, by what the pixel in its middle shows.
+bool isCloseToEmitter(uvec2 corner) {
+#if MAP_ALONE
+  return false;
+#else
+  if (emitterCount() == 0u) return false;
+  ivec2 middle = min(ivec2(corner + constants.spacing / 2u), ivec2(viewSize()) - 1);
+  TracedSurface v = look(vec2(middle) + 0.5);
+  if (!v.there || emitted(v) != vec3(0.0)) return false;
+  float angle = distance(normalize(pixelRay(middle + ivec2(1, 0))), normalize(pixelRay(middle)));
+  return isEmitterWithin(v.position, kClose * float(constants.spacing) * angle * distance(v.position, view.eye));
+#endif
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.x, columns = tileCount(constants.spacing).x;
+  if (index >= uint(tiles.list.length())) return;
+  uvec2 corner = constants.spacing * uvec2(index % columns, index / columns), texels = texelCount();
+  Fovea fovea = makeFovea(view.gaze, view.size, constants.foveaRadius);
+  vec2 nearest = clamp(fovea.centre, vec2(corner), vec2(corner + constants.spacing));
+  bool narrow = distance(nearest, fovea.centre) <= fovea.radius || isCloseToEmitter(corner);
+  tiles.list[index] = NearFieldTile(vec3(0.0), uint(narrow), vec3(0.0), 0u);
+
+  uvec2 first = corner / 2u, end = narrow ? min(first + constants.spacing / 2u, texels) : first + 1u;
+  uint number = (end.x - first.x) * (end.y - first.y), at = atomicAdd(listed.value, number);
+  uint groups = (at + number + kItemsInGroup - 1u) / kItemsInGroup;
+  atomicMax(dispatch.list[0], min(groups, kMostGroups));
+  atomicMax(dispatch.list[1], (groups + kMostGroups - 1u) / kMostGroups);
+  for (uint y = first.y; y < end.y; ++y)
+    for (uint x = first.x; x < end.x; ++x) items.list[at++] = (y * texels.x + x) | (narrow ? 0u : kWideItem);
+  atomicAdd(counters.rays, rayCount);
+}
