@@ -24,7 +24,7 @@
 namespace {
 
 using namespace fovea;
-using passes::PathIntegrator;
+using path_trace::PathIntegrator;
 
 // Wall time, and time for which the process ran on a core; the latter is the one to compare on a machine
 // with other users.
@@ -57,9 +57,9 @@ std::vector<PathIntegrator::TracedRay> recordRays(const scene::Frame& frame, con
        begin = end, end = std::min(samples, end + std::min(end, 64u)))
     for (uint32_t y = 0; y < view.size.y; ++y)
       for (uint32_t x = 0; x < view.size.x; ++x) {
-        const passes::EyePoint eye = integrator.look(glm::vec2(x, y) + 0.5f, count);
+        const path_trace::EyePoint eye = integrator.look(glm::vec2(x, y) + 0.5f, count);
         for (uint32_t s = begin; eye.surface && s < end;) {
-          std::array<passes::PathSampler, PathIntegrator::kMaxPaths> random;
+          std::array<path_trace::PathSampler, PathIntegrator::kMaxPaths> random;
           std::array<glm::vec3, PathIntegrator::kMaxPaths> light{};
           const uint32_t atOnce = std::min(end - s, uint32_t(random.size()));
           for (uint32_t i = 0; i < atOnce; ++i, ++s)
@@ -108,10 +108,10 @@ int run(int argc, char** argv) {
   fmt::print("{}, {}x{}, {} samples a pixel, depth 4, {} threads; {} rays recorded\n", name, side, side,
              samples, std::thread::hardware_concurrency(), recorded.size());
   for (uint32_t i = 0; i < std::max(number(4, 3), 1u); ++i) {
-    passes::PathTraceSettings settings;
+    path_trace::PathTraceSettings settings;
     settings.samples = samples;
     std::vector<glm::vec4> radiance(size_t(side) * side);
-    passes::PathTraceStatistics statistics;
+    path_trace::PathTraceStatistics statistics;
     // Traces the rays alone before and after, because the speed of a shared machine changes from second to second.
     const Seconds before = measure([&] { traceAlone(*rays, recorded); });
     const Seconds paths = measure([&] {

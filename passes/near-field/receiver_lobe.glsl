@@ -1,5 +1,5 @@
 // The lobe in which a surface that the eye sees reflects light, as the G-buffer keeps it; the same as
-// passes/near-field-host/receiver_lobe.h.
+// passes/near-field/receiver_lobe.h.
 #include "materials/gloss.glsl"
 
 IMAGE(rgba16f, readonly, image2D, gbufferNormal);

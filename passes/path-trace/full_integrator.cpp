@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "framework/base/weighted_choice.h"
-#include "framework/scene/environment/environment_map.h"
-#include "framework/scene/lights.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 namespace {
 
 using namespace scene;
@@ -27,10 +26,11 @@ FullIntegrator::FullIntegrator(const Frame& frame, const View& view, const RaySc
       view_(view),
       rays_(rays),
       emitters_(frame),
-      environment_(frame.scene->environmentMap.get()),
-      surfaceShare_(surfaceShare(emitters_, environment_)),
+      emitterShare_(emitterShare(frame, emitters_)),
       materials_(*frame.scene, *frame.geometry),
-      depth_(depth) {}
+      depth_(depth) {
+  if (frame.scene->environmentMap) environment_.emplace(*frame.scene->environmentMap);
+}
 
 RayHit FullIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
   ++rays;
@@ -45,7 +45,7 @@ Ray FullIntegrator::beyond(Ray ray, const RayHit& hit) {
 FullIntegrator::Vertex FullIntegrator::vertexAt(const SurfacePoint& point, glm::vec3 direction) const {
   const float side = glm::dot(point.face, direction) < 0 ? 1.0f : -1.0f;
   const glm::vec3 face = side * point.face, out = -direction;
-  const glm::mat3 frame = orthonormalFrame(normalTowards(point, out));
+  const glm::mat3 frame = frameAround(point.normalTowards(out));
   return {point.position, point.position + (face + out) * rays_.epsilon(), face, frame,
           Bsdf(point.bsdf, glm::normalize(toLocal(frame, out)))};
 }
@@ -109,10 +109,10 @@ glm::vec3 FullIntegrator::visibility(Ray ray, uint64_t& rays) const {
 }
 
 glm::vec3 FullIntegrator::unshadowed(const Light& light, const Vertex& v, Ray& shadowRay) const {
-  const LightSample l = sampleLight(light, v.position);
+  const IncidentLight l = incidentLight(light, v.position);
   shadowRay.origin = v.origin;
   shadowRay.direction = l.direction;
-  if (l.distance < kFarAway) shadowRay.far = l.distance * kShadowEnd;
+  shadowRay.far = l.distance * kShadowEnd;
   return l.irradiance * reflected(v, l.direction);
 }
 
@@ -145,20 +145,20 @@ glm::vec3 FullIntegrator::oneLight(const Vertex& v, const PathSampler& random, u
 }
 
 glm::vec3 FullIntegrator::environmentLight(const Vertex& v, float u1, float u2, uint64_t& rays) const {
-  const EnvironmentMap::Sample s = environment_->sample(u1, u2);
+  const Environment::Sample s = environment_->sample(u1, u2);
   if (!(s.density > 0)) return glm::vec3(0);
   const glm::vec3 radiance = s.radiance * reflected(v, s.direction);
   if (radiance == glm::vec3(0)) return glm::vec3(0);
-  const float density = (1 - surfaceShare_) * s.density;
+  const float density = (1 - emitterShare_) * s.density;
   return radiance * visibility({v.origin, s.direction}, rays) /
          (density + v.bsdf.density(toLocal(v.frame, s.direction)));
 }
 
 glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
-  if (choice >= surfaceShare_) return environmentLight(v, u1, u2, rays);
-  const EmitterPoint p = emitters_.sample({v.origin, v.frame[2]}, choice / surfaceShare_, u1, u2);
-  if (p.triangle == kNoIndex) return glm::vec3(0);
+  if (choice >= emitterShare_) return environmentLight(v, u1, u2, rays);
+  const EmitterPoint p = emitters_.sample({v.origin, v.frame[2]}, choice / emitterShare_, u1, u2);
+  if (!p.hit) return glm::vec3(0);
   Ray ray;
   ray.origin = v.origin;
   ray.direction = p.position + p.normal * rays_.epsilon() - v.origin;
@@ -168,17 +168,18 @@ glm::vec3 FullIntegrator::emitterLight(const Vertex& v, float choice, float u1, 
   const glm::vec3 w = ray.direction / std::sqrt(d2);
   const float cosineEmitter = -glm::dot(p.normal, w);
   if (cosineEmitter <= 0) return glm::vec3(0);
-  const glm::vec3 radiance = materials_.emission(p.triangle, p.u, p.v) * reflected(v, w);
+  const glm::vec3 radiance = materials_.emission(p.hit) * reflected(v, w);
   if (radiance == glm::vec3(0)) return glm::vec3(0);
-  const float density = surfaceShare_ * p.density * d2 / cosineEmitter;  // per sr
+  const float density = emitterShare_ * p.density * d2 / cosineEmitter;  // per sr
   return radiance * visibility(ray, rays) / (density + v.bsdf.density(toLocal(v.frame, w)));
 }
 
 glm::vec3 FullIntegrator::emitted(const Vertex& from, glm::vec3 direction, const RayHit& hit,
                                   const SurfacePoint& at, float density) const {
-  const float perArea = surfaceShare_ * emitters_.density(hit.triangle, {from.origin, from.frame[2]});
-  if (!(perArea > 0) || at.unlit) return glm::vec3(0);
-  const float cosine = std::max(std::abs(glm::dot(at.face, direction)), 1e-12f);
+  const float facing = -glm::dot(at.face, direction);
+  if (at.emission == glm::vec3(0) || (facing <= 0 && !at.doubleSided)) return glm::vec3(0);
+  const float perArea = emitterShare_ * emitters_.density(hit.triangle, {from.origin, from.frame[2]}),
+              cosine = std::max(std::abs(facing), 1e-12f);
   return at.emission * at.coverage * (density / (density + perArea * hit.distance * hit.distance / cosine));
 }
 
@@ -197,16 +198,15 @@ bool FullIntegrator::bounce(Path& path, uint32_t edges, const PathSampler& rando
   for (uint32_t panes = 0; panes < kMaxPanes; ++panes) {
     const RayHit hit = intersect(ray, rays);
     if (!hit) {
-      if (environment_ != nullptr) {
-        const float other = (1 - surfaceShare_) * environment_->density(direction);
+      if (environment_) {
+        const float other = (1 - emitterShare_) * environment_->density(direction);
         path.light += path.throughput * environment_->radiance(direction) *
                       (sample->density / (sample->density + other));
       }
       return false;
     }
     const SurfacePoint s = materials_.at(hit);
-    const bool black =
-        s.unlit || (!materials_.isGlass(hit.triangle) && glm::dot(s.face, direction) >= 0 && !s.doubleSided);
+    const bool black = s.unlit || (!s.glass && glm::dot(s.face, direction) >= 0 && !s.doubleSided);
     if (!black) path.light += path.throughput * emitted(path.vertex, direction, hit, s, sample->density);
     const Vertex next = vertexAt(s, direction);
     const glm::vec3 through = black ? glm::vec3(1 - s.coverage) : passing(s, next);
@@ -232,7 +232,7 @@ void FullIntegrator::trace(Path& path, const PathSampler& random, uint64_t& rays
   for (uint32_t edges = 1; edges < depth_; ++edges) {
     const uint32_t k = 8 * edges;
     if (edges > 1) path.light += path.throughput * oneLight(path.vertex, random, k + 2, rays);
-    if (!emitters_.empty() || environment_ != nullptr) {
+    if (!emitters_.empty() || environment_) {
       const std::array<float, 2> u = random.pair(k + 4);
       path.light += path.throughput * emitterLight(path.vertex, random.number(k + 6), u[0], u[1], rays);
     } else if (edges + 1 == depth_) {
@@ -257,4 +257,4 @@ void FullIntegrator::indirect(const std::vector<Seen>& first, std::span<const Pa
   }
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

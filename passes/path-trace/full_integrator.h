@@ -1,18 +1,21 @@
-// Light along single paths between surfaces with full materials (framework/scene/materials/bsdf.h).
+// Light along single paths between surfaces with full materials (passes/path-trace/bsdf.h).
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/materials/surface_materials.h"
-#include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "passes/path-trace/bsdf.h"
+#include "passes/path-trace/emitters.h"
+#include "passes/path-trace/environment.h"
+#include "passes/path-trace/materials.h"
 #include "passes/path-trace/path_integrator.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 // The same rules as those of PathIntegrator, and these:
 //
@@ -32,7 +35,7 @@ class FullIntegrator {
     glm::vec3 origin{0};    // of rays that leave it, just off the surface
     glm::vec3 face{0};      // geometric normal, unit, on the viewer's side
     glm::mat3 frame{1};     // local to world
-    scene::Bsdf bsdf;
+    Bsdf bsdf;
   };
   // A surface that the eye sees, through those before it in the list.
   struct Seen {
@@ -57,11 +60,11 @@ class FullIntegrator {
   scene::RayHit intersect(const scene::Ray& ray, uint64_t& rays) const;
   static scene::Ray beyond(scene::Ray ray, const scene::RayHit& hit);
   // direction: unit, of the ray that arrives.
-  Vertex vertexAt(const scene::SurfacePoint& point, glm::vec3 direction) const;
+  Vertex vertexAt(const SurfacePoint& point, glm::vec3 direction) const;
   // The BSDF times the cosine, per sr.
   static glm::vec3 reflected(const Vertex& v, glm::vec3 direction);
   // The share of light that passes the surface, in the same way in both directions.
-  static glm::vec3 passing(const scene::SurfacePoint& s, const Vertex& v) {
+  static glm::vec3 passing(const SurfacePoint& s, const Vertex& v) {
     return glm::vec3(1 - s.coverage) + s.coverage * v.bsdf.transmittance();
   }
   // The share of light that passes along the ray.
@@ -77,17 +80,17 @@ class FullIntegrator {
   // Goes on to the next surface; false if the path ends. `edges` join the vertex of the path to the eye.
   bool bounce(Path& path, uint32_t edges, const PathSampler& random, uint64_t& rays) const;
   // Light from the emissive triangle that was hit along a direction chosen with `density` per sr.
-  glm::vec3 emitted(const Vertex& from, glm::vec3 direction, const scene::RayHit& hit,
-                    const scene::SurfacePoint& at, float density) const;
+  glm::vec3 emitted(const Vertex& from, glm::vec3 direction, const scene::RayHit& hit, const SurfacePoint& at,
+                    float density) const;
 
   const scene::Frame& frame_;
   const scene::View& view_;
   const scene::RayScene& rays_;
-  scene::Emitters emitters_;
-  const scene::EnvironmentMap* environment_;
-  float surfaceShare_;  // of the rays aimed at emitters and environment
-  scene::SurfaceMaterials materials_;
+  Emitters emitters_;
+  std::optional<Environment> environment_;
+  float emitterShare_;  // of the rays aimed at emitters and environment
+  Materials materials_;
   uint32_t depth_;
 };
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 template <class T>
 struct HugePageAllocator {
@@ -49,4 +49,4 @@ struct HugePageAllocator {
 template <class T>
 using HugeVector = std::vector<T, HugePageAllocator<T>>;
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

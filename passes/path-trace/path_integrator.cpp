@@ -8,11 +8,10 @@
 #include "framework/base/low_discrepancy.h"
 #include "framework/base/random.h"
 #include "framework/base/weighted_choice.h"
-#include "framework/scene/environment/environment_map.h"
-#include "framework/scene/lights.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 namespace {
 
 using namespace scene;
@@ -36,7 +35,7 @@ glm::vec2 onCircle(float t) {
 }
 
 glm::vec3 cosineDirection(glm::vec3 normal, float u, float v) {
-  return toWorld(orthonormalFrame(normal), glm::vec3(std::sqrt(u) * onCircle(v), std::sqrt(1.0f - u)));
+  return toWorld(frameAround(normal), glm::vec3(std::sqrt(u) * onCircle(v), std::sqrt(1.0f - u)));
 }
 
 glm::vec3 reflectanceOf(const Material& material, glm::vec4 texture) {
@@ -54,6 +53,11 @@ Ray eyeRay(const View& view, glm::vec2 pixel) {
   if (b.z != 0) ray.near = std::max(0.0f, -a.z / b.z);
   if (const float far = (a.w - a.z) / (b.z - b.w); far > ray.near) ray.far = far;
   return ray;
+}
+
+float emitterShare(const Frame& frame, const Emitters& emitters) {
+  if (!frame.scene->environmentMap) return 1;
+  return emitters.empty() ? 0.0f : 0.5f;
 }
 
 float PathSampler::number(uint32_t k) const {
@@ -88,10 +92,11 @@ PathIntegrator::PathIntegrator(const Frame& frame, const View& view, const RaySc
       view_(view),
       rays_(rays),
       emitters_(frame),
-      environment_(frame.scene->environmentMap.get()),
-      surfaceShare_(surfaceShare(emitters_, environment_)),
+      emitterShare_(emitterShare(frame, emitters_)),
       surfaces_(frame),
-      depth_(depth) {}
+      depth_(depth) {
+  if (frame.scene->environmentMap) environment_.emplace(*frame.scene->environmentMap);
+}
 
 RayHit PathIntegrator::intersect(const Ray& ray, uint64_t& rays) const {
   ++rays;
@@ -132,7 +137,7 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
     point.vertex = vertexAt(s, glm::normalize(ray.direction));
     point.vertex.reflectance =
         reflectanceOf(material, sampleTexture(*frame_.scene, material.baseColorTexture, s.uv));
-    point.direct = emission(*frame_.scene, material, s.uv);
+    point.direct = emittedRadiance(*frame_.scene, material, s.uv);
     if (depth_ >= 2) point.direct += point.vertex.reflectance * kInversePi * allLights(point.vertex, rays);
     return point;
   }
@@ -142,12 +147,12 @@ EyePoint PathIntegrator::look(glm::vec2 pixel, uint64_t& rays) const {
 }
 
 glm::vec3 PathIntegrator::unshadowed(const Light& light, const PathVertex& v, Ray& shadowRay) const {
-  const LightSample l = sampleLight(light, v.position);
+  const IncidentLight l = incidentLight(light, v.position);
   const float cosine = glm::dot(v.normal, l.direction);
   if (cosine <= 0 || glm::dot(v.face, l.direction) <= 0) return glm::vec3(0);
   shadowRay.origin = v.origin;
   shadowRay.direction = l.direction;
-  if (l.distance < kFarAway) shadowRay.far = l.distance * kShadowEnd;
+  shadowRay.far = l.distance * kShadowEnd;
   return l.irradiance * cosine;
 }
 
@@ -181,11 +186,11 @@ glm::vec3 PathIntegrator::oneLight(const PathVertex& v, const PathSampler& rando
 
 // The environment is reached in both ways, too.
 glm::vec3 PathIntegrator::environmentLight(const PathVertex& v, float u1, float u2, uint64_t& rays) const {
-  const EnvironmentMap::Sample s = environment_->sample(u1, u2);
+  const Environment::Sample s = environment_->sample(u1, u2);
   const float cosine = glm::dot(v.normal, s.direction);
   if (!(s.density > 0) || cosine <= 0 || glm::dot(v.face, s.direction) <= 0) return glm::vec3(0);
   if (occluded({v.origin, s.direction}, rays)) return glm::vec3(0);
-  return s.radiance * (cosine * kInversePi / ((1 - surfaceShare_) * s.density + cosine * kInversePi));
+  return s.radiance * (cosine * kInversePi / ((1 - emitterShare_) * s.density + cosine * kInversePi));
 }
 
 // Both ways to reach an emissive triangle, a point chosen on it and a bounce that happens to hit it, are weighted
@@ -193,20 +198,23 @@ glm::vec3 PathIntegrator::environmentLight(const PathVertex& v, float u1, float 
 // surfaces or are small.
 glm::vec3 PathIntegrator::emitterLight(const PathVertex& v, float choice, float u1, float u2,
                                        uint64_t& rays) const {
-  if (choice >= surfaceShare_) return environmentLight(v, u1, u2, rays);
-  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, choice / surfaceShare_, u1, u2);
+  if (choice >= emitterShare_) return environmentLight(v, u1, u2, rays);
+  const EmitterPoint p = emitters_.sample({v.origin, v.normal}, choice / emitterShare_, u1, u2);
+  if (!p.hit) return glm::vec3(0);
   Ray ray;
   ray.origin = v.origin;
   ray.direction = p.position + p.normal * rays_.epsilon() - v.origin;
   const float d2 = glm::dot(ray.direction, ray.direction);
-  if (!(d2 > 0) || p.radiance == glm::vec3(0)) return glm::vec3(0);
+  if (!(d2 > 0)) return glm::vec3(0);
   const glm::vec3 w = ray.direction / std::sqrt(d2);
   const float cosine = glm::dot(v.normal, w), cosineEmitter = -glm::dot(p.normal, w);
   if (cosine <= 0 || cosineEmitter <= 0 || glm::dot(v.face, w) <= 0) return glm::vec3(0);
+  const glm::vec3 radiance = emittedRadiance(*frame_.scene, frame_.scene->materials[p.material], p.uv);
+  if (radiance == glm::vec3(0)) return glm::vec3(0);
   ray.far = kShadowEnd;
   if (occluded(ray, rays)) return glm::vec3(0);
-  const float density = surfaceShare_ * p.density * d2 / cosineEmitter;  // per sr
-  return p.radiance * (cosine * kInversePi / (density + cosine * kInversePi));
+  const float density = emitterShare_ * p.density * d2 / cosineEmitter;  // per sr
+  return radiance * (cosine * kInversePi / (density + cosine * kInversePi));
 }
 
 // Adds the light found directly at the vertex, then chooses the ray to the next one. `edges` join the vertex to the
@@ -225,9 +233,9 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
   if (glm::dot(path.direction, v.face) <= 0) return false;
   path.hit = intersect({v.origin, path.direction}, rays);
   if (!path.hit) {
-    if (environment_ != nullptr) {
+    if (environment_) {
       const float own = glm::dot(v.normal, path.direction) * kInversePi,
-                  other = (1 - surfaceShare_) * environment_->density(path.direction);
+                  other = (1 - emitterShare_) * environment_->density(path.direction);
       path.light += path.throughput * environment_->radiance(path.direction) * (own / (own + other));
     }
     return false;
@@ -241,14 +249,14 @@ bool PathIntegrator::leave(Path& path, uint32_t edges, const PathSampler& random
 bool PathIntegrator::arrive(Path& path, uint32_t edges) const {
   const SurfaceHit s = surfaces_.at({path.vertex.origin, path.direction}, path.hit);
   if (glm::dot(s.geometricNormal, path.direction) >= 0 && !surfaces_.doubleSided(s.material)) return false;
-  if (const float density =
-          surfaceShare_ * emitters_.density(path.hit.triangle, {path.vertex.origin, path.vertex.normal});
-      density > 0) {
+  if (surfaces_.emits(s.material)) {
     const float cosineEmitter = std::abs(glm::dot(s.geometricNormal, path.direction));
+    const float perArea =
+        emitterShare_ * emitters_.density(path.hit.triangle, {path.vertex.origin, path.vertex.normal});
     const float other =
-        density * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr
+        perArea * path.hit.distance * path.hit.distance / std::max(cosineEmitter, 1e-12f);  // per sr
     const float own = glm::dot(path.vertex.normal, path.direction) * kInversePi;
-    const glm::vec3 radiance = emission(*frame_.scene, frame_.scene->materials[s.material], s.uv);
+    const glm::vec3 radiance = emittedRadiance(*frame_.scene, frame_.scene->materials[s.material], s.uv);
     path.light += path.throughput * radiance * (own / (own + other));
   }
   if (edges + 1 == depth_) return false;
@@ -337,4 +345,4 @@ void PathIntegrator::indirect(const PathVertex& first, std::span<const PathSampl
   for (size_t i = 0; i < random.size(); ++i) light[i] = wave.paths[i].light;
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

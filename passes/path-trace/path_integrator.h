@@ -5,15 +5,17 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "framework/scene/frame.h"
-#include "framework/scene/rays/emitters.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "passes/path-trace/emitters.h"
+#include "passes/path-trace/environment.h"
 #include "passes/path-trace/surface_table.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 // Random numbers of one path, addressed by an index k.
 struct PathSampler {
@@ -27,6 +29,9 @@ struct PathSampler {
 // The ray through `pixel` (pixels, centres at +0.5), from clip-space depth 0 (near plane) to w (far plane); distances
 // are in lengths of its direction.
 scene::Ray eyeRay(const scene::View& view, glm::vec2 pixel);
+
+// The share of the rays aimed at light that go to emissive triangles; the others go to the environment map.
+float emitterShare(const scene::Frame& frame, const Emitters& emitters);
 
 // A surface as the path that reached it sees it.
 struct PathVertex {
@@ -50,7 +55,7 @@ struct EyePoint {
 // pass direct.
 class PathIntegrator {
  public:
-  using EyePoint = passes::EyePoint;
+  using EyePoint = path_trace::EyePoint;
   PathIntegrator(const scene::Frame& frame, const scene::View& view, const scene::RayScene& rays,
                  uint32_t depth);
 
@@ -58,7 +63,8 @@ class PathIntegrator {
   EyePoint look(glm::vec2 pixel, uint64_t& rays) const;
   // Samples the light that reaches the eye from there by all other paths of at most `depth` edges: at least two
   // reflections of light from the scene's lights, at least one from emissive triangles and the environment map.
-  // light[i] is that of path random[i]. The paths are traced together, so that each waits for memory while the others proceed.
+  // light[i] is that of path random[i]. The paths are traced together, so that each waits for memory while the others
+  // proceed.
   static constexpr size_t kMaxPaths = 32;
   void indirect(const PathVertex& first, std::span<const PathSampler> random, std::span<glm::vec3> light,
                 uint64_t& rays) const;
@@ -85,7 +91,7 @@ class PathIntegrator {
   void bounce(Wave& wave, uint32_t edges, uint64_t& rays) const;
   void reflectLast(Wave& wave, uint32_t edges, uint64_t& rays) const;
   // Whether there is light that is not one of the scene's lights.
-  bool shines() const { return !emitters_.empty() || environment_ != nullptr; }
+  bool shines() const { return !emitters_.empty() || environment_; }
   // Without it the last edge is a shadow ray.
   bool lastByLight(uint32_t edges) const { return !shines() && edges + 1 == depth_; }
   // Irradiance of one light on a vertex, ignoring occlusion.
@@ -100,12 +106,12 @@ class PathIntegrator {
   const scene::Frame& frame_;
   const scene::View& view_;
   const scene::RayScene& rays_;
-  scene::Emitters emitters_;
-  const scene::EnvironmentMap* environment_;
-  float surfaceShare_;  // of the rays aimed at emitters and environment
+  Emitters emitters_;
+  std::optional<Environment> environment_;
+  float emitterShare_;  // of the rays aimed at emitters and environment
   SurfaceTable surfaces_;
   uint32_t depth_;
   std::vector<TracedRay>* record_ = nullptr;
 };
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

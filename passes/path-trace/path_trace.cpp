@@ -4,7 +4,7 @@
 #include "framework/scene/frame.h"
 #include "passes/path-trace/path_tracer.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 namespace {
 
 using namespace graph;
@@ -81,4 +81,4 @@ class PathTrace : public Pass {
 FOVEA_PASS(PathTrace);
 
 }  // namespace
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

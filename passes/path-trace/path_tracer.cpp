@@ -11,7 +11,7 @@
 #include "passes/path-trace/full_integrator.h"
 #include "passes/path-trace/path_integrator.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 namespace {
 
 using namespace scene;
@@ -238,4 +238,4 @@ PathTraceStatistics tracePaths(const Frame& frame, const View& view, const RaySc
   return run(Tracer<PathIntegrator>(frame, view, rays, settings));
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

@@ -9,7 +9,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/ray_scene.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 struct PathTraceSettings {
   // Edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce.
@@ -19,7 +19,7 @@ struct PathTraceSettings {
   uint32_t threads = 0;      // 0 uses one per core
   bool independent = false;  // independent random numbers; if false, Owen-scrambled Sobol' points
   bool box = false;          // rays through the whole pixel; if false, through its centre
-  bool full = false;         // full materials (framework/scene/materials/bsdf.h); if false, diffuse ones
+  bool full = false;         // full materials (passes/path-trace/bsdf.h); if false, diffuse ones
   // Called from time to time on the calling thread, with the share of the work that is done. Returning false stops
   // the run soon, with fewer samples.
   std::function<bool(double)> progress;
@@ -50,4 +50,4 @@ PathTraceStatistics tracePaths(const scene::Frame& frame, const scene::View& vie
                                const scene::RayScene& rays, const PathTraceSettings& settings,
                                const PathTraceImages& images);
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

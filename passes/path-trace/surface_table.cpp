@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 SurfaceTable::SurfaceTable(const scene::Frame& frame) {
   copyTriangles(*frame.geometry);
@@ -33,6 +33,7 @@ void SurfaceTable::copyTexels(const scene::Scene& scene) {
     Look& look = looks_.emplace_back();
     look.factor = glm::vec3(m.baseColor) * (1.0f - m.meanMetallic());
     look.doubleSided = m.doubleSided;
+    look.emits = m.emission != glm::vec3(0);
     look.use = m.baseColorTexture;
     if (look.use.texture >= blocks.size()) continue;
     const scene::Texture& t = scene.textures[look.use.texture];
@@ -53,4 +54,4 @@ void SurfaceTable::copyTexels(const scene::Scene& scene) {
   }
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

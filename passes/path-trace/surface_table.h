@@ -11,7 +11,7 @@
 #include "framework/scene/texture_taps.h"
 #include "passes/path-trace/huge_pages.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 
 class SurfaceTable {
  public:
@@ -24,6 +24,7 @@ class SurfaceTable {
   // the object is left out.
   scene::SurfaceHit at(const scene::Ray& ray, const scene::RayHit& hit) const;
   bool doubleSided(uint32_t material) const { return looks_[material].doubleSided; }
+  bool emits(uint32_t material) const { return looks_[material].emits; }
 
   // Finds where reflectance() will read for `material` at `uv`, and prefetches that memory.
   void find(uint32_t material, glm::vec2 uv, scene::TextureTaps& taps) const;
@@ -53,7 +54,7 @@ class SurfaceTable {
   };
   struct Look {
     glm::vec3 factor{0};  // factor on the texture's colour
-    bool doubleSided = false;
+    bool doubleSided = false, emits = false;
     scene::TextureUse use;
     Blocks blocks;
   };
@@ -98,4 +99,4 @@ inline void SurfaceTable::find(uint32_t material, glm::vec2 uv, scene::TextureTa
   taps.prefetch();
 }
 
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

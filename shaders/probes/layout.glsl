@@ -1,4 +1,4 @@
-// How probes are laid out in space and in their images. passes/probe-rays-host/probe_field.cpp has the same in C++.
+// How probes are laid out in space and in their images. passes/probe-rays/probe_field.cpp has the same in C++.
 #ifndef FOVEA_PROBES_GLSL
 #define FOVEA_PROBES_GLSL
 

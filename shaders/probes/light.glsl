@@ -1,5 +1,5 @@
 // Light of probes at a point (Majercik et al., JCGT 2019, section 5, with the bias of Majercik et al., JCGT 2021,
-// section 3). ProbeField::light() in passes/probe-rays-host/probe_field.cpp is the same in C++: both must be changed
+// section 3). ProbeField::light() in passes/probe-rays/probe_field.cpp is the same in C++: both must be changed
 // together.
 #include "probes/layout.glsl"
 

@@ -1,5 +1,5 @@
 // The cells in which passes remember the light that rays have gathered, on the host
-// (passes/near-field-host/gather_cache.h) and on the device (rays/gather_cache.glsl).
+// (passes/near-field/gather_cache.h) and on the device (rays/gather_cache.glsl).
 #pragma once
 
 #include "shared.h"

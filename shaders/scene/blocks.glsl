@@ -1,4 +1,4 @@
-// Blocks of pixels that share a sample (passes/near-field-host/near_field_tracer.h): tiles of `spacing` x `spacing`
+// Blocks of pixels that share a sample (passes/near-field/near_field_tracer.h): tiles of `spacing` x `spacing`
 // pixels, and texels of 2 x 2 pixels in them.
 #ifndef FOVEA_BLOCKS_GLSL
 #define FOVEA_BLOCKS_GLSL

@@ -9,10 +9,10 @@
 #include "fovea/error.h"
 #include "fovea/scene.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
+#include "passes/path-trace/lights.h"
 #include "tests/support/failure_pictures.h"
 #include "tests/support/graph_run.h"
 
@@ -35,7 +35,7 @@ glm::vec3 directRadiance(const scene::Scene& scene, const scene::Geometry& geome
   const glm::vec3 face = side * surface.geometricNormal, normal = side * surface.shadingNormal;
   glm::vec3 irradiance(0);
   for (const scene::Light& light : scene.lights) {
-    const scene::LightSample sample = scene::sampleLight(light, surface.position);
+    const path_trace::IncidentLight sample = path_trace::incidentLight(light, surface.position);
     const float cosine = glm::dot(normal, sample.direction);
     if (cosine <= 0 || glm::dot(face, sample.direction) <= 0) continue;
     const scene::Ray shadow{surface.position + rays.epsilon() * face, sample.direction, 0, sample.distance};

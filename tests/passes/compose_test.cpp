@@ -48,7 +48,7 @@ void compose(bool withDirect) {
 
 // Where there is no light under the lobe, the irradiance stands in for it.
 TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
-  const scene::BsdfParameters material = bsdfParameters({0.8f, 0.5f, 0.2f}, 0.5f, 0.4f);
+  const path_trace::BsdfParameters material = bsdfParameters({0.8f, 0.5f, 0.2f}, 0.5f, 0.4f);
   const glm::vec3 eye(0, 2, 1);
   GBuffer g(kWidth, kHeight, [&](int x, int y) {
     SurfacePixel p;
@@ -87,7 +87,7 @@ TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
 // For metals the light passes over from rays to VPLs between the roughness 0.7 and 0.85.
 TEST(Compose, SmoothSurfacesReflectWhatRaysFind) {
   for (const auto& [roughness, share] : {std::pair(0.1f, 1.0), {0.76f, 0.6}, {0.9f, 0.0}}) {
-    const scene::BsdfParameters metal = bsdfParameters(glm::vec3(0.9f), 1, roughness);
+    const path_trace::BsdfParameters metal = bsdfParameters(glm::vec3(0.9f), 1, roughness);
     GBuffer g(kWidth, kHeight, [&](int x, int y) {
       SurfacePixel p;
       p.position = {float(x), 0, float(y)};

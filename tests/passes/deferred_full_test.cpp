@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "fovea/error.h"
+#include "passes/path-trace/microfacets.h"
 #include "tests/passes/deferred_scenes.h"
 #include "tests/passes/full_materials_reference.h"
 
@@ -17,7 +18,8 @@ constexpr double kPi = glm::pi<double>();
 const glm::vec3 kEye(0.3f, 2, 1.5f);
 
 // A floor of one material, seen from kEye.
-GBuffer floorOf(const scene::BsdfParameters& material, int width = 24, int height = 20, float step = 0.1f) {
+GBuffer floorOf(const path_trace::BsdfParameters& material, int width = 24, int height = 20,
+                float step = 0.1f) {
   GBuffer g(width, height, [&](int x, int y) {
     SurfacePixel p;
     p.position = {(float(x) - 0.5f * float(width - 1)) * step, 0,
@@ -59,13 +61,13 @@ Output run(const GBuffer& g, const std::vector<Vpl>& vpls, int interleave, bool 
 
 double mirrorAlbedo(const SurfacePixel& p) {
   const double cosine = glm::dot(glm::dvec3(p.normal), glm::normalize(glm::dvec3(kEye - p.position)));
-  return double(scene::AlbedoTable::schlick().at(float(cosine), p.specular.a).total());
+  return double(path_trace::AlbedoTable::schlick().at(float(cosine), p.specular.a).ofMirror());
 }
 
 // The mean of the light under the lobe: GGX, widened by the solid angle of each disc.
 glm::dvec3 underLobe(const SurfacePixel& p, const std::vector<Vpl>& vpls, bool disc) {
   const glm::dvec3 n(p.normal), v = glm::normalize(glm::dvec3(kEye - p.position));
-  const double nv = glm::dot(n, v), alpha = double(scene::ggxAlpha(p.specular.a));
+  const double nv = glm::dot(n, v), alpha = double(path_trace::ggxWidth(p.specular.a));
   glm::dvec3 sum(0);
   for (const Vpl& vpl : vpls) {
     const glm::dvec3 to(vpl.position - p.position);
@@ -93,7 +95,7 @@ double shareOf(const SurfacePixel& p) {
 TEST(DeferredFull, EqualsTheSumOnTheCpu) {
   const auto vpls = randomVpls(150);
   for (const bool disc : {true, false})
-    for (const scene::BsdfParameters& material :
+    for (const path_trace::BsdfParameters& material :
          {bsdfParameters({0.9f, 0.6f, 0.3f}, 1, 0.1f), bsdfParameters({0.9f, 0.6f, 0.3f}, 1, 0.9f),
           bsdfParameters({0.5f, 0.4f, 0.3f}, 0, 0.3f), bsdfParameters({0.5f, 0.4f, 0.3f}, 0, 0.5f),
           bsdfParameters({0.5f, 0.4f, 0.3f}, 0, 0.8f)}) {
@@ -126,7 +128,7 @@ TEST(DeferredFull, DiffuseLayersGetWhatTheSurfaceLetsThrough) {
     for (const float f90 : {1.0f, 0.0f})
       for (const float metallic : {0.0f, 1.0f})
         for (const float cosine : {0.1f, 0.25f, 0.5f, 1.0f}) {
-          scene::BsdfParameters material = bsdfParameters({0.5f, 0.4f, 0.3f}, metallic, roughness);
+          path_trace::BsdfParameters material = bsdfParameters({0.5f, 0.4f, 0.3f}, metallic, roughness);
           material.specularF90 = f90;
           material.specularF0 = 0.04f * glm::vec3(f90);
           SurfacePixel p;

@@ -8,7 +8,8 @@
 
 #include "fovea/error.h"
 #include "fovea/test.h"
-#include "framework/scene/lights.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/shadow_view.h"
 
@@ -159,9 +160,9 @@ std::vector<float> shadowDepth(const std::vector<ShadowView>& views, uint32_t la
 
 struct Surface {
   glm::vec3 normal{0, 1, 0};
-  glm::vec2 face{0, 1};                             // octahedral (0, 1, 0)
-  float distance = 5;                               // 0 in the background
-  const scene::BsdfParameters* material = nullptr;  // if it is full
+  glm::vec2 face{0, 1};                                  // octahedral (0, 1, 0)
+  float distance = 5;                                    // 0 in the background
+  const path_trace::BsdfParameters* material = nullptr;  // if it is full
 };
 
 // Direct radiance, RGBA, of the plane of receivers.
@@ -274,8 +275,8 @@ TEST(Direct, FaceTurnedAwayIsDark) {
 // ---- Full materials -------------------------------------------------------------------------------------------------
 
 // Metals, dielectrics and what is between, smooth and rough.
-std::vector<scene::BsdfParameters> fullMaterials() {
-  std::vector<scene::BsdfParameters> list;
+std::vector<path_trace::BsdfParameters> fullMaterials() {
+  std::vector<path_trace::BsdfParameters> list;
   for (const float roughness : {0.25f, 0.5f, 0.8f, 1.0f})
     for (const float metallic : {0.0f, 0.4f, 1.0f})
       list.push_back(bsdfParameters({0.9f, 0.5f, 0.2f}, metallic, roughness));
@@ -290,20 +291,21 @@ std::vector<scene::BsdfParameters> fullMaterials() {
 TEST(DirectFull, EachLightTypeEqualsTheBsdf) {
   for (const scene::Light& light : {sun({0.3f, -1, 0.6f}), sun({-1, -0.3f, 0.2f}), point({0.4f, 1.5f, -0.3f}),
                                     spot({-0.5f, 2, 0.5f}, {0.4f, -1, 0})})
-    for (const scene::BsdfParameters& material : fullMaterials()) {
+    for (const path_trace::BsdfParameters& material : fullMaterials()) {
       SCOPED_TRACE(testing::Message() << "light type " << int(light.type) << ", roughness "
                                       << material.roughness << ", metallic " << material.metallic);
       Surface surface;
       surface.material = &material;
       const std::vector<float> got = shadeUnshadowed({light}, surface);
-      const glm::mat3 frame = scene::orthonormalFrame({0, 1, 0});
+      const glm::mat3 frame = path_trace::frameAround({0, 1, 0});
       double squares = 0, all = 0, most = 0;
       for (int i = 0; i < kWidth * kHeight; ++i) {
         const glm::vec3 p = receiver(i % kWidth, i / kWidth);
-        const scene::Bsdf bsdf(material, scene::toLocal(frame, glm::normalize(kEye - p)));
-        const scene::LightSample l = scene::sampleLight(light, p);
+        const path_trace::Bsdf bsdf(material, path_trace::toLocal(frame, glm::normalize(kEye - p)));
+        const path_trace::IncidentLight l = path_trace::incidentLight(light, p);
         for (int c = 0; c < 3; ++c) {
-          const double want = double(l.irradiance[c] * bsdf.evaluate(scene::toLocal(frame, l.direction))[c]),
+          const double want = double(l.irradiance[c] *
+                                     bsdf.evaluate(path_trace::toLocal(frame, l.direction))[c]),
                        value = double(got[4 * size_t(i) + size_t(c)]);
           // Dielectrics have a polynomial for Fresnel's equations, and mixtures one curve for both of their parts.
           most = std::max(most, std::abs(value - want) / (want + 1e-3));

@@ -7,7 +7,8 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
 #include "framework/shader_twins/paraboloid.h"
-#include "passes/eye-paths-host/eye_path_tracer.h"
+#include "passes/eye-paths/eye_path_tracer.h"
+#include "passes/path-trace/directions.h"
 #include "shaders/records/rays.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
@@ -119,11 +120,13 @@ TEST(EyePaths, FullMaterialsSendLightBackAsTheyAre) {
                               -glm::dvec3(e.normal));
     ASSERT_TRUE(at);
     const scene::Material& m = look.scene.materials[look.geometry.triangles[at.triangle].material()];
-    const scene::BsdfParameters parameters =
+    const path_trace::BsdfParameters parameters =
         bsdfParameters(glm::vec3(m.baseColor), m.metallic, std::max(m.roughness, scene::kBounceRoughness));
-    const glm::mat3 axes = scene::orthonormalFrame(e.normal);
-    const auto local = [&](glm::vec3 to) { return glm::normalize(scene::toLocal(axes, to - e.position)); };
-    const scene::Bsdf bsdf(parameters, local(look.starts[i % settings.points].position));
+    const glm::mat3 axes = path_trace::frameAround(e.normal);
+    const auto local = [&](glm::vec3 to) {
+      return glm::normalize(path_trace::toLocal(axes, to - e.position));
+    };
+    const path_trace::Bsdf bsdf(parameters, local(look.starts[i % settings.points].position));
     glm::dvec3 want(0);
     for (const scene::Light& light : look.scene.lights) {
       const glm::vec3 to = light.position - e.position;

@@ -1,4 +1,4 @@
-#include "passes/near-field-host/gather_cache.h"
+#include "passes/near-field/gather_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Tests pass gbuffer with full materials against scene::SurfaceMaterials, at rays through the pixels' centres.
+// Tests pass gbuffer with full materials against path_trace::Materials, at rays through the pixels' centres.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 #include "framework/base/random.h"
 #include "framework/scene/materials/passage.h"
-#include "framework/scene/materials/surface_materials.h"
 #include "framework/scene/scene.h"
+#include "passes/path-trace/materials.h"
 #include "shaders/records/scene.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/ray_reference.h"
@@ -81,7 +81,7 @@ Difference compare(const scene::Scene& s, int& compared) {
   const auto id = test.values<uint32_t>("gbuffer.id");
   const scene::View& view = test.lastFrame().views[0];
   const scene::Geometry& g = test.geometry();
-  const scene::SurfaceMaterials materials(s, g);
+  const path_trace::Materials materials(s, g);
   Difference most;
   compared = 0;
   for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
@@ -89,8 +89,8 @@ Difference compare(const scene::Scene& s, int& compared) {
     const RayHit hit = castRay(s, g, glm::dvec3(view.eye), ray);
     if (!hit || id[i] != g.triangles[hit.triangle].materialAndObject) continue;
     ++compared;
-    const scene::SurfacePoint p = materials.at({hit.triangle, float(hit.t), float(hit.u), float(hit.v)});
-    const glm::vec3 out = glm::normalize(view.eye - p.position), n = scene::normalTowards(p, out);
+    const path_trace::SurfacePoint p = materials.at({hit.triangle, float(hit.t), float(hit.u), float(hit.v)});
+    const glm::vec3 out = glm::normalize(view.eye - p.position), n = p.normalTowards(out);
     const auto vec = [&](const std::vector<float>& v) {
       return glm::vec4(v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]);
     };

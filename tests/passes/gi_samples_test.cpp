@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/reservoir_reference.h"
 #include "tests/support/sky.h"
 

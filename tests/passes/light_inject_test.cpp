@@ -6,9 +6,9 @@
 
 #include "fovea/scene.h"
 #include "framework/base/random.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
+#include "passes/path-trace/lights.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
 
@@ -40,7 +40,7 @@ std::vector<glm::dvec3> tapsOf(const scene::VoxelGrid& grid, const scene::VoxelS
 }
 
 glm::dvec3 irradiance(const scene::Light& light, glm::dvec3 position, glm::dvec3 normal) {
-  const scene::LightSample l = scene::sampleLight(light, glm::vec3(position));
+  const path_trace::IncidentLight l = path_trace::incidentLight(light, glm::vec3(position));
   return glm::dvec3(l.irradiance) * std::max(0.0, glm::dot(normal, glm::dvec3(l.direction)));
 }
 
@@ -137,7 +137,7 @@ std::vector<double> tracedIrradiance(const VoxelScene& s) {
       const double weight = double(area) / count;
       points[side] += weight;
       for (const scene::Light& light : s.scene.lights) {
-        const scene::LightSample l = scene::sampleLight(light, p);
+        const path_trace::IncidentLight l = path_trace::incidentLight(light, p);
         const float cosine = glm::dot(normal, l.direction);
         if (cosine <= 0 || l.irradiance.g <= 0) continue;
         const float far = std::min(l.distance, 1e4f) * 0.9999f;

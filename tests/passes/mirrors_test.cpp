@@ -6,7 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "framework/shader_twins/octahedral.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/deferred_reference.h"
 
 namespace fovea::test {

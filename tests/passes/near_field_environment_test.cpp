@@ -8,7 +8,7 @@
 #include "fovea/test.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/frame.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/support/shapes.h"
 #include "tests/support/sky.h"
 

@@ -8,8 +8,9 @@
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/rays/surface_tracer.h"
-#include "framework/shader_twins/paraboloid.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/microfacets.h"
 #include "tests/passes/full_materials_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
@@ -20,7 +21,8 @@ namespace {
 glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& seen, uint32_t material) {
   constexpr int kRays = 8000;
   const scene::Material& m = room.scene.materials[material];
-  const scene::BsdfParameters parameters = bsdfParameters(glm::vec3(m.baseColor), m.metallic, m.roughness);
+  const path_trace::BsdfParameters parameters =
+      bsdfParameters(glm::vec3(m.baseColor), m.metallic, m.roughness);
   glm::dvec3 sum(0);
   for (int i = 0; i < kRays; ++i) {
     const glm::vec2 u((float(i) + 0.5f) / float(kRays), uniformFloat(uint32_t(i) * 2654435769u));
@@ -29,9 +31,10 @@ glm::dvec3 mirroredBy(const Room& room, const scene::Light& lamp, const Seen& se
                                glm::dvec3(seen.position) + 1e-5 * glm::dvec3(seen.normal), glm::dvec3(d));
     if (!hit || room.geometry.triangles[hit.triangle].material() != material) continue;
     const glm::vec3 at = seen.position + float(hit.t) * d, to = lamp.position - at, normal(1, 0, 0);
-    const glm::mat3 axes = scene::orthonormalFrame(normal);
-    const scene::Bsdf bsdf(parameters, scene::toLocal(axes, -d));
-    sum += glm::dvec3(lamp.color * lamp.intensity * bsdf.evaluate(scene::toLocal(axes, glm::normalize(to)))) /
+    const glm::mat3 axes = path_trace::frameAround(normal);
+    const path_trace::Bsdf bsdf(parameters, path_trace::toLocal(axes, -d));
+    sum += glm::dvec3(lamp.color * lamp.intensity *
+                      bsdf.evaluate(path_trace::toLocal(axes, glm::normalize(to)))) /
            double(glm::dot(to, to));
   }
   return sum / double(kRays);
@@ -110,8 +113,8 @@ TEST(NearFieldFull, LampsShineUnderLobes) {
         floor = floor && seen.there && seen.normal.y > 0.9f;
         if (!floor) break;
         const glm::vec3 v = glm::normalize(view.eye - seen.position);
-        const float alpha = scene::ggxAlpha(roughness);
-        const double albedo = double(scene::AlbedoTable::schlick().at(v.y, roughness).total());
+        const float alpha = path_trace::ggxWidth(roughness);
+        const double albedo = double(path_trace::AlbedoTable::schlick().at(v.y, roughness).ofMirror());
         constexpr int kSide = 40;
         for (int c = 0; c < kSide * kSide; ++c) {
           const glm::vec3 at(-1 + 2 * (float(c % kSide) + 0.5f) / kSide,
@@ -121,7 +124,7 @@ TEST(NearFieldFull, LampsShineUnderLobes) {
           const double arrives = double(l.y * l.z * -1 / glm::dot(to, to)) * 2 / (kSide * kSide) / 4;
           wantDiffuse += glm::dvec3(4, 2, 1) * arrives / glm::pi<double>();
           want += glm::dvec3(4, 2, 1) * arrives *
-                  double(scene::ggxReflection(turned(l), turned(v), turned(h), alpha)) / albedo;
+                  double(path_trace::mirrorBrdf(turned(l), turned(v), turned(h), alpha)) / albedo;
         }
       }
       if (!floor || gloss[i].a == 0) continue;

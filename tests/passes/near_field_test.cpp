@@ -9,7 +9,7 @@
 #include "fovea/error.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/vpl_intensity_reference.h"
 
 namespace fovea::test {

@@ -9,9 +9,9 @@
 
 #include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/scene/lights.h"
-#include "framework/scene/materials/surface_materials.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
+#include "passes/path-trace/materials.h"
 #include "tests/passes/path_trace_run.h"
 #include "tests/support/graph_run.h"
 
@@ -67,17 +67,17 @@ TEST(PathTraceFull, LightOnAPlaneIsTheBsdf) {
   s.lights = {sun({0.3f, -1, 0.2f}, {3, 2, 1}), pointLight({0.4f, 1.5f, -0.3f}, {30, 20, 10})};
   const Traced t = trace(s, 16, full(2, 2));
   const scene::Geometry g = scene::flatten(s);
-  const scene::SurfaceMaterials materials(s, g);
+  const path_trace::Materials materials(s, g);
   const scene::View view = scene::makeView(s.cameras[0], {16, 16}, g);
   for (uint32_t i = 0; i < 256; ++i) {
     const glm::vec3 d = glm::normalize(view.rayDirection({float(i % 16) + 0.5f, float(i / 16) + 0.5f}));
     const glm::vec3 p = view.eye - d * (view.eye.y / d.y);
-    const glm::mat3 frame = scene::orthonormalFrame({0, 1, 0});
-    const scene::Bsdf bsdf(materials.at({0, 1, 0.2f, 0.2f}).bsdf, scene::toLocal(frame, -d));
+    const glm::mat3 frame = path_trace::frameAround({0, 1, 0});
+    const path_trace::Bsdf bsdf(materials.at({0, 1, 0.2f, 0.2f}).bsdf, path_trace::toLocal(frame, -d));
     glm::vec3 expected(0);
     for (const scene::Light& light : s.lights) {
-      const scene::LightSample l = scene::sampleLight(light, p);
-      expected += l.irradiance * bsdf.evaluate(scene::toLocal(frame, l.direction));
+      const path_trace::IncidentLight l = path_trace::incidentLight(light, p);
+      expected += l.irradiance * bsdf.evaluate(path_trace::toLocal(frame, l.direction));
     }
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(t.direct[i][c], expected[c], 1e-3f * expected[c]) << i;
     ASSERT_EQ(t.variance[i], glm::vec4(0, 0, 0, 1));
@@ -117,30 +117,30 @@ class PlainPaths {
   glm::dvec3 radiance(glm::vec3 origin, glm::vec3 direction, uint32_t edges, uint32_t stream) const {
     const scene::RayHit hit = rays_.intersect({origin, direction});
     if (!hit) return glm::dvec3(0);
-    const scene::SurfacePoint s = materials_.at(hit);
+    const path_trace::SurfacePoint s = materials_.at(hit);
     if (glm::dot(s.face, direction) >= 0) return glm::dvec3(0);
     glm::dvec3 sum(s.emission);
     if (edges == 1) return sum;
-    const glm::mat3 frame = scene::orthonormalFrame(s.normal);
-    const scene::Bsdf bsdf(s.bsdf, scene::toLocal(frame, -direction));
+    const glm::mat3 frame = path_trace::frameAround(s.normal);
+    const path_trace::Bsdf bsdf(s.bsdf, path_trace::toLocal(frame, -direction));
     const glm::vec3 from = s.position + s.face * 1e-4f;
     for (const scene::Light& light : scene_.lights) {
-      const scene::LightSample l = scene::sampleLight(light, s.position);
+      const path_trace::IncidentLight l = path_trace::incidentLight(light, s.position);
       if (!rays_.occluded({from, l.direction, 0, l.distance * 0.9999f}))
-        sum += glm::dvec3(l.irradiance * bsdf.evaluate(scene::toLocal(frame, l.direction)));
+        sum += glm::dvec3(l.irradiance * bsdf.evaluate(path_trace::toLocal(frame, l.direction)));
     }
     const float z = uniformFloat(hashCombine(stream, 1)),
                 phi = 2 * float(kPi) * uniformFloat(hashCombine(stream, 2));
     const glm::vec3 in(std::sqrt(1 - z * z) * std::cos(phi), std::sqrt(1 - z * z) * std::sin(phi), z);
     return sum + 2 * kPi * glm::dvec3(bsdf.evaluate(in)) *
-                     radiance(from, scene::toWorld(frame, in), edges - 1, hashCombine(stream, 3));
+                     radiance(from, path_trace::toWorld(frame, in), edges - 1, hashCombine(stream, 3));
   }
 
  private:
   const scene::Scene& scene_;
   scene::Geometry geometry_;
   scene::RayScene rays_;
-  scene::SurfaceMaterials materials_;
+  path_trace::Materials materials_;
 };
 
 TEST(PathTraceFull, EqualsAPlainIntegration) {

@@ -15,12 +15,12 @@ namespace fovea::test {
 
 constexpr double kPi = glm::pi<double>();
 
-using passes::PathTraceSettings;
+using path_trace::PathTraceSettings;
 
 struct Traced {
   glm::uvec2 size{0};
   std::vector<glm::vec4> radiance, direct, indirect, variance, halfA, halfB;
-  passes::PathTraceStatistics statistics;
+  path_trace::PathTraceStatistics statistics;
 };
 
 inline Traced trace(const scene::Scene& s, uint32_t side, const PathTraceSettings& settings) {

@@ -6,7 +6,7 @@
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "passes/probe-rays-host/probe_tracer.h"
+#include "passes/probe-rays/probe_tracer.h"
 #include "tests/passes/probe_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/shapes.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "passes/probe-rays-host/probe_field.h"
+#include "passes/probe-rays/probe_field.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/probe_reference.h"
 

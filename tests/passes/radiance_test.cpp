@@ -5,10 +5,11 @@
 
 #include "fovea/scene.h"
 #include "framework/base/random.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/load.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/voxel_light.h"
 #include "tests/support/shapes.h"
@@ -236,7 +237,7 @@ TEST(Radiance, ConesAgreeWithManyRays) {
     const auto got = radiosity(s, radiance, runMips(s, radiance, directional), vpls, "cones");
     double total = 0, wanted = 0, off = 0;
     for (size_t i = 0; i < vpls.size(); ++i) {
-      const glm::mat3 frame = scene::orthonormalFrame(vpls[i].normal);
+      const glm::mat3 frame = path_trace::frameAround(vpls[i].normal);
       double e = 0;
       constexpr int kRays = 512;
       for (int k = 0; k < kRays; ++k) {
@@ -288,7 +289,7 @@ std::vector<scene::VplState> vplsOnSurfaces(const VoxelScene& s, size_t count) {
 
 // Green irradiance by light that has been reflected once, from traced paths.
 double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, const scene::VplState& vpl) {
-  const glm::mat3 frame = scene::orthonormalFrame(vpl.normal);
+  const glm::mat3 frame = path_trace::frameAround(vpl.normal);
   constexpr int kRays = 512;
   double e = 0;
   for (int k = 0; k < kRays; ++k) {
@@ -303,7 +304,7 @@ double tracedSecondBounce(const VoxelScene& s, const scene::RayScene& rays, cons
     const scene::Material& material = s.scene.materials[at.material];
     double arriving = 0;
     for (const scene::Light& light : s.scene.lights) {
-      const scene::LightSample l = scene::sampleLight(light, at.position);
+      const path_trace::IncidentLight l = path_trace::incidentLight(light, at.position);
       const float cosine = glm::dot(at.geometricNormal, l.direction);
       if (cosine <= 0 || l.irradiance.g <= 0) continue;
       const scene::Ray shadow{at.position + gap * at.geometricNormal, l.direction, 0,

@@ -5,8 +5,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "framework/scene/rays/surface_tracer.h"
-#include "framework/shader_twins/paraboloid.h"
-#include "passes/near-field-host/receiver_lobe.h"
+#include "passes/near-field/receiver_lobe.h"
+#include "passes/path-trace/directions.h"
 #include "tests/passes/full_materials_reference.h"
 
 namespace fovea::test {
@@ -68,7 +68,7 @@ TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
   const float roughness = 0.5f, cosine = 0.6f;
   const double alpha = double(roughness) * double(roughness);
   const glm::dvec3 n(kNormal), v(toEye(cosine));
-  const double albedo = double(scene::AlbedoTable::schlick().at(cosine, roughness).total());
+  const double albedo = double(path_trace::AlbedoTable::schlick().at(cosine, roughness).ofMirror());
   const ReceiverLobe l = lobe(1e-4f, roughness, cosine);  // so little that none is scattered twice
   for (uint32_t i = 0; i < 50; ++i) {
     const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
@@ -83,14 +83,14 @@ TEST(ReceiverLobe, IsThatOfTheMicrofacets) {
 
 // A white metal, whose microfacets scatter everything in the end.
 TEST(ReceiverLobe, HasWhatIsScatteredMoreThanOnce) {
-  scene::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
+  path_trace::BsdfParameters white = bsdfParameters(glm::vec3(1), 1, 1);
   for (const float cosine : {0.2f, 0.6f, 1.0f}) {
-    const glm::mat3 frame = scene::orthonormalFrame(kNormal);
-    const scene::Bsdf bsdf(white, scene::toLocal(frame, toEye(cosine)));
+    const glm::mat3 frame = path_trace::frameAround(kNormal);
+    const path_trace::Bsdf bsdf(white, path_trace::toLocal(frame, toEye(cosine)));
     const ReceiverLobe l = lobe(1, 1, cosine);
     for (uint32_t i = 0; i < 50; ++i) {
       const glm::vec3 direction = scene::cosineDirection(kNormal, scene::streamSequence(3, i));
-      const double want = glm::pi<double>() * double(bsdf.evaluate(scene::toLocal(frame, direction)).x) /
+      const double want = glm::pi<double>() * double(bsdf.evaluate(path_trace::toLocal(frame, direction)).x) /
                           double(glm::dot(kNormal, direction));
       EXPECT_NEAR(respond(l, direction), want, 0.01 * want) << cosine << " " << i;
     }

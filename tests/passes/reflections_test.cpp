@@ -7,7 +7,7 @@
 
 #include "fovea/error.h"
 #include "framework/scene/environment/environment_map.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "shaders/records/mirror.h"
 #include "tests/passes/deferred_reference.h"
 #include "tests/passes/scene_of_everything.h"

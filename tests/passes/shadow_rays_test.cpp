@@ -8,9 +8,9 @@
 #include "fovea/error.h"
 #include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/scene/lights.h"
-#include "framework/scene/materials/surface_materials.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
+#include "passes/path-trace/materials.h"
 #include "tests/passes/candidates_reference.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_intensity_reference.h"
@@ -77,7 +77,7 @@ void wire(PassTest& test, const Room& room, bool surfaces, const std::vector<uin
 glm::dvec3 radiance(const Room& room, const Seen& seen) {
   glm::dvec3 e(0);
   for (const scene::Light& light : room.scene.lights) {
-    const scene::LightSample l = scene::sampleLight(light, seen.position);
+    const path_trace::IncidentLight l = path_trace::incidentLight(light, seen.position);
     const double cosine = glm::dot(glm::dvec3(seen.normal), glm::dvec3(l.direction));
     if (cosine <= 0) continue;
     RayOptions options;
@@ -135,25 +135,25 @@ TEST(ShadowRaysHost, FullMaterialsAreThoseOfTheBsdf) {
              std::vector<uint64_t>(room.pixels.size(), glm::packHalf4x16({1, 2, 3, 0})));
   test.run();
   const auto after = test.values<uint64_t>("direct");
-  const scene::SurfaceMaterials materials(room.scene, room.geometry);
+  const path_trace::Materials materials(room.scene, room.geometry);
   const scene::View& view = test.lastFrame().views[0];
   int lit = 0;
   for (uint32_t i = 0; i < room.pixels.size(); ++i) {
     const glm::dvec3 ray(view.rayDirection(glm::vec2(int(i) % kSize.x, int(i) / kSize.x) + 0.5f));
     const RayHit hit = castRay(room.scene, room.geometry, glm::dvec3(view.eye), ray);
     if (!hit) continue;
-    const scene::SurfacePoint p = materials.at({hit.triangle, 0, float(hit.u), float(hit.v)});
+    const path_trace::SurfacePoint p = materials.at({hit.triangle, 0, float(hit.u), float(hit.v)});
     const glm::vec3 out = glm::normalize(view.eye - p.position);
-    const glm::mat3 frame = scene::orthonormalFrame(scene::normalTowards(p, out));
-    const scene::Bsdf bsdf(p.bsdf, scene::toLocal(frame, out));
+    const glm::mat3 frame = path_trace::frameAround(p.normalTowards(out));
+    const path_trace::Bsdf bsdf(p.bsdf, path_trace::toLocal(frame, out));
     glm::dvec3 want(p.emission);
     for (const scene::Light& light : room.scene.lights) {
-      const scene::LightSample l = scene::sampleLight(light, p.position);
+      const path_trace::IncidentLight l = path_trace::incidentLight(light, p.position);
       RayOptions options;
       if (light.type == scene::LightType::Point) options.tMax = l.distance;
       const glm::dvec3 origin = glm::dvec3(p.position) + 1e-5 * glm::dvec3(p.face);
       if (castRay(room.scene, room.geometry, origin, glm::dvec3(l.direction), options)) continue;
-      want += glm::dvec3(l.irradiance * bsdf.evaluate(scene::toLocal(frame, l.direction)));
+      want += glm::dvec3(l.irradiance * bsdf.evaluate(path_trace::toLocal(frame, l.direction)));
       ++lit;
     }
     const glm::vec4 got = glm::unpackHalf4x16(after[i]);

@@ -7,7 +7,7 @@
 #include "framework/base/random.h"
 #include "tests/support/shapes.h"
 
-namespace fovea::passes {
+namespace fovea::path_trace {
 namespace {
 
 using namespace scene;
@@ -68,4 +68,4 @@ TEST(SurfaceTable, HoldsWhatTheSceneHolds) {
 }
 
 }  // namespace
-}  // namespace fovea::passes
+}  // namespace fovea::path_trace

@@ -5,7 +5,7 @@
 
 #include "fovea/error.h"
 #include "framework/base/random.h"
-#include "passes/near-field-host/near_field_tracer.h"
+#include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/eye_scene.h"
 
 namespace fovea::test {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "passes/eye-paths-host/eye_path_tracer.h"
+#include "passes/eye-paths/eye_path_tracer.h"
 #include "tests/passes/vpl_intensity_scene.h"
 
 namespace fovea::test {

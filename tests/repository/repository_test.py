@@ -37,6 +37,11 @@ ROOMS = {
 # graph/ learns of the scene only through a frame.
 EXCEPTIONS = {("framework/graph", "framework/scene/frame.h")}
 
+# What computes light for the methods. The path tracer knows none of it, as it proves them; it may ask what a ray hits.
+LIGHT_TRANSPORT = ("framework/shader_twins/", "framework/scene/materials/", "framework/scene/rays/",
+                   "framework/scene/lights.h", "shaders/")
+RAYS_ALONE = "framework/scene/rays/ray_scene.h"
+
 # Words that are also plain English count only where they are quoted.
 PLAIN_WORDS = {"room", "yard", "balcony", "direct", "radiance", "importance", "candidates", "manage", "emit", "bounce",
                "accumulate", "compose", "deferred", "reproject", "mipmap", "gbuffer", "voxelize", "tonemap",
@@ -93,6 +98,23 @@ class Rooms(unittest.TestCase):
                 elif there not in reachable(room) | {"framework/include"} and (room, name) not in EXCEPTIONS:
                     wrong.append(f"{path} includes {name}: {room} must not know of {there}")
         self.assertGreater(checked, 500)
+        self.assertEqual(wrong, [])
+
+    def test_the_path_tracer_shares_no_equation_with_the_methods(self):
+        open_files = {p for p in tracked() if str(p).startswith("passes/path-trace/") and p.suffix in {".cpp", ".h"}}
+        self.assertGreater(len(open_files), 15)
+        wrong, seen = [], set()
+        while open_files:
+            path = open_files.pop()
+            seen.add(path)
+            for name in re.findall(r'^#include "([^"]+)"', read(path), re.M):
+                target = Path(f"framework/include/{name}" if name.startswith("fovea/") else name)
+                if name.startswith(LIGHT_TRANSPORT) and name != RAYS_ALONE:
+                    wrong.append(f"{path} includes {name}")
+                elif name.startswith("passes/") and target.parts[1] != "path-trace":
+                    wrong.append(f"{path} includes {name}, which is another pass's")
+                elif target not in seen and (SOURCE / target).is_file():
+                    open_files.add(target)
         self.assertEqual(wrong, [])
 
     def test_the_framework_names_no_pass_and_no_scene(self):

@@ -9,10 +9,10 @@
 
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "framework/scene/lights.h"
 #include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "passes/path-trace/directions.h"
+#include "passes/path-trace/lights.h"
 
 namespace fovea::test {
 
@@ -60,7 +60,7 @@ class PathReference {
   glm::dvec3 direct(const scene::SurfaceHit& at) const {
     glm::dvec3 e(0);
     for (const scene::Light& light : scene_.lights) {
-      const scene::LightSample l = sampleLight(light, at.position);
+      const path_trace::IncidentLight l = path_trace::incidentLight(light, at.position);
       const float cosine = glm::dot(at.shadingNormal, l.direction);
       if (cosine <= 0 || glm::dot(at.geometricNormal, l.direction) <= 0) continue;
       const glm::vec3 from = at.position + at.geometricNormal * rays_.epsilon();
@@ -73,8 +73,8 @@ class PathReference {
     const float u = uniformFloat(randomStream(77, pixel, 2 * bounce, sample));
     const float v = uniformFloat(randomStream(77, pixel, 2 * bounce + 1, sample));
     const float r = std::sqrt(u), phi = glm::two_pi<float>() * v;
-    return scene::toWorld(scene::orthonormalFrame(n),
-                          {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
+    return path_trace::toWorld(path_trace::frameAround(n),
+                               {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
   }
   const scene::Scene& scene_;
   const scene::Geometry& geometry_;
