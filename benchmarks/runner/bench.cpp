@@ -121,7 +121,7 @@ class Bench {
 void Bench::openDevice() {
   runner_.reset();
   runner_ = std::make_unique<BenchRunner>(
-      folder_, session::openDevice({.device = options_.device, .without = options_.without}), progress_);
+      folder_, gpu::openDevice({.device = options_.device, .without = options_.without}), progress_);
 }
 
 void Bench::chooseJobs() {

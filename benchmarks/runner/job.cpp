@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& 
 
 }  // namespace
 
-BenchRunner::BenchRunner(const BenchFolder& folder, std::unique_ptr<gpu::Device> device, Progress& progress)
+BenchRunner::BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device, Progress& progress)
     : folder_(folder), device_(std::move(device)), progress_(progress) {}
 
 bool BenchRunner::useScene(const Job& job, std::string& why) {

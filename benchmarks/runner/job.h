@@ -18,7 +18,7 @@ namespace fovea::bench {
 
 class BenchRunner {
  public:
-  BenchRunner(const BenchFolder& folder, std::unique_ptr<gpu::Device> device, Progress& progress);
+  BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device, Progress& progress);
 
   // What the result depends on; finds every mistake in the job's scene, graph and parameters. Throws Error(BadInput)
   // with the place in the suite. Returns nullopt if an optional scene is missing; `why` then gives the reason.
@@ -54,7 +54,7 @@ class BenchRunner {
   void writePicture(const std::string& name, const image::Image& picture) const;
 
   const BenchFolder& folder_;
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;
   Progress& progress_;
   std::string sceneName_;
   scene::Scene scene_;

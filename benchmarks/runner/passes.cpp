@@ -61,7 +61,7 @@ class Bench {
 
   const PassBenchOptions& options_;
   Progress progress_;
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;
   graph::Description description_;
   scene::Scene scene_;
   scene::Geometry geometry_;
@@ -76,7 +76,7 @@ void Bench::open() {
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages);
   geometry_ = scene::flatten(scene_);
-  device_ = session::openDevice({.device = options_.device, .without = options_.without});
+  device_ = gpu::openDevice({.device = options_.device, .without = options_.without});
   progress_.clear();
   printWarnings(messages);
 }

@@ -13,59 +13,15 @@
 #include "framework/gpu/physical_device.h"
 #include "framework/gpu/shader/disk_cache.h"
 #include "framework/gpu/shader/shader.h"
+#include "framework/gpu/validation.h"
 
 namespace fovea::gpu {
 namespace {
-
-constexpr size_t kMaxMessages = 200;  // otherwise a mistake in a loop would exhaust memory
 
 std::string mebibytes(uint64_t bytes) {
   if (bytes < (1u << 20)) return std::to_string(bytes) + " bytes";
   const uint64_t tenths = (bytes * 10 + (1u << 19)) >> 20;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MiB";
-}
-
-// The messages of the validation layers.
-struct MessageLog {
-  Validation validation = Validation::Off;
-  std::function<void(const std::string&)> forward;
-  std::mutex mutex;
-  std::vector<std::string> messages;
-};
-
-// Whether a message does not point to a mistake of fovea.
-bool ignored(Validation validation, const VkDebugUtilsMessengerCallbackDataEXT& data) {
-  const std::string_view id = data.pMessageIdName ? data.pMessageIdName : "";
-  // This mode announces the features that it enables for itself.
-  if (validation == Validation::GpuAssisted) return id == "UNASSIGNED-GPU-Assisted Validation Setup";
-  if (validation != Validation::BestPractices) return false;
-  constexpr std::string_view kAdvice[] = {
-      // The extensions that deliver these very messages.
-      "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
-      // One allocation per resource is intended: there are a few hundred of them, and transient ones share a heap.
-      "UNASSIGNED-BestPractices-vkAllocateMemory-small-allocation",
-      "UNASSIGNED-BestPractices-vkBindMemory-small-dedicated-allocation",
-      // Set-up transfers are fenced off from everything before and after them; the barriers of frames are exact.
-      "UNASSIGNED-BestPractices-pipeline-stage-flags",
-      "UNASSIGNED-BestPractices-ImageBarrierAccessLayout",
-      // The layer knows only requirements queried from objects, not vkGetDevice{Buffer,Image}MemoryRequirements.
-      "UNASSIGNED-BestPractices-vkBindBufferMemory-requirements-not-retrieved",
-      "UNASSIGNED-BestPractices-vkBindImageMemory-requirements-not-retrieved",
-      // A query whether a format is supported may well be answered with no.
-      "UNASSIGNED-BestPractices-Error-Result",
-  };
-  return std::find(std::begin(kAdvice), std::end(kAdvice), id) != std::end(kAdvice);
-}
-
-VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                                         VkDebugUtilsMessageTypeFlagsEXT,
-                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-  auto& log = *static_cast<MessageLog*>(user);
-  if (ignored(log.validation, *data)) return VK_FALSE;
-  if (log.forward) log.forward(data->pMessage);
-  const std::lock_guard lock(log.mutex);
-  if (log.messages.size() < kMaxMessages) log.messages.emplace_back(data->pMessage);
-  return VK_FALSE;
 }
 
 template <class F>
@@ -87,14 +43,19 @@ std::vector<DeviceInfo> listDevices() {
 struct Device::Impl {
   ~Impl();
   void createInstanceAndMessenger(const DeviceOptions& options);
-  void createDevice(const PhysicalDevice& chosen, const std::vector<std::string>& without);
+  void loadLabels();
+  void choose(const PhysicalDevice& chosen, const std::vector<std::string>& without);
   bool lacks(std::string_view feature) const;
-  void queryFeatures(FeatureChain& enabled);
+  void chooseFeatures(FeatureChain& enabled) const;
+  void createDevice(const FeatureChain& enabled);
+  void start(const FeatureChain& enabled, const DeviceOptions& options);
+  void describe(const FeatureChain& enabled);
   void createCaches(const DeviceOptions& options);
   void savePipelineCache();
   uint32_t memoryType(uint32_t bits, VkMemoryPropertyFlags flags) const;  // ~0u if there is none
 
   MessageLog log;
+  bool existing = false;  // instance and device are the caller's
   VkInstance instance = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
   DeviceInfo info;  // `without` includes what the options say
@@ -142,8 +103,9 @@ Device::Impl::~Impl() {
     for (const auto& [key, handle] : samplers) vkDestroySampler(device, handle, nullptr);
     vkDestroyPipelineCache(device, pipelineCache, nullptr);
     vkDestroyCommandPool(device, pool, nullptr);
-    vkDestroyDevice(device, nullptr);
   }
+  if (existing) return;
+  if (device) vkDestroyDevice(device, nullptr);
   if (messenger)
     load<PFN_vkDestroyDebugUtilsMessengerEXT>(instance, "vkDestroyDebugUtilsMessengerEXT")(
         instance, messenger, nullptr);
@@ -169,19 +131,26 @@ void Device::Impl::createInstanceAndMessenger(const DeviceOptions& options) {
     const auto create = load<PFN_vkCreateDebugUtilsMessengerEXT>(instance, "vkCreateDebugUtilsMessengerEXT");
     check(create(instance, &info, nullptr, &messenger), "creating the validation messenger");
   }
+  loadLabels();
+}
+
+// There are none unless VK_EXT_debug_utils is enabled.
+void Device::Impl::loadLabels() {
   setName = load<PFN_vkSetDebugUtilsObjectNameEXT>(instance, "vkSetDebugUtilsObjectNameEXT");
   beginLabel = load<PFN_vkCmdBeginDebugUtilsLabelEXT>(instance, "vkCmdBeginDebugUtilsLabelEXT");
   endLabel = load<PFN_vkCmdEndDebugUtilsLabelEXT>(instance, "vkCmdEndDebugUtilsLabelEXT");
 }
 
-void Device::Impl::queryFeatures(FeatureChain& enabled) {
+void Device::Impl::chooseFeatures(FeatureChain& enabled) const {
   FeatureChain available;
   vkGetPhysicalDeviceFeatures2(physical, &available.core);
   for (const auto& [name, value] : enabled.required()) *value = VK_TRUE;
   for (const auto& [name, value] : enabled.dispensable()) *value = !lacks(name);
   const FeatureChain::List from = available.optional(), to = enabled.optional();
   for (size_t i = 0; i < from.size(); ++i) *to[i].second = *from[i].second;
+}
 
+void Device::Impl::describe(const FeatureChain& enabled) {
   const VkPhysicalDeviceFeatures& f = enabled.core.features;
   features.geometryShader = f.geometryShader;
   features.shaderDrawParameters = enabled.v11.shaderDrawParameters;
@@ -216,7 +185,7 @@ bool Device::Impl::lacks(std::string_view feature) const {
   return std::find(info.without.begin(), info.without.end(), feature) != info.without.end();
 }
 
-void Device::Impl::createDevice(const PhysicalDevice& chosen, const std::vector<std::string>& without) {
+void Device::Impl::choose(const PhysicalDevice& chosen, const std::vector<std::string>& without) {
   physical = chosen.handle;
   type = chosen.type;
   info = chosen.info;
@@ -227,18 +196,17 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen, const std::vector<
     info.without.push_back(feature);
   }
   queueFamily = chosen.queueFamily;
-  FeatureChain enabled;
-  queryFeatures(enabled);
-  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+}
 
+void Device::Impl::createDevice(const FeatureChain& enabled) {
   const float priority = 1;
   VkDeviceQueueCreateInfo queueInfo{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queueInfo.queueFamilyIndex = queueFamily;
   queueInfo.queueCount = 1;
   queueInfo.pQueuePriorities = &priority;
   std::vector<const char*> extensions;
-  const bool pushes = !lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-  if (pushes) extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  if (!lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
+    extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
   VkDeviceCreateInfo deviceInfo{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &enabled.core};
   deviceInfo.queueCreateInfoCount = 1;
   deviceInfo.pQueueCreateInfos = &queueInfo;
@@ -251,7 +219,14 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen, const std::vector<
                 "choose another device or update its driver");
   check(result, "creating the device `" + info.name + "`");
   vkGetDeviceQueue(device, queueFamily, 0, &queue);
-  if (pushes && log.validation != Validation::GpuAssisted)
+}
+
+// What does not depend on who made the device.
+void Device::Impl::start(const FeatureChain& enabled, const DeviceOptions& options) {
+  describe(enabled);
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+  limit = options.memoryLimit;
+  if (!lacks(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) && log.validation != Validation::GpuAssisted)
     pushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
         vkGetDeviceProcAddr(device, "vkCmdPushDescriptorSetKHR"));
   else
@@ -260,6 +235,7 @@ void Device::Impl::createDevice(const PhysicalDevice& chosen, const std::vector<
   poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   poolInfo.queueFamilyIndex = queueFamily;
   check(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), "creating a command pool");
+  createCaches(options);
 }
 
 void Device::Impl::createCaches(const DeviceOptions& options) {
@@ -313,9 +289,26 @@ uint32_t Device::Impl::memoryType(uint32_t bits, VkMemoryPropertyFlags flags) co
 Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->createInstanceAndMessenger(options);
   const std::vector<PhysicalDevice> devices = physicalDevices(impl_->instance);
-  impl_->createDevice(choose(devices, options.device), options.without);
-  impl_->limit = options.memoryLimit;
-  impl_->createCaches(options);
+  impl_->choose(gpu::choose(devices, options.device), options.without);
+  FeatureChain enabled;
+  impl_->chooseFeatures(enabled);
+  impl_->createDevice(enabled);
+  impl_->start(enabled, options);
+}
+
+Device::Device(const ExistingDevice& existing, const DeviceOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  if (!options.device.empty() || options.validation != Validation::Off || options.onValidationMessage)
+    throw Error(ExitCode::Usage, "DeviceOptions choose a device or validation for one that exists already",
+                "leave `device`, `validation` and `onValidationMessage` as they are");
+  impl_->existing = true;
+  FeatureChain enabled;
+  impl_->choose(describeExisting(existing, enabled), options.without);
+  impl_->instance = existing.instance;
+  impl_->device = existing.device;
+  impl_->queue = existing.queue;
+  impl_->loadLabels();
+  impl_->start(enabled, options);
 }
 
 Device::~Device() = default;
@@ -346,7 +339,7 @@ VkDeviceMemory Device::allocate(uint64_t bytes, uint32_t memoryTypeBits, VkMemor
   const uint32_t index = impl_->memoryType(memoryTypeBits, flags);
   if (index == ~0u) throw Error(ExitCode::Internal, "no memory type of this device fits `" + what + "`");
   const uint32_t heap = impl_->memory.memoryTypes[index].heapIndex;
-  const std::string remedy = "use a smaller image, fewer VPLs or smaller shadow maps" +
+  const std::string remedy = "use a smaller image, or parameters that need less memory" +
                              std::string(impl_->limit ? ", or raise the memory limit" : "");
   const std::lock_guard lock(impl_->memoryMutex);
   const uint64_t used = impl_->limit ? impl_->allocated : impl_->heapAllocated[heap];

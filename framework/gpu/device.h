@@ -4,7 +4,6 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -12,24 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/device.h"
+
 namespace fovea::gpu {
 
 class ShaderCompiler;
-
-enum class Validation { Off, On, Synchronization, GpuAssisted, BestPractices };
-
-struct DeviceOptions {
-  std::string device;  // index or part of the name; "" selects the best one (discrete, integrated, CPU)
-  // Features among dispensableFeatures() to do without although the device may have them, as if it lacked them.
-  std::vector<std::string> without;
-  Validation validation = Validation::Off;
-  uint64_t memoryLimit = 0;  // bytes of device memory that fovea may use; 0 for what the device reports
-  std::filesystem::path cacheDirectory;  // SPIR-V and pipeline cache; "" means $XDG_CACHE_HOME/fovea
-  bool useCache = true;
-  // Receives each validation message as it arrives, also those about the destruction of the device itself (objects
-  // that were never destroyed). May be called from any thread. Messages are kept as well.
-  std::function<void(const std::string&)> onValidationMessage;
-};
 
 // One entry of the list that `fovea devices` prints.
 struct DeviceInfo {
@@ -65,11 +51,12 @@ struct Features {
   VkSubgroupFeatureFlags subgroupOperations = 0;  // in compute shaders
 };
 
-// To be used by one thread at a time, except for allocate, release and the shader compiler. Throws Error(NoDevice) if
-// there is no loader, no device or a missing feature (each is named), Error(OutOfMemory) or Error(DeviceLost).
+// To be used by one thread at a time, except for allocate, release and the shader compiler. The constructors throw as
+// openDevice() does, which also lets the compiler find the shaders of the data folders.
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
+  Device(const ExistingDevice& existing, const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

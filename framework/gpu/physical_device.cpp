@@ -96,17 +96,26 @@ std::vector<VkValidationFeatureEnableEXT> validationEnables(Validation validatio
   return {};
 }
 
-// The first family that supports everything, including timestamps; -1 if there is none.
-int findQueueFamily(VkPhysicalDevice device) {
+std::vector<VkQueueFamilyProperties> queueFamilies(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
+
+constexpr const char* kQueueNeeds = "a queue with graphics, compute and timestamps";
+
+bool isEnough(const VkQueueFamilyProperties& family) {
   constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0) return int(i);
-  }
-  return -1;
+  return (family.queueFlags & kNeeded) == kNeeded && family.timestampValidBits > 0;
+}
+
+// The first family that supports everything; -1 if there is none.
+int findQueueFamily(VkPhysicalDevice device) {
+  const std::vector<VkQueueFamilyProperties> families = queueFamilies(device);
+  const auto found = std::find_if(families.begin(), families.end(), isEnough);
+  return found == families.end() ? -1 : int(found - families.begin());
 }
 
 std::vector<std::string> missingFeatures(VkPhysicalDevice device,
@@ -119,7 +128,7 @@ std::vector<std::string> missingFeatures(VkPhysicalDevice device,
   for (const auto& [name, value] : features.required()) {
     if (!*value) missing.push_back(name);
   }
-  if (findQueueFamily(device) < 0) missing.push_back("a queue with graphics, compute and timestamps");
+  if (findQueueFamily(device) < 0) missing.emplace_back(kQueueNeeds);
   return missing;
 }
 
@@ -214,6 +223,27 @@ FeatureChain::FeatureChain() {
   core.pNext = &v11;
   v11.pNext = &v12;
   v12.pNext = &v13;
+}
+
+namespace {
+
+// All but the place in a chain.
+template <class Features>
+void copyFeatures(const VkBaseInStructure& from, Features& to) {
+  void* const next = to.pNext;
+  to = reinterpret_cast<const Features&>(from);
+  to.pNext = next;
+}
+
+}  // namespace
+
+void FeatureChain::read(const VkPhysicalDeviceFeatures2& chain) {
+  for (auto* link = reinterpret_cast<const VkBaseInStructure*>(&chain); link; link = link->pNext) {
+    if (link->sType == core.sType) copyFeatures(*link, core);
+    if (link->sType == v11.sType) copyFeatures(*link, v11);
+    if (link->sType == v12.sType) copyFeatures(*link, v12);
+    if (link->sType == v13.sType) copyFeatures(*link, v13);
+  }
 }
 
 FeatureChain::List FeatureChain::required() {
@@ -351,6 +381,39 @@ std::vector<PhysicalDevice> physicalDevices(VkInstance instance) {
   std::vector<PhysicalDevice> list;
   for (uint32_t i = 0; i < count; ++i) list.push_back(describe(handles[i], i));
   return list;
+}
+
+PhysicalDevice describeExisting(const ExistingDevice& existing, FeatureChain& enabled) {
+  const std::pair<const char*, const void*> handles[] = {{"instance", existing.instance},
+                                                         {"physical", existing.physical},
+                                                         {"device", existing.device},
+                                                         {"queue", existing.queue},
+                                                         {"features", existing.features}};
+  for (const auto& [member, value] : handles)
+    if (!value)
+      throw Error(ExitCode::Usage, std::string("ExistingDevice::") + member + " is not set",
+                  "fill every member of ExistingDevice but `extensions`, which may be empty");
+  PhysicalDevice d = describe(existing.physical, 0);
+  enabled.read(*existing.features);
+  const auto missOnce = [](std::vector<std::string>& list, const char* name) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.emplace_back(name);
+  };
+  for (const auto& [name, value] : enabled.required())
+    if (!*value) missOnce(d.info.missing, name);
+  for (const auto& [name, value] : enabled.dispensable())
+    if (!*value) missOnce(d.info.without, name);
+  for (const char* name : kDispensableExtensions)
+    if (std::find(existing.extensions.begin(), existing.extensions.end(), name) == existing.extensions.end())
+      missOnce(d.info.without, name);
+  const std::vector<VkQueueFamilyProperties> families = queueFamilies(existing.physical);
+  d.queueFamily = existing.queueFamily;
+  if (d.queueFamily >= families.size() || !isEnough(families[d.queueFamily]))
+    missOnce(d.info.missing, kQueueNeeds);
+  if (!d.info.missing.empty())
+    throw Error(ExitCode::NoDevice,
+                "the device that was handed in, `" + d.info.name + "`, lacks " + join(d.info.missing),
+                "enable that when you make the device, and say so in ExistingDevice");
+  return d;
 }
 
 const PhysicalDevice& choose(const std::vector<PhysicalDevice>& devices, const std::string& wanted) {

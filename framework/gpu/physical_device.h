@@ -25,6 +25,8 @@ struct FeatureChain {
   List required();
   List dispensable();  // those of dispensableFeatures() that are features in the strict sense
   List optional();
+  // Takes over what another chain says; of features that are in none of its structures, nothing.
+  void read(const VkPhysicalDeviceFeatures2& chain);
 };
 
 // Throws Error(Usage) listing dispensableFeatures() if it is none of them.
@@ -43,6 +45,10 @@ VkInstance createInstance(Validation validation, const VkDebugUtilsMessengerCrea
                           bool& debugUtils);
 
 std::vector<PhysicalDevice> physicalDevices(VkInstance instance);
+
+// A device that somebody else has made, with what is enabled as what there is; `enabled` receives its features. Throws
+// Error(Usage) if a handle is missing and Error(NoDevice) with all that the device lacks.
+PhysicalDevice describeExisting(const ExistingDevice& existing, FeatureChain& enabled);
 
 // `wanted` is an index, part of the name (in any case), or "" for the best device. Throws Error(NoDevice) listing the
 // devices that exist.

@@ -58,12 +58,11 @@ void check(VkResult result, const std::string& what) {
     case VK_ERROR_FRAGMENTED_POOL:
     case VK_ERROR_MEMORY_MAP_FAILED:
     case VK_ERROR_TOO_MANY_OBJECTS:
-      throw Error(ExitCode::OutOfMemory, text, "use a smaller image, fewer VPLs or smaller shadow maps");
+      throw Error(ExitCode::OutOfMemory, text, "use a smaller image, or parameters that need less memory");
     case VK_ERROR_DEVICE_LOST:
       throw Error(ExitCode::DeviceLost, text,
                   "the driver gave up, often because one dispatch took too long: use a smaller image or "
-                  "fewer VPLs, or "
-                  "run with validation to find an out-of-range access");
+                  "parameters that make less work, or run with validation to find an out-of-range access");
     default:
       throw Error(ExitCode::Internal, text);
   }

@@ -39,6 +39,7 @@ Scene builtin(const std::string& name) {
     if (name == g.name) return g.make();
     list += (list.empty() ? "" : ", ") + g.name;
   }
+  if (list.empty()) list = "none, as the program does not call fovea::scenes::registerAll()";
   const std::string nearest = nearestName(name, builtinNames());
   throw Error(ExitCode::BadInput, "there is no built-in scene `" + name + "`",
               nearest.empty() ? "the built-in scenes are: " + list : "did you mean `" + nearest + "`?");

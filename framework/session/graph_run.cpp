@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/base/paths.h"
 #include "framework/gpu/format.h"
-#include "framework/gpu/shader/shader.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/motion/motion.h"
@@ -13,12 +11,6 @@ namespace fovea::session {
 
 bool raysOnHost(RaysOn rays, const gpu::Device* device) {
   return rays == RaysOn::Auto ? !device || device->isCpu() : rays == RaysOn::Host;
-}
-
-std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options) {
-  auto device = std::make_unique<gpu::Device>(options);
-  for (const auto& folder : shaderFolders()) device->shaders().addSearchPath(folder);
-  return device;
 }
 
 graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scene& scene,
@@ -104,8 +96,8 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
   const uint32_t limit = device_.limits().maxImageDimension2D;
   if (size.x > limit || size.y > limit)
     throw Error(ExitCode::Usage,
-                fmt::format("--size {}x{} exceeds this device's largest image of {} pixels a side", size.x,
-                            size.y, limit),
+                fmt::format("a picture of {}x{} pixels exceeds this device's largest image of {} a side",
+                            size.x, size.y, limit),
                 "render a smaller picture");
   graph::BoundGraph made =
       graph::bind(description, sceneEnvironment(&device_, scene_, geometry_, size, options_.rays), messages);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/image.h"
 #include "framework/gpu/device.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/run/execute.h"
@@ -24,9 +25,6 @@ enum class RaysOn {
 };
 // device: nullptr stands for a CPU.
 bool raysOnHost(RaysOn rays, const gpu::Device* device);
-
-// Opens a device and lets it look for shaders in the data folders.
-std::unique_ptr<gpu::Device> openDevice(const gpu::DeviceOptions& options);
 
 // The environment to which a graph is bound: the views of every frame, the device's limits (unknown if `device` is
 // nullptr) and the scene's quantities and texts.

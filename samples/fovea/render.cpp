@@ -85,7 +85,7 @@ class Render {
   graph::Description description_;
   scene::Scene scene_;
   scene::Geometry geometry_;
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<session::GraphRun> run_;
   std::unique_ptr<Timings> timings_;
   RunInfo info_;
@@ -181,10 +181,9 @@ void Render::useFoveaAngle(const graph::BoundGraph& bound) {
 }
 
 void Render::buildPlan() {
-  device_ =
-      session::openDevice({.device = options_.device,
-                           .without = options_.without,
-                           .validation = options_.validation ? gpu::Validation::On : gpu::Validation::Off});
+  device_ = gpu::openDevice({.device = options_.device,
+                             .without = options_.without,
+                             .validation = options_.validation ? gpu::Validation::On : gpu::Validation::Off});
   session::GraphRun::Options run;
   run.size = size_;
   run.seed = options_.seed;

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "framework/scene/motion/motion.h"
+#include "framework/session/sources.h"
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/graph/changes.h"
-#include "samples/fovea/view/graph/sources.h"
 #include "samples/fovea/view/motion.h"
 #include "samples/fovea/view/watcher.h"
 
@@ -247,14 +247,15 @@ TEST(ViewChanges, AreTheOptionsOfRender) {
 }
 
 TEST(ViewSources, AreReadFromTheirNames) {
-  const SourceName port = parseSource("left/gbuffer:gbuffer.normal@2.15");
+  const session::SourceName port = session::parseSource("left/gbuffer:gbuffer.normal@2.15");
   EXPECT_EQ(port.pass, "left/gbuffer");
   EXPECT_EQ(port.path, "gbuffer.normal");
   EXPECT_EQ(port.mip, 2u);
   EXPECT_EQ(port.layer, 15u);
-  EXPECT_EQ(parseSource("image").path, "image");
-  EXPECT_EQ(parseSource("image").pass, "");
-  for (const char* text : {"", ":", "@", "a:@", "@.", "a@9999999999999.1", ":@1.2"}) parseSource(text);
+  EXPECT_EQ(session::parseSource("image").path, "image");
+  EXPECT_EQ(session::parseSource("image").pass, "");
+  for (const char* text : {"", ":", "@", "a:@", "@.", "a@9999999999999.1", ":@1.2"})
+    session::parseSource(text);
 }
 
 // ---- Watcher ---------------------------------------------------------------------------------------------------

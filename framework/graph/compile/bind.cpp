@@ -193,8 +193,11 @@ const PassDeclaration* findType(Binding& b, const Registry& registry, uint32_t p
   if (declaration) return declaration;
   const std::string nearest = nearestName(name, registry.types());
   report(b, type->where, passPath(b, p, "type"), fmt::format("no pass type `{}`", name),
-         nearest.empty() ? std::string("`fovea passes` lists them")
-                         : fmt::format("did you mean `{}`?", nearest));
+         nearest.empty()
+             ? std::string(
+                   "`fovea passes` lists them; a program of yours has those that it registers, the stock "
+                   "ones with fovea::passes::registerAll()")
+             : fmt::format("did you mean `{}`?", nearest));
   return nullptr;
 }
 

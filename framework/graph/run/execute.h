@@ -44,15 +44,15 @@ struct ExecutorOptions {
 };
 
 // A resource as one pass leaves it, to be read back right after that pass, before anything overwrites it. Of an image
-// with several mips or layers (or slices of a volume), one is read; of a buffer, at most the first kObservedBytes.
+// with several mips or layers (or slices of a volume), one is read; of a buffer, what fits into `mostBytes`.
 struct Observation {
   std::string name;     // of the result among FrameResult::outputs
   uint32_t pass = 0;    // index into BoundGraph::passes
   uint32_t access = 0;  // index into BoundPass::accesses
   uint32_t mip = 0, layer = 0;
+  uint64_t mostBytes = ~uint64_t(0);
   bool operator==(const Observation&) const = default;
 };
-inline constexpr uint64_t kObservedBytes = uint64_t(4) << 20;
 
 // What an element of a buffer consists of, by the name of its type (ResourceSpec::element).
 using ElementTypes = std::map<std::string, std::vector<gpu::ReflectedMember>>;

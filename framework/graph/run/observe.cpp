@@ -14,7 +14,7 @@ uint32_t part(uint32_t side, uint32_t mip) { return std::max(1u, side >> mip); }
 ResourceDesc observedPart(const ResourceDesc& all, const Observation& what) {
   ResourceDesc desc = all;
   if (all.kind == ResourceKind::Buffer) {
-    desc.count = std::min<uint64_t>(all.count, kObservedBytes / std::max(1u, all.stride));
+    desc.count = std::min<uint64_t>(all.count, what.mostBytes / std::max(1u, all.stride));
     return desc;
   }
   desc.width = part(all.width, what.mip);

@@ -1,9 +1,4 @@
-// Runs a graph file over a scene on a device, frame after frame.
-//
-//   scene::Scene scene = scene::load("my_scene.json", messages);
-//   graph::Session session("ir_1000", scene, {.size = {512, 512}, .set = {"vpl_count=500"}});
-//   graph::FrameResult frame = session.render(0);
-//   image::Image picture = session.picture(frame, "radiance");
+// What a frame of a graph results in, and the passes that graphs know. fovea/session.h runs a graph.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -11,20 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fovea/error.h"
-#include "fovea/image.h"
 #include "fovea/pass.h"
-
-namespace fovea::scene {
-struct Scene;
-}
 
 namespace fovea::graph {
 
@@ -78,37 +66,5 @@ void loadPlugin(const std::filesystem::path& file);
 
 // Adds the passes that the files NAME.pass.json in a folder declare. Throws Error(BadInput) with every mistake.
 void addPasses(const std::filesystem::path& folder);
-
-struct SessionOptions {
-  std::string device;                // number or part of the name; "" selects the best device
-  std::vector<std::string> without;  // features to do without, as `fovea render --without`
-  bool validation = false;           // run under the Vulkan validation layers
-  glm::uvec2 size{512, 512};         // pixels
-  uint32_t seed = 1;
-  double frameRate = 42;             // frames per second of scene time
-  std::vector<std::string> set;      // parameter values: "vpl_count=500", "blur.radius=3"
-  std::vector<std::string> outputs;  // graph outputs to read back; empty for all of them
-};
-
-class Session {
- public:
-  // `graph` is a file or a bare name. Passes in files are found as by the program, in the folders that FOVEA_PASSES
-  // names and in a folder `passes` beside the graph. The scene must outlive the session. Throws Error(BadInput) with
-  // every mistake of the graph, Error(NoDevice) or Error(OutOfMemory).
-  Session(const std::string& graph, const scene::Scene& scene, const SessionOptions& options = {});
-  ~Session();
-
-  // Renders frame `index` of the scene's time and waits until it is finished.
-  FrameResult render(uint64_t index);
-  // A floating-point or normalised output as an image. Throws Error(Usage) for an output that was not read back and
-  // Error(Internal) for an integer format.
-  image::Image picture(const FrameResult& frame, const std::string& output) const;
-  const std::string& passName(uint32_t pass) const;
-  const Diagnostics& warnings() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
 
 }  // namespace fovea::graph

@@ -54,13 +54,13 @@ void Motion::apply(const Command& command) {
 void Motion::restart() {
   index_ = ticks_ = 0;
   anchor_ = 0;
-  sinceJump_ = scene::kSaccadeFrames;
+  course_.restart();
   moved_ = true;
 }
 
-scene::Camera Motion::cameraNow(const scene::Scene& scene, double time) const {
+std::optional<scene::Camera> Motion::steeredCamera(const scene::Scene& scene, double time) const {
+  if (!pose_) return std::nullopt;
   scene::Camera camera = scene::cameraAt(scene, time);
-  if (!pose_) return camera;
   camera.position = pose_->position;
   camera.orientation =
       glm::angleAxis(pose_->yaw, glm::vec3(0, 1, 0)) * glm::angleAxis(pose_->pitch, glm::vec3(1, 0, 0));
@@ -68,35 +68,19 @@ scene::Camera Motion::cameraNow(const scene::Scene& scene, double time) const {
 }
 
 scene::Moment Motion::next(const scene::Scene& scene) {
-  const bool first = index_ == 0;
-  if (!first && (frozen_ ? steps_ > 0 : playing_)) ++ticks_;
+  if (index_ > 0 && (frozen_ ? steps_ > 0 : playing_)) ++ticks_;
   if (steps_ > 0) --steps_;
   moved_ = false;
-  scene::Moment m;
-  m.index = index_;
-  m.time = std::max(0.0, time());
-  m.before = first ? m.time : shown_.time;
-  m.camera = cameraNow(scene, m.time);
-  m.previousCamera = first ? m.camera : shown_.camera;
-  m.cameraCut = first;
-  const scene::GazeSample own = scene::gazeAt(scene.gaze, m.time, scene.gazeGap);
-  m.gazes = {own.position, own.left.value_or(own.position), own.right.value_or(own.position)};
-  if (gaze_) m.gazes.fill(*gaze_);
-  // As scene::momentAt() has it, from the frames as they were shown.
-  bool jumped = false;
-  for (size_t i = 0; i < m.gazes.size() && !first; ++i)
-    jumped |= glm::distance(m.gazes[i], shown_.gazes[i]) > scene::kGazeJump;
-  sinceJump_ = jumped ? 0 : std::min(sinceJump_ + 1, scene::kSaccadeFrames);
-  m.saccade = 1 - float(sinceJump_) / float(scene::kSaccadeFrames);
+  const double now = std::max(0.0, time());
+  const scene::Moment m = course_.next(scene, index_, {now, steeredCamera(scene, now), gaze_});
   if (recording_) record(m);
   ++index_;
-  shown_ = m;
   return m;
 }
 
 std::string Motion::asCommand() const {
   nlohmann::json command{
-      {"time", shown_.time}, {"playing", playing_}, {"frozen", frozen_}, {"speed", speed_}};
+      {"time", shown().time}, {"playing", playing_}, {"frozen", frozen_}, {"speed", speed_}};
   if (pose_)
     command["camera"] = {{"position", {pose_->position.x, pose_->position.y, pose_->position.z}},
                          {"yaw", pose_->yaw},

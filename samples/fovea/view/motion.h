@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/scene/frame.h"
+#include "framework/session/course.h"
 #include "samples/fovea/view/command.h"
 
 namespace fovea::view {
@@ -36,7 +36,7 @@ class Motion {
   // Whether a frame is due although the run is frozen: a step, or something to see that has moved.
   bool due() const { return steps_ > 0 || moved_; }
   uint64_t nextIndex() const { return index_; }
-  const scene::Moment& shown() const { return shown_; }  // the last moment that next() made
+  const scene::Moment& shown() const { return course_.shown(); }  // the last moment that next() made
 
   // The gaze of the frames since recording began, as `fovea render --gaze-trace FILE --gaze-gap 0` replays it.
   std::string gazeTable() const;
@@ -47,17 +47,17 @@ class Motion {
  private:
   double time() const { return anchor_ + double(ticks_) / kFrameRate * speed_; }
   void record(const scene::Moment& moment);
-  scene::Camera cameraNow(const scene::Scene& scene, double time) const;
+  // Where the pose has it; not set without one.
+  std::optional<scene::Camera> steeredCamera(const scene::Scene& scene, double time) const;
 
   bool playing_ = true, frozen_ = false, recording_ = false, moved_ = false;
   double speed_ = 1, anchor_ = 0;
   uint64_t ticks_ = 0;  // steps of time since `anchor_`
   uint64_t index_ = 0;
   uint32_t steps_ = 0;
-  uint32_t sinceJump_ = scene::kSaccadeFrames;
   std::optional<Pose> pose_;
   std::optional<glm::vec2> gaze_;
-  scene::Moment shown_;
+  session::Course course_;
   std::vector<scene::GazeSample> track_;
   std::vector<scene::CameraKey> cameraTrack_;  // of the same frames
 };

@@ -40,10 +40,9 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
   const graph::Description description = bench::loadGraph(settings_.graph, early);
   graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size, settings_.graph.rays), early);
   if (!options.tev.empty()) tev_ = std::make_unique<TevStream>(exchange, options.tev);
-  device_ =
-      session::openDevice({.device = options.device,
-                           .without = options.without,
-                           .validation = options.validation ? gpu::Validation::On : gpu::Validation::Off});
+  device_ = gpu::openDevice({.device = options.device,
+                             .without = options.without,
+                             .validation = options.validation ? gpu::Validation::On : gpu::Validation::Off});
   build_ = build(settings_, nullptr, nullptr, false);
   bench::printWarnings(build_->messages);
   report(build_->messages.list());

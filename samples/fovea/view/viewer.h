@@ -111,7 +111,7 @@ class Viewer {
   Options options_;
   Settings settings_;
   Watchdog watchdog_;  // over frames
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<Build> build_;
   std::string secondName_;  // of a graph; "" for none
   std::unique_ptr<Build>

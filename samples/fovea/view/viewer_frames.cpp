@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/scene/scene.h"
+#include "framework/session/sources.h"
 #include "samples/fovea/view/graph/catalog.h"
 #include "samples/fovea/view/graph/describe.h"
-#include "samples/fovea/view/graph/sources.h"
 #include "samples/fovea/view/viewer.h"
 
 namespace fovea::view {
@@ -16,7 +16,8 @@ namespace {
 using Json = nlohmann::json;
 using std::chrono::milliseconds;
 
-constexpr std::string_view kSecond = "second!";  // begins the sources of the second graph
+constexpr std::string_view kSecond = "second!";     // begins the sources of the second graph
+constexpr uint64_t kMostBytes = uint64_t(4) << 20;  // of a buffer that is looked at
 constexpr auto kTickEvery = milliseconds(50);
 
 Json vectorJson(glm::vec3 v) { return {v.x, v.y, v.z}; }
@@ -67,9 +68,10 @@ void Viewer::chooseObservations() {
         exchange_.publish(source, std::move(shot));
         continue;
       }
-      graph::Observation found = findSource(*(ofSecond ? second_ : build_)->run->plan(),
-                                            ofSecond ? source.substr(kSecond.size()) : source);
+      graph::Observation found = session::findSource(*(ofSecond ? second_ : build_)->run->plan(),
+                                                     ofSecond ? source.substr(kSecond.size()) : source);
       found.name = source;
+      found.mostBytes = kMostBytes;
       (ofSecond ? second : first).push_back(std::move(found));
       observed_.push_back(source);
     } catch (const Error& error) {

@@ -8,7 +8,7 @@
 #include "framework/base/paths.h"
 #include "framework/gpu/shader/shader.h"
 #include "framework/graph/report/report.h"
-#include "samples/fovea/view/graph/sources.h"
+#include "framework/session/sources.h"
 
 namespace fovea::view {
 namespace {
@@ -129,8 +129,8 @@ Json portsJson(const graph::Plan& plan, size_t number, const graph::ElementTypes
     const graph::BoundResource& resource = plan.graph->resources[access.resource];
     const graph::PortSpec& port = pass.declaration->ports[access.port];
     const std::string& doc = port.members[access.member].doc;
-    Json json{{"source", sourceName(pass, access)},
-              {"name", portPath(pass, access)},
+    Json json{{"source", session::sourceName(pass, access)},
+              {"name", session::portPath(pass, access)},
               {"direction", directionName(port.direction)},
               {"doc", doc.empty() ? port.doc : doc},
               {"is", graph::describe(resource.desc)},
@@ -188,7 +188,7 @@ Json edgesJson(const graph::Plan& plan) {
       if (!a.writes) continue;
       auto& of = writers[a.resource];
       if (of.size() <= a.version) of.resize(a.version + 1);
-      of[a.version] = {p, sourceName(graph.passes[p], a)};
+      of[a.version] = {p, session::sourceName(graph.passes[p], a)};
     }
   }
   Json list = Json::array();
@@ -201,7 +201,7 @@ Json edgesJson(const graph::Plan& plan) {
       list.push_back({{"from", by[version].pass},
                       {"to", p},
                       {"source", by[version].source},
-                      {"port", portPath(graph.passes[p], a)},
+                      {"port", session::portPath(graph.passes[p], a)},
                       {"previous", a.previous}});
     }
   }
@@ -286,7 +286,7 @@ nlohmann::json describeOutputs(const graph::BoundGraph& graph) {
   Json outputs = Json::array();
   for (const graph::BoundOutput& o : graph.outputs)
     outputs.push_back({{"name", o.name},
-                       {"source", sourceOfOutput(graph, o)},
+                       {"source", session::sourceOfOutput(graph, o)},
                        {"is", graph::describe(graph.resources[o.resource].desc)}});
   return outputs;
 }

@@ -1,5 +1,5 @@
 // What of a graph can be looked at, by name: an output of the graph ("image"), or a port of a pass
-// ("gbuffer:gbuffer.normal"), followed by "@MIP.LAYER" where it has several.
+// ("eye:surface.normal"), followed by "@MIP.LAYER" where it has several.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "framework/graph/run/execute.h"
 
-namespace fovea::view {
+namespace fovea::session {
 
 struct SourceName {
   std::string pass, path;  // pass is empty for an output of the graph
@@ -22,9 +22,9 @@ graph::Observation findSource(const graph::Plan& plan, const std::string& source
 
 // The source that shows an output of the graph: the port of the pass that writes it last.
 std::string sourceOfOutput(const graph::BoundGraph& graph, const graph::BoundOutput& output);
-// "gbuffer:gbuffer.normal"
+// "eye:surface.normal"
 std::string sourceName(const graph::BoundPass& pass, const graph::Access& access);
-// How a pass names what it accesses: "gbuffer.normal", "radiance".
+// How a pass names what it accesses: "surface.normal", "radiance".
 std::string portPath(const graph::BoundPass& pass, const graph::Access& access);
 
-}  // namespace fovea::view
+}  // namespace fovea::session

@@ -1,4 +1,4 @@
-#include "samples/fovea/view/graph/sources.h"
+#include "framework/session/sources.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "fovea/error.h"
 
-namespace fovea::view {
+namespace fovea::session {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, const std::string& word,
@@ -104,4 +104,4 @@ graph::Observation findSource(const graph::Plan& plan, const std::string& source
   refuse(fmt::format("the graph has no pass `{}`", name.pass), name.pass, names);
 }
 
-}  // namespace fovea::view
+}  // namespace fovea::session
