@@ -7,7 +7,7 @@ namespace fovea::gpu {
 namespace {
 
 std::shared_ptr<Device> withShaders(std::shared_ptr<Device> device) {
-  for (const auto& folder : dataFolders("shaders")) device->shaders().addSearchPath(folder);
+  for (const auto& folder : shaderFolders()) device->shaders().addSearchPath(folder);
   return device;
 }
 
