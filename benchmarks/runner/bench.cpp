@@ -11,14 +11,14 @@
 #include <set>
 
 #include "benchmarks/runner/folder.h"
-#include "benchmarks/runner/inputs.h"
-#include "benchmarks/runner/interrupt.h"
 #include "benchmarks/runner/job.h"
 #include "benchmarks/runner/passes.h"
-#include "benchmarks/runner/progress.h"
 #include "benchmarks/runner/suite.h"
 #include "benchmarks/runner/tables.h"
 #include "framework/base/paths.h"
+#include "framework/session/inputs.h"
+#include "framework/session/interrupt.h"
+#include "framework/session/progress.h"
 
 namespace fovea::bench {
 namespace {
@@ -103,7 +103,7 @@ class Bench {
   const SuiteOptions& options_;
   Shard shard_;
   BenchFolder folder_;
-  Progress progress_;
+  session::Progress progress_;
   Suite suite_;
   std::vector<bool> chosen_;        // for each job, whether --only names it; all without --only
   std::vector<const Job*> wanted_;  // the chosen jobs
@@ -126,9 +126,9 @@ void Bench::openDevice() {
 
 void Bench::chooseJobs() {
   SuiteOverrides overrides;
-  if (!options_.size.empty()) overrides.size = parseSize(options_.size);
+  if (!options_.size.empty()) overrides.size = session::parseSize(options_.size);
   overrides.seeds = options_.seeds;
-  overrides.scenes = sceneNames(options_.scenes);
+  overrides.scenes = session::sceneNames(options_.scenes);
   suite_ = loadSuite(options_.suite, dataFolders("benchmarks/suites"), overrides);
   for (const Job& job : suite_.jobs) {
     chosen_.push_back(options_.only.empty() || matchesGlob(options_.only, job.name()));
@@ -177,7 +177,7 @@ void Bench::identify() {
     } else if (i % shard_.count == shard_.index) {
       tasks_.push_back({&job, *fingerprint});
     }
-    if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted before the first job");
+    if (session::interrupted()) throw Error(ExitCode::Interrupted, "interrupted before the first job");
   }
 }
 
@@ -205,7 +205,9 @@ void Bench::measure() {
   for (size_t i = 0; i < tasks_.size(); ++i) {
     const Task& task = tasks_[i];
     const std::string left =
-        i == 0 ? "" : ", " + formatDuration(since(start) / double(i) * double(tasks_.size() - i)) + " left";
+        i == 0
+            ? ""
+            : ", " + session::formatDuration(since(start) / double(i) * double(tasks_.size() - i)) + " left";
     progress_.setPrefix(fmt::format("job {}/{}{}: ", i + 1, tasks_.size(), left));
     const Clock::time_point jobStart = Clock::now();
     try {
@@ -223,8 +225,9 @@ void Bench::measure() {
     }
     progress_.clear();
     const double remaining = since(start) / double(i + 1) * double(tasks_.size() - i - 1);
-    say("[{}/{}] {}: {}{}\n", i + 1, tasks_.size(), task.job->name(), formatDuration(since(jobStart)),
-        i + 1 < tasks_.size() ? ", " + formatDuration(remaining) + " left" : "");
+    say("[{}/{}] {}: {}{}\n", i + 1, tasks_.size(), task.job->name(),
+        session::formatDuration(since(jobStart)),
+        i + 1 < tasks_.size() ? ", " + session::formatDuration(remaining) + " left" : "");
   }
   progress_.setPrefix("");
 }
@@ -252,8 +255,8 @@ void Bench::makeReferences() {
     ++(isNew ? made : there);
     if (isNew)
       say("[{}/{}] {}: {}\n", i + 1, list.size(), list[i].reference.name,
-          formatDuration(std::chrono::duration<double>(Clock::now() - start).count()));
-    if (interrupted())
+          session::formatDuration(std::chrono::duration<double>(Clock::now() - start).count()));
+    if (session::interrupted())
       throw Error(ExitCode::Interrupted, "interrupted", "the same command goes on from there");
   }
   progress_.setPrefix("");
@@ -345,8 +348,8 @@ ExitCode Bench::run() {
                 "leave out --resume");
   const Room room = roomFor(wanted_);
   folder_.prepare(options_.referencesOnly ? 0 : room.results, room.references);
-  catchInterrupts();
-  loadPlugins(options_.plugins);
+  session::catchInterrupts();
+  session::loadPlugins(options_.plugins);
   openDevice();
   if (options_.referencesOnly) {
     makeReferences();

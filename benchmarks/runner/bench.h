@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/runner/progress.h"
+#include "framework/session/progress.h"
 
 namespace fovea::bench {
 
 struct SuiteOptions {
   std::string suite, folder, cache, only, shard, size, device;
   std::optional<uint32_t> seeds;
-  double frameLimit = kFrameLimit;
+  double frameLimit = session::kFrameLimit;
   std::vector<std::string> scenes, plugins, without;
   bool resume = false, replace = false, report = false, list = false, quiet = false, referencesOnly = false;
 };

@@ -15,11 +15,11 @@
 #include <sstream>
 #include <thread>
 
-#include "benchmarks/runner/inputs.h"
 #include "framework/base/files.h"
 #include "framework/base/hash.h"
 #include "framework/base/text_file.h"
 #include "framework/graph/report/report.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::bench {
 namespace {
@@ -138,7 +138,7 @@ std::string Fingerprint::key(const Job& job) const {
   Hasher hash;
   hash.add(std::string_view(parts.dump()));
   hash.add(std::string_view(job.json().dump()));
-  return formatHash(hash.value());
+  return session::formatHash(hash.value());
 }
 
 void BenchFolder::prepare(uint64_t bytes, uint64_t referenceBytes) const {

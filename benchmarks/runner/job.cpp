@@ -8,9 +8,6 @@
 #include <numeric>
 #include <set>
 
-#include "benchmarks/runner/compared.h"
-#include "benchmarks/runner/inputs.h"
-#include "benchmarks/runner/interrupt.h"
 #include "benchmarks/runner/pass_code.h"
 #include "fovea/scene.h"
 #include "framework/base/hash.h"
@@ -20,6 +17,9 @@
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
 #include "framework/scene/load.h"
+#include "framework/session/compared.h"
+#include "framework/session/inputs.h"
+#include "framework/session/interrupt.h"
 
 namespace fovea::bench {
 namespace {
@@ -37,16 +37,16 @@ constexpr int kMaxSearchSteps = 12;
 constexpr double kSearchTolerance = 0.04;  // relative, of the number searched for
 
 void throwIfInterrupted() {
-  if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted");
+  if (session::interrupted()) throw Error(ExitCode::Interrupted, "interrupted");
 }
 
 graph::Description describe(const std::string& graph,
                             const std::vector<std::pair<std::string, std::string>>& set,
                             Diagnostics& messages) {
-  GraphOptions options;
+  session::GraphOptions options;
   options.graph = graph;
   for (const auto& [name, value] : set) options.set.push_back(name + "=" + value);
-  return loadGraph(options, messages);
+  return session::loadGraph(options, messages);
 }
 
 // The mistake, preceded by the place in the suite that leads to it.
@@ -67,7 +67,7 @@ Json codesOf(const graph::BoundGraph& graph) {
 std::string hashOf(std::string_view text) {
   Hasher hash;
   hash.add(text);
-  return formatHash(hash.value());
+  return session::formatHash(hash.value());
 }
 
 // null if it is not known.
@@ -111,7 +111,8 @@ std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& 
 
 }  // namespace
 
-BenchRunner::BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device, Progress& progress)
+BenchRunner::BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device,
+                         session::Progress& progress)
     : folder_(folder), device_(std::move(device)), progress_(progress) {}
 
 bool BenchRunner::useScene(const Job& job, std::string& why) {
@@ -133,7 +134,7 @@ bool BenchRunner::useScene(const Job& job, std::string& why) {
     return false;
   }
   progress_.clear();
-  printWarnings(messages);
+  session::printWarnings(messages);
   sceneName_ = job.scene;
   return true;
 }
@@ -152,12 +153,12 @@ std::unique_ptr<session::GraphRun> BenchRunner::makeRun(const Job& job, bool pic
     };
     options.hostProgress = [this](const std::string& pass, double share) {
       progress_.pass(pass, share);
-      return !interrupted();
+      return !session::interrupted();
     };
     auto run = std::make_unique<session::GraphRun>(*device_, description, scene_, geometry_,
                                                    std::move(options), messages);
     progress_.clear();
-    printWarnings(messages);
+    session::printWarnings(messages);
     return run;
   } catch (const Error& e) {
     rethrowAt(e, job.graphWhere,
@@ -181,8 +182,8 @@ std::optional<Fingerprint> BenchRunner::fingerprint(const Job& job, std::string&
   Fingerprint made;
   made.parts = {{"format", kBenchFormat},
                 {"device", device_->name()},
-                {"scene", formatHash(scene_.hash)},
-                {"graph", formatHash(run->graph().hash)},
+                {"scene", session::formatHash(scene_.hash)},
+                {"graph", session::formatHash(run->graph().hash)},
                 {"plan", hashOf(graph::planJson(*run->plan()))},
                 {"passes", codesOf(run->graph())},
                 {"framework", frameworkCode()},
@@ -203,7 +204,7 @@ Json BenchRunner::referenceParts(const Job& job) {
     Hasher parameters;
     for (const graph::Value& value : pass.parameters.values()) parameters.add(value);
     parts[pass.declaration->type] = passCode(pass.declaration->type);
-    parts["parameters of " + pass.name] = formatHash(parameters.value());
+    parts["parameters of " + pass.name] = session::formatHash(parameters.value());
   }
   return parts;
 }
@@ -220,10 +221,10 @@ image::File BenchRunner::toFile(const session::GraphRun& run, graph::FrameResult
   file.metadata = {
       {"gaze", fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y)},
       {"fovea_radius",
-       fmt::format("{}", float(session::parameterOr(run.graph(), "fovea_radius", kFoveaRadius)))},
+       fmt::format("{}", float(session::parameterOr(run.graph(), "fovea_radius", session::kFoveaRadius)))},
       {"exposure", fmt::format("{}", float(exposure > 0 ? exposure : shown.exposure))},
       {"scene", sceneName_},
-      {"scene_hash", formatHash(scene_.hash)}};
+      {"scene_hash", session::formatHash(scene_.hash)}};
   return file;
 }
 
@@ -232,7 +233,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
   progress_.stage("preparing " + job.graph);
   const auto run = makeRun(job, pictures);
   run->prepare();
-  Timings timings(run->plan());
+  session::Timings timings(run->plan());
   Sequence sequence;
   std::vector<graph::FrameResult> kept;  // converted afterwards, so that the wall time excludes it
   uint64_t finished = 0;
@@ -262,7 +263,7 @@ BenchRunner::Sequence BenchRunner::render(const Job& job) {
       std::erase_if(sequence.frames.back().layers,
                     [&](const image::Layer& l) { return l.name != job.layer; });
   }
-  RunInfo info;
+  session::RunInfo info;
   info.device = device_->name();
   const Json all = Json::parse(timings.json(info));
   sequence.time = {{"frame", all["frame"]}, {"passes", all["passes"]}, {"counters", all["counters"]}};
@@ -278,7 +279,7 @@ BenchRunner::Reference BenchRunner::referenceOf(const Job& job, uint64_t frame) 
     hash.add(n);
   hash.add(std::string_view(referenceParts(job).dump()));
   return {fmt::format("{}-{}x{}-f{}-{}", std::filesystem::path(job.scene).stem().string(), job.size.x,
-                      job.size.y, frame, formatHash(hash.value())),
+                      job.size.y, frame, session::formatHash(hash.value())),
           frame};
 }
 
@@ -323,7 +324,7 @@ image::File BenchRunner::reference(const Job& job, uint64_t frame) {
       [&] {
         progress_.stage(
             fmt::format("waiting for the reference of frame {}, which another process makes", frame));
-        return !interrupted();
+        return !session::interrupted();
       });
 }
 
@@ -343,14 +344,14 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
   const uint64_t frame = uint64_t(job.first) + job.frames - 1;
   const image::File truth = reference(job, frame);
   progress_.stage("measuring");
-  CompareOptions options;
+  session::CompareOptions options;
   options.layer = job.layer;
-  const Compared c = compareRadiance("picture", last, "reference", truth, options);
+  const session::Compared c = session::compareRadiance("picture", last, "reference", truth, options);
   const auto whole = image::compare(c.image, c.reference, c.halves, c.fovea, image::kDefaultPixelsPerDegree);
   std::optional<image::PerRegion<image::Measures>> indirect;
   if (last.find("indirect")) {
     options.layer = "indirect";
-    const Compared i = compareRadiance("picture", last, "reference", truth, options);
+    const session::Compared i = session::compareRadiance("picture", last, "reference", truth, options);
     indirect = image::compare(i.image, i.reference, i.halves, i.fovea, image::kDefaultPixelsPerDegree);
   }
   image::PerRegion<double> floor{image::kUnknown, image::kUnknown, image::kUnknown};
@@ -381,12 +382,12 @@ Json BenchRunner::errors(const Job& job, const image::File& last) {
 
 Json BenchRunner::temporal(const Job& job, const Sequence& sequence) {
   image::SequenceComparison comparison;
-  Compared previous;
-  CompareOptions options;
+  session::Compared previous;
+  session::CompareOptions options;
   options.layer = job.layer;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    Compared c =
-        compareRadiance("picture", sequence.frames[i], "reference", reference(job, job.first + i), options);
+    session::Compared c = session::compareRadiance("picture", sequence.frames[i], "reference",
+                                                   reference(job, job.first + i), options);
     if (job.pictures && i > 0 && i + 1 == sequence.frames.size())
       writePicture(job.name() + "-temporal",
                    image::errorPicture(changeErrors(c.image, previous.image, c.reference, previous.reference),

@@ -7,18 +7,18 @@
 #include <string>
 
 #include "benchmarks/runner/folder.h"
-#include "benchmarks/runner/progress.h"
 #include "benchmarks/runner/suite.h"
-#include "benchmarks/runner/timings.h"
 #include "framework/gpu/device.h"
 #include "framework/scene/scene.h"
 #include "framework/session/graph_run.h"
+#include "framework/session/progress.h"
+#include "framework/session/timings.h"
 
 namespace fovea::bench {
 
 class BenchRunner {
  public:
-  BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device, Progress& progress);
+  BenchRunner(const BenchFolder& folder, std::shared_ptr<gpu::Device> device, session::Progress& progress);
 
   // What the result depends on; finds every mistake in the job's scene, graph and parameters. Throws Error(BadInput)
   // with the place in the suite. Returns nullopt if an optional scene is missing; `why` then gives the reason.
@@ -55,7 +55,7 @@ class BenchRunner {
 
   const BenchFolder& folder_;
   std::shared_ptr<gpu::Device> device_;
-  Progress& progress_;
+  session::Progress& progress_;
   std::string sceneName_;
   scene::Scene scene_;
   scene::Geometry geometry_;

@@ -7,9 +7,9 @@
 #include <regex>
 #include <sstream>
 
-#include "benchmarks/runner/inputs.h"
 #include "framework/base/hash.h"
 #include "framework/base/paths.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::bench {
 namespace {
@@ -64,7 +64,7 @@ std::string codeOf(std::string_view sources, const Shaders& shaders) {
   Hasher hash;
   hash.add(sources);
   for (const auto& [name, text] : shaders) hash.add(std::string_view(name)), hash.add(std::string_view(text));
-  return formatHash(hash.value());
+  return session::formatHash(hash.value());
 }
 
 }  // namespace

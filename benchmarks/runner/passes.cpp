@@ -14,16 +14,16 @@
 
 #include "benchmarks/runner/baseline/baseline.h"
 #include "benchmarks/runner/folder.h"
-#include "benchmarks/runner/inputs.h"
-#include "benchmarks/runner/interrupt.h"
-#include "benchmarks/runner/progress.h"
-#include "benchmarks/runner/timings.h"
 #include "fovea/scene.h"
 #include "framework/base/files.h"
 #include "framework/base/random.h"
 #include "framework/base/text_file.h"
 #include "framework/scene/load.h"
 #include "framework/session/graph_run.h"
+#include "framework/session/inputs.h"
+#include "framework/session/interrupt.h"
+#include "framework/session/progress.h"
+#include "framework/session/timings.h"
 
 namespace fovea::bench {
 namespace {
@@ -60,7 +60,7 @@ class Bench {
   ExitCode compare(const Json& now, const Json& before) const;
 
   const PassBenchOptions& options_;
-  Progress progress_;
+  session::Progress progress_;
   std::shared_ptr<gpu::Device> device_;
   graph::Description description_;
   scene::Scene scene_;
@@ -69,16 +69,16 @@ class Bench {
 };
 
 void Bench::open() {
-  GraphOptions graph;
+  session::GraphOptions graph;
   graph.graph = options_.graph, graph.set = options_.set, graph.plugins = options_.plugins;
   Diagnostics messages;
-  description_ = loadGraph(graph, messages);
+  description_ = session::loadGraph(graph, messages);
   progress_.stage("loading scene " + options_.scene);
   scene_ = scene::load(options_.scene, messages);
   geometry_ = scene::flatten(scene_);
   device_ = gpu::openDevice({.device = options_.device, .without = options_.without});
   progress_.clear();
-  printWarnings(messages);
+  session::printWarnings(messages);
 }
 
 // {"deferred": {"gpu_ms": [..], "cpu_ms": [..], "host": false}, .., "frame": {"gpu_ms", "cpu_ms", "wall_ms"}}.
@@ -109,10 +109,10 @@ Json Bench::passesOf(const graph::Plan& plan, const std::vector<graph::FrameResu
 Json Bench::repeat() {
   Diagnostics messages;
   session::GraphRun::Options run;
-  run.size = parseSize(options_.size);
+  run.size = session::parseSize(options_.size);
   run.hostProgress = [this](const std::string& pass, double share) {
     progress_.pass(pass, share);
-    return !interrupted();
+    return !session::interrupted();
   };
   session::GraphRun graphRun(*device_, description_, scene_, geometry_, std::move(run), messages);
   graphRun.prepare();
@@ -125,7 +125,7 @@ Json Bench::repeat() {
   };
   progress_.frames(0, total);
   for (uint64_t i = 0; i < total; ++i) {
-    if (interrupted()) throw Error(ExitCode::Interrupted, "interrupted", "nothing was written");
+    if (session::interrupted()) throw Error(ExitCode::Interrupted, "interrupted", "nothing was written");
     graphRun.submit(graphRun.frame(options_.first + i), false);
     if (graphRun.inFlight() == 1) {
       while (auto result = graphRun.executor().next()) take(std::move(*result));
@@ -203,17 +203,17 @@ void Bench::printTable(const Json& run) const {
   fmt::print("{:<{}} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "pass", width, "gpu ms", "min", "p95",
              "cpu ms", "min", "p95");
   for (const std::string& name : names) {
-    const Spread gpu = spreadOf(flat(samplesOf(run, name, "gpu_ms"))),
-                 cpu = spreadOf(flat(samplesOf(run, name, "cpu_ms")));
+    const session::Spread gpu = session::spreadOf(flat(samplesOf(run, name, "gpu_ms"))),
+                          cpu = session::spreadOf(flat(samplesOf(run, name, "cpu_ms")));
     fmt::print("{:<{}} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f}\n", name, width,
                gpu.median, gpu.min, gpu.p95, cpu.median, cpu.min, cpu.p95);
   }
-  const Spread wall = spreadOf(flat(samplesOf(run, kFrame, "wall_ms")));
+  const session::Spread wall = session::spreadOf(flat(samplesOf(run, kFrame, "wall_ms")));
   fmt::print("wall time of a frame: {:.3f} ms (min {:.3f}, p95 {:.3f})\n", wall.median, wall.min, wall.p95);
   const Json& counters = run["repeats"][0]["counters"];
   if (!counters.empty()) fmt::print("\ncounters of a frame, which do not depend on the machine\n");
   for (const auto& [name, values] : counters.items())
-    fmt::print("  {:<32} {:>14.6g}\n", name, spreadOf(values.get<std::vector<double>>()).median);
+    fmt::print("  {:<32} {:>14.6g}\n", name, session::spreadOf(values.get<std::vector<double>>()).median);
 }
 
 // ---- Comparison
@@ -232,16 +232,16 @@ double medianOfMedians(const Samples& samples, uint32_t stream, uint32_t& draw) 
     const std::vector<double>& repeat = samples[pick(samples.size())];  // whole repeats, then frames of each
     std::vector<double> frames;
     for (size_t f = 0; f < repeat.size(); ++f) frames.push_back(repeat[pick(repeat.size())]);
-    medians.push_back(spreadOf(std::move(frames)).median);
+    medians.push_back(session::spreadOf(std::move(frames)).median);
   }
-  return spreadOf(std::move(medians)).median;
+  return session::spreadOf(std::move(medians)).median;
 }
 
 // Hierarchical bootstrap (Efron and Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13: percentile
 // interval). What differs between repeats, such as the placement of memory, counts once per repeat.
 Change changeOf(const Samples& before, const Samples& now) {
   Change change;
-  change.before = spreadOf(flat(before)).median, change.now = spreadOf(flat(now)).median;
+  change.before = session::spreadOf(flat(before)).median, change.now = session::spreadOf(flat(now)).median;
   std::vector<double> ratios;
   uint32_t draw = 0;
   for (uint32_t i = 0; i < kResamples; ++i) {
@@ -270,7 +270,7 @@ ExitCode Bench::compare(const Json& now, const Json& before) const {
     const Samples old = samplesOf(before, name, clock);
     if (flat(old).empty()) {
       fmt::print("{:<{}} {:>11} {:>11.3f}            new\n", name, width, "-",
-                 spreadOf(flat(samplesOf(now, name, clock))).median);
+                 session::spreadOf(flat(samplesOf(now, name, clock))).median);
       continue;
     }
     const Change c = changeOf(old, samplesOf(now, name, clock));
@@ -290,8 +290,8 @@ ExitCode Bench::compare(const Json& now, const Json& before) const {
     const Json& old = before["repeats"][0]["counters"].value(name, Json());
     if (old.is_array() && old != values)
       fmt::print("counter {}: {:.6g} before, {:.6g} now\n", name,
-                 spreadOf(old.get<std::vector<double>>()).median,
-                 spreadOf(values.get<std::vector<double>>()).median);
+                 session::spreadOf(old.get<std::vector<double>>()).median,
+                 session::spreadOf(values.get<std::vector<double>>()).median);
   }
   return slower ? ExitCode::Slower : ExitCode::Ok;
 }
@@ -303,7 +303,7 @@ ExitCode Bench::run() {
   if (!options_.baseline.empty() && !isProgram) before = readBaseline(options_.baseline);
   if (!options_.output.empty()) checkTextWritable(options_.output);
   open();
-  catchInterrupts();
+  session::catchInterrupts();
   if (!options_.output.empty()) checkOutputs({options_.output});
   Json now = {{"with", describe(options_, device_->name())}, {"repeats", Json::array()}};
   if (!before.is_null()) {

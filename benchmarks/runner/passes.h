@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/runner/progress.h"
+#include "framework/session/progress.h"
 
 namespace fovea::bench {
 
@@ -13,7 +13,7 @@ struct PassBenchOptions {
   std::vector<std::string> set;
   uint32_t frames = 5, warmup = 3, first = 0, repeats = 5;
   double threshold = 2;  // percent
-  double frameLimit = kFrameLimit;
+  double frameLimit = session::kFrameLimit;
   bool json = false;
   std::string output, size, device;  // as the suite's options of the same names
   std::vector<std::string> plugins, without;

@@ -8,9 +8,9 @@
 #include <set>
 #include <sstream>
 
-#include "benchmarks/runner/inputs.h"
 #include "framework/base/files.h"
 #include "framework/base/json.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::bench {
 namespace {
@@ -67,7 +67,7 @@ void expected(Diagnostics& messages, const Value& value, const std::string& path
 
 std::optional<glm::uvec2> sizeOf(const std::string& text) {
   try {
-    return parseSize(text);
+    return session::parseSize(text);
   } catch (const Error&) {
     return std::nullopt;  // the caller reports what was expected, and where
   }

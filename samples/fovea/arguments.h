@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/runner/compared.h"
-#include "benchmarks/runner/inputs.h"
+#include "framework/session/compared.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::cli {
 
-using namespace bench;  // NOLINT(google-build-using-namespace): the program is a shell around that library
+using namespace session;  // NOLINT(google-build-using-namespace): the program is a shell around that room
 
 void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void addPassesOption(CLI::App& command, std::vector<std::string>& folders);

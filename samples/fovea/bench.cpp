@@ -11,7 +11,7 @@ namespace fovea::cli {
 
 namespace {
 
-void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
+void addSuiteOptions(CLI::App& command, bench::SuiteOptions& options) {
   command
       .add_option("SUITE", options.suite,
                   "Suite: a .json file, or a bare name (quick, table1, table2, ..); or `passes` with --graph")
@@ -57,7 +57,7 @@ void addSuiteOptions(CLI::App& command, SuiteOptions& options) {
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but warnings and errors");
 }
 
-void addPassBenchOptions(CLI::App& command, PassBenchOptions& options) {
+void addPassBenchOptions(CLI::App& command, bench::PassBenchOptions& options) {
   const std::string group = "Passes of one graph (fovea bench passes --graph ..; -o then names a .json file)";
   command.add_option("--graph", options.graph, "Graph: a file or a bare name; --scene names the scene")
       ->type_name("GRAPH")
@@ -95,13 +95,13 @@ void addPassBenchOptions(CLI::App& command, PassBenchOptions& options) {
 void addBench(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "bench", "Run a suite of measurements to tables and a report, or measure the passes of a graph");
-  auto options = std::make_shared<SuiteOptions>();
-  auto passes = std::make_shared<PassBenchOptions>();
+  auto options = std::make_shared<bench::SuiteOptions>();
+  auto passes = std::make_shared<bench::PassBenchOptions>();
   addSuiteOptions(*command, *options);
   addPassBenchOptions(*command, *passes);
   command->callback([options, passes, &action] {
     action = [options, passes] {
-      if (passes->graph.empty()) return runSuite(*options);
+      if (passes->graph.empty()) return bench::runSuite(*options);
       if (options->suite != "passes")
         throw Error(ExitCode::Usage,
                     "--graph belongs to `fovea bench passes`; a suite names its graphs itself");
@@ -111,7 +111,7 @@ void addBench(CLI::App& program, Action& action) {
       passes->output = options->folder, passes->size = options->size, passes->device = options->device;
       passes->without = options->without, passes->frameLimit = options->frameLimit;
       passes->plugins = options->plugins, passes->quiet = options->quiet;
-      return benchPasses(*passes);
+      return bench::benchPasses(*passes);
     };
   });
 }

@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "benchmarks/runner/compared.h"
 #include "framework/base/files.h"
 #include "framework/image/error_picture.h"
 #include "framework/image/flip.h"
+#include "framework/session/compared.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <memory>
 
-#include "benchmarks/runner/compared.h"
-#include "benchmarks/runner/progress.h"
+#include "framework/session/compared.h"
+#include "framework/session/progress.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "benchmarks/runner/interrupt.h"
 #include "fovea/error.h"
 #include "fovea/passes.h"
 #include "fovea/scenes.h"
 #include "framework/base/legible.h"
 #include "framework/base/memory.h"
 #include "framework/base/threads.h"
+#include "framework/session/interrupt.h"
 #include "samples/fovea/commands.h"
 
 namespace fovea::cli {
@@ -134,7 +134,7 @@ void terminate() {
 
 int main(int argc, char** argv) {
   std::set_terminate(fovea::cli::terminate);
-  fovea::bench::stopAtInterrupts();
+  fovea::session::stopAtInterrupts();
   fovea::keepFreedMemory();
   const fovea::ExitCode code = fovea::cli::run(argc, argv);
   if (std::fflush(stdout) != 0 && code == fovea::ExitCode::Ok) {

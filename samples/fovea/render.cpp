@@ -5,9 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "benchmarks/runner/interrupt.h"
-#include "benchmarks/runner/progress.h"
-#include "benchmarks/runner/timings.h"
 #include "fovea/scene.h"
 #include "framework/base/files.h"
 #include "framework/base/text_file.h"
@@ -18,6 +15,9 @@
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/scene.h"
 #include "framework/session/graph_run.h"
+#include "framework/session/interrupt.h"
+#include "framework/session/progress.h"
+#include "framework/session/timings.h"
 #include "framework/shader_twins/fovea.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "benchmarks/runner/timings.h"
+#include "framework/session/timings.h"
 #include "samples/fovea/arguments.h"
 
 namespace fovea::cli {

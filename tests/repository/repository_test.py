@@ -27,13 +27,18 @@ ROOMS = {
     "framework/scene": ["framework/gpu", "framework/image", "framework/shader_twins", "shaders/records"],
     "framework/graph": ["framework/gpu", "framework/image"],
     "framework/session": ["framework/graph", "framework/scene"],
-    "passes": ["framework/graph", "framework/scene", "shaders"],
+    "passes/include": [],
+    "passes": ["framework/graph", "framework/scene", "shaders", "passes/include"],
     "benchmarks/runner": ["framework/session"],
-    "benchmarks": ["framework/session", "passes", "benchmarks/runner"],
-    "samples/scenes": ["framework/scene"],
+    "benchmarks": ["framework/session", "passes", "samples/scenes", "benchmarks/runner"],
+    "samples/scenes/builtin/include": [],
+    "samples/scenes": ["framework/scene", "samples/scenes/builtin/include"],
     "samples/own_pass": ["framework/include"],
-    "samples/fovea": ["framework/session", "benchmarks/runner"],
+    "samples/embed": ["framework/include", "passes/include", "samples/scenes/builtin/include"],
+    "samples/fovea": ["framework/session", "passes/include", "samples/scenes/builtin/include", "benchmarks/runner"],
 }
+# What is installed, and included without its folder.
+FACADES = ["framework/include", "passes/include", "samples/scenes/builtin/include"]
 # graph/ learns of the scene only through a frame.
 EXCEPTIONS = {("framework/graph", "framework/scene/frame.h")}
 
@@ -46,8 +51,8 @@ RAYS_ALONE = "framework/scene/rays/ray_scene.h"
 PLAIN_WORDS = {"room", "yard", "balcony", "direct", "radiance", "importance", "candidates", "manage", "emit", "bounce",
                "accumulate", "compose", "deferred", "reproject", "mipmap", "gbuffer", "voxelize", "tonemap",
                "mirrors", "cones"}
-# Words of glTF, which the framework must say.
-OTHER_MEANINGS = {"weights", "radiance"}
+# Words of glTF, and layers of pictures, which the framework must say.
+OTHER_MEANINGS = {"weights", "radiance", "direct"}
 
 SOURCE_ENDINGS = {".cpp", ".h", ".comp", ".frag", ".vert", ".glsl", ".py", ".sh", ".cmake"}
 
@@ -87,7 +92,7 @@ class Rooms(unittest.TestCase):
             if room is None or path.suffix not in {".cpp", ".h"}:
                 continue
             for name in re.findall(r'^#include "([^"]+)"', read(path), re.M):
-                target = f"framework/include/{name}" if name.startswith("fovea/") else name
+                target = next((f"{folder}/{name}" for folder in FACADES if (SOURCE / folder / name).is_file()), name)
                 if room.startswith("shaders") or path.name == "records.h":  # GLSL looks in the file's own folder first
                     beside = (SOURCE / path.parent / name).resolve()
                     target = str(beside.relative_to(SOURCE)) if beside.is_file() else f"shaders/{name}"
@@ -118,7 +123,7 @@ class Rooms(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_the_framework_names_no_pass_and_no_scene(self):
-        passes = sorted({p.parts[1] for p in tracked() if p.parts[0] == "passes" and len(p.parts) > 2})
+        passes = sorted({p.parts[1] for p in tracked() if p.parts[0] == "passes" and len(p.parts) > 2} - {"include"})
         scenes = re.findall(r'FOVEA_SCENE\("(\w+)"', "".join(
             read(p) for p in tracked() if str(p).startswith("samples/scenes/builtin/")))
         scenes += [p.stem for p in (SOURCE / "samples/scenes").glob("*.json")]

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "benchmarks/runner/inputs.h"
+#include "framework/session/inputs.h"
 #include "graph_support.h"
 #include "places.h"
 
@@ -87,10 +87,11 @@ TEST(BenchSuite, AFolderStandsForTheSceneFilesInIt) {
   TempFolder folder;
   for (const char* name : {"b.json", "a.json", "a.bin"}) folder.write(name, "{}");
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
-  EXPECT_THAT(sceneNames({"room", path("")}), ElementsAre("room", path("a.json"), path("b.json")));
-  EXPECT_THROW(sceneNames({path("a.json"), "elsewhere/a.gltf"}), Error);  // results would have one name
+  EXPECT_THAT(session::sceneNames({"room", path("")}), ElementsAre("room", path("a.json"), path("b.json")));
+  EXPECT_THROW(session::sceneNames({path("a.json"), "elsewhere/a.gltf"}),
+               Error);  // results would have one name
   std::filesystem::create_directory(folder.path() / "empty");
-  EXPECT_THROW(sceneNames({path("empty/")}), Error);
+  EXPECT_THROW(session::sceneNames({path("empty/")}), Error);
 }
 
 TEST(BenchSuite, MatchKnowsWhatTheOtherGraphIsRunWith) {

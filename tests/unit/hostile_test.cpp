@@ -10,12 +10,12 @@
 #include <sstream>
 
 #include "benchmarks/runner/baseline/baseline.h"
-#include "benchmarks/runner/compared.h"
 #include "benchmarks/runner/suite.h"
 #include "fovea/image.h"
 #include "framework/graph/compile/compile.h"
 #include "framework/scene/environment/environment_map.h"
 #include "framework/scene/motion/motion.h"
+#include "framework/session/compared.h"
 #include "scene_support.h"
 
 namespace fovea {
@@ -65,7 +65,7 @@ const std::map<std::string, std::function<void(const fs::path&)>>& readers() {
       {"graphs", readGraph},
       {"models", readScene},
       {"passes", [](const fs::path& file) { graph::Registry().addFolder(file.parent_path()); }},
-      {"pictures", [](const fs::path& file) { bench::loadCompared(file.string(), file.string(), {}, {}); }},
+      {"pictures", [](const fs::path& file) { session::loadCompared(file.string(), file.string(), {}, {}); }},
       {"scenes", readScene},
       {"suites", [](const fs::path& file) { bench::loadSuite(file.string(), {}); }},
   };

@@ -1,9 +1,9 @@
 // Tests that the times of frames come back as they were given, whatever passes and steps each frame has.
-#include "benchmarks/runner/timings.h"
+#include "framework/session/timings.h"
 
 #include <gtest/gtest.h>
 
-namespace fovea::bench {
+namespace fovea::session {
 namespace {
 
 graph::FrameResult frameOf(uint64_t number, const std::vector<std::string>& steps,
@@ -70,4 +70,4 @@ TEST(Timings, AnimationComesFirst) {
 }
 
 }  // namespace
-}  // namespace fovea::bench
+}  // namespace fovea::session

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "benchmarks/runner/progress.h"
+#include "framework/session/progress.h"
 
 namespace fovea {
 namespace {
@@ -39,7 +39,7 @@ TEST(Watchdog, LetsEndWhatEndsInTime) {
 TEST(WatchdogDeathTest, AFrameIsWatchedUntilItIsFinished) {
   EXPECT_EXIT(
       {
-        bench::Progress progress(true, 0.05);
+        session::Progress progress(true, 0.05);
         progress.frames(1, 2);
         sleep(milliseconds(60'000));
       },
@@ -47,7 +47,7 @@ TEST(WatchdogDeathTest, AFrameIsWatchedUntilItIsFinished) {
 }
 
 TEST(Watchdog, WhatReportsProgressGoesOn) {
-  bench::Progress progress(true, 2);
+  session::Progress progress(true, 2);
   progress.frames(0, 1);
   for (int i = 0; i < 250; ++i) {
     progress.pass("path-trace", i / 250.0);

@@ -36,7 +36,7 @@ std::vector<std::string> ownArguments() {
 
 }  // namespace
 
-std::string whyNotLoadable(const bench::GraphOptions& options) {
+std::string whyNotLoadable(const session::GraphOptions& options) {
   std::vector<std::string> arguments{"fovea", "check", options.graph};
   const auto add = [&](const char* option, const std::vector<std::string>& values) {
     for (const std::string& value : values) arguments.insert(arguments.end(), {option, value});

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/runner/inputs.h"
+#include "framework/session/inputs.h"
 
 namespace fovea::view {
 
@@ -24,7 +24,7 @@ struct Resume {
 
 // Why a graph cannot be loaded with its plug-ins as they are now; empty if it can. Another process tries it, so that a
 // plug-in that crashes does no harm here.
-std::string whyNotLoadable(const bench::GraphOptions& options);
+std::string whyNotLoadable(const session::GraphOptions& options);
 
 // Starts the program anew with the arguments that it was started with. Throws Error(Internal) if the system refuses.
 [[noreturn]] void startAnew(const Resume& resume);

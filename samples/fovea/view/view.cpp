@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "benchmarks/runner/interrupt.h"
+#include "framework/session/interrupt.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 #include "samples/fovea/view/exchange.h"

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "benchmarks/runner/interrupt.h"
 #include "framework/base/paths.h"
 #include "framework/base/text_file.h"
 #include "framework/gpu/shader/shader.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/scene/scene.h"
+#include "framework/session/interrupt.h"
 #include "samples/fovea/view/graph/catalog.h"
 
 namespace fovea::view {
@@ -34,17 +34,17 @@ Viewer::Viewer(Exchange& exchange, const Options& options)
       options_(options),
       settings_(options.settings),
       watchdog_(std::chrono::duration<double>(options.frameLimit), ExitCode::DeviceLost,
-                bench::frameLimitMessage(options.frameLimit)) {
+                session::frameLimitMessage(options.frameLimit)) {
   // Mistakes in the graph are told before a device is looked for and a scene loaded.
   Diagnostics early;
-  const graph::Description description = bench::loadGraph(settings_.graph, early);
+  const graph::Description description = session::loadGraph(settings_.graph, early);
   graph::bind(description, session::sceneEnvironment(nullptr, {}, {}, settings_.size, settings_.graph.rays), early);
   if (!options.tev.empty()) tev_ = std::make_unique<TevStream>(exchange, options.tev);
   device_ = gpu::openDevice({.device = options.device,
                              .without = options.without,
                              .validation = options.validation ? gpu::Validation::On : gpu::Validation::Off});
   build_ = build(settings_, nullptr, nullptr, false);
-  bench::printWarnings(build_->messages);
+  session::printWarnings(build_->messages);
   report(build_->messages.list());
   watchFiles();
   if (options.resume) {
@@ -65,7 +65,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   graph::LoadOptions load;
   load.searchPaths = dataFolders("graphs");
   made->file = graph::findGraph(settings.graph.graph, load.searchPaths);
-  made->description = bench::loadGraph(settings.graph, made->messages);
+  made->description = session::loadGraph(settings.graph, made->messages);
   made->changes = changesOf(settings.graph.set);
   if (!scene) {
     scene = std::make_shared<LoadedScene>();
@@ -78,7 +78,7 @@ std::unique_ptr<Viewer::Build> Viewer::build(const Settings& settings, std::shar
   run.seed = settings.seed;
   run.rays = settings.graph.rays;
   run.observable = true;
-  run.hostProgress = [](const std::string&, double) { return !bench::interrupted(); };
+  run.hostProgress = [](const std::string&, double) { return !session::interrupted(); };
   made->run = std::make_unique<session::GraphRun>(*device_, made->description, made->scene->scene,
                                                   made->scene->geometry, std::move(run), made->messages);
   made->documents = loadDocuments(made->file, load);
@@ -305,7 +305,7 @@ Resume Viewer::resume() const {
 }
 
 bool Viewer::run() {
-  while (!bench::interrupted() && !restart_) {
+  while (!session::interrupted() && !restart_) {
     follow(exchange_.takeCommands());
     reloadChanged();
     if (!frameIsDue()) {
@@ -319,7 +319,7 @@ bool Viewer::run() {
     watchdog_.end();
   }
   drain();
-  return restart_ && !bench::interrupted();
+  return restart_ && !session::interrupted();
 }
 
 }  // namespace fovea::view

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/runner/inputs.h"
-#include "benchmarks/runner/progress.h"
 #include "framework/base/watchdog.h"
 #include "framework/session/graph_run.h"
+#include "framework/session/inputs.h"
+#include "framework/session/progress.h"
 #include "samples/fovea/view/exchange.h"
 #include "samples/fovea/view/graph/changes.h"
 #include "samples/fovea/view/motion.h"
@@ -27,7 +27,7 @@ namespace fovea::view {
 
 // What runs. It changes when a page chooses something else.
 struct Settings {
-  bench::GraphOptions graph;
+  session::GraphOptions graph;
   std::string scene, environment;
   glm::uvec2 size{512, 512};
   uint32_t seed = 1;
@@ -41,7 +41,7 @@ class Viewer {
     std::vector<std::string> without;  // gpu::DeviceOptions::without
     std::string tev;                   // HOST:PORT of the tev that shows a picture; "" for none
     bool validation = false;
-    double frameLimit = bench::kFrameLimit;  // seconds; 0 for none
+    double frameLimit = session::kFrameLimit;  // seconds; 0 for none
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;
     // Of a run that goes on here; what it changed of the settings is in the settings.

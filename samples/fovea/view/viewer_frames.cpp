@@ -125,16 +125,16 @@ image::Metadata Viewer::metadata(const Build& build, const Shot& shot) const {
   for (const std::string& text : overridesOf(build.changes)) set += (set.empty() ? "" : " ") + text;
   return {{"version", FOVEA_VERSION},
           {"graph", build.description.name},
-          {"graph_hash", bench::formatHash(build.run->graph().hash)},
+          {"graph_hash", session::formatHash(build.run->graph().hash)},
           {"scene", build.scene->scene.name},
-          {"scene_hash", bench::formatHash(build.scene->scene.hash)},
+          {"scene_hash", session::formatHash(build.scene->scene.hash)},
           {"set", set},
           {"device", device_->name()},
           {"seed", std::to_string(settings_.seed)},
           {"size", fmt::format("{}x{}", settings_.size.x, settings_.size.y)},
           {"gaze", fmt::format("{},{}", shot.gaze.x, shot.gaze.y)},
           {"fovea_radius", fmt::format("{}", float(session::parameterOr(build.run->graph(), "fovea_radius",
-                                                                        bench::kFoveaRadius)))},
+                                                                        session::kFoveaRadius)))},
           {"exposure", fmt::format("{}", shot.exposure)}};
 }
 

@@ -9,7 +9,7 @@
 
 #include "framework/image/metrics.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 
 inline constexpr double kMaxRadius = 4;  // of a fovea, image widths; the same limit as in the passes
 
@@ -50,4 +50,4 @@ nlohmann::ordered_json describe(const Compared& compared);
 std::string describeInWords(const Compared& compared);
 std::string formatMeasure(double value);  // "0.00123", or "-" if it is not known
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

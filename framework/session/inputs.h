@@ -11,7 +11,7 @@
 #include "framework/graph/compile/compile.h"
 #include "framework/session/graph_run.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 
 inline constexpr uint32_t kMaxSize = 16384;   // pixels per side
 inline constexpr double kFoveaRadius = 0.25;  // image widths, the default
@@ -50,4 +50,4 @@ std::string formatHash(uint64_t hash);  // 16 hexadecimal digits
 // Names as a list for messages: "`a`, `b`".
 std::string quoteList(const std::vector<std::string>& names);
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

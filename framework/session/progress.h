@@ -7,7 +7,7 @@
 
 #include "framework/base/watchdog.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 
 // Seconds that a frame may take. Tracing a reference on a CPU can take minutes, during which the pass reports progress.
 inline constexpr double kFrameLimit = 3600;
@@ -22,7 +22,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void stage(const std::string& what);  // "loading sponza"
+  void stage(const std::string& what);  // "loading scene my_scene"
   // Precedes everything that follows, such as "job 3/40 (12 min left), ".
   void setPrefix(const std::string& prefix) { prefix_ = prefix; }
   // Number of frames done so far, from which the remaining time is estimated.
@@ -45,4 +45,4 @@ std::string frameLimitMessage(double seconds);
 
 std::string formatDuration(double seconds);  // "0.8 s", "12 s", "3 min 20 s"
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

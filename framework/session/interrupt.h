@@ -1,7 +1,7 @@
 // Handles Ctrl-C and SIGTERM.
 #pragma once
 
-namespace fovea::bench {
+namespace fovea::session {
 
 // From now on, an interrupt ends the process with exit code 130: for stages that leave nothing half done.
 void stopAtInterrupts();
@@ -9,4 +9,4 @@ void stopAtInterrupts();
 void catchInterrupts();
 bool interrupted();
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

@@ -1,4 +1,4 @@
-#include "benchmarks/runner/interrupt.h"
+#include "framework/session/interrupt.h"
 
 #include <signal.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 
 #include "fovea/error.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 namespace {
 
 std::atomic<bool> asked = false;
@@ -42,4 +42,4 @@ void catchInterrupts() { handle(onInterrupt); }
 
 bool interrupted() { return asked; }
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

@@ -11,7 +11,7 @@
 
 #include "framework/graph/run/execute.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 
 // The settings of a run, which every file that the run writes contains.
 struct RunInfo {
@@ -81,4 +81,4 @@ class Timings {
   std::vector<Frame> frames_;
 };
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

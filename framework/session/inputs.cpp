@@ -1,4 +1,4 @@
-#include "benchmarks/runner/inputs.h"
+#include "framework/session/inputs.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "fovea/graph.h"
 #include "framework/base/paths.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::string quoteList(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

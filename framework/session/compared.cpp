@@ -1,4 +1,4 @@
-#include "benchmarks/runner/compared.h"
+#include "framework/session/compared.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <locale>
 #include <sstream>
 
-#include "benchmarks/runner/inputs.h"
 #include "fovea/error.h"
+#include "framework/session/inputs.h"
 #include "framework/shader_twins/fovea.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 namespace {
 
 constexpr const char* kRadiance = "radiance";
@@ -229,4 +229,4 @@ std::string describeInWords(const Compared& c) {
 
 std::string formatMeasure(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4g}", value); }
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

@@ -1,4 +1,4 @@
-#include "benchmarks/runner/timings.h"
+#include "framework/session/timings.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "framework/base/text_file.h"
 #include "framework/graph/compile/plan.h"
 
-namespace fovea::bench {
+namespace fovea::session {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -342,4 +342,4 @@ void Timings::write(const std::filesystem::path& file, const RunInfo& run) const
   writeText(file, file.extension() == ".csv" ? csv() : json(run));
 }
 
-}  // namespace fovea::bench
+}  // namespace fovea::session

@@ -1,4 +1,4 @@
-#include "benchmarks/runner/progress.h"
+#include "framework/session/progress.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fovea::bench {
+namespace fovea::session {
 
 Progress::Progress(bool quiet, double frameLimit)
     : watchdog_(std::chrono::duration<double>(frameLimit), ExitCode::DeviceLost,
@@ -81,4 +81,4 @@ std::string formatDuration(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-}  // namespace fovea::bench
+}  // namespace fovea::session
