@@ -87,11 +87,11 @@ void Session::Impl::use(SessionOptions changed) {
   how.seed = changed.seed;
   how.frameRate = changed.frameRate;
   how.givesInputs = how.observable = true;
-  how.readback = [&](const BoundGraph& bound) {
+  how.hostProgress = changed.progress;
+  how.readback = [read = changed.read](const BoundGraph& bound) {
     std::vector<std::string> names;
     for (const BoundOutput& output : bound.outputs)
-      if (changed.read.empty() ||
-          std::find(changed.read.begin(), changed.read.end(), output.name) != changed.read.end())
+      if (read.empty() || std::find(read.begin(), read.end(), output.name) != read.end())
         names.push_back(output.name);
     return names;
   };

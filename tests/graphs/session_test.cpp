@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -236,6 +238,23 @@ TEST(Session, InputsOfTheGraphAreFilled) {
   EXPECT_THAT(
       messageOf(ExitCode::BadInput, [&] { session.setInput("dark", std::as_bytes(std::span(black))); }),
       HasSubstr("no input `dark`"));
+}
+
+// Without the answer, the frame would take an hour.
+TEST(Session, LongPassesTellHowFarTheyAreAndStop) {
+  const scene::Scene scene = scene::builtin("cornellbox");
+  SessionOptions chosen = options({"spp=1000000"});
+  std::vector<double> shares;
+  chosen.progress = [&](const std::string& pass, double share) {
+    EXPECT_FALSE(pass.empty());
+    shares.push_back(share);
+    return shares.size() < 2;
+  };
+  const FrameResult frame = Session("reference", scene, chosen).render(0);
+  ASSERT_EQ(shares.size(), 2u);
+  EXPECT_LT(shares[0], shares[1]);
+  EXPECT_LT(shares[1], 0.5);
+  EXPECT_FALSE(radiance(frame).empty());
 }
 
 TEST(Session, SeveralShareADevice) {

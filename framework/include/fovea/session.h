@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -31,6 +32,9 @@ struct SessionOptions {
   double frameRate = 42;          // frames per second of scene time
   std::vector<std::string> set;   // parameter values: "bounces=3", "blur.radius=3"
   std::vector<std::string> read;  // what render() reads back, see Session::read(); empty for all outputs
+  // Called inside render() by passes that run long on the CPU, with the name of the pass and the share of its work that
+  // is done, 0 to 1. Returning false asks it to finish soon with what it has.
+  std::function<bool(const std::string& pass, double share)> progress{};
 };
 
 // What a frame shows. Members that are not set follow from the scene.
