@@ -21,4 +21,15 @@ sed 's/mean radiance: //; s/ W.*//' printed | paste -d' ' - expected | awk '
   function near(a, b) { return a > 0 && (a - b) ^ 2 < (1e-4 + 1e-3 * b) ^ 2 }
   { found = near($1, $4) && near($2, $5) && near($3, $6) } END { exit !found }' ||
   { echo "the sample renders something else than the program"; exit 1; }
+
+echo "== without the calls"
+for library in scenes passes; do
+  sed "/${library}::registerAll/d" "$source/samples/embed/embed.cpp" >embed/embed.cpp
+  cmake --build build
+  code=0
+  build/embed 2>log || code=$?
+  cat log
+  [ $code = 3 ] || { echo "exit code $code without $library"; exit 1; }
+  grep -q "fovea::$library::registerAll()" log || { echo "the remedy is not named"; exit 1; }
+done
 echo "passed"

@@ -119,7 +119,10 @@ class Parser {
     if (v.isObject() && m.file.empty() == m.builtin.empty())
       errors_.error(m.where, path, "a model is named either by `file` or by `builtin`");
     const std::vector<std::string> names = builtinNames();
-    if (!m.builtin.empty() && std::find(names.begin(), names.end(), m.builtin) == names.end())
+    if (!m.builtin.empty() && names.empty())
+      errors_.error(m.where, r.pathOf("builtin"), "the program has no built-in scenes",
+                    "a program of yours registers them with fovea::scenes::registerAll()");
+    else if (!m.builtin.empty() && std::find(names.begin(), names.end(), m.builtin) == names.end())
       r.choice("builtin", "", names);
     Placement& p = m.placement;
     p.name = r.text("name", m.builtin.empty() ? fs::path(m.file).stem().string() : m.builtin);
