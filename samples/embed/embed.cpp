@@ -16,7 +16,8 @@ int main() try {
   const fovea::image::Image picture = session.picture(frame, "radiance");
   double mean[3] = {};
   for (size_t i = 0; i < picture.data.size(); ++i)
-    if (const size_t c = i % picture.channels; c < 3) mean[c] += picture.data[i] / (picture.width * picture.height);
+    if (const size_t c = i % picture.channels; c < 3)
+      mean[c] += picture.data[i] / (picture.width * picture.height);
   std::printf("mean radiance: %.6f %.6f %.6f W/(sr m^2)\n", mean[0], mean[1], mean[2]);
 } catch (const fovea::Error& error) {
   std::fprintf(stderr, "embed: %s\n", error.what());
