@@ -7,8 +7,8 @@ set(FOVEA_PRECOMPILED <algorithm> <array> <bit> <cmath> <cstdint> <cstring> <fil
   <glm/gtc/quaternion.hpp> <vulkan/vulkan.h>)
 
 # ccache takes part in it if the compiler leaves a trace of the precompiled headers (GCC) or of no time (clang).
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
-elseif(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+elseif(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
 endif()
