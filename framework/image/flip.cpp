@@ -31,8 +31,6 @@ using Plane = std::vector<double>;
 using Planes = std::array<Plane, 3>;
 using Kernel = std::vector<double>;  // 2 radius + 1 taps
 
-size_t pixelCount(const Image& image) { return size_t(image.width) * image.height; }
-
 // Filters rows, then columns; outside the image the border continues.
 Plane filtered(const Plane& in, uint32_t width, uint32_t height, const Kernel& alongX, const Kernel& alongY) {
   const int radius = int(alongX.size() / 2), w = int(width), h = int(height);

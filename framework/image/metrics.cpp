@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kDark = 0.01;  // radiance below which an error no longer counts in proportion
 
-size_t pixelCount(const Image& image) { return size_t(image.width) * image.height; }
-
 struct RegionMean {
   double sum = 0;
   uint64_t pixels = 0;

@@ -8,6 +8,7 @@
 // 32 samples per pixel.)
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -31,6 +32,7 @@ struct Disc {
 // or contain NaN or infinity.
 void checkComparable(const Image& a, const std::string& nameA, const Image& b, const std::string& nameB);
 
+inline size_t pixelCount(const Image& image) { return size_t(image.width) * image.height; }
 Image toRgb(const Image& image);                         // grey is repeated, alpha dropped
 Image displayed(const Image& radiance, float exposure);  // T of every channel
 

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct Options {
+struct SequenceOptions {
   CompareOptions common;
   std::string sequence, reference;
 };
@@ -108,7 +108,7 @@ Frames findFrames(const std::string& name) {
   return frames;
 }
 
-void checkSameFrames(const Options& options, const Frames& a, const Frames& b) {
+void checkSameFrames(const SequenceOptions& options, const Frames& a, const Frames& b) {
   if (a.begin()->first == b.begin()->first && a.size() == b.size()) return;
   bad(fmt::format("`{}` has frames {} to {} and `{}` has {} to {}", options.sequence, a.begin()->first,
                   a.rbegin()->first, options.reference, b.begin()->first, b.rbegin()->first),
@@ -125,7 +125,7 @@ Json toJson(const image::SequenceMeasures& m) {
           {"excess_noise_floor", m.excessNoiseFloor}};
 }
 
-void print(const Options& options, const Frames& frames, const Compared& last,
+void print(const SequenceOptions& options, const Frames& frames, const Compared& last,
            const image::PerRegion<image::SequenceMeasures>& result) {
   const std::pair<const char*, const image::SequenceMeasures&> rows[] = {
       {"fovea", result.fovea}, {"periphery", result.periphery}, {"whole", result.whole}};
@@ -151,7 +151,7 @@ void print(const Options& options, const Frames& frames, const Compared& last,
         "\nNo halves of this reference (layers half_a, half_b): its noise is not known, nor subtracted.\n");
 }
 
-ExitCode compareSequence(const Options& options) {
+ExitCode compareSequence(const SequenceOptions& options) {
   const Frames frames = findFrames(options.sequence), references = findFrames(options.reference);
   checkSameFrames(options, frames, references);
   Progress progress(options.common.json, 0);
@@ -179,7 +179,7 @@ void addCompareSequence(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "compare-sequence",
       "Measure how the changes of a sequence differ from its reference's; needs no device");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SequenceOptions>();
   command
       ->add_option("SEQUENCE", options->sequence,
                    "A folder of numbered pictures, or a name like out_%04d.exr")

@@ -18,17 +18,17 @@ namespace {
 using namespace graph;
 
 // Name, properties, doc; printed in columns.
-using Row = std::array<std::string, 3>;
+using PassRow = std::array<std::string, 3>;
 
-void printRows(const std::string& title, const std::vector<Row>& rows) {
+void printRows(const std::string& title, const std::vector<PassRow>& rows) {
   if (rows.empty()) return;
   fmt::print("\n{}\n", title);
   size_t name = 0, properties = 0;
-  for (const Row& row : rows) {
+  for (const PassRow& row : rows) {
     name = std::max(name, row[0].size());
     if (row[1].size() <= 44) properties = std::max(properties, row[1].size());
   }
-  for (const Row& row : rows) {
+  for (const PassRow& row : rows) {
     std::string text = fmt::format("  {:<{}}  {:<{}}  {}", row[0], name, row[1], properties, row[2]);
     text.erase(text.find_last_not_of(' ') + 1);
     fmt::print("{}\n", text);
@@ -77,8 +77,8 @@ std::string lifetimeName(Lifetime lifetime) {
   return {};
 }
 
-std::vector<Row> portRows(const PassDeclaration& pass, Direction direction) {
-  std::vector<Row> rows;
+std::vector<PassRow> portRows(const PassDeclaration& pass, Direction direction) {
+  std::vector<PassRow> rows;
   for (const PortSpec& port : pass.ports) {
     if (port.direction != direction) continue;
     const bool sized = direction != Direction::Input;
@@ -118,7 +118,7 @@ std::string describe(const ParameterSpec& p) {
                              : fmt::format("{} ({:g} to {:g})", text, p.min, p.max);
 }
 
-Row describe(const StepSpec& step) {
+PassRow describe(const StepSpec& step) {
   const std::string condition = step.condition.print();
   return {step.name, step.shader, condition == "1" ? "" : "if " + condition};
 }
@@ -145,7 +145,7 @@ ExitCode showType(const std::string& type) {
   printRows("updated in place", portRows(*pass, Direction::InOut));
   printRows("outputs", portRows(*pass, Direction::Output));
   printRows("scratch memory", portRows(*pass, Direction::Scratch));
-  std::vector<Row> rows;
+  std::vector<PassRow> rows;
   for (const ParameterSpec& p : pass->parameters) rows.push_back({p.name, describe(p), p.doc});
   printRows("parameters: default (range)", rows);
   rows.clear();

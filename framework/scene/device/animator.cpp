@@ -23,11 +23,10 @@ namespace fovea::scene {
 namespace {
 
 // Push constants of animate.comp.
-struct Constants {
+struct AnimateConstants {
   uint32_t count, vertices, firstVertex, firstPose, firstJoint, firstWeight;
 };
 
-constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
 constexpr uint32_t kObjectTexels = 4, kJointTexels = 3;
 
 // The tables of animate.comp.
@@ -73,7 +72,7 @@ struct Shapes {
   }
 };
 
-constexpr const char* kRemedy = "let fewer vertices move, or drop morph targets";
+constexpr const char* kFewerVertices = "let fewer vertices move, or drop morph targets";
 
 void storeRows(glm::vec4* texels, const glm::mat4& m) {
   const glm::mat4 rows = glm::transpose(m);
@@ -166,11 +165,11 @@ struct Animator::Impl {
   }
 
   void upload(Shapes list) {
-    rest = texelTable(device, "vertices at rest", std::move(list.rest), kRemedy);
-    shapes = texelTable(device, "shapes that move", std::move(list.shapes), kRemedy);
-    skinJoints = texelTable(device, "joints of vertices", std::move(list.skinJoints), kRemedy);
-    skinWeights = texelTable(device, "weights of joints", std::move(list.skinWeights), kRemedy);
-    targets = texelTable(device, "morph targets", std::move(list.targets), kRemedy);
+    rest = texelTable(device, "vertices at rest", std::move(list.rest), kFewerVertices);
+    shapes = texelTable(device, "shapes that move", std::move(list.shapes), kFewerVertices);
+    skinJoints = texelTable(device, "joints of vertices", std::move(list.skinJoints), kFewerVertices);
+    skinWeights = texelTable(device, "weights of joints", std::move(list.skinWeights), kFewerVertices);
+    targets = texelTable(device, "morph targets", std::move(list.targets), kFewerVertices);
   }
 
   uint32_t jointTexel() const { return kObjectTexels * objectCount; }
@@ -214,11 +213,11 @@ void Animator::Impl::evaluate(VkCommandBuffer cmd, uint32_t slot, gpu::Buffer& p
                               gpu::Buffer& attributes, bool before) {
   push(cmd, slot, positions, attributes);
   const uint32_t first = before ? poseTexels() : 0;
-  const Constants constants{
+  const AnimateConstants constants{
       sources, vertices, firstVertex, first, first + jointTexel(), first + weightTexel()};
   vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof constants, &constants);
   const uint32_t groups = (sources + 63) / 64;
-  vkCmdDispatch(cmd, std::min(groups, kMostGroups), (groups + kMostGroups - 1) / kMostGroups, 1);
+  dispatchRows(cmd, groups);
   if (!subdivider) return;
   constexpr auto kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   gpu::memoryBarrier(cmd, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute,

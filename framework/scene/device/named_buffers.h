@@ -1,9 +1,12 @@
-// Binds buffers to a compute pipeline by the names that its shader gives them. Private to framework/scene.
+// Binds buffers to a compute pipeline by the names that its shader gives them, and dispatches any number of groups.
+// Private to framework/scene.
 #pragma once
 
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <utility>
@@ -41,6 +44,12 @@ inline void bindNamed(gpu::Device& device, VkCommandBuffer cmd, const gpu::Pipel
   }
   vkCmdBindPipeline(cmd, pipeline.bindPoint(), pipeline.handle());
   device.pushDescriptorSet(cmd, pipeline.bindPoint(), pipeline.layout(), 0, std::span(writes).first(count));
+}
+
+// So many groups that one row of a dispatch may not hold them; the shader counts on to the next row.
+inline void dispatchRows(VkCommandBuffer cmd, uint32_t groups) {
+  constexpr uint32_t kMostGroups = 32768;  // per row
+  vkCmdDispatch(cmd, std::min(groups, kMostGroups), (groups + kMostGroups - 1) / kMostGroups, 1);
 }
 
 }  // namespace fovea::scene

@@ -15,12 +15,12 @@ namespace fovea::scene {
 namespace {
 
 // Push constants of subdivide.comp.
-struct Constants {
+struct SubdivideConstants {
   uint32_t firstRange, count, firstPoint, firstVertex;
   float side;
 };
 
-constexpr const char* kRemedy = "lower the subdivision level of the surfaces that deform";
+constexpr const char* kLowerLevel = "lower the subdivision level of the surfaces that deform";
 
 }  // namespace
 
@@ -46,8 +46,8 @@ struct Subdivider::Impl {
       }
       allEntries.insert(allEntries.end(), s.entries().begin(), s.entries().end());
     }
-    ranges = texelTable(device, "stencil ranges", std::move(allRanges), kRemedy);
-    entries = texelTable(device, "stencil entries", std::move(allEntries), kRemedy);
+    ranges = texelTable(device, "stencil ranges", std::move(allRanges), kLowerLevel);
+    entries = texelTable(device, "stencil entries", std::move(allEntries), kLowerLevel);
   }
 };
 
@@ -67,7 +67,8 @@ void Subdivider::record(VkCommandBuffer cmd, gpu::Buffer& points, gpu::Buffer& p
   const uint32_t group = pipeline.interface().localSize[0];
   for (const Surface& s : surfaces) {
     const Impl::Table& t = impl_->tables.at(s.table);
-    const Constants constants{t.firstRange, t.count, s.firstPoint, s.firstVertex, s.mirrored ? -1.0f : 1.0f};
+    const SubdivideConstants constants{t.firstRange, t.count, s.firstPoint, s.firstVertex,
+                                       s.mirrored ? -1.0f : 1.0f};
     vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof constants, &constants);
     vkCmdDispatch(cmd, (t.count + group - 1) / group, 1, 1);
   }

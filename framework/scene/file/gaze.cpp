@@ -44,8 +44,8 @@ std::vector<std::string> cells(std::string_view line) {
 }
 
 const std::vector<std::string> kColumns = {"t", "x", "y", "valid", "left_x", "left_y", "right_x", "right_y"};
-constexpr size_t kMaxMistakes = 20;         // any other table has one on every line
-constexpr uintmax_t kMaxBytes = 64u << 20;  // a day at 40 Hz
+constexpr size_t kMaxMistakes = 20;              // any other table has one on every line
+constexpr uintmax_t kMaxTableBytes = 64u << 20;  // a day at 40 Hz
 
 class CsvReader {
  public:
@@ -179,7 +179,7 @@ std::vector<GazeSample> readGazeCsv(const std::filesystem::path& file) {
   if (const std::string reason = whyUnreadable(file); !reason.empty())
     throw Error(ExitCode::BadInput, name + ": cannot be read: " + reason);
   std::error_code ec;
-  if (std::filesystem::file_size(file, ec) > kMaxBytes)
+  if (std::filesystem::file_size(file, ec) > kMaxTableBytes)
     throw Error(ExitCode::BadInput, name + ": has more than 64 MiB");
   noteRead(file);
   std::ifstream stream(file, std::ios::binary);

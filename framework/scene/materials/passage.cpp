@@ -10,7 +10,7 @@
 namespace fovea::scene {
 namespace {
 
-float mean(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
+float meanChannel(glm::vec3 c) { return (c.r + c.g + c.b) / 3.0f; }
 
 // What glass makes of the light that goes through it.
 glm::vec3 glassColor(const Scene& scene, const Material& material, glm::vec2 uv) {
@@ -34,14 +34,14 @@ float passage(const Scene& scene, const Material& material, glm::vec2 uv, float 
   const float enters = material.transmission * sampleTexture(scene, material.transmissionTexture, uv).r *
                        (1 - material.metallic * metalAndRoughness.b);
   const Albedo a = table.at(cosine, material.roughness * metalAndRoughness.g);
-  const float f0 = mean(glm::min(normalReflectance(material.ior) * material.specularColor, 1.0f));
+  const float f0 = meanChannel(glm::min(normalReflectance(material.ior) * material.specularColor, 1.0f));
   const float reflects = material.specular * (f0 * a.low + a.high);
-  return std::clamp(mean(glassColor(scene, material, uv)) * enters * (1 - reflects), 0.0f, kMostPassed);
+  return std::clamp(meanChannel(glassColor(scene, material, uv)) * enters * (1 - reflects), 0.0f, kMostPassed);
 }
 
 glm::vec3 glassTint(const Scene& scene, const Material& material, glm::vec2 uv) {
   const glm::vec3 color = glm::max(glassColor(scene, material, uv), kDarkestGlass);
-  return color / mean(color);
+  return color / meanChannel(color);
 }
 
 glm::vec3 transmittance(const Scene& scene, const Material& material, glm::vec2 uv, float cosine) {

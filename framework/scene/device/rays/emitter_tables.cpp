@@ -56,7 +56,7 @@ void EmitterTables::record(VkCommandBuffer cmd, gpu::Buffer& positions, gpu::Buf
             {{"Positions", &positions}, {"Triangles", &triangles}, {"Emitters", &impl_->texels}});
   const uint32_t nodes = impl_->nodes;  // each has a group
   vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof nodes, &nodes);
-  vkCmdDispatch(cmd, std::min(nodes, kMostGroups), (nodes + kMostGroups - 1) / kMostGroups, 1);
+  dispatchRows(cmd, nodes);
 }
 
 gpu::Buffer& EmitterTables::texels() const { return impl_->texels; }

@@ -16,8 +16,6 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kMostGroups = 32768;  // per row of a dispatch
-
 // Push constants of refit.comp.
 struct Constants {
   uint32_t first, count;
@@ -89,7 +87,7 @@ void RayTables::record(VkCommandBuffer cmd, gpu::Buffer& positions) {
                        VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     vkCmdPushConstants(cmd, pipeline.layout(), pipeline.interface().stages, 0, sizeof level, &level);
     const uint32_t groups = (level.count + group - 1) / group;
-    vkCmdDispatch(cmd, std::min(groups, kMostGroups), (groups + kMostGroups - 1) / kMostGroups, 1);
+    dispatchRows(cmd, groups);
   }
 }
 
