@@ -1,4 +1,4 @@
-// Direct light on the voxels, from the lights' shadow maps (passes/README.md, light-inject). Static surfaces keep
+// Direct light on the voxels, from the lights' shadow maps (passes/geometry.md, light-inject). Static surfaces keep
 // their radiance from frame to frame while the lights stay the same, except where the shadow of a moving object may
 // have appeared or gone.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How much light a VPL stands for: its radiosity times a piece of surface A_l (passes/README.md, vpl-intensity). Each
+// How much light a VPL stands for: its radiosity times a piece of surface A_l (passes/vpls.md, vpl-intensity). Each
 // strategy is a pass type of its own, a way to fill the scratch buffer `areas`; the first and the last step are shared.
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-// VPLs of the previous frame, updated for the motion of their objects (passes/README.md, vpl-motion).
+// VPLs of the previous frame, updated for the motion of their objects (passes/vpls.md, vpl-motion).
 #include <cmath>
 #include <glm/trigonometric.hpp>
 

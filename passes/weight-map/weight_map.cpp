@@ -1,4 +1,4 @@
-// Foveated weight of each voxel side that the eye sees (passes/README.md, weight-map).
+// Foveated weight of each voxel side that the eye sees (passes/vpls.md, weight-map).
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"

@@ -1,4 +1,4 @@
-// A plain CPU version of pass vpl-intensity (passes/README.md, vpl-intensity), and a room to run it in.
+// A plain CPU version of pass vpl-intensity (passes/vpls.md, vpl-intensity), and a room to run it in.
 #pragma once
 
 #include <algorithm>
