@@ -41,7 +41,7 @@ class Mipmap : public Pass {
                 "method of pass importance; with `rays` nothing reads the weights, and they are 0");
     d.parameter("directional", flag(true),
                 "whether six volumes are stored side by side, +x -x +y -y +z -z, one for each facing "
-                "direction, so that a thin wall does not show the light of its back");
+                "direction, so that a thin wall does not show the light of its other side");
     const auto step = [&](const char* shader) -> StepSpec& {
       return d.step(shader)
           .define("DIRECTIONAL", parameter("directional"))

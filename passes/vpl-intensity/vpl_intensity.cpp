@@ -245,16 +245,14 @@ PassDeclaration IntensityImportanceArea::declaration() {
           "paths of pass eye-paths, with the same number of points; this pass then assigns these, "
           "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
-  d.input(
-       "spread", spreadBuffer(), Usage::TexelRead,
-       "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
-       "discs of this area leave out, and the intensity of a VPL is at most doubled to make up for its disc; "
-       "needs `traced` and kernel `disc`")
+  d.input("spread", spreadBuffer(), Usage::TexelRead,
+          "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
+          "discs of this area leave out, and the intensity of a VPL is at most doubled to compensate for its "
+          "disc; needs `traced` and kernel `disc`")
       .makeOptional();
-  d.input(
-       "change", changeBuffer(), Usage::TexelRead,
-       "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths); by as much less "
-       "is a new VPL faded in")
+  d.input("change", changeBuffer(), Usage::TexelRead,
+          "z: share of the known light that is outdated, from 0 to 1 (pass eye-paths); the fade-in of new "
+          "VPLs is reduced by this share")
       .makeOptional();
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths through the voxels to assign (M), without `traced`");
@@ -341,8 +339,7 @@ void IntensityImportanceArea::prepare(PrepareContext& ctx) {
   if (ctx.has("spread") && !(ctx.has("traced") && p.text("kernel") == "disc"))
     throw Error(ExitCode::BadInput,
                 "pass `vpl-intensity-importance-area`: input `spread` says that other rays bring the light "
-                "of what is "
-                "near, but nothing takes it from these VPLs' light",
+                "of what is near, but nothing takes it from these VPLs' light",
                 "wire `traced` and choose kernel `disc`, or leave out `spread` and pass near-field, as "
                 "graphs/foveal_no_near_field.json does");
 }
