@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kTexel = 16;  // bytes of a vec4
 
-// The member of a bundle that a pass reads in this way. What it holds is said where it is made.
+// The member of a bundle that a pass reads in this way. Its content is documented where it is made.
 MemberSpec read(const std::vector<MemberSpec>& output, std::string_view name, Usage usage) {
   for (const MemberSpec& m : output)
     if (m.name == name) return member(m.name, m.resource, usage);

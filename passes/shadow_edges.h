@@ -1,4 +1,4 @@
-// What the passes declare alike that decide the edges of shadows by rays, on the host or on the device.
+// Declarations that the passes for shadow edges by rays, on the host and on the device, have in common.
 #pragma once
 
 #include "fovea/pass.h"

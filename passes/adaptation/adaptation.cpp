@@ -1,4 +1,4 @@
-// The exposure to which an eye adapts, for looking at scenes whose files give none.
+// Exposure that adapts to the brightness of the image, for viewing scenes whose files give none.
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 

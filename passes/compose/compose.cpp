@@ -1,4 +1,4 @@
-// The picture from its parts, where a graph processes the irradiance after pass deferred.
+// The sum of all light, in graphs that process the irradiance after pass deferred.
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"

@@ -1,4 +1,4 @@
-// Foveated importance of VPLs: how much of what is near the gaze a VPL can light (passes/vpls.md, importance).
+// Foveated importance of VPLs: how much of the surface near the gaze a VPL can light (passes/vpls.md, importance).
 #include <string>
 
 #include "fovea/error.h"

@@ -1,6 +1,6 @@
 // Direct light on the voxels, from the lights' shadow maps (passes/geometry.md, light-inject). Static surfaces keep
 // their radiance from frame to frame while the lights stay the same, except where the shadow of a moving object may
-// have appeared or gone.
+// have appeared or disappeared.
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
@@ -24,8 +24,8 @@ bool same(const scene::Light& a, const scene::Light& b) {
          a.position == b.position && a.direction == b.direction;
 }
 
-// Points at which a side evaluates each light: with many lights few suffice, as their shadows have edges at different
-// places.
+// Points at which a side evaluates each light: with many lights, few points are enough, as their shadows have edges in
+// different places.
 int32_t tapsOfEach(int32_t taps, size_t lights) {
   return std::clamp(16 * taps / int32_t(std::max<size_t>(lights, 1)), 1, taps);
 }

@@ -1,4 +1,5 @@
-// Mip hierarchy of light and foveated weight over ever larger cells, for cone tracing (passes/geometry.md, mipmap).
+// Mip hierarchy of light and foveated weight over successively larger cells, for cone tracing (passes/geometry.md,
+// mipmap).
 #include <glm/glm.hpp>
 #include <string>
 

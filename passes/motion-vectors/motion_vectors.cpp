@@ -1,4 +1,4 @@
-// Where each visible surface point was in the previous frame, for everything that is kept from frame to frame.
+// Where each visible surface point was in the previous frame, for all means over frames.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 

@@ -5,7 +5,7 @@
 // rasterising straight edges between projected vertices, as edges are arcs. An integer atomic keeps the smallest
 // distance, so the result does not depend on the order.
 //
-// Where a VPL stands still and something moves in front of it, the map of static geometry can be kept (parameter
+// Where a VPL is static and something moves in front of it, the map of static geometry can be kept (parameter
 // `static_maps`): it is copied, and only moving geometry is drawn over it.
 //
 // The technique `simplified` runs the same rasteriser over a coarser mesh. The hardware rasteriser would be limited

@@ -1,5 +1,5 @@
 // The display transform with which images are compared: T(x) = sRGB(clamp01(exposure * x)). The other curves are for
-// looking only.
+// viewing only.
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 

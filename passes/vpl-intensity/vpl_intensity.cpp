@@ -20,7 +20,7 @@ constexpr uint32_t kSharedPaths = 8;      // paths per invocation of share.comp,
 constexpr uint32_t kTallyGroups = 256;    // work groups of tally.comp, which strides over all elements
 constexpr uint32_t kEscapePoints = 1024;  // screen points from which the share of escaping paths is estimated
 constexpr uint32_t kMostInRow = 32768;    // work groups in a row of a dispatch
-// VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 turns of a loop.
+// VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 iterations of a loop.
 constexpr uint32_t kMostCompeting = 16384;
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;

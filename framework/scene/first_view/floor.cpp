@@ -1,4 +1,4 @@
-// Puts a floor under things that would hang in the void.
+// Puts a floor under objects that would float in empty space.
 #include <algorithm>
 #include <cmath>
 
