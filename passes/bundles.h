@@ -31,7 +31,9 @@ graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
 // x: least area of a VPL's disc, y: that of a disc on an emissive surface, if it is larger, m^2.
 graph::ResourceSpec spreadBuffer();
 // x: share of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
-// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history of n samples is worth n / (1 + n s); z: the outdated share, from 0 to 1, which falls by a quarter in each frame after; w: share by which the light as a whole has grown or shrunk.
+// Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history
+// of n samples is worth n / (1 + n s); z: the outdated share, from 0 to 1, which falls by a quarter in each frame
+// after; w: share by which the light as a whole has grown or shrunk.
 graph::ResourceSpec changeBuffer();
 
 // ---- Bundles ---------------------------------------------------------------------------------------------------
