@@ -4,8 +4,8 @@
 Usage: benchmarks/perceptual.py foveal_%04d.exr [ir_%04d.exr ...] reference_%04d.exr
 The sequences are EXR files as `fovea render -o NAME_%04d.exr` writes them; the last name is that of the reference.
 The metric is described in: Mantiuk et al. 2021, "FovVideoVDP: A visible difference predictor for wide field-of-view
-video", SIGGRAPH 2021. Equal sequences have 10 JOD. Of two sequences that are 1 JOD apart, 75% of observers prefer the
-one with more. benchmarks/README.md says how to install the Python modules that this needs.
+video", SIGGRAPH 2021. Identical sequences have 10 JOD. Of two sequences that are 1 JOD apart, 75% of observers prefer
+the one with the higher value. benchmarks/README.md says how to install the Python modules that this needs.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the heat map cannot be written.
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One self-contained page from the results of `fovea bench`: tables beside the paper's numbers, plots, pictures, error pictures, zooms.
+"""One self-contained page from the results of `fovea bench`: tables next to the paper's numbers, plots, pictures, error pictures, zooms.
 
 Usage: benchmarks/report.py DIR    (fovea bench calls it; DIR holds report.json, results, tables and pictures)
 Writes DIR/report.html and DIR/plots/*.png. Exit code 9 without matplotlib.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The reference graph against Mitsuba 3, a renderer with which it shares no code.
+"""Compares the reference graph with Mitsuba 3, a renderer with which it shares no code.
 
 Exports each scene, renders it with Mitsuba's path integrator (`pip install mitsuba`) and with graphs/reference.json, both
 with a box filter and independent samples, and compares: the mean radiance (within 0.5%, or 1% with --materials full), and

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs fovea to an empty prefix and uses it from there as a stranger would: every installed header compiles
+# Installs fovea to an empty prefix and uses it from there as an outsider would: every installed header compiles
 # alone, the sample pass builds against the package, passes its own test, renders through --plugin, and changes the picture as
 # its parameter says.
 # Usage: own_pass_test.sh BUILD_DIR SOURCE_DIR

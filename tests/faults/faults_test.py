@@ -1,10 +1,10 @@
-"""Tests what the program makes of functions of the system and of Vulkan that fail: exit codes and messages.
+"""Tests how the program reacts when functions of the system and of Vulkan fail: exit codes and messages.
 
 Usage: FOVEA_TEST_FAULTS=FOLDER faults_test.py PROGRAM SOURCE_DIR [CLASS...]
 
-The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=GRAPH,... makes every single call
-of Vulkan fail in turn, for these graphs, instead of the last call of each function, and hundreds of allocations of
-memory instead of ten: about a thousand runs a graph.
+The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=GRAPH,... makes every single
+Vulkan call fail in turn, for these graphs, instead of the last call of each function, and hundreds of memory
+allocations instead of ten: about a thousand runs per graph.
 """
 
 import collections

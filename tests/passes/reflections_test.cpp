@@ -1,4 +1,4 @@
-// Compares what smooth surfaces reflect with the radiance of closed rooms, and with what a mirror shows.
+// Compares the reflections of smooth surfaces with the radiance of closed rooms and with mirror images.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -1,4 +1,4 @@
-// Tests shadow edges by rays: the pixels in doubt against plain rays, and that the others are untouched.
+// Tests shadow edges by rays: the uncertain pixels against plain rays, and that the others are unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>

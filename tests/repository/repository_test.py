@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The rules of the house, read off the files: which room may include which, what is named where, sizes, links.
+"""The rules of the repository, checked on its files: which room may include which, what is named where, sizes, links.
 
 Usage: repository_test.py SOURCE_DIR [unittest arguments]
 """

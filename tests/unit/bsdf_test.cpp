@@ -1,4 +1,4 @@
-// Tests the scattering of full materials against what every such function has to obey, and against known values.
+// Tests the BSDF of full materials against the laws that every BSDF has to obey, and against known values.
 #include "framework/scene/materials/bsdf.h"
 
 #include <gtest/gtest.h>
