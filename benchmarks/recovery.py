@@ -113,7 +113,7 @@ def parse(arguments):
     add("--frames", type=whole(1), default=40, metavar="N", help="frames rendered after it; default 40")
     add("--seeds", type=whole(1), default=3, metavar="N", help="runs over which errors are averaged; default 3")
     add("--size", default="256x256", metavar="WxH", help="default: 256x256")
-    add("--spp", type=whole(1), default=256, help="samples a pixel of each path-traced picture; default 256")
+    add("--spp", type=whole(1), default=256, help="samples per pixel of each path-traced picture; default 256")
     add("--layer", default="indirect", help="layer that is compared; default: indirect")
     add("--fovea", default=str(ROOT / "build/release/bin/fovea"), metavar="FILE", help="the program")
     add("--json", metavar="FILE", help="write all ratios, too")

@@ -96,7 +96,7 @@ def main():
     parser.add_argument("scenes", nargs="+", metavar="SCENE", help="as for `fovea render --scene`")
     parser.add_argument("--fovea", default="fovea", help="the program; default: fovea on the search path")
     parser.add_argument("--size", default="96x96", help="default 96x96")
-    parser.add_argument("--spp", type=int, default=256, help="samples a pixel of both; default 256")
+    parser.add_argument("--spp", type=int, default=256, help="samples per pixel of both; default 256")
     parser.add_argument("--depth", type=int, default=4, help="edges of the longest paths; default 4")
     parser.add_argument("--tolerance", type=float, default=0.01, help="of the mean; default 0.01")
     options = parser.parse_args()

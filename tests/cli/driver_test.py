@@ -41,7 +41,7 @@ SUITES = ("Animate Attach Candidates Compose Compute Cones Contacts Demodulate D
 CASES = ("Deferred.RandomGBuffersEqualTheReference", "DeferredMask.RandomMasksEqualTheReference",
          "Manage.LightAndTurnoverEqualTheSerialAlgorithm", "Voxelize.ThinWallsKeepBothSides",
          "Voxelize.DynamicObjectsMoveAppearAndDisappear")
-# Three pixels of 48x48, at edges, show a face that no ray near their centres meets on SwiftShader; not explained.
+# Three pixels of 48x48, at edges, show a face that no ray near their centres hits on SwiftShader; unexplained.
 LEFT_OUT = ("GBuffer.EqualsRaysThroughPixelCentres",)
 
 

@@ -28,7 +28,7 @@ LIBRARIES = os.environ.get("FOVEA_TEST_FAULTS", "")
 NO_THREADS = 11  # EAGAIN
 
 # What functions of Vulkan fail with, the exit code of the program then and a part of its message, and how often each
-# graph calls them. FOVEA_FAULTS_WRITE=1 writes the numbers of calls anew, after which the rest is to be looked at.
+# graph calls them. FOVEA_FAULTS_WRITE=1 counts the calls again, after which the rest has to be reviewed.
 TABLE = pathlib.Path(__file__).with_name("vulkan_functions.csv")
 SMALL_GRAPHS = {"direct": [], **{graph: ["--set", "vpl_count=32", "--set", "map_size=16"]
                                  for graph in ("ir_1000", "ours", "foveal", "stereo")}}

@@ -234,7 +234,7 @@ TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
   const auto [first, normals, frame] = idsOf(1);
   EXPECT_EQ(first, std::get<0>(idsOf(1)));
   EXPECT_NE(first, std::get<0>(idsOf(2)));
-  scene::Scene solid = s;  // for rays that meet everything
+  scene::Scene solid = s;  // for rays that hit everything
   solid.materials[0].masked = false;
   const scene::Geometry g = scene::flatten(s);
   uint32_t pixels[2] = {}, shown[2] = {}, wrong = 0, unmarked = 0;

@@ -164,7 +164,7 @@ TEST(Bsdf, BelowTheSurfaceThereIsNothing) {
   EXPECT_EQ(bsdf.density(direction(-0.3f, 1)), 0);
 }
 
-// A surface with index of refraction 1 is not there: what is left is the diffuse layer.
+// A surface with index of refraction 1 is invisible: only the diffuse layer remains.
 TEST(Bsdf, WithoutASurfaceItIsLambertian) {
   BsdfParameters p = parameters(0.5f, 0);
   p.ior = 1;

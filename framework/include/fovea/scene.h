@@ -138,7 +138,7 @@ struct Node {
   glm::vec3 scale{1};
   std::optional<glm::mat4> matrix;  // replaces the three members above if the file gives a matrix
   uint32_t mesh = kNoIndex, camera = kNoIndex, light = kNoIndex;
-  bool dynamic = false;          // moves: is an object of its own, drawn and voxelised anew every frame
+  bool dynamic = false;          // moves: is an object of its own, drawn and voxelised in every frame
   uint32_t skin = kNoIndex;      // skin of its mesh
   std::vector<float> weights{};  // weights of its mesh's morph targets; empty for those of the mesh
 };
@@ -331,7 +331,7 @@ struct Geometry {
   std::vector<Object> objects;
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
   // flatten() fills these. Whoever changes triangles, uvs, vertices that never move, or materials afterwards flattens
-  // again, or sets the hash of all that rays meet but moving vertices to 0, which stands for unknown.
+  // again, or sets the hash of all that rays hit but moving vertices to 0, which stands for unknown.
   uint64_t stillKey = 0;
   std::vector<uint32_t> emissive;  // numbers of the triangles whose material emits, ascending
   // The triangles that voxels and VPL maps see if any part of the scene is coarser for them; static ones come first.

@@ -27,7 +27,7 @@ class GpuScene : public FrameDescriptors {
   // a texture is larger than the device supports.
   // fullMaterials: whether a pass asks for all that glTF says of materials. Their base colours are then those of
   // materials/bounced.h, with which metals are not black.
-  // rays: whether a pass traces rays on the device; otherwise they meet nothing.
+  // rays: whether a pass traces rays on the device; otherwise they hit nothing.
   GpuScene(gpu::Device& device, const Scene& scene, const Geometry& geometry, uint32_t framesInFlight,
            bool fullMaterials = false, bool rays = false);
   ~GpuScene() override;

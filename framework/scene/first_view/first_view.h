@@ -19,7 +19,7 @@ struct FirstView {
 // be dark, and an exposure with which the view is neither dark nor overexposed.
 FirstView addFirstView(Scene& scene);
 
-// The parts of it. Each returns what it has added. `geometry` must be what flatten() made of the scene.
+// Its parts. Each returns what it has added. `geometry` must be the result of flatten() for the scene.
 
 // A camera at eye height inside surrounding walls, if it shows more of the scene than a view from outside; else one in
 // front of the scene and above it, which shows the whole scene.

@@ -1,4 +1,4 @@
-// What of a graph can be looked at, by name: an output of the graph ("image"), or a port of a pass
+// The resources of a graph that can be shown, by name: an output of the graph ("image"), or a port of a pass
 // ("gbuffer:gbuffer.normal"), followed by "@MIP.LAYER" where it has several.
 #pragma once
 
