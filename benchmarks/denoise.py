@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes the noise out of traced pictures with Intel Open Image Denoise, outside of the frame and of its times.
+"""Removes the noise of traced pictures with Intel Open Image Denoise, outside the frame and its times.
 
 Usage: benchmarks/denoise.py noisy.exr denoised.exr [--layer indirect]
 The layer (default: every one of `radiance` and `indirect` that the file has) is linear light. Layers `albedo` and

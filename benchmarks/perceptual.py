@@ -4,8 +4,8 @@
 Usage: benchmarks/perceptual.py foveal_%04d.exr [ir_%04d.exr ...] reference_%04d.exr
 The sequences are EXR files as `fovea render -o NAME_%04d.exr` writes them; the last name is that of the reference.
 The metric is described in: Mantiuk et al. 2021, "FovVideoVDP: A visible difference predictor for wide field-of-view
-video", SIGGRAPH 2021. Equal sequences have 10 JOD. Of two sequences that are 1 JOD apart, 75% of observers prefer the
-one with more. benchmarks/README.md says how to install the Python modules that this needs.
+video", SIGGRAPH 2021. Identical sequences have 10 JOD. Of two sequences that are 1 JOD apart, 75% of observers prefer
+the one with the higher value. benchmarks/README.md says how to install the Python modules that this needs.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the heat map cannot be written.
 """
@@ -193,7 +193,7 @@ def parse(arguments):
     add = parser.add_argument
     add("tests", nargs="+", metavar="TEST", help="sequences to judge, for example foveal_%%04d.exr")
     add("reference", metavar="REFERENCE", help="the sequence with which each is compared")
-    add("--fps", type=positive, default=42, help="frames a second; the default is 42, as in `fovea render`")
+    add("--fps", type=positive, default=42, help="frames per second; the default is 42, as in `fovea render`")
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--display-width-deg", type=angle, default=60, metavar="DEG",
                       help="angle that the width of the picture fills, seen from in front of its middle; default 60")
@@ -252,7 +252,7 @@ def main():
         return
     print(f"{settings['metric']}, {'foveated' if settings['foveated'] else 'not foveated'}; reference "
           f"{options.reference}\n{size[0]}x{size[1]} pixels, {width:.4g} degrees wide, "
-          f"{settings['pixels_per_degree']:.3g} pixels per degree, {options.fps:g} frames a second\n"
+          f"{settings['pixels_per_degree']:.3g} pixels per degree, {options.fps:g} frames per second\n"
           f"{options.luminance:g} cd/m^2, {options.ambient:g} lux, exposure {exposure:g}\n")
     column = max(len(row["sequence"]) for row in rows)
     print(f"{'sequence':{column}}    JOD  frames")

@@ -1,4 +1,4 @@
-"""What the tools beside `fovea bench` share: exit codes and messages, and pictures that `fovea render` wrote."""
+"""Shared by the tools next to `fovea bench`: exit codes, messages, and pictures written by `fovea render`."""
 import argparse
 import importlib
 import math

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How many frames methods take after a sudden change until their error is almost what it stays at.
+"""Measures how many frames methods take after a sudden change until their error has nearly settled.
 
 Usage: benchmarks/recovery.py SCENE.json --change N [--graphs foveal,ours] [--json FILE]
-In the scene something happens in the frame N, before and after which everything stands still: a gaze that jumps, a
-light that is switched, a door. Each graph renders the frames before it and those after it, and once more the latter
-alone, starting long after the change: that is what it settles at. Both are compared with two path-traced pictures that
-have different noise, so that theirs adds nothing to the error. Errors are means over some seeds: a list of VPLs may
-happen to be twice as good as another. benchmarks/README.md describes the table.
+The scene is static before and after frame N, in which something changes: the gaze jumps, a light is switched, a door
+opens. Each graph renders the frames before and after the change, and in a second run only frames long after it, whose
+error is the settled one. Both are compared with two path-traced pictures with independent noise, so that this noise
+adds nothing to the error. Errors are means over several seeds, as a list of VPLs may by chance be twice as good as
+another. benchmarks/README.md describes the table.
 
 Exit code 2: the command line is wrong; 3: a file or a Python module cannot be used; 7: the table cannot be written;
 otherwise that of `fovea`.
@@ -113,7 +113,7 @@ def parse(arguments):
     add("--frames", type=whole(1), default=40, metavar="N", help="frames rendered after it; default 40")
     add("--seeds", type=whole(1), default=3, metavar="N", help="runs over which errors are averaged; default 3")
     add("--size", default="256x256", metavar="WxH", help="default: 256x256")
-    add("--spp", type=whole(1), default=256, help="samples a pixel of each path-traced picture; default 256")
+    add("--spp", type=whole(1), default=256, help="samples per pixel of each path-traced picture; default 256")
     add("--layer", default="indirect", help="layer that is compared; default: indirect")
     add("--fovea", default=str(ROOT / "build/release/bin/fovea"), metavar="FILE", help="the program")
     add("--json", metavar="FILE", help="write all ratios, too")

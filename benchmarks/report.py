@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One self-contained page from the results of `fovea bench`: tables beside the paper's numbers, plots, pictures, error pictures, zooms.
+"""One self-contained page from the results of `fovea bench`: tables next to the paper's numbers, plots, pictures, error pictures, zooms.
 
 Usage: benchmarks/report.py DIR    (fovea bench calls it; DIR holds report.json, results, tables and pictures)
 Writes DIR/report.html and DIR/plots/*.png. Exit code 9 without matplotlib.
@@ -138,10 +138,10 @@ class Report:
         last, seeds = one["first"] + one["frames"] - 1, len({j["seed"] for j in jobs})
         frames = f"frames {one['first']} to {last}" if one["frames"] > 1 else f"frame {last}"
         text = "Errors are those of the last frame. " if "error" in one["measures"] and one["frames"] > 1 else ""
-        text += f"{', '.join(f'{w}×{h}' for w, h in sizes)} pixels; {frames} of the scene's animation at {one['frame_rate']:g} frames a second, " \
+        text += f"{', '.join(f'{w}×{h}' for w, h in sizes)} pixels; {frames} of the scene's animation at {one['frame_rate']:g} frames per second, " \
                 f"after {one['warmup']} frames to warm up; {seeds} seed{'s' if seeds > 1 else ''}"
         if "reference" in one:
-            text += f"; reference: {one['reference']['spp']} samples a pixel, depth {one['reference']['depth']}"
+            text += f"; reference: {one['reference']['spp']} samples per pixel, depth {one['reference']['depth']}"
         fixed = {k: v for k, v in one["set"].items() if k not in one["varied"]}
         shared = {k: v for k, v in fixed.items() if all(j["set"].get(k) == v for j in jobs)}
         if shared:
@@ -302,7 +302,7 @@ class Report:
             plt.bar(range(len(bars)), heights, 0.7, bottom=bottom, label=step, color=colours[i % 20])
             bottom = [b + h for b, h in zip(bottom, heights)]
         plt.xticks(range(len(bars)), bars, fontsize=7)
-        plt.ylabel("ms a frame, by pass", fontsize=9)
+        plt.ylabel("ms per frame, by pass", fontsize=9)
         plt.legend(fontsize=7, bbox_to_anchor=(1, 1), loc="upper left")
         self.figure(f"{sweep}-steps", "time of every pass, median; seed 1")
 

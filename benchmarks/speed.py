@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Speed of ir_1000 on Sponza beside the targets for two cores with lavapipe: 1024x1024, 1000 VPLs, exact 128x128 maps.
+"""Speed of ir_1000 on Sponza compared with the targets for two cores with lavapipe: 1024x1024, 1000 VPLs, exact 128x128 maps.
 
 Usage: benchmarks/speed.py [--build FOLDER] [--frames N] [--json FILE]
 Needs the Sponza model (see samples/scenes/README.md). Exit code 1 when a target is missed, 2 when it cannot run.
-Absolute times mean something only on an otherwise idle machine; run it alone.
+Absolute times are meaningful only on an otherwise idle machine; run it alone.
 """
 import argparse
 import json

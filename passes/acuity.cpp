@@ -16,11 +16,10 @@ constexpr float kSmallestPeriod = 1.0f / 48, kPeriodSlope = 0.022f;
 void declarePeriphery(graph::PassDeclaration& d, const char* what) {
   d.parameter("periphery", graph::integer(1, 1, 2), what);
   d.parameter("fovea_radius", graph::real(0.25, 0.001, 4, "image widths"),
-              "radius around the gaze within which no pixel is spared, whatever `periphery` is");
+              "radius around the gaze within which no pixel is skipped, whatever `periphery` is");
   d.parameter("pixels_per_degree", graph::real(0, 0, 1000),
-              "pixels of the picture in a degree of what the eye sees, by which `periphery` knows what it "
-              "resolves; 0 "
-              "means that the picture is seen from where its perspective is right");
+              "pixels of the picture per degree of visual angle, from which `periphery` derives what the eye "
+              "resolves; 0 means that the picture is viewed from its centre of perspective");
 }
 
 Square fineSquare(const scene::View& view, const graph::Parameters& p, int tile) {

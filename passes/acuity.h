@@ -1,4 +1,4 @@
-// Which part of a picture needs light at every pixel: what the eye resolves there (Guenter et al., "Foveated 3D
+// The part of a picture that must be shaded at every pixel, from what the eye resolves (Guenter et al., "Foveated 3D
 // graphics", SIGGRAPH Asia 2012).
 #pragma once
 
@@ -25,12 +25,12 @@ struct Square {
 
 // Adds what fullDensity() needs to the parameters of a pass. `what` says what the pass does with `periphery` 2.
 void declarePeriphery(graph::PassDeclaration& d, const char* what);
-// The square of a view for these parameters; with `periphery` 1 it holds any picture.
+// The square of a view for these parameters; with `periphery` 1 it contains any picture.
 Square fineSquare(const scene::View& view, const graph::Parameters& parameters, int tile);
 
-// The square around the gaze outside which a sample in every 2 x 2 pixels suffices: all of the fovea, and all that is
-// seen at an eccentricity where the smallest period that the eye resolves is less than 4 pixels. Its corners are
-// multiples of `tile` and may lie outside the picture.
+// The square around the gaze outside which one sample per 2 x 2 pixels is enough: it contains the fovea and all pixels
+// at an eccentricity where the smallest period that the eye resolves is less than 4 pixels. Its corners are multiples
+// of `tile` and may lie outside the picture.
 // foveaRadius: image widths. pixelsPerDegree: of what the eye sees; if 0, that of the view itself.
 Square fullDensity(const scene::View& view, float foveaRadius, float pixelsPerDegree, int tile);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kTexel = 16;  // bytes of a vec4
 
-// The member of a bundle that a pass reads in this way. What it holds is said where it is made.
+// The member of a bundle that a pass reads in this way. Its content is documented where it is made.
 MemberSpec read(const std::vector<MemberSpec>& output, std::string_view name, Usage usage) {
   for (const MemberSpec& m : output)
     if (m.name == name) return member(m.name, m.resource, usage);
@@ -55,14 +55,12 @@ std::vector<MemberSpec> gbufferOutput() {
       member("normal", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
              "xyz: unit shading normal, on the side of the face towards the eye; a: with full materials, the "
              "reflectance of the surface at grazing incidence, negative where the pixel may show another "
-             "surface "
-             "in the next frame, as one of them lets light through"),
+             "surface in the next frame, as one of them is transparent"),
       member("face", image2D(VK_FORMAT_R16G16_SNORM), Usage::ColorAttachment,
              "geometric normal on the side towards the eye, octahedral encoding"),
       member("albedo", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
              "rgb: diffuse reflectance, base colour times (1 - metallic); with full materials, that of the "
-             "layer "
-             "below the surface as the eye sees it, and a: how much of the surface is metal"),
+             "diffuse layer as seen from the eye, and a: the metallic share of the surface"),
       member(
           "emission", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::ColorAttachment,
           "rgb: emitted radiance, W/(sr m^2), in the background the environment; a: with full materials, the "
@@ -76,8 +74,7 @@ std::vector<MemberSpec> gbufferOutput() {
              image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1)),
              Usage::ColorAttachment,
              "with full materials, rgb: reflectance of the surface at normal incidence, a: roughness (the "
-             "square "
-             "root of GGX's alpha); otherwise one undefined texel")};
+             "square root of GGX's alpha); otherwise one undefined texel")};
 }
 std::vector<MemberSpec> gbufferMembers(Usage usage, std::initializer_list<std::string_view> names) {
   return read(gbufferOutput(), names, usage);

@@ -1,6 +1,6 @@
-// What passes hand to each other: the bundles and the buffers of records, each declared here once. The pass that makes
-// a bundle says how large it is and takes its declaration as it stands; a pass that reads it names the members that it
-// uses and how it reads them.
+// What passes exchange: the bundles and the buffers of records, each declared here once. The pass that makes a bundle
+// gives its size and uses the whole declaration; a pass that reads it names the members that it uses and how it reads
+// them.
 #pragma once
 
 #include <initializer_list>
@@ -28,11 +28,11 @@ graph::ResourceSpec radiosityBuffer(const graph::SizeExpr& count = 1);
 graph::ResourceSpec voxelRadianceBuffer(const graph::SizeExpr& count = 1);
 // Foveated weight of a voxel side, in [0, 1].
 graph::ResourceSpec voxelWeightBuffer(const graph::SizeExpr& count = 1);
-// x: least area of a VPL's disc, y: of one on a surface that shines, if it is larger, m^2.
+// x: least area of a VPL's disc, y: that of a disc on an emissive surface, if it is larger, m^2.
 graph::ResourceSpec spreadBuffer();
 // x: share of the light that has changed since it was found last (the temporal gradient of Schied et al., "Gradient
 // Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018, for the whole region); y: s, after which a history
-// of n samples is worth n / (1 + n s); z: how much was lost that way, from 0 to 1, and by a quarter less in each frame
+// of n samples is worth n / (1 + n s); z: the outdated share, from 0 to 1, which falls by a quarter in each frame
 // after; w: share by which the light as a whole has grown or shrunk.
 graph::ResourceSpec changeBuffer();
 

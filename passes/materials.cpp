@@ -9,7 +9,7 @@ using namespace graph;
 
 void declareMaterials(PassDeclaration& d, const std::string& what) {
   d.parameter("materials", choice("diffuse", {"diffuse", "full"}),
-              "what surfaces are: `diffuse` takes all for Lambertian and metals for black; " + what);
+              "materials of surfaces: `diffuse` treats all as Lambertian and metals as black; " + what);
 }
 
 bool fullMaterials(const Parameters& parameters) { return parameters.text("materials") == "full"; }

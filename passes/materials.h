@@ -1,4 +1,4 @@
-// The parameter `materials` of passes that know more of surfaces than that they are diffuse.
+// The parameter `materials` of passes that support full materials.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace fovea::passes {
 // what: what the pass does with full materials.
 void declareMaterials(graph::PassDeclaration& d, const std::string& what);
 bool fullMaterials(const graph::Parameters& parameters);
-// How rays on the host meet surfaces.
+// How rays on the host hit surfaces.
 scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();

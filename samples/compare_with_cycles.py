@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""The reference graph with full materials against Cycles, Blender's path tracer, with which it shares no code.
+"""Compares the reference graph with full materials with Cycles, Blender's path tracer, with which it shares no code.
 
 Exports each scene as glTF, renders it with Cycles through its own glTF importer (`pip install bpy`) and with
 graphs/reference.json, both with a box filter, and compares the mean radiance of the pixels that surfaces cover wholly.
-Unlike Mitsuba (compare_with_mitsuba.py), Cycles gives rough surfaces the light that is scattered more than once, and a
-diffuse layer below a rough surface. Exit code 1 when a scene disagrees.
+Unlike Mitsuba (compare_with_mitsuba.py), Cycles has multiple scattering on rough surfaces, and a diffuse layer below a
+rough surface. Exit code 1 when a scene disagrees.
 
   samples/compare_with_cycles.py --fovea build/release/bin/fovea model.glb scene.json
 
-Lights of the sun's kind, point lights and surfaces that shine are compared; Cycles has another falloff of spot lights,
-and environment maps and skies are left out on both sides.
+Directional lights, point lights and emissive surfaces are compared; Cycles has a different falloff of spot lights, and
+environment maps and skies are left out on both sides.
 """
 
 import argparse
@@ -96,7 +96,7 @@ def main():
     parser.add_argument("scenes", nargs="+", metavar="SCENE", help="as for `fovea render --scene`")
     parser.add_argument("--fovea", default="fovea", help="the program; default: fovea on the search path")
     parser.add_argument("--size", default="96x96", help="default 96x96")
-    parser.add_argument("--spp", type=int, default=256, help="samples a pixel of both; default 256")
+    parser.add_argument("--spp", type=int, default=256, help="samples per pixel of both; default 256")
     parser.add_argument("--depth", type=int, default=4, help="edges of the longest paths; default 4")
     parser.add_argument("--tolerance", type=float, default=0.01, help="of the mean; default 0.01")
     options = parser.parse_args()

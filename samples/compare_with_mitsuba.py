@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The reference graph against Mitsuba 3, a renderer with which it shares no code.
+"""Compares the reference graph with Mitsuba 3, a renderer with which it shares no code.
 
 Exports each scene, renders it with Mitsuba's path integrator (`pip install mitsuba`) and with graphs/reference.json, both
 with a box filter and independent samples, and compares: the mean radiance (within 0.5%, or 1% with --materials full), and
@@ -122,7 +122,7 @@ def main():
     parser.add_argument("--fovea", default="fovea", help="the program; default: fovea on the search path")
     parser.add_argument("--size", default="64x64", help="default 64x64")
     parser.add_argument("--batches", type=int, default=64, help="independent pictures of Mitsuba; default 64")
-    parser.add_argument("--spp", type=int, default=64, help="samples a pixel of each; default 64")
+    parser.add_argument("--spp", type=int, default=64, help="samples per pixel of each; default 64")
     parser.add_argument("--depth", type=int, default=4, help="1 emission, 2 direct light; default 4")
     parser.add_argument("--materials", default="diffuse", choices=["diffuse", "full"], help="default diffuse")
     parser.add_argument("--frame", type=int, default=0, help="of a scene that moves, 42 a second; default 0")

@@ -6,5 +6,5 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 "$top/samples/setup.sh"
 "$top/samples/build.sh" fovea
-# Frames of warm-up, so that VPLs and near light have settled, and the times are not those of compiling shaders.
+# Frames of warm-up, so that VPLs and near-field light have converged, and the times do not include compiling shaders.
 exec "$top/build/release/bin/fovea" render foveal_view --scene atrium --warmup 16 -o fovea-demo.png "$@"

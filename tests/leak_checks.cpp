@@ -1,4 +1,4 @@
-// What LeakSanitizer is told, however a test or fuzz target is started. A build without sanitizers calls none of it.
+// Options for LeakSanitizer, however a test or fuzz target is started. A build without sanitizers calls none of this.
 
 // Up to LLVM 16 the runtime may take a block of thread-local memory for one of glibc before 2.25, reads its place and
 // size from what lies in front of it, and crashes there. Without the interceptor it finds such blocks as it does all

@@ -1,5 +1,5 @@
-// How much memory the content of files may take. What a file claims to hold is counted from its headers, so that it is
-// refused before anything is read or decoded.
+// Limits the memory that the content of files may take. The claimed sizes are taken from the headers of the files, so
+// that a file is refused before anything is read or decoded.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace fovea {
 // Bytes: FOVEA_MEMORY_LIMIT (in MiB), else half of the memory that was available when this was first asked.
 uint64_t contentLimit();
 
-// Counts what one scene claims. While an object exists, all claims of its thread add up; objects inside of it do not
-// count anew.
+// Counts what one scene claims. While an object exists, all claims of its thread add up; nested objects do not start a
+// new count.
 class ContentBudget {
  public:
   ContentBudget();

@@ -1,4 +1,4 @@
-// Files that are read and written: what a command reads it does not write over, and outputs appear whole or not at all.
+// Files that are read and written: a command does not overwrite what it reads, and outputs appear whole or not at all.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace fovea {
 // may never end or block for ever, cannot. Call it before anything opens the file.
 std::string whyUnreadable(const std::filesystem::path& file);
 
-// Whether there is such a folder or regular file. Throws Error(BadInput) if the system does not tell, because a folder
-// on the way cannot be searched.
+// Whether there is such a folder or regular file. Throws Error(BadInput) if the system cannot tell, because a folder on
+// the path cannot be searched.
 bool isFolder(const std::filesystem::path& folder);
 bool isFile(const std::filesystem::path& file);
 

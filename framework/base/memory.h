@@ -9,9 +9,8 @@
 
 namespace fovea {
 
-// Keeps up to 256 MiB of freed memory instead of returning its pages at once. Otherwise, compiling a graph
-// of several hundred passes again and again spends a quarter of its time on obtaining them anew. Call it
-// at the start of a program.
+// Keeps up to 256 MiB of freed memory instead of returning its pages at once. Otherwise, compiling a graph of several
+// hundred passes repeatedly spends a quarter of its time on obtaining them again. Call it at the start of a program.
 inline void keepFreedMemory() {
 #ifdef __GLIBC__
   mallopt(M_TRIM_THRESHOLD, 256 << 20);

@@ -12,7 +12,7 @@
 
 namespace fovea {
 
-// For the exception of a thread that the system refuses to make.
+// For the exception thrown when the system refuses to create a thread.
 inline Error noThread(const std::system_error& e) {
   return Error(ExitCode::OutOfMemory, std::string("the system makes no more threads: ") + e.what(),
                "end other programs, or raise the limit of threads (ulimit -u)");
@@ -35,10 +35,10 @@ inline uint32_t threadCount(uint32_t wanted) {
   return std::max(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u);
 }
 
-// Calls work() on this thread and on up to `count` - 1 others, and returns when all calls have returned. Each call takes
-// from what there is to do until nothing is left, as one that does not begin in time is left out. The other threads are
-// kept for later calls, as making them costs more than many a pass. Throws what work() throws, and Error(OutOfMemory) if
-// the system makes no more threads.
+// Calls work() on this thread and on up to `count` - 1 others, and returns when all calls have returned. Each call
+// takes items of work until none are left, since a call that does not start in time is left out. The other threads are
+// kept for later calls, as creating them costs more than some passes. Throws what work() throws, and Error(OutOfMemory)
+// if the system creates no more threads.
 void onThreads(uint32_t count, const std::function<void()>& work);
 
 }  // namespace fovea

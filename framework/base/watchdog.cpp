@@ -28,7 +28,7 @@ void Watchdog::watch(const std::stop_token& stop) {
   while (!stopped_.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
     const Clock::rep since = since_;
     if (since == kNever || Clock::now().time_since_epoch() - Clock::duration(since) < limit_) continue;
-    // Whoever hangs may hold the locks of streams.
+    // The thread that hangs may hold the locks of streams.
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message_.data(), message_.size());
     std::_Exit(int(code_));
   }

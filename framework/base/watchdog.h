@@ -1,4 +1,4 @@
-// Ends the process when something takes too long that nothing can stop, such as a shader that never ends.
+// Ends the process when something that cannot be stopped takes too long, such as a shader that never ends.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ namespace fovea {
 
 class Watchdog {
  public:
-  // Watches nothing if `limit` is 0. Throws Error(OutOfMemory) if there is no thread to be had.
+  // Watches nothing if `limit` is 0. Throws Error(OutOfMemory) if no thread can be created.
   Watchdog(std::chrono::duration<double> limit, ExitCode code, std::string message);
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;

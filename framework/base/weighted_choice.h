@@ -1,4 +1,5 @@
-// A choice among things that are offered one after the other, each in proportion to its weight.
+// Weighted reservoir sampling: chooses one of several items that are offered one after the other, in proportion to
+// their weights.
 #pragma once
 
 namespace fovea {
@@ -9,7 +10,7 @@ class WeightedChoice {
   // u: uniform in [0, 1).
   explicit WeightedChoice(float u) : u_(u) {}
 
-  // Whether what is offered now replaces what was chosen before. weight: above 0.
+  // Whether the item offered now replaces the one chosen before. weight: above 0.
   bool takes(float weight) {
     sum_ += weight;
     const float chance = weight / sum_;
@@ -22,7 +23,7 @@ class WeightedChoice {
     return false;
   }
   bool any() const { return sum_ > 0; }
-  // 1 over the probability of what was chosen; only if there is anything.
+  // 1 over the probability of the chosen item; only if an item was offered.
   float inverseProbability() const { return sum_ / chosen_; }
 
  private:

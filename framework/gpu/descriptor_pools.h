@@ -9,8 +9,8 @@
 
 namespace fovea::gpu {
 
-// A "push" takes a set, writes and binds it. The sets belong to the command buffer into which they are bound, and serve
-// again when it begins anew, so that a command buffer that repeats what it did before allocates nothing.
+// A "push" takes a set, writes and binds it. The sets belong to the command buffer into which they are bound, and are
+// reused when it begins again, so that a command buffer that repeats its commands allocates nothing.
 //
 // In its instrumented shaders, validation layer 1.3.239 takes push descriptors for uninitialised ones and reports every
 // access.

@@ -68,7 +68,8 @@ class Device {
   uint32_t queueFamily() const;
   const VkPhysicalDeviceProperties& properties() const;
   const VkPhysicalDeviceLimits& limits() const { return properties().limits; }
-  // E.g. "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6", then what it was told to do without; part of every report.
+  // E.g. "llvmpipe (LLVM 15.0.6, 256 bits), Mesa 22.3.6", then the features that it was told not to use; part of every
+  // report.
   std::string name() const;
   bool isCpu() const;  // lavapipe and similar devices
   const Features& features() const;
@@ -103,7 +104,7 @@ class Device {
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
   void beginLabel(VkCommandBuffer cmd, const char* name) const;
   void endLabel(VkCommandBuffer cmd) const;
-  // Begins a command buffer that is recorded anew for each submission. pushDescriptorSet needs it.
+  // Begins a command buffer that is recorded again for each submission. pushDescriptorSet needs it.
   void begin(VkCommandBuffer cmd) const;
   // To be called before a command buffer that was begun so is freed.
   void forget(VkCommandBuffer cmd) const;

@@ -1,5 +1,5 @@
 // Loads OpenImageIO with the first image that is read or written. Debian's build of it needs 230 other libraries, which
-// the system takes 0.4 s to link; a command that looks at no image is done in a tenth of it.
+// the system takes 0.4 s to link; a command that reads no image finishes in a tenth of that.
 #include <dlfcn.h>
 
 #include <string>

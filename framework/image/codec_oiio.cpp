@@ -33,8 +33,8 @@ void checkSize(const OIIO::ImageSpec& spec) {
   if (spec.deep || spec.depth > 1) fail("deep and volume images are not supported");
 }
 
-// Opens a picture as what its first bytes say it is. Left to itself, OpenImageIO tries all its plug-ins on what it does
-// not know, among them decoders of videos and of medical images.
+// Opens a picture in the format that its first bytes indicate. Left to itself, OpenImageIO tries all its plug-ins on
+// what it does not know, among them decoders of videos and of medical images.
 std::unique_ptr<OIIO::ImageInput> open(std::string_view begin, const std::string& name,
                                        const OIIO::ImageSpec& config) {
   static constexpr std::pair<std::string_view, const char*> kFormats[] = {

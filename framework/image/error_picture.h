@@ -1,4 +1,4 @@
-// Shows as an image where another image differs from its reference.
+// Visualises where an image differs from its reference.
 #pragma once
 
 #include "framework/image/color.h"

@@ -128,7 +128,7 @@ uint64_t linesOfBlock(int compression) {
   return kLines[size_t(std::clamp(compression, 0, int(kLines.size()) - 1))];
 }
 
-// Takes from an attribute, at whose content the stream is, what it says of the blocks.
+// Reads the properties of the blocks from an attribute at whose content the stream is.
 void addTo(Block& block, const std::string& name, std::istream& in) {
   if (name == "dataWindow") {  // the corners of its first and last pixels
     int64_t corners[4] = {};

@@ -1,4 +1,4 @@
-// What the first bytes of a picture claim, read without decoding it.
+// The sizes that the header of a picture claims, read without decoding it.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct HeaderSize {
 std::optional<HeaderSize> headerSize(std::span<const uint8_t> bytes);
 
 // Why files of so many bytes are not decoded though they claim so many pixels, or "". Plain colours compress a
-// thousandfold, so that a small file can ask for gigabytes; whatever shows something has a byte for each 64 pixels, and
-// up to 2^26 pixels may be plain.
+// thousandfold, so that a small file can claim gigabytes; pictures with content have a byte for each 64 pixels, and up
+// to 2^26 pixels may be plain.
 std::string whyTooPlain(uint64_t pixels, uint64_t bytes);
 
 // Why an EXR file is not read: an attribute of its header claims another size than it has, or the header claims a side

@@ -1,4 +1,4 @@
-// A round floor under things that come without one.
+// A round floor for scenes that have none.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@ struct Floor {
   glm::vec3 color{0.5f};  // reflectance
 };
 
-// Appends it as a node, which is seen from above only.
+// Appends it as a node, which is visible only from above.
 void addFloor(Scene& scene, const Floor& floor);
 
 }  // namespace fovea::scene

@@ -23,26 +23,25 @@ Frustum frustumOf(const Lens& lens, bool left);
 View makeView(const Camera& camera, glm::uvec2 size, const Geometry& geometry,
               glm::vec2 gaze = glm::vec2(0.5f), const std::optional<Frustum>& frustum = {});
 
-// Lets a view look beside the centres of its pixels by `now` pixels (x right, y down), after it looked beside them by
-// `before` in the last frame. This changes its matrices, also the previous one. (0, 0) leaves them as they are.
+// Makes a view sample its pixels `now` pixels away from their centres (x right, y down); in the last frame the offset
+// was `before`. This changes its matrices, including the previous one. (0, 0) leaves them as they are.
 void jitter(View& view, glm::vec2 now, glm::vec2 before);
 
-// Place in the pixel, from its centre, of frame `index` where `count` places take turns: points of the Halton sequence
-// of bases 2 and 3, moved so that their mean is the centre. (0, 0) if `count` is less than 2.
+// Offset from the centre of the pixel in frame `index`, when `count` positions alternate: points of the Halton sequence
+// of bases 2 and 3, shifted so that their mean is the centre. (0, 0) if `count` is less than 2.
 glm::vec2 jitterAt(uint64_t index, uint32_t count);
 
 // The views of every frame: the camera, and the two eyes, each half of Scene::ipd to the left or right of the camera,
 // looking in the same direction, and through Scene::lens if the scene has one.
 inline constexpr const char* kViewNames[] = {"main", "left", "right"};
 
-// These views, each as large as the picture, for binding a graph.
+// These views, each with the size of the picture, for binding a graph.
 std::vector<std::pair<std::string, VkExtent2D>> frameViews(VkExtent2D size);
 
 // Frames until Frame::saccade is 0 again.
 inline constexpr uint32_t kSaccadeFrames = 8;
 
-// When a frame is, and what it looks through and at. Frames of a sequence follow from the scene; who moves through a
-// scene by hand changes what is in here.
+// The time, cameras and gaze of a frame. Those of a sequence follow from the scene; an interactive viewer changes them.
 struct Moment {
   uint64_t index = 0;           // Frame::index
   double time = 0, before = 0;  // of this frame and of the last one, in seconds

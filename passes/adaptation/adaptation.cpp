@@ -1,4 +1,4 @@
-// The exposure to which an eye adapts, for looking at scenes whose files give none.
+// Exposure that adapts to the brightness of the image, for viewing scenes whose files give none.
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
@@ -13,8 +13,8 @@ class Adaptation : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("adaptation",
-                      "exposure that follows the brightness of the picture as an eye does, where the scene's "
-                      "file gives none");
+                      "exposure that adapts to the brightness of the picture as an eye does, unless the "
+                      "scene file gives one");
     d.view();
     d.input("radiance", image2D(), Usage::Sampled, "rgb: linear radiance, W/(sr m^2), any float format");
     d.output("exposure", image2D(VK_FORMAT_R32_SFLOAT, 1, 1), Usage::StorageRead | Usage::StorageWrite,
@@ -24,10 +24,10 @@ class Adaptation : public Pass {
               Usage::StorageRead | Usage::StorageWrite,
               "mean over the pixels that are looked at in each tile: log2 of their display intensity");
     d.parameter("key", real(0.18, 0.001, 1),
-                "display intensity of what has the mean brightness, the geometric mean of the luminance");
+                "display intensity of the mean brightness, which is the geometric mean of the luminance");
     d.parameter("range", real(4, 0, 20, "stops"), "how far the exposure may lie from the scene's own");
     d.parameter("frames", real(25, 0.1, 10000),
-                "time constant: after so many frames 63% of a change is made up for");
+                "time constant: after this many frames, 63% of a change has been followed");
     const auto sceneExposure = [](const RecordContext& ctx) { return ctx.frame().exposure; };
     d.step("adaptation/measure.comp").constant("sceneExposure", sceneExposure).over("tiles");
     d.step("adaptation/adapt.comp")

@@ -1,5 +1,5 @@
 // Candidate positions for VPLs: one diffuse bounce from the surfaces in the fovea (the paper's VPL generation;
-// passes/README.md, candidates).
+// passes/vpls.md, candidates).
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"

@@ -1,4 +1,4 @@
-// The picture from its parts, where a graph processes the irradiance after pass deferred.
+// The sum of all light, in graphs that process the irradiance after pass deferred.
 #include "fovea/pass.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
@@ -13,8 +13,7 @@ class Compose : public Pass {
   static PassDeclaration declaration() {
     PassDeclaration d(
         "compose",
-        "irradiance times the reflectance of the visible surfaces, plus what glossy ones reflect "
-        "and direct light",
+        "irradiance times the reflectance of the visible surfaces, plus glossy reflections and direct light",
         PassKind::Graphics);
     d.view();
     d.input("gbuffer", "gbuffer",
@@ -25,7 +24,7 @@ class Compose : public Pass {
             "rgb: indirect irradiance / pi of each pixel, W/(sr m^2); background 0");
     d.input("gloss", color, Usage::StorageRead,
             "rgb: with full materials, indirect light under the lobe of each surface, W/(sr m^2) (pass "
-            "deferred); if not wired, the irradiance stands in for it")
+            "deferred); if not wired, the irradiance is used instead")
         .when(fullMaterials());
     d.input(
          "reflections", color, Usage::StorageRead,
@@ -36,9 +35,8 @@ class Compose : public Pass {
         .makeOptional();
     const ResourceSpec picture =
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.albedo"), heightOf("gbuffer.albedo"));
-    d.output(
-        "indirect", picture, Usage::ColorAttachment,
-        "rgb: indirect radiance towards the eye, rho E / pi and what glossy surfaces reflect; background 0");
+    d.output("indirect", picture, Usage::ColorAttachment,
+             "rgb: indirect radiance towards the eye, rho E / pi and glossy reflections; background 0");
     d.output("radiance", picture, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     declareMaterials(d, "`full` adds what glossy surfaces reflect");
     d.fullscreen("compose/compose.frag", {"indirect", "radiance"})

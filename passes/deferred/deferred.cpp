@@ -64,27 +64,25 @@ class Deferred : public Pass {
         .makeOptional()
         .when(parameter("near_light"));
     d.input("near_gloss", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-            "rgb: the same light under the lobe of each surface, W/(sr m^2) (`gloss` of pass near-field), "
-            "for which `near_field` stands in if it is not wired; not used with `shade`")
+            "rgb: the same light under the lobe of each surface, W/(sr m^2) (`gloss` of pass near-field); "
+            "if not wired, `near_field` is used instead; not used with `shade`")
         .when(parameter("near_light") * fullMaterials());
     d.input("traced", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "rgb: irradiance / pi from VPLs where rays have found it (pass contact-rays), to which "
             "`near_field` is added as it is; a: above 0 there, and written to `irradiance`; not used where "
-            "`periphery` 2 spares pixels")
+            "`periphery` 2 skips pixels")
         .makeOptional();
     addMask(d);
     const ResourceSpec color = image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height);
     d.output("irradiance", color, Usage::StorageRead | Usage::StorageWrite | Usage::TransferWrite,
              "rgb: filtered indirect irradiance / pi, W/(sr m^2); multiplied by the reflectance rho it gives "
              "`indirect`; background 0; a: 1, or that of `traced`");
-    d.output(
-        "gloss", glossImage(width, height), Usage::StorageRead | Usage::StorageWrite,
-        "with full materials, rgb: filtered indirect light under the lobe of each surface, W/(sr m^2), a "
-        "mean that the share which the surface reflects makes a part of `indirect`; background 0; without "
-        "`shade` only; otherwise one undefined texel");
-    d.output(
-        "indirect", color, Usage::ColorAttachment,
-        "rgb: indirect radiance towards the eye, rho E / pi and what glossy surfaces reflect; background 0");
+    d.output("gloss", glossImage(width, height), Usage::StorageRead | Usage::StorageWrite,
+             "with full materials, rgb: filtered indirect light under the lobe of each surface, W/(sr m^2), "
+             "a mean that contributes to `indirect` when multiplied by the share that the surface reflects; "
+             "background 0; without `shade` only; otherwise one undefined texel");
+    d.output("indirect", color, Usage::ColorAttachment,
+             "rgb: indirect radiance towards the eye, rho E / pi and glossy reflections; background 0");
     d.output("radiance", color, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
     d.scratch("partial", color, Usage::StorageRead | Usage::StorageWrite,
               "estimate of each pixel from its own subset");
@@ -191,7 +189,7 @@ class Deferred : public Pass {
                 "replacement of 1 / d^2 near a VPL: `clamp` uses at least clamp_distance for d (the paper), "
                 "`disc` uses 1 / (d^2 + A / pi), the light of a disc of the VPL's area seen along its axis");
     d.parameter("near_light", choice("all", {"none", "map", "all"}),
-                "what `near_field` holds, as `light` of pass near-field; with `none` it is left out");
+                "content of `near_field`, as `light` of pass near-field; with `none` it is left out");
     d.parameter("clamp_distance", real(1.5, 0, 1e6, "m"),
                 "least distance for the kernel `clamp`; 0 disables the clamp");
     d.parameter("interleave", integer(4, 1, 8),
@@ -203,7 +201,7 @@ class Deferred : public Pass {
         d,
         "outside the fovea, where the eye resolves no more than every second pixel, one pixel of each "
         "square of this width is shaded, and the filter interpolates; 1 shades all pixels");
-    declareMaterials(d, "`full` finds also the light that glossy surfaces reflect");
+    declareMaterials(d, "`full` also finds the light that glossy surfaces reflect");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),

@@ -19,7 +19,7 @@ class Direct : public Pass {
     PassDeclaration d(
         "direct",
         "direct lighting: emission plus rho / pi times the unoccluded irradiance of each light, "
-        "or with full materials all that the surface reflects of it",
+        "or with full materials all of its light that the surface reflects",
         PassKind::Graphics);
     d.recorded();
     d.view();
@@ -32,8 +32,8 @@ class Direct : public Pass {
         "direct",
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
         Usage::ColorAttachment,
-        "rgb: radiance towards the eye, W/(sr m^2), in the background the environment; a: 0 where the edge "
-        "of a shadow lies between texels of a map, else 1");
+        "rgb: radiance towards the eye, W/(sr m^2), in the background that of the environment; a: 0 where "
+        "the edge of a shadow lies between texels of a map, else 1");
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow filter: `none` makes one comparison (jagged edges), `bilinear` interpolates four, "
                 "`pcf` averages 3x3 bilinear ones (softer edges)");

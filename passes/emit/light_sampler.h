@@ -20,7 +20,7 @@ struct Emission {
 };
 
 // Chooses sources in proportion to their power (mean of the channels). A directional light sends a parallel beam
-// over the silhouette of the scene's bounding box, so that nearly every ray meets the box; spot lights are
+// over the silhouette of the scene's bounding box, so that nearly every ray hits the box; spot lights are
 // sampled by their falloff.
 class LightSampler {
  public:

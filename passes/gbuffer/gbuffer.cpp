@@ -48,16 +48,14 @@ class GBuffer : public Pass {
     const ResourceSpec tint =
         image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(full * viewWidth(), 1), max(full * viewHeight(), 1));
     d.scratch("tint", tint, Usage::ColorAttachment | Usage::Sampled,
-              "with full materials, of what lets light through before each surface, rgb: logarithms of the "
-              "relative "
-              "colours of glass, a: the number of surfaces");
+              "with full materials, of the transparent surfaces in front of each surface, rgb: logarithms of "
+              "the relative colours of glass, a: the number of surfaces");
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
-    declareMaterials(
-        d,
-        "`full` takes everything that glTF says of them, with normal maps, what they reflect beside "
-        "their diffuse layer, and what stands behind glass and alphaMode BLEND, at random pixels");
+    declareMaterials(d,
+                     "`full` has all glTF properties, with normal maps, glossy reflection, and stochastic "
+                     "transparency of glass and alphaMode BLEND");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
     std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
                                        "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};
@@ -136,7 +134,7 @@ class GBuffer : public Pass {
   static std::string fullResolve(int detail, bool veiled) {
     static constexpr const char* kWith[] = {"", " with maps", " with extensions"};
     return std::string("resolve full materials") + kWith[detail] +
-           (veiled ? " behind what lets light through" : "");
+           (veiled ? " behind transparent surfaces" : "");
   }
 
   void drawTint(RecordContext& ctx) const {

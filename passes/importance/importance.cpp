@@ -1,4 +1,4 @@
-// Foveated importance of VPLs: how much of what is near the gaze a VPL can light (passes/README.md, importance).
+// Foveated importance of VPLs: how much of the surface near the gaze a VPL can light (passes/vpls.md, importance).
 #include <string>
 
 #include "fovea/error.h"
@@ -48,8 +48,8 @@ PassDeclaration Importance::declaration() {
               "multiplies the importance by min(1, exposure * luminance of the VPL's side), so that it also "
               "reflects how bright the VPL is");
   d.parameter("rate_candidates", flag(true),
-              "if false, the importance of all candidates is 0, for a pass manage whose `placement` does not "
-              "need it; Eq. 1 then keeps new VPLs in their second frame");
+              "if false, the importance of all candidates is 0, for a pass manage with a `placement` that "
+              "does not need it; Eq. 1 then keeps new VPLs in their second frame");
   d.counter("rays", "rays or cones traced");
   d.fill("candidate_importance", 0).when(!parameter("rate_candidates"));
   const auto estimate = [&](const char* name, bool candidates, const char* port) -> StepSpec& {

@@ -1,6 +1,6 @@
-// Direct light on the voxels, from the lights' shadow maps (passes/README.md, light-inject). Static surfaces keep
+// Direct light on the voxels, from the lights' shadow maps (passes/geometry.md, light-inject). Static surfaces keep
 // their radiance from frame to frame while the lights stay the same, except where the shadow of a moving object may
-// have appeared or gone.
+// have appeared or disappeared.
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
@@ -24,8 +24,8 @@ bool same(const scene::Light& a, const scene::Light& b) {
          a.position == b.position && a.direction == b.direction;
 }
 
-// Points at which a side evaluates each light: with many lights few suffice, as their shadows have edges at different
-// places.
+// Points at which a side evaluates each light: with many lights, few points are enough, as their shadows have edges in
+// different places.
 int32_t tapsOfEach(int32_t taps, size_t lights) {
   return std::clamp(16 * taps / int32_t(std::max<size_t>(lights, 1)), 1, taps);
 }
@@ -38,7 +38,7 @@ class LightInject : public Pass {
     d.recorded();
     d.input("voxels", "voxels", voxelMembers({"index", "surface", "info"}), "voxelised surfaces");
     d.input("maps", "shadow-maps", shadowMapMembers(),
-            "shadow maps of the lights; if not wired, nothing casts a shadow")
+            "shadow maps of the lights; if not wired, there are no shadows")
         .makeOptional();
     d.output(
          "radiance", voxelRadianceBuffer(countOf("voxels.surface")), Usage::StorageRead | Usage::StorageWrite,
@@ -60,13 +60,13 @@ class LightInject : public Pass {
     d.parameter(
         "keep", flag(true),
         "whether static sides keep their radiance while no light changes, except where the shadow of a "
-        "moving object may have appeared or gone; if false, all sides are lit again in every frame");
-    d.parameter("emission", flag(true), "whether the radiance includes what the surfaces emit themselves");
+        "moving object may have appeared or disappeared; if false, all sides are lit again in every frame");
+    d.parameter("emission", flag(true), "whether the radiance includes the surfaces' own emission");
     ParameterSpec taps = integer(6, 1, 64);
     d.parameter(
         "taps", taps,
-        "number of fixed points on each side at which a light and its shadow are evaluated; of more than 16 "
-        "lights each has fewer, at least one, so that all of them have about as many as 16 lights would");
+        "number of fixed points on each side at which a light and its shadow are evaluated; with more than "
+        "16 lights each has fewer, at least one, so that the total is about that of 16 lights");
     d.parameter("offset", real(0.25, 0, 2, "cells"),
                 "height above the side's plane at which shadows are evaluated, as the plane cuts through "
                 "curved surfaces and edges");

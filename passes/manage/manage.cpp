@@ -94,16 +94,17 @@ PassDeclaration Manage::declaration() {
                     "VPL management: which VPLs are kept, which candidates become VPLs, and in which slots");
   d.input("candidates", candidateBuffer(), Usage::TexelRead,
           "candidate VPLs; attempts that hit nothing are skipped");
-  d.input("candidate_importance", buffer("float", 4), Usage::TexelRead,
-          "I of each candidate, in [0, 1]; `placement` `light` needs none, and without it Eq. 1 keeps new "
-          "VPLs in their second frame")
+  d.input(
+       "candidate_importance", buffer("float", 4), Usage::TexelRead,
+       "I of each candidate, in [0, 1]; not needed for `placement` `light`, and without it Eq. 1 keeps new "
+       "VPLs in their second frame")
       .makeOptional();
   d.input("vpl_importance", buffer("float", 4), Usage::TexelRead,
           "I of the VPL in each slot in this frame, in [0, 1]");
   d.input("vpls", vplStateBuffer(), Usage::TexelRead,
           "VPL list of the previous frame, updated for motion; it must have `count` slots");
   d.input("change", changeBuffer(), Usage::TexelRead,
-          "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths)")
+          "z: share of the known light that is outdated, from 0 to 1 (pass eye-paths)")
       .makeOptional();
   d.output("list", vplStateBuffer(parameter("count")), Usage::StorageWrite,
            "VPL list of this frame; a VPL that is kept stays in its slot and takes its new importance, a new "
@@ -112,13 +113,14 @@ PassDeclaration Manage::declaration() {
 
   // The list returns through the pass that updates it, so its length is a parameter and is not taken from the input.
   d.parameter("count", integer(1000, 1, kMost), "number of slots, the most VPLs in the list (N)");
-  d.parameter("reuse", choice("linear", {"linear", "cosine", "random"}),
-              "which VPLs are reused without competing (Eq. 1), C being the ratio of the new importance to "
-              "the previous one; linear: with probability min(C, 1); cosine: with probability 1 - cos(pi/2 "
-              "min(C, 1)); random: as many as linear, chosen at random");
+  d.parameter(
+      "reuse", choice("linear", {"linear", "cosine", "random"}),
+      "which VPLs are reused without competing (Eq. 1), where C is the ratio of the new importance to "
+      "the previous one; linear: with probability min(C, 1); cosine: with probability 1 - cos(pi/2 "
+      "min(C, 1)); random: as many as linear, chosen at random");
   d.parameter("keep", integer(0, 0, kMost),
               "candidates left after thinning (K), each kept with probability min(1, K I / sum I); 0 means "
-              "as many as `limit`, or for `placement` `light` as there are free slots");
+              "the number `limit`, or for `placement` `light` the number of free slots");
   d.parameter("placement", choice("importance", {"importance", "light"}),
               "how candidates are chosen; importance: by Algorithm 2; light: as many as there are free "
               "slots, in proportion to their direct light (systematic resampling), since eye paths already "
@@ -131,21 +133,19 @@ PassDeclaration Manage::declaration() {
               "most VPLs deleted per frame for failing Eq. 1 (rounded up); if more fail, the least important "
               "are deleted and the others are tested against their former importance again");
   d.parameter("change_turnover", real(0, 0, 1, "slots' share"),
-              "times the square of the share that `change` says is lost: at least so many VPLs lose their "
-              "place, the least important ones, as if they had failed Eq. 1, since they were chosen by other "
-              "light; it may be more than `turnover`");
-  d.parameter(
-      "saccade_turnover", real(0, 0, 1, "slots' share"),
-      "VPLs that lose their place in the frame in which the gaze has jumped although Eq. 1 keeps them, "
-      "the least important ones: they are treated as if they had failed it; their number falls to 0 "
-      "over the next 8 frames");
+              "times the square of the outdated share that `change` reports: at least this many of the least "
+              "important VPLs lose their place as if they had failed Eq. 1, since they were chosen by other "
+              "light; may be more than `turnover`");
+  d.parameter("saccade_turnover", real(0, 0, 1, "slots' share"),
+              "least important VPLs that lose their place in the frame in which the gaze has jumped, as if "
+              "they had failed Eq. 1; their number falls to 0 over the next 8 frames");
   d.parameter("order", choice("literal", {"literal", "fixed"}),
               "variant of Algorithm 2; literal: as printed; fixed: when more old VPLs failed Eq. 1 than "
               "there are candidates, the best of those that the loop never reaches are tried as well");
   d.parameter("limit", integer(0, 0, kMost),
               "most VPLs in the list (N_MAX), no more than the slots; 0 means all slots");
   d.parameter("max_density", integer(0, 0, kMost),
-              "a cell that holds this many VPLs takes no more (D_MAX); 0 means max(2, 3 N_MAX / number of "
+              "a cell with this many VPLs accepts no more (D_MAX); 0 means max(2, 3 N_MAX / number of "
               "cells that hold a VPL or candidate)");
   d.parameter(
       "density_constant", real(1, 0.5, 1024),

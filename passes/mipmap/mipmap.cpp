@@ -1,4 +1,5 @@
-// Mip hierarchy of light and foveated weight over ever larger cells, for cone tracing (passes/README.md, mipmap).
+// Mip hierarchy of light and foveated weight over successively larger cells, for cone tracing (passes/geometry.md,
+// mipmap).
 #include <glm/glm.hpp>
 #include <string>
 
@@ -41,7 +42,7 @@ class Mipmap : public Pass {
                 "method of pass importance; with `rays` nothing reads the weights, and they are 0");
     d.parameter("directional", flag(true),
                 "whether six volumes are stored side by side, +x -x +y -y +z -z, one for each facing "
-                "direction, so that a thin wall does not show the light of its back");
+                "direction, so that a thin wall does not show the light of its other side");
     const auto step = [&](const char* shader) -> StepSpec& {
       return d.step(shader)
           .define("DIRECTIONAL", parameter("directional"))

@@ -1,4 +1,4 @@
-// Where each visible surface point was in the previous frame, for everything that is kept from frame to frame.
+// Where each visible surface point was in the previous frame, for all means over frames.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -25,8 +25,7 @@ class MotionVectors : public Pass {
     d.output("origin", image2D(VK_FORMAT_R32_UINT, widthOf("gbuffer.position"), heightOf("gbuffer.position")),
              Usage::ColorAttachment,
              "x | y << 16: one of the four pixels around the previous position, chosen at random with "
-             "bilinear probabilities, or of the 5 x 5 around it where surfaces let light through; 0xffffffff "
-             "if none "
+             "bilinear probabilities, or of the 5 x 5 around it at transparent surfaces; 0xffffffff if none "
              "of them showed the surface");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "

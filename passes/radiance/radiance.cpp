@@ -1,4 +1,4 @@
-// Radiosity of the VPLs: direct light plus one bounce gathered with cones (Eq. 3 of the paper; passes/README.md,
+// Radiosity of the VPLs: direct light plus one bounce gathered with cones (Eq. 3 of the paper; passes/vpls.md,
 // radiance).
 #include "fovea/error.h"
 #include "fovea/pass.h"

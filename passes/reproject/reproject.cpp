@@ -1,5 +1,5 @@
 // The second eye from the first eye's finished lighting: demodulated irradiance warped onto the surfaces that the
-// second eye sees, and the blocks of pixels that have no source and must be shaded (passes/README.md, reproject).
+// second eye sees, and the blocks of pixels that have no source and must be shaded (passes/shading.md, reproject).
 #include <cmath>
 #include <glm/glm.hpp>
 #include <string>

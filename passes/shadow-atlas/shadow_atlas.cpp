@@ -5,7 +5,7 @@
 // rasterising straight edges between projected vertices, as edges are arcs. An integer atomic keeps the smallest
 // distance, so the result does not depend on the order.
 //
-// Where a VPL stands still and something moves in front of it, the map of static geometry can be kept (parameter
+// Where a VPL is static and something moves in front of it, the map of static geometry can be kept (parameter
 // `static_maps`): it is copied, and only moving geometry is drawn over it.
 //
 // The technique `simplified` runs the same rasteriser over a coarser mesh. The hardware rasteriser would be limited
@@ -77,13 +77,12 @@ PassDeclaration ShadowAtlas::declaration() {
   PassDeclaration d("shadow-atlas", "paraboloid shadow map of every VPL");
   d.input("vpls", vplBuffer(), Usage::StorageRead, "VPLs; a slot with zero intensity keeps an empty map");
   d.input("state", vplStateBuffer(), Usage::StorageRead,
-          "state of the VPLs, which says which are new and how important each is; if not wired, every map is "
+          "state of the VPLs: which are new, and how important each one is; if not wired, every map is "
           "drawn in every frame")
       .makeOptional();
-  d.input(
-       "change", changeBuffer(), Usage::TexelRead,
-       "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths); if that is more "
-       "than `refresh_share`, the maps of so many kept VPLs are drawn again")
+  d.input("change", changeBuffer(), Usage::TexelRead,
+          "z: share of the known light that is outdated, from 0 to 1 (pass eye-paths); if it is more than "
+          "`refresh_share`, this share of the kept VPLs' maps is redrawn")
       .makeOptional();
   // `layout` counts as its index: 0 layers, 1 tiled.
   const SizeExpr tiles = SizeExpr(1) + SizeExpr(scene::kAtlasTiles - 1) * parameter("layout");
@@ -136,25 +135,25 @@ PassDeclaration ShadowAtlas::declaration() {
   d.parameter("layout", choice("layers", {"layers", "tiled"}),
               "layers: one layer of the image for each map; tiled: 16 maps per layer, for more VPLs than the "
               "device has layers");
-  d.parameter("alpha_mask", flag(true), "whether holes of alpha-masked materials let light through");
+  d.parameter("alpha_mask", flag(true), "whether light passes through the holes of alpha-masked materials");
   d.parameter("self_shadow_distance", real(1e-5, 0, 1, "scene diagonals"),
-              "a triangle whose plane is closer to a VPL than this is taken for the VPL's own surface and "
-              "blocks nothing");
-  d.parameter("refresh", choice("top", {"all", "top", "split", "stale"}),
-              "which maps of kept VPLs are drawn again (needs `state`): `all`; `top` the most important ones "
-              "(the paper); `split` half of the same number for those and half for the longest unchanged, "
-              "first where something moves; `stale` those that would change, by importance times the frames "
-              "since they were drawn");
+              "a triangle whose plane is closer to a VPL than this counts as the VPL's own surface and "
+              "occludes nothing");
+  d.parameter(
+      "refresh", choice("top", {"all", "top", "split", "stale"}),
+      "which maps of kept VPLs are redrawn (needs `state`): `all`; `top` those of the most important VPLs "
+      "(the paper); `split` half of the number for these and half for the oldest maps, first where something "
+      "moves; `stale` those that would change, by importance times the frames since they were drawn");
   d.parameter("refresh_share", real(0.05, 0, 1),
-              "share of the kept VPLs whose maps are drawn again in a frame, unless `refresh` is `all`; maps "
-              "among them that would not change are left as they are");
+              "share of the kept VPLs whose maps are redrawn in a frame, unless `refresh` is `all`; maps "
+              "among them that would not change are not redrawn");
   d.parameter("static_maps", flag(false),
               "whether a map of static geometry is kept for each VPL, which takes as much memory again; "
-              "while the VPL stands still, only moving geometry is drawn over that map (needs `state`)");
+              "while the VPL does not move, only moving geometry is drawn over that map (needs `state`)");
   d.parameter("mover_slack", real(0, 0, 100, "frames"),
-              "moving geometry is drawn farther from the VPL by the way it moves in this many frames, at "
-              "most a quarter of the distance, so that it casts no shadow on itself from maps that are some "
-              "frames old; 0 draws it in place");
+              "moving geometry is drawn farther from the VPL by the distance that it moves in this many "
+              "frames, at most a quarter of the distance to the VPL, so that it casts no shadow on itself "
+              "from maps that are some frames old; 0 draws it in place");
   d.counter("maps", "maps drawn");
   d.counter("small_pairs", "pairs of a VPL and a triangle in a box of at most 64 texels");
   d.counter("large_pairs", "pairs of a VPL and a triangle in a larger box, or cut by the horizon");

@@ -35,13 +35,11 @@ class TemporalAccumulation : public Pass {
     d.input("origin", image2D(VK_FORMAT_R32_UINT), Usage::StorageRead,
             "x | y << 16: the pixel of `history` that showed the surface, 0xffffffff if there is none (pass "
             "motion-vectors)");
-    d.input(
-        "samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
-        "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, negative where "
-        "its "
-        "surface asks for no samples (pass reflections), smaller than "
-        "`mean` by a power of two; or for every pixel, as large as `mean`: rgb, a: how many times as long "
-        "the mean is there, if above 1 (`longer` of pass contact-rays)");
+    d.input("samples", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
+            "samples for blocks: rgb of one pixel of a block, a: its code from pass near-field, negative "
+            "where its surface asks for no samples (pass reflections), smaller than `mean` by a power of "
+            "two; or for every pixel, as large as `mean`: rgb, a: how many times as long the mean is there, "
+            "if above 1 (`longer` of pass contact-rays)");
     d.input("history", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
             "`mean` of the previous frame");
     d.input("gloss", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead,
@@ -55,7 +53,7 @@ class TemporalAccumulation : public Pass {
             "of their history that samples have lost (pass eye-paths)")
         .makeOptional();
     d.input("tiles", image2D(VK_FORMAT_R8_UNORM), Usage::StorageRead,
-            "tiles with samples (pass mirrors), outside of which the mean is 0; if not wired, all are drawn")
+            "tiles with samples (pass mirrors), outside which the mean is 0; if not wired, all are drawn")
         .makeOptional();
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
@@ -65,17 +63,17 @@ class TemporalAccumulation : public Pass {
              Usage::ColorAttachment,
              "rgb: mean of `gloss`, in its unit; a: as in `mean`; undefined if that is not wired; a single "
              "texel unless materials are full");
-    d.parameter(
-        "frames", real(16, 1, 1000),
-        "length of the mean: each sample has at least the weight of one in this many; for blocks larger than "
-        "a texel of `samples`, which change all at once, as many times more as they are wider");
+    d.parameter("frames", real(16, 1, 1000),
+                "length of the mean: each sample has at least the weight of one in this many; for blocks "
+                "wider than a texel of `samples`, which change all at once, the length is multiplied by the "
+                "ratio of the widths");
     d.parameter("first_samples", integer(16, 1, 1024),
                 "weight of a sample after a camera cut, as in pass near-field");
     d.parameter(
         "saccade_samples", integer(1, 1, 16),
         "weight of a sample for 8 frames after a jump of the gaze and up to that when light changes, as in "
-        "pass near-field; samples for blocks wider than a texel of `samples` keep the weight 1, and what "
-        "they have left in the mean counts less where a narrower block follows");
+        "pass near-field; samples for blocks wider than a texel of `samples` keep the weight 1, and their "
+        "contribution to the mean counts less where a narrower block follows");
     d.parameter("plane_tolerance", real(0.005, 1e-6, 1),
                 "largest distance from a pixel's tangent plane that counts as the same surface, relative to "
                 "the pixel's distance from the eye");

@@ -1,5 +1,5 @@
 // The display transform with which images are compared: T(x) = sRGB(clamp01(exposure * x)). The other curves are for
-// looking only.
+// viewing only.
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
 
@@ -26,7 +26,7 @@ class Tonemap : public Pass {
     d.parameter(
         "operator", choice("clamp", {"clamp", "reinhard", "agx"}),
         "curve before encoding: `clamp` is linear and clamps to 1 (used by every measure), `reinhard` is "
-        "x / (1 + luminance), `agx` rolls highlights off towards white as film does (for looking)");
+        "x / (1 + luminance), `agx` rolls highlights off towards white as film does (for viewing)");
     d.parameter("contrast", real(1, 0.5, 2), "exponent of the codes of `agx`; 1 changes nothing");
     d.parameter("saturation", real(1, 0, 2), "factor on the colour of the codes of `agx`; 1 changes nothing");
     d.counter("non_finite", "pixels whose radiance holds a NaN (shown black) or an infinity");

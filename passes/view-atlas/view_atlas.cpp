@@ -16,18 +16,18 @@ class ViewAtlas : public Pass {
     d.input("atlas", image2DArray(VK_FORMAT_R32_UINT, 1, 1, 1), Usage::StorageRead,
             "distances seen from each VPL (paraboloid maps, both layouts)");
     const SizeExpr maps = ceilDiv(widthOf("atlas"), heightOf("atlas")) * layersOf("atlas");
-    d.output("image",
-             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
-                     ceilDiv(maps, parameter("columns")) * parameter("tile")),
-             Usage::StorageWrite,
-             "grey: the brighter, the nearer, for pass `tonemap` at the scene's exposure; blue: nothing is "
-             "hit; a: 1");
+    d.output(
+        "image",
+        image2D(VK_FORMAT_R16G16B16A16_SFLOAT, parameter("columns") * parameter("tile"),
+                ceilDiv(maps, parameter("columns")) * parameter("tile")),
+        Usage::StorageWrite,
+        "grey: brighter for nearer surfaces, for pass `tonemap` at the scene's exposure; blue: no hit; a: 1");
     d.parameter("columns", integer(32, 1, 256), "maps per row");
     ParameterSpec tile = integer(32, 4, 1024);
     tile.unit = "px";
     d.parameter("tile", tile, "width and height of a map in the image (nearest texel)");
     d.parameter("range", real(0, 0, 1e9, "m"),
-                "distance at which grey has halved; 0 uses an eighth of the scene's diagonal");
+                "distance at which grey is halved; 0 uses an eighth of the scene's diagonal");
     d.step("view-atlas/view_atlas.comp")
         .constant("range",
                   [](const RecordContext& ctx) {

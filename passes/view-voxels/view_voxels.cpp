@@ -11,7 +11,7 @@ using namespace graph;
 class ViewVoxels : public Pass {
  public:
   static PassDeclaration declaration() {
-    PassDeclaration d("view-voxels", "debug view: the first voxel side along each of the eye's rays");
+    PassDeclaration d("view-voxels", "debug view: the first voxel side along each ray from the eye");
     d.view();
     d.input("voxels", "voxels", voxelMembers({"index", "occupied", "surface"}), "surface voxels");
     d.input("radiance", voxelRadianceBuffer(), Usage::TexelRead, "radiance of each side, for show `radiance`")

@@ -24,7 +24,7 @@ class ViewVpls : public Pass {
     d.input("vpls", vplBuffer(), Usage::TexelRead, "the same VPLs as light sources, for show `luminance`")
         .makeOptional();
     d.input("gbuffer", "gbuffer", gbufferMembers(Usage::Sampled, {"position"}),
-            "surfaces that hide VPLs; if not wired, all VPLs are drawn")
+            "surfaces that occlude VPLs; if not wired, all VPLs are drawn")
         .makeOptional();
     d.input("picture", image2D(), Usage::Sampled,
             "rgb: radiance over which the VPLs are drawn; black if not wired")

@@ -78,8 +78,8 @@ PassDeclaration Voxelize::declaration() {
 
   d.parameter("resolution", integer(128, 8, 512), "cells along the longest axis of the scene's bounds");
   d.parameter("capacity", integer(16, 1, 512),
-              "most voxels, in squares of the resolution, but at most 1,048,576; further ones are counted as "
-              "overflow and left out, the last ones in linear order first");
+              "largest number of voxels, in squares of the resolution, but at most 1,048,576; further ones "
+              "are counted as overflow and omitted, the last ones in linear order first");
   d.counter("voxels", "voxels in the list");
   d.counter("static_voxels", "voxels of static surfaces");
   d.counter("overflow", "cells with surface for which there was no room");

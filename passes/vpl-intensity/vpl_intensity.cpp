@@ -1,4 +1,4 @@
-// How much light a VPL stands for: its radiosity times a piece of surface A_l (passes/README.md, vpl-intensity). Each
+// How much light a VPL stands for: its radiosity times a piece of surface A_l (passes/vpls.md, vpl-intensity). Each
 // strategy is a pass type of its own, a way to fill the scratch buffer `areas`; the first and the last step are shared.
 #include <algorithm>
 #include <string>
@@ -20,7 +20,7 @@ constexpr uint32_t kSharedPaths = 8;      // paths per invocation of share.comp,
 constexpr uint32_t kTallyGroups = 256;    // work groups of tally.comp, which strides over all elements
 constexpr uint32_t kEscapePoints = 1024;  // screen points from which the share of escaping paths is estimated
 constexpr uint32_t kMostInRow = 32768;    // work groups in a row of a dispatch
-// VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 turns of a loop.
+// VPLs over which bricks.comp loops twice, which stays below the limit of 65,535 iterations of a loop.
 constexpr uint32_t kMostCompeting = 16384;
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
@@ -245,16 +245,14 @@ PassDeclaration IntensityImportanceArea::declaration() {
           "paths of pass eye-paths, with the same number of points; this pass then assigns these, "
           "with the light they found, in place of its own paths through the voxels and the VPLs' own light")
       .makeOptional();
-  d.input(
-       "spread", spreadBuffer(), Usage::TexelRead,
-       "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
-       "discs of this area leave out, and the intensity of a VPL is at most doubled to make up for its disc; "
-       "needs `traced` and kernel `disc`")
+  d.input("spread", spreadBuffer(), Usage::TexelRead,
+          "x: least area of a disc of `importance-area`, m^2; pass near-field supplies the nearby light that "
+          "discs of this area leave out, and the intensity of a VPL is at most doubled to compensate for its "
+          "disc; needs `traced` and kernel `disc`")
       .makeOptional();
-  d.input(
-       "change", changeBuffer(), Usage::TexelRead,
-       "z: share of what was known of the light that is lost, from 0 to 1 (pass eye-paths); by as much less "
-       "is a new VPL faded in")
+  d.input("change", changeBuffer(), Usage::TexelRead,
+          "z: share of the known light that is outdated, from 0 to 1 (pass eye-paths); the fade-in of new "
+          "VPLs is reduced by this share")
       .makeOptional();
   d.parameter("paths", integer(8192, 64, 65536),
               "eye paths through the voxels to assign (M), without `traced`");

@@ -1,4 +1,4 @@
-// VPLs of the previous frame, updated for the motion of their objects (passes/README.md, vpl-motion).
+// VPLs of the previous frame, updated for the motion of their objects (passes/vpls.md, vpl-motion).
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -14,8 +14,8 @@ class Update : public Pass {
  public:
   static PassDeclaration declaration() {
     PassDeclaration d("vpl-motion",
-                      "VPLs of the previous frame moved with their objects; those whose surface has gone or "
-                      "turned away are dropped");
+                      "VPLs of the previous frame moved with their objects; those whose surface has "
+                      "disappeared or turned away are dropped");
     d.input("previous", vplStateBuffer(), Usage::StorageRead, "VPLs of the previous frame");
     d.input("voxels", "voxels", voxelMembers({"index", "surface"}), "surfaces of this frame");
     d.output("vpls", vplStateBuffer(countOf("previous")), Usage::StorageWrite,

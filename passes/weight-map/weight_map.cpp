@@ -1,4 +1,4 @@
-// Foveated weight of each voxel side that the eye sees (passes/README.md, weight-map).
+// Foveated weight of each voxel side that the eye sees (passes/vpls.md, weight-map).
 #include "fovea/pass.h"
 #include "framework/gpu/resources.h"
 #include "passes/bundles.h"
@@ -28,7 +28,7 @@ class WeightMap : public Pass {
     d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
                 "radius r_f of the fovea: the weight is 1 inside and r_f / r at distance r from the gaze");
     d.parameter("spacing", integer(1, 1, 16),
-                "one pixel in each square of this width is looked at; above 1, sides that are smaller on the "
+                "one pixel in each square of this width is used; above 1, sides that are smaller on the "
                 "screen may be missed");
     d.counter("visible", "sides with a weight above 0");
     d.counter("unassigned",

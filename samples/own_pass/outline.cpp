@@ -1,11 +1,11 @@
-// A pass of your own: dark lines where the surface turns or jumps.
+// A pass of your own: dark lines at creases and silhouettes.
 #include <fovea/pass.h>
 
 using namespace fovea::graph;
 
 struct Outline : Pass {
   static PassDeclaration declaration() {
-    PassDeclaration d("outline", "Draws dark lines where the surface turns or jumps.");
+    PassDeclaration d("outline", "Draws dark lines at creases and silhouettes.");
     d.input("picture", image2D(), Usage::Sampled, "the picture to draw on");
     d.input("gbuffer", "gbuffer",
             {member("position", image2D(), Usage::Sampled), member("normal", image2D(), Usage::Sampled)},

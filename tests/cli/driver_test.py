@@ -3,7 +3,7 @@
 Usage: [FOVEA_DEVICE_TESTS=PROGRAM] driver_test.py PROGRAM SOURCE_DIR [CLASS...]
 
 The second driver is the one whose description (a .json file, as in vulkan/icd.d) FOVEA_SECOND_DRIVER names, or else
-SwiftShader, which comes with chromium-common. Without either, all is skipped and the exit code is 77. FOVEA_DRIVER_GRAPHS
+SwiftShader, which comes with chromium-common. Without either, all tests are skipped and the exit code is 77. FOVEA_DRIVER_GRAPHS
 names other graphs than the test's own, or `all`; FOVEA_DRIVER_SIZE and FOVEA_DRIVER_SCENE another size and scene.
 """
 
@@ -41,7 +41,7 @@ SUITES = ("Animate Attach Candidates Compose Compute Cones Contacts Demodulate D
 CASES = ("Deferred.RandomGBuffersEqualTheReference", "DeferredMask.RandomMasksEqualTheReference",
          "Manage.LightAndTurnoverEqualTheSerialAlgorithm", "Voxelize.ThinWallsKeepBothSides",
          "Voxelize.DynamicObjectsMoveAppearAndDisappear")
-# Three pixels of 48x48, at edges, show a face that no ray near their centres meets on SwiftShader; not explained.
+# Three pixels of 48x48, at edges, show a face that no ray near their centres hits on SwiftShader; unexplained.
 LEFT_OUT = ("GBuffer.EqualsRaysThroughPixelCentres",)
 
 

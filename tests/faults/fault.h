@@ -1,4 +1,4 @@
-// What a function makes of FOVEA_FAULTS, a list as "vkMapMemory=-5,pthread_create=11@3": the result of the function's
+// How a function interprets FOVEA_FAULTS, a list as "vkMapMemory=-5,pthread_create=11@3": the result of the function's
 // every call ("=-5"), of the call with one number, counted from 0 ("=11@3"), or of that and all that follow ("=11@3+").
 #pragma once
 

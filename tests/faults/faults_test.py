@@ -1,10 +1,10 @@
-"""Tests what the program makes of functions of the system and of Vulkan that fail: exit codes and messages.
+"""Tests how the program reacts when functions of the system and of Vulkan fail: exit codes and messages.
 
 Usage: FOVEA_TEST_FAULTS=FOLDER faults_test.py PROGRAM SOURCE_DIR [CLASS...]
 
-The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=GRAPH,... makes every single call
-of Vulkan fail in turn, for these graphs, instead of the last call of each function, and hundreds of allocations of
-memory instead of ten: about a thousand runs a graph.
+The folder holds faults.so, vulkan_faults.so and vulkan_faults.json. FOVEA_FAULTS_ALL=GRAPH,... makes every single
+Vulkan call fail in turn, for these graphs, instead of the last call of each function, and hundreds of memory
+allocations instead of ten: about a thousand runs per graph.
 """
 
 import collections
@@ -28,7 +28,7 @@ LIBRARIES = os.environ.get("FOVEA_TEST_FAULTS", "")
 NO_THREADS = 11  # EAGAIN
 
 # What functions of Vulkan fail with, the exit code of the program then and a part of its message, and how often each
-# graph calls them. FOVEA_FAULTS_WRITE=1 writes the numbers of calls anew, after which the rest is to be looked at.
+# graph calls them. FOVEA_FAULTS_WRITE=1 counts the calls again, after which the rest has to be reviewed.
 TABLE = pathlib.Path(__file__).with_name("vulkan_functions.csv")
 SMALL_GRAPHS = {"direct": [], **{graph: ["--set", "vpl_count=32", "--set", "map_size=16"]
                                  for graph in ("ir_1000", "ours", "foveal", "stereo")}}

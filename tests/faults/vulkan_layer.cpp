@@ -1,6 +1,6 @@
-// VK_LAYER_FOVEA_faults: a Vulkan layer that makes functions fail (fault.h). The functions that it is between are those
-// that have a result and that the framework calls. Their calls are listed in the file that FOVEA_CALLS names, a line
-// each. It serves one instance and one device at a time, from one thread.
+// VK_LAYER_FOVEA_faults: a Vulkan layer that makes functions fail (fault.h). It intercepts the functions that return a
+// result and that the framework calls. Their calls are listed in the file that FOVEA_CALLS names, one per line. It
+// serves one instance and one device at a time, from one thread.
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 

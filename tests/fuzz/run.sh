@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes for so many seconds a target, or so many executions if an `x` follows:
+# Fuzzes each target for this many seconds, or this many executions if an `x` follows:
 #
 #   tests/fuzz/run.sh 600                          every target for ten minutes
 #   tests/fuzz/run.sh 2000000x gaze_fuzz suite_fuzz
 #
-# Needs clang. Inputs are kept in build/fuzz/corpus from run to run, and those that reach nothing new are removed at the
-# end. What crashes, takes longer than 2 s or more than 1 GiB ends the run, and lies in build/fuzz/found. Memory counts
-# where it is used: for an attribute whose size is forged OpenEXR asks for 2 GiB before it notices that the file ends.
+# Needs clang. Inputs are kept in build/fuzz/corpus from run to run, and those that add no coverage are removed at the
+# end. An input that crashes, takes longer than 2 s or more than 1 GiB ends the run and is kept in build/fuzz/found.
+# Memory counts when it is used: for an attribute with a forged size, OpenEXR requests 2 GiB before it notices the end of
+# the file.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 [ $# -ge 1 ] || { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0" >&2; exit 2; }

@@ -92,7 +92,7 @@ void main() {
   return test::askScene<Answer>(scene, frame, source, queries);
 }
 
-// Panels in different places, of different size, power and orientation, above a floor that does not shine; all of them
+// Panels in different places, of different size, power and orientation, above a floor that is not emissive; all of them
 // may move together.
 Scene panels(uint32_t count, bool dynamic) {
   Scene s;

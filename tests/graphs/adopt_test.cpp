@@ -1,4 +1,4 @@
-// Tests a graph that is edited while it runs: what an edit left alone goes on, bit for bit.
+// Tests a graph that is edited while it runs: everything that the edit did not change continues, bit for bit.
 #include <gtest/gtest.h>
 
 #include "framework/scene/scene.h"

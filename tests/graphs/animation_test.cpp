@@ -69,7 +69,7 @@ struct Shown {
   image::Picture graph, traced, halfA, halfB;
 };
 
-// Excess of change of a pair of frames over that of traced light (passes/README.md, Measures), computed on means over
+// Excess of change of a pair of frames over that of traced light (passes/paper.md, measures), computed on means over
 // blocks: these average the noise of few paths away and keep what pops. What is left of that noise is subtracted.
 double blockExcess(const Shown& now, const Shown& before) {
   constexpr uint32_t kBlock = 8, kBlocks = kSide / kBlock;

@@ -85,7 +85,7 @@ TEST(Ddgi, ErrorFallsWithTheSpacing) {
   EXPECT_LT(before, 0.04);
 }
 
-// The same bits in every run, also after a camera cut, which begins anew.
+// The same bits in every run, also after a camera cut, which starts anew.
 TEST(Ddgi, Repeats) {
   const scene::Scene s = scene::builtin("cornellbox");
   GraphRunOptions options;

@@ -1,4 +1,4 @@
-// Rays that are traced on the device give the pictures of those on the host.
+// Rays that are traced on the device give the same pictures as those on the host.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace fovea::test {
 namespace {
 
-// The moving Cornell box with a cube that has holes or, with full materials, lets light through, and a ring of glass.
+// The moving Cornell box with a cube that has holes or, with full materials, is transparent, and a ring of glass.
 scene::Scene movingScene() {
   Diagnostics warnings;
   scene::Scene scene = scene::load("cornellbox_moving", warnings);

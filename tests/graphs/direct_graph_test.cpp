@@ -95,7 +95,7 @@ TEST(DirectGraph, CornellBoxEqualsRays) {
     ADD_FAILURE() << failurePictures(agreement.picture, agreement.rays, kSize.x, scene.exposure);
 }
 
-// Rays decide what shadow maps leave in doubt. Hardly any errors are left, except for thin things that
+// Rays decide where shadow maps are uncertain. Hardly any errors are left, except for thin things that
 // fall between texels.
 TEST(DirectGraph, ShadowRaysSharpenTheRims) {
   for (const char* name : {"cornellbox", "balcony"}) {

@@ -185,7 +185,8 @@ TEST(Follow, VplsStayOnWhatMoves) { expectVplsToFollow(waving()); }
 
 TEST(Follow, VplsStayOnTheCoarserSurfaceThatVoxelsSee) { expectVplsToFollow(waving(true)); }
 
-// What light-inject keeps from the previous frame equals what it would compute anew, also in the shadow of a cloth.
+// The values that light-inject keeps from the previous frame equal those that it would compute again, also in the
+// shadow of a cloth.
 TEST(Follow, LightAroundAClothIsKeptOnlyWhereItStays) {
   GraphRunOptions options;
   options.size = {48, 48};

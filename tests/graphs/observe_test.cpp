@@ -1,4 +1,5 @@
-// Tests reading resources back in the middle of a frame: what is seen is what is there, and seeing changes nothing.
+// Tests reading resources back in the middle of a frame: the values are those of the resource, and reading changes
+// nothing.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,5 +1,5 @@
-// Tests ReSTIR GI from end to end: without bias its mean is the light of traced paths; a furnace; what the bias is; and
-// that it repeats.
+// Tests ReSTIR GI from end to end: its mean is the light of traced paths if it is unbiased; a furnace; the size of the
+// bias; and repeatability.
 #include <gtest/gtest.h>
 
 #include <array>

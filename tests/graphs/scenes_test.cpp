@@ -31,7 +31,7 @@ constexpr uint32_t kFirst = 150;  // ... starting with this one
 struct Animated {
   const char* name;
   // Mean indirect light of `ours` divided by that of traced paths, with 64 VPLs of one seed in coarse voxels, whose
-  // light is dimmer than what is seen of their surface. Measured: 0.776, 0.681, 1.042, 0.862, 1.077.
+  // light is dimmer than that of their visible surface. Measured: 0.776, 0.681, 1.042, 0.862, 1.077.
   double low, high;
 };
 const Animated kScenes[] = {{"cornellbox_moving", 0.7, 0.85},

@@ -1,4 +1,4 @@
-// Tests that an environment map lights what whole graphs show, as it does in the path tracer.
+// Tests that an environment map lights the pictures of whole graphs as it does in the path tracer.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Tests `foveal_view`, the graph for looking: its edges approach a mean over the area of each pixel, nothing leaves a
-// trail, and what stands still does not flicker.
+// Tests `foveal_view`, the graph for viewing: its edges approach a mean over the area of each pixel, nothing leaves a
+// trail, and static surfaces do not flicker.
 #include <gtest/gtest.h>
 
 #include <algorithm>

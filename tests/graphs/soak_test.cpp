@@ -1,7 +1,7 @@
-// Tests what whole graphs endure for long: cuts of the camera, jumps of the gaze, other sizes and edits of the graph in
-// random order leave memory, pictures and times as they were. It runs on request only, for FOVEA_SOAK_FRAMES frames of
-// each graph, and looks at the memory of the process only with FOVEA_TEST_VALIDATION=off: the validation layers remember
-// 13 KB of each frame and 0.3 MB of each graph.
+// Tests the endurance of whole graphs: camera cuts, jumps of the gaze, changes of size and edits of the graph in random
+// order leave memory, pictures and times unchanged. It runs on request only, for FOVEA_SOAK_FRAMES frames of each
+// graph, and looks at the memory of the process only with FOVEA_TEST_VALIDATION=off: the validation layers remember 13
+// KB of each frame and 0.3 MB of each graph.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>

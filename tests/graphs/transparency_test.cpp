@@ -1,5 +1,5 @@
-// Tests what lets light through, with full materials: alphaMode BLEND and thin glass in whole graphs, whose means over
-// frames have to be those of the path tracer.
+// Tests transparency with full materials: alphaMode BLEND and thin glass in whole graphs, whose means over frames have
+// to be those of the path tracer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -157,7 +157,7 @@ TEST(Transparency, TheSmoothedPictureIsThatOfThePathTracer) {
     for (const auto& place : kPlaces) {
       const glm::dvec3 a = meanOver(got, kSide, place[0], place[1]),
                        b = meanOver(want, kSide, place[0], place[1]);
-      // A veil that is lit from behind is 5 to 6.5% too dark, and why is not known.
+      // A BLEND surface that is lit from behind is 5 to 6.5% too dark, for unknown reasons.
       const double known = lampAt < 2 && &place == &kPlaces[0] ? 0.07 : 0.03;
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c] / b[c], 1, known) << lampAt << " " << place[0] << " " << c;
       std::vector<float> change(got.size());  // squares of the differences from one frame to the next

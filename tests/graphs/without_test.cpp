@@ -1,4 +1,4 @@
-// Whole graphs on a device that is told to do without features: what replaces these gives the same pictures, to the bit.
+// Whole graphs on a device without some features: their replacements give the same pictures, to the bit.
 #include <gtest/gtest.h>
 
 #include <string>

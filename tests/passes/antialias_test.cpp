@@ -1,5 +1,5 @@
 // Compares antialiasing with plain loops in double precision: what is taken from the history, from where, and how far
-// it may lie from what the pixels around show.
+// it may be from the colours of the pixels around.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Input {
   Eye now, before;
   std::vector<glm::vec4> light, history;
   std::vector<uint32_t> id, previousId, origin;
-  std::vector<bool> veiled = std::vector<bool>(kPixels);  // whether something at the pixel lets light through
+  std::vector<bool> veiled = std::vector<bool>(kPixels);  // whether the pixel shows a transparent surface
   double frames = 8, deviations = 1.25;
 
   // Random light and history. The view of `now` is jittered, by what the matrices of both eyes contain.
@@ -93,7 +93,7 @@ void run(PassTest& test, const Input& in) {
 // ---- The reference ----------------------------------------------------------------------------------------
 
 double luminance(const glm::dvec3& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
-// linear: where something lets light through
+// linear: at transparent surfaces
 glm::dvec3 compress(const glm::dvec3& light, bool linear = false) {
   return kExposure * light / (linear ? 1 : 1 + kExposure * luminance(light));
 }
@@ -251,8 +251,8 @@ TEST(Antialias, EqualsTheReference) {
   }
 }
 
-// Where something lets light through, means are those of light as it is, over more frames and pixels, and begin with
-// those of several pixels. Nothing else changes if only they are asked for.
+// At transparent surfaces, means are those of uncompressed light, over more frames and pixels, and begin with those of
+// several pixels. Nothing else changes if only they are asked for.
 TEST(Antialias, VeiledPixelsEqualTheReference) {
   Input in({0.13f, 0.05f, 0}, {0, 0, 0});
   for (int i = 0; i < kPixels; ++i) {

@@ -84,7 +84,7 @@ TEST(Cones, EqualTheGatherOnTheCpu) {
   }
 }
 
-// If everything shines with radiance L, L arrives everywhere.
+// If every surface emits the radiance L, L arrives everywhere.
 TEST(Cones, Furnace) {
   const VoxelScene s = room();
   const glm::vec3 light(2, 1, 0.5f);

@@ -146,7 +146,7 @@ TEST_P(ContactRays, LightOfAllVplsThatRaysReach) {
   expectLightOfAllVpls(eye, vpls, run(eye, vpls));
 }
 
-// What rays of former frames have met changes which VPLs are chosen, but not the light on average.
+// The results of rays of earlier frames change which VPLs are chosen, but not the light on average.
 TEST_P(ContactRays, AnyHistoryGivesTheSameLight) {
   const Eye eye({0.3f, 0.2f, 0});
   const auto vpls = lamps();

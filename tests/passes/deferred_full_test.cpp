@@ -220,9 +220,9 @@ TEST(DeferredFull, NoVplIsBrighterThanItsDisc) {
     }
 }
 
-// VPLs all around, which together shine with radiance 1 from everywhere: a white surface of any roughness sends as much
-// to the eye. Lobes narrower than the distance of the VPLs see more or less of them from pixel to pixel, and the right
-// amount on average.
+// VPLs all around, which together amount to a radiance of 1 from all directions: a white surface of any roughness sends
+// as much to the eye. Lobes narrower than the distance of the VPLs see more or less of them from pixel to pixel, and
+// the right amount on average.
 TEST(DeferredFull, WhiteSurfacesVanishInAWhiteFurnace) {
   constexpr uint32_t kCount = 4096;
   constexpr double kRadius = 60;

@@ -1,4 +1,4 @@
-// Tests that the light which rays have found takes the place of what the filter finds.
+// Tests that the light found by rays replaces the filtered light.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/packing.hpp>

@@ -75,7 +75,7 @@ scene::Light spot(glm::vec3 position, glm::vec3 direction) {
   return light;
 }
 
-// Irradiance of the plane y = 0 at p by the formulas of KHR_lights_punctual (passes/README.md, direct).
+// Irradiance of the plane y = 0 at p by the formulas of KHR_lights_punctual (passes/paper.md, light units).
 glm::dvec3 irradiance(const scene::Light& light, glm::dvec3 p) {
   const glm::dvec3 power = glm::dvec3(light.color) * double(light.intensity);
   if (light.type == scene::LightType::Directional) return power * std::max(-double(light.direction.y), 0.0);

@@ -1,4 +1,4 @@
-// Tests what eye paths make of light that changes: how soon they find it, and what they say of the change.
+// Tests how eye paths follow changing light: how soon they find it, and what they report of the change.
 #include <gtest/gtest.h>
 
 #include <algorithm>

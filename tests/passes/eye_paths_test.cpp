@@ -161,9 +161,9 @@ TEST(EyePaths, MeanIsTheIndirectLightOfThePoints) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], 0.01 * want[c]) << "channel " << c;
 }
 
-// In a closed room whose walls all shine, each bounce adds one more term of the series; the paths that are aimed at
-// the walls and those that hit them by chance together count as often as there are paths. The median of several seeds
-// is taken, since the last bounce rests on one point of a wall, which beside an edge of the room may lie very close.
+// In a closed room with emissive walls, each bounce adds one more term of the series; the paths that are aimed at the
+// walls and those that hit them by chance together count as often as there are paths. The median of several seeds is
+// taken, since the last bounce rests on one point of a wall, which beside an edge of the room may lie very close.
 TEST(EyePaths, Furnace) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
@@ -196,8 +196,8 @@ TEST(EyePaths, Furnace) {
   }
 }
 
-// Without the emission of the ends none of them shines and no path is aimed, but what lamps light still counts: it is
-// what passes say of the same room less its own emission.
+// Without the emission of the ends none of them is emissive and no path is aimed, but surfaces lit by lights still
+// count: it is what passes say of the same room less its own emission.
 TEST(EyePaths, WithoutEmission) {
   scene::Scene s;
   const uint32_t m = addMaterial(s, glm::vec3(0.5f));
@@ -210,7 +210,7 @@ TEST(EyePaths, WithoutEmission) {
   glm::dvec3 mean(0);
   const auto ends = look.trace(settings, 8192);
   for (const EyePathEnd& e : ends) {
-    EXPECT_EQ(e.kind, 4);  // lit by surfaces that shine
+    EXPECT_EQ(e.kind, 4);  // lit by emissive surfaces
     EXPECT_EQ(e.weight, 1);
     mean += glm::dvec3(e.radiance) / double(ends.size());
   }

@@ -1,5 +1,5 @@
-// Surfaces of full materials as tests of passes have them: what the G-buffer keeps of a material, and its albedos by
-// the tables of the path tracer.
+// Surfaces with full materials for tests of passes: the G-buffer values of a material, and its albedos from the tables
+// of the path tracer.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -109,7 +109,7 @@ Difference compare(const scene::Scene& s, int& compared) {
     worse(most.normal, glm::length(glm::vec3(vec(normal)) - n));
     worse(most.albedo, glm::length(glm::vec3(vec(albedo)) - want.albedo));
     worse(most.specular, glm::length(vec(specular) - want.specular));
-    // The sign marks what lets light through.
+    // The sign marks transparent surfaces.
     worse(most.grazing,
           std::abs(vec(normal).w - (scene::letsLightThrough(m) ? -want.grazing : want.grazing)));
     worse(most.metallic, std::abs(vec(albedo).w - want.metallic));
@@ -217,7 +217,8 @@ TEST(GBufferFull, WithDiffuseMaterialsNothingIsAllocated) {
   EXPECT_EQ(test.floats("gbuffer.albedo")[4 * (27 * kWidth + 22) + 3], 0);
 }
 
-// A veil and a pane of glass in front of the void: pixel, frame and triangle say which pixels show them.
+// A BLEND surface and a pane of glass in front of the background: pixel, frame and triangle determine which pixels show
+// them.
 TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
   std::vector<scene::Material> list(2);
   list[0].masked = list[0].blended = true;
@@ -233,7 +234,7 @@ TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
   const auto [first, normals, frame] = idsOf(1);
   EXPECT_EQ(first, std::get<0>(idsOf(1)));
   EXPECT_NE(first, std::get<0>(idsOf(2)));
-  scene::Scene solid = s;  // for rays that meet everything
+  scene::Scene solid = s;  // for rays that hit everything
   solid.materials[0].masked = false;
   const scene::Geometry g = scene::flatten(s);
   uint32_t pixels[2] = {}, shown[2] = {}, wrong = 0, unmarked = 0;
@@ -262,7 +263,7 @@ TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
   EXPECT_NEAR(double(shown[0]) / pixels[0], 0.35, 0.06);
   EXPECT_NEAR(double(shown[1]) / pixels[1], 0.34, 0.06);
 
-  // Diffuse materials take the veil for a mask, and glass for solid.
+  // Diffuse materials treat BLEND as a mask, and glass as opaque.
   PassTest diffuse("gbuffer");
   diffuse.scene(s).viewSize(kWidth, kHeight);
   diffuse.run();

@@ -63,7 +63,7 @@ scene::Scene roomWithLamp(glm::vec3 lamp, glm::vec3 candela) {
   return s;
 }
 
-// Without surfaces that shine, a sample is where a cosine-weighted ray ends, with the direct light that leaves there.
+// Without emissive surfaces, a sample is where a cosine-weighted ray ends, with the direct light that leaves there.
 TEST_P(GiSamples, EqualsARayAndDirectLight) {
   const glm::vec3 lamp(1.2f, 1.1f, -0.4f), candela(3, 5, 8);
   const scene::Scene s = roomWithLamp(lamp, candela);

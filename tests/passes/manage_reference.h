@@ -1,4 +1,4 @@
-// The management of VPLs as a plain serial algorithm (passes/README.md, manage); pass manage must give the same bits.
+// The management of VPLs as a plain serial algorithm (passes/vpls.md, manage); pass manage must give the same bits.
 #pragma once
 
 #include <algorithm>

@@ -141,8 +141,8 @@ TEST(MotionVectors, JitterDoesNotMoveWhatStandsStill) {
   EXPECT_LT(lost, 3);
 }
 
-// A pixel behind what lets light through often shows another surface than before. It takes the history of the nearest
-// of the pixels around it that showed its surface; other pixels look at four only.
+// A pixel behind a transparent surface often shows another surface than before. It takes the history of the nearest of
+// the pixels around it that showed its surface; other pixels look at four only.
 TEST(MotionVectors, VeiledPixelsLookFurther) {
   Eye now({0, 0, 0}), before({0, 0, 0});
   const glm::ivec2 middle(kSize.x / 2, kSize.y / 2);

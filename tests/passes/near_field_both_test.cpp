@@ -1,4 +1,4 @@
-// Compares light from nearby surfaces that rays find on the device with what rays on the host find.
+// Compares the near-field light that rays find on the device with that found on the host.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Compares what near-field rays find of an environment map with the map's own light.
+// Compares the light of an environment map that near-field rays find with the map's own light.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,7 +99,7 @@ TEST_P(NearFieldMaps, LightsWhatIsAlone) {
   }
 }
 
-// A panel that shines beside the floor, and a map: rays are aimed at both.
+// An emissive panel beside the floor, and a map: rays are aimed at both.
 TEST_P(NearFieldMaps, SharesRaysWithSurfacesThatShine) {
   const Map map = std::make_shared<scene::EnvironmentMap>(4, 2, std::vector(8, glm::vec3(1, 0, 0)));
   scene::Scene s = floorUnder(map, 0);

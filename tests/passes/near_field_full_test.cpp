@@ -78,8 +78,8 @@ TEST(NearFieldFull, MetalSendsLightInItsLobe) {
   EXPECT_GT(lit, 3);
 }
 
-// What a lamp that shines adds to the mean under the lobe of each pixel: the integral of the microfacets' reflection of
-// it. A floor that is seen at a grazing angle has its highlight towards the wall behind.
+// The contribution of an emissive lamp to the mean under the lobe of each pixel: the integral of the microfacets'
+// reflection of it. A floor that is seen at a grazing angle has its highlight towards the wall behind.
 TEST(NearFieldFull, LampsShineUnderLobes) {
   scene::Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f)), lamp = addMaterial(s, glm::vec3(0.0f));

@@ -1,4 +1,4 @@
-// Compares near-field light at single pixels with plain rays in a room that shines, and with what is known already.
+// Compares near-field light at single pixels with plain rays in an emissive room, and with light that is known already.
 #include <gtest/gtest.h>
 
 #include <algorithm>

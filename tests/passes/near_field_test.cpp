@@ -1,4 +1,4 @@
-// Compares near-field light, the part that discs leave out, with plain rays in rooms that shine.
+// Compares near-field light, the part that discs leave out, with plain rays in emissive rooms.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The sample passes that are nothing but files: outline, bilateral-blur and trail.
+// The sample passes that consist of files only: outline, bilateral-blur and trail.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -246,8 +246,8 @@ scene::Material veil(glm::vec3 color, float alpha) {
   return m;
 }
 
-// Of light that falls through a veil on a floor, 1 - alpha arrives, and of that as much reaches the eye. The veil
-// shows alpha of its own light.
+// Of light that passes through a BLEND surface onto a floor, 1 - alpha arrives, and the same share of that reaches the
+// eye. The veil shows alpha of its own light.
 TEST(PathTraceFull, VeilsCoverTheShareOfTheirAlpha) {
   for (const float alpha : {0.0f, 0.3f, 0.8f, 1.0f}) {
     scene::Scene s = plane({0.6f, 0.5f, 0.4f});
@@ -273,7 +273,7 @@ TEST(PathTraceFull, VeilsCoverTheShareOfTheirAlpha) {
   }
 }
 
-// Veils that reflect all light vanish in the furnace whatever their alpha: paths pass them without bias.
+// BLEND surfaces that reflect all light vanish in the furnace whatever their alpha: paths pass them without bias.
 TEST(PathTraceFull, VeilsInAWhiteFurnaceVanish) {
   scene::Scene s;
   addMaterial(s, glm::vec3(0));

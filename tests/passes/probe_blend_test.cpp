@@ -13,7 +13,7 @@ constexpr int kProbes = 70,
               kRays = 24;  // a second row of tiles; the grid has fewer probes than there is room for
 constexpr float kSpacing = 0.75f;
 
-// Rays that meet fronts, backs and nothing, or were not traced, and a history of all ages.
+// Rays that hit front faces, back faces and nothing, or were not traced, and a history of all ages.
 struct Rays {
   scene::ProbeGrid grid;
   std::vector<glm::vec4> directions, hits;
@@ -143,7 +143,7 @@ TEST(ProbeBlend, DistanceIsTheMeanByPowersOfCosines) {
 
 // ---- Places --------------------------------------------------------------------------------------------------
 
-// One probe with a ray along each half axis, of the lengths given; negative ones meet backs.
+// One probe with a ray along each half axis, of the lengths given; negative ones hit back faces.
 scene::Probe placed(const scene::Probe& before, const std::vector<double>& lengths) {
   scene::ProbeGrid grid;
   grid.spacing = 2;

@@ -1,4 +1,4 @@
-// Compares the rays of probes, what they meet and the light they find there, with plain rays.
+// Compares the rays of probes, their hits and the light there, with plain rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -80,7 +80,7 @@ glm::vec3 uneven(const scene::VoxelSide& v) {
   return glm::vec3(1.5f, 1, 0.5f) * (2.0f + v.position.x + 0.5f * v.normal.y);
 }
 
-// If everything shines with radiance L, pi L arrives everywhere, also in the corners.
+// If every surface emits the radiance L, the irradiance is pi L everywhere, also in the corners.
 void expectFurnace(const scene::Scene& model, bool directional) {
   const VoxelScene s(model, 64);
   const glm::vec3 light(2, 1, 0.5f);

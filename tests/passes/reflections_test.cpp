@@ -1,4 +1,4 @@
-// Compares what smooth surfaces reflect with the radiance of closed rooms, and with what a mirror shows.
+// Compares the reflections of smooth surfaces with the radiance of closed rooms and with mirror images.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -165,7 +165,7 @@ TEST_P(Reflections, NeighboursShareTheirLight) {
 }
 
 // A wall under a white sky, before whose left half a black one stands so close that it shows hardly anything else.
-// Where one ray meets that and its neighbour finds the sky, neither counts for the other.
+// Where one ray hits that and its neighbour the sky, neither counts for the other.
 TEST_P(Reflections, TheSkyStaysOutOfGaps) {
   scene::Scene wall;
   addBox(wall, addMaterial(wall, glm::vec3(0)), {-9, -9, -6}, {9, 9, -5});

@@ -1,5 +1,5 @@
-// What the passes of ReSTIR GI are compared with: a room, what an eye in its middle sees, and densities of samples in
-// double precision.
+// References for the passes of ReSTIR GI: a room, what an eye in its middle sees, and densities of samples in double
+// precision.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Compares merged reservoirs with a plain version in double precision, and their mean with the light that there is.
+// Compares merged reservoirs with a plain version in double precision, and their mean with the true light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -219,9 +219,9 @@ TEST(ReservoirsMerge, ChoosesInProportionToTheWeights) {
 
 // ---- The mean ------------------------------------------------------------------------------------------------------
 
-// Patches that shine. Every second pixel sees all of them, the others, in the shade, only a few: the sample of each pixel
-// is one of the patches, chosen evenly. Whatever pixels share with each other, the mean of what their reservoirs stand for
-// is the light that there is.
+// Emissive patches. Every second pixel sees all of them, the others, in the shade, only a few: the sample of each pixel
+// is one of the patches, chosen evenly. Whatever pixels share with each other, the mean of what their reservoirs stand
+// for is the light that there is.
 struct Patches {
   static constexpr int kSide = 64, kCount = 12, kSeenInShade = 3;
   static constexpr float kArea = 0.02f;

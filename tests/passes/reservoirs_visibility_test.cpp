@@ -1,4 +1,4 @@
-// Compares who sees whose sample with plain rays.
+// Compares the visibility of samples with plain rays.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// A scene with all that rays may meet and be aimed at: lamps that shine, a point light, a map all around, metal and glass.
+// A scene with everything that rays may hit or be aimed at: emissive lamps, a point light, an environment map, metal
+// and glass.
 #pragma once
 
 #include <memory>
@@ -10,8 +11,8 @@
 
 namespace fovea::test {
 
-// A camera at the origin looks along -z, at a wall and a box before it; the rest stands behind the camera. glass: whether
-// a pane there lets light through; if not, nothing does.
+// A camera at the origin looks along -z, at a wall and a box before it; the rest stands behind the camera. glass:
+// whether a pane there is transparent; if not, nothing is.
 inline scene::Scene sceneOfEverything(bool glass = true) {
   scene::Scene s;
   s.cameras.emplace_back();

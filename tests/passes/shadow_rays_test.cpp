@@ -1,4 +1,4 @@
-// Tests shadow edges by rays: the pixels in doubt against plain rays, and that the others are untouched.
+// Tests shadow edges by rays: the uncertain pixels against plain rays, and that the others are unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,7 +123,8 @@ TEST_P(ShadowRays, PixelsInDoubtBecomeWhatRaysSay) {
   EXPECT_EQ(test.counter("pixels"), (before.size() + 2) / 3);
 }
 
-// With full materials a pixel in doubt becomes what the BSDF of the path tracer says, as its neighbours in pass direct.
+// With full materials an uncertain pixel gets the light by the BSDF of the path tracer, as its neighbours in pass
+// direct.
 TEST(ShadowRaysHost, FullMaterialsAreThoseOfTheBsdf) {
   Room room = litBoxes();
   room.scene.materials[0].metallic = 0.5f;

@@ -1,4 +1,4 @@
-// Tests the running mean over frames: which samples count, and with what weight.
+// Tests the running mean over frames: which samples count, and with which weight.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tests full-screen steps that draw only the tiles of a mask: what they write, and what becomes of the rest.
+// Tests full-screen steps that draw only the tiles of a mask: what they write, and what happens to the rest.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -34,7 +34,7 @@ struct VoxelView {
   VoxelArrays voxels = voxelizeReference(scene, scene::flatten(scene), 32);
 };
 
-// The side that the CPU's ray meets, at every pixel of a coarse raster; `color` gives its expected colour.
+// The side that the CPU's ray hits, at every pixel of a coarse raster; `color` gives its expected colour.
 template <class Color>
 void expectView(const VoxelView& v, const PassTest& test, vec3 background, Color color) {
   const scene::View view = *test.lastFrame().findView("main");

@@ -10,7 +10,8 @@
 namespace fovea::test {
 namespace {
 
-// Discs of many cells, close to what they light: the VPL makes up for what a disc sends less than a point would.
+// Discs of many cells, close to the surfaces that they light: the VPL compensates for the light that a disc sends less
+// than a point would.
 TEST(Weights, FurnaceOfFewVpls) {
   const Room room = closedRoom(false, 32);
   WeightSettings settings;

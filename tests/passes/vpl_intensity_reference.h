@@ -1,4 +1,4 @@
-// A plain CPU version of pass vpl-intensity (passes/README.md, vpl-intensity), and a room to run it in.
+// A plain CPU version of pass vpl-intensity (passes/vpls.md, vpl-intensity), and a room to run it in.
 #pragma once
 
 #include <algorithm>
@@ -157,7 +157,7 @@ inline bool seesVpl(const Maps& maps, const Seen& s, const scene::VplState& vpl,
 }
 
 // What a point gets from a VPL per area and radiosity, 1/m^2; 0 if it does not see the VPL. area is that of the disc
-// with which the VPL shines.
+// with which the VPL emits.
 inline double seenTerm(const Seen& s, const scene::VplState& vpl, const Maps& maps, size_t slot, double area,
                        float clamp) {
   if (!(vpl.life > 0) || !s.there) return 0;

@@ -74,7 +74,7 @@ struct Expected {
   double visible = 0, unassigned = 0;
 };
 
-// The definition of the weights (passes/README.md, weight-map), one pixel after the other.
+// The definition of the weights (passes/vpls.md, weight-map), one pixel after the other.
 Expected reference(const Picture& picture, const VoxelArrays& voxels, glm::vec3 eye, glm::vec2 gaze,
                    float radius, int spacing = 1) {
   Expected e;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The rules of the house, read off the files: which room may include which, what is named where, sizes, links.
+"""The rules of the repository, checked on its files: which room may include which, what is named where, sizes, links.
 
 Usage: repository_test.py SOURCE_DIR [unittest arguments]
 """
@@ -213,6 +213,20 @@ class Documents(unittest.TestCase):
                     missing.append(f"{path}: {name}")
         self.assertGreater(named, 20)
         self.assertEqual(missing, [])
+
+    def test_every_pass_is_described_on_one_page(self):
+        """A pass has a heading on one of the pages in passes/, and the overview leads to it."""
+        pages = {p.name: read(p) for p in tracked() if p.parts[0] == "passes" and p.suffix == ".md"}
+        overview = pages.pop("README.md")
+        places = {}
+        for page, text in pages.items():
+            for name in re.findall(r"^#+ ([a-z-]+)$", text, re.M):
+                places.setdefault(name, []).append(f"{page}#{name}")
+        passes = {re.sub("-(host|device)$", "", p.parts[1]) for p in tracked()
+                  if p.parts[0] == "passes" and len(p.parts) > 2}
+        self.assertGreater(len(passes), 25)
+        self.assertEqual({n: places.get(n) for n in passes if len(places.get(n, [])) != 1}, {})
+        self.assertEqual([n for n in sorted(passes) if f"({places[n][0]})" not in overview], [])
 
     def test_comments_cite_documents_that_are_there(self):
         """`NAME.md` in a source file is a document of the repository."""

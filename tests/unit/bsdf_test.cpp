@@ -1,4 +1,4 @@
-// Tests the scattering of full materials against what every such function has to obey, and against known values.
+// Tests the BSDF of full materials against the laws that every BSDF has to obey, and against known values.
 #include "framework/scene/materials/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -164,7 +164,7 @@ TEST(Bsdf, BelowTheSurfaceThereIsNothing) {
   EXPECT_EQ(bsdf.density(direction(-0.3f, 1)), 0);
 }
 
-// A surface with index of refraction 1 is not there: what is left is the diffuse layer.
+// A surface with index of refraction 1 is invisible: only the diffuse layer remains.
 TEST(Bsdf, WithoutASurfaceItIsLambertian) {
   BsdfParameters p = parameters(0.5f, 0);
   p.ior = 1;

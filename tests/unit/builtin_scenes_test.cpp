@@ -1,5 +1,5 @@
 // The built-in scenes must be as large as the paper's, sound, the same every time, and complete as scene files. The
-// validation and stress scenes must be sound, too, and lit where the viewer looks.
+// validation and stress scenes must be sound, too, and lit in view.
 #include <gtest/gtest.h>
 
 #include <chrono>

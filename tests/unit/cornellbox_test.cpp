@@ -1,5 +1,5 @@
-// The built-in Cornell box must be what the paper says of it, closed except for its front, and lit so that
-// indirect light matters.
+// The built-in Cornell box must match the paper's description, closed except for its front, and lit so that indirect
+// light matters.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -30,7 +30,7 @@ struct Lit {
   }
 };
 
-// Panels in different places, of different size, power and orientation, among surfaces that do not shine.
+// Panels in different places, of different size, power and orientation, among surfaces that are not emissive.
 Scene panels(uint32_t count) {
   Scene s;
   const uint32_t grey = addMaterial(s, glm::vec3(0.5f));
@@ -171,7 +171,7 @@ TEST(Emitters, NeverFromTheBackOfAPanel) {
   EXPECT_NE(emitters.sample({{0.5f, 0.5f, 1}, {0, 0, -1}}, 0.5f, 0.5f, 0.5f).triangle, kNoIndex);
 }
 
-// A small lamp above a floor: few rays meet it by chance, and yet the mean of a few gathers is its irradiance over pi.
+// A small lamp above a floor: few rays hit it by chance, and yet the mean of a few gathers is its irradiance over pi.
 // Without a second bounce as well as with one, where points and chance share the light. A large one close by: no
 // single gather is brighter than half again the lamp, which its two rays and its point meet at once.
 TEST(Emitters, GatheredLightOfALamp) {

@@ -1,4 +1,4 @@
-// Light from all around: an equirectangular map, and how directions in it are chosen.
+// Tests environment maps: the equirectangular mapping, and how directions are sampled.
 #include "framework/scene/environment/environment_map.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What is assumed of models that say nothing about camera, light and exposure.
+// Tests what is assumed for models without camera, light and exposure.
 #include "framework/scene/first_view/first_view.h"
 
 #include <gmock/gmock.h>
@@ -242,7 +242,7 @@ TEST(FirstView, TheGroundContinuesTheFloor) {
                           rho * tracer.gather(seen, 1, 4096, 1, count),
                   ground = s.environmentMap->radiance({0, -1, 0});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], ground[c], 0.02f * ground[c]);
-  // Full materials do not shine, not even where the sun would be mirrored.
+  // With full materials the floor has no highlight, not even where the sun would be mirrored.
   const scene::SurfaceTracer full(frame, frame.views[0], *rays, true);
   const glm::vec3 mirrored = glm::reflect(s.lights[0].direction, glm::vec3(0, 1, 0));
   const glm::vec3 sunlit = tracer.direct(seen, scene::Reflection(rho), count),

@@ -1,4 +1,4 @@
-// Tests flatten(): world space, static before dynamic geometry, and outsides that stay outside.
+// Tests flatten(): world space, static before dynamic geometry, and front faces that remain front faces.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,4 +1,4 @@
-// Walks the tables of tests/data/hostile: each file in them is refused at once, with the message that stands beside it.
+// Walks the tables of tests/data/hostile: each file in them is refused at once, with the message given next to it.
 #include <gtest/gtest.h>
 
 #include <ctime>

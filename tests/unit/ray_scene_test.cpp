@@ -147,7 +147,8 @@ TEST(RayScene, RaysMeetWhatLetsLightThrough) {
   }
 }
 
-// The share that passes a veil and a pane behind it, as one factor for each channel; something solid stops the rest.
+// The share that passes a BLEND surface and a pane behind it, as one factor per channel; an opaque surface stops the
+// rest.
 TEST(RayScene, LightThatPassesTakesOnTheColourOfGlass) {
   Material veil, glass;
   veil.masked = veil.blended = true;

@@ -371,7 +371,7 @@ TEST(SceneFile, ModelsAreFoundThroughTheVariable) {
   const auto file = folder.write("scene.json", R"({"models": [{"file": "m/tri.gltf"}]})");
   Diagnostics warnings;
   EXPECT_EQ(flatten(load(file.string(), warnings)).triangles.size(), 1u);
-  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("nothing in this scene shines")));
+  EXPECT_THAT(warnings.format(), AllOf(HasSubstr("no camera"), HasSubstr("this scene has no light")));
   // The same model, loaded by its own name, has a floor as well.
   const Scene bare = load("m/tri.gltf", warnings);
   EXPECT_TRUE(bare.assumedFloor);

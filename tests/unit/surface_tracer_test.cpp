@@ -1,4 +1,4 @@
-// Single rays, where they meet what is black or nothing at all.
+// Single rays that hit black surfaces or nothing.
 #include "framework/scene/rays/surface_tracer.h"
 
 #include <gtest/gtest.h>

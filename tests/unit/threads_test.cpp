@@ -1,4 +1,4 @@
-// Threads that are kept from one piece of work to the next.
+// Threads that are kept between pieces of work.
 #include "framework/base/threads.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the numbers and pictures that the viewer makes of what was read back.
+// Tests the numbers and pictures that the viewer derives from resources that were read back.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tests what steers a viewed run: time, camera and gaze, the exchange between its threads, and saved changes.
+// Tests the control of a viewed run: time, camera and gaze, the exchange between its threads, and saved changes.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,4 +1,4 @@
-"""What the page of `fovea view` shows: pictures, numbers, comparisons.
+"""The contents of the page of `fovea view`: pictures, numbers, comparisons.
 
 Usage: look_test.py PROGRAM SOURCE_DIR [CLASS...]
 """

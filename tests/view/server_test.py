@@ -1,4 +1,4 @@
-"""Who is served by `fovea view`, and what the server endures.
+"""Which clients `fovea view` serves, and what the server withstands.
 
 Usage: server_test.py PROGRAM SOURCE_DIR [CLASS...]
 """

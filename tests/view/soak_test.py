@@ -1,4 +1,4 @@
-"""What `fovea view` endures for long: memory stays flat, nothing crashes, nobody is served without the token.
+"""Endurance of `fovea view`: memory stays constant, nothing crashes, nobody is served without the token.
 
 Usage: soak_test.py PROGRAM SOURCE_DIR [CLASS...]
 

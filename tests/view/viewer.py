@@ -1,6 +1,6 @@
 """Shared by the tests of `fovea view`: the program, a headless Chromium that looks at it, and requests without one.
 
-Exits with 77, which CTest takes for skipped, where the browser or selenium are missing.
+Exits with 77, which CTest reports as skipped, if the browser or selenium are missing.
 """
 
 import http.client

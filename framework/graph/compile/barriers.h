@@ -1,4 +1,4 @@
-// Barriers: what must be waited for, made visible and moved to another layout before each level.
+// Barriers: what must be waited for, made visible or changed in layout before each level.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The bound graph, as plain data: which pass accesses which resource, and how. bind() makes it of a description.
+// The bound graph, as plain data: which pass accesses which resource, and how. bind() makes it from a description.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

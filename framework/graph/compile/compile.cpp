@@ -1,4 +1,4 @@
-// The driver: one phase after the other, each a function of what the phases before it made.
+// The driver: one phase after the other, each a function of the results of the phases before it.
 //   document -> resolve (load), bind, schedule -> lifetimes -> alias -> barriers -> steps -> plan (compile)
 #include "framework/graph/compile/compile.h"
 

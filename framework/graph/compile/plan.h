@@ -1,4 +1,4 @@
-// The plan, as plain data: what the device does in every frame. compile() makes it of a bound graph.
+// The plan, as plain data: what the device does in every frame. compile() makes it from a bound graph.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Exceptions that leave a pass are turned into errors that say which pass it was.
+// Turns exceptions that leave a pass into errors that name the pass.
 #pragma once
 
 #include <string>

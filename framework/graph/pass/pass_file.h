@@ -1,4 +1,4 @@
-// Passes without C++: a file NAME.pass.json declares the pass type NAME, with its shaders beside it.
+// Passes without C++: a file NAME.pass.json declares the pass type NAME, with its shaders next to it.
 #pragma once
 
 #include <filesystem>

@@ -35,8 +35,8 @@ class Registry {
   void addFoldersFromEnvironment();
   // Adds the passes of a folder `passes` beside a graph file, if there is one.
   void addFolderBeside(const std::filesystem::path& graph);
-  // Declares the passes of those pass files anew whose text has changed. The declarations that they replace stay valid
-  // for graphs that are bound to them. Throws Error(BadInput) with every mistake; the passes of wrong files stay as they
+  // Declares the passes of pass files whose text has changed again. The declarations that they replace stay valid for
+  // graphs that are bound to them. Throws Error(BadInput) with every mistake; the passes of wrong files stay as they
   // were.
   void rereadFiles();
   // The file of the plug-in that registered a type, as it was given to loadPlugin(); empty for other types.

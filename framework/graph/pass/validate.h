@@ -1,4 +1,4 @@
-// Checks a declaration for consistency when it is registered, so that a graph never meets a contradictory pass.
+// Checks a declaration for consistency when it is registered, so that a graph never contains a contradictory pass.
 #pragma once
 
 #include "fovea/pass.h"

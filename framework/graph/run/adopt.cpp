@@ -1,4 +1,5 @@
-// A graph is edited while it runs: the executor of the new plan takes over what the edit left as it was.
+// When a graph is edited while it runs, the executor of the new plan takes over everything that the edit did not
+// change.
 #include <algorithm>
 #include <utility>
 

@@ -165,7 +165,8 @@ std::string keyOf(const gpu::GraphicsPipelineDesc& d) {
   return key;
 }
 
-// Rays would meet nothing, as the scene keeps no tree of its triangles on the device that no pass asks for.
+// Rays would hit nothing, as the scene builds its bounding volume hierarchies on the device only if a pass asks for
+// them.
 void checkRays(const PassInstance& pass, const gpu::CompiledShader& shader, const std::string& name) {
   if (!pass.bound->declaration->tracesRays && tracesRays(shader))
     bindingError(pass, name, "it traces rays, which the pass does not declare",

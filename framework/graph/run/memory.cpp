@@ -61,7 +61,7 @@ void clearImage(VkCommandBuffer cmd, const gpu::Image& image) {
   }
 }
 
-// Brings what was taken over into the layouts in which this plan expects it.
+// Brings images that were taken over into the layouts in which this plan expects them.
 void keepContents(const ExecutorState& state, uint32_t resource,
                   std::vector<VkImageMemoryBarrier2>& barriers) {
   const BoundResource& bound = state.plan->graph->resources[resource];

@@ -1,4 +1,4 @@
-// Reads resources back in the middle of a frame, for those who look at a running graph.
+// Reads resources back in the middle of a frame, for viewers of a running graph.
 #include <algorithm>
 
 #include "fovea/error.h"

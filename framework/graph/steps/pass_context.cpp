@@ -1,4 +1,4 @@
-// What a bound pass knows of its place in the graph.
+// What a bound pass knows about its place in the graph.
 #include <fmt/format.h>
 
 #include <algorithm>

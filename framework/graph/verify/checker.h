@@ -1,4 +1,4 @@
-// Verifies that a plan is free of hazards by playing several frames of it on a model of the memory. The checker
+// Verifies that a plan is free of hazards by simulating several frames of it on a model of the memory. The checker
 // shares no code with the phases that make the plan: stages, accesses and layouts come from its own tables, and it
 // follows every single access instead of accumulated states.
 #pragma once

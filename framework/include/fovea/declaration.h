@@ -1,7 +1,7 @@
 // What a pass is, as plain data: its resources, parameters, counters and steps.
 //
-// The declaration states once which resources the pass reads and writes, which parameters and counters it has, and of
-// which steps it consists. Validation, the JSON schema, help texts, memory allocation, barriers, shader bindings and
+// The declaration states once which resources the pass reads and writes, which parameters and counters it has, and
+// which steps it consists of. Validation, the JSON schema, help texts, memory allocation, barriers, shader bindings and
 // the rows of the timings are all derived from it.
 #pragma once
 
@@ -74,7 +74,8 @@ class Parameters {
 // ---- Sizes -----------------------------------------------------------------------------------------------------
 
 // An integer expression over the size of the view, parameters and the sizes of input ports. It is evaluated when a
-// graph is bound. Steps may also ask what is wired, what is read and which choice is made; conditions are 0 or 1.
+// graph is bound. Steps may also depend on whether ports are wired or read and on the value of choices; conditions are
+// 0 or 1.
 class SizeExpr {
  public:
   enum class Op : uint8_t {
@@ -223,8 +224,8 @@ struct PortSpec {
     optional = true;
     return *this;
   }
-  // An optional input that counts as wired only if the condition, over parameters of the pass, holds. What nothing else
-  // needs does not run otherwise.
+  // An optional input that counts as wired only if the condition, over parameters of the pass, holds. Otherwise passes
+  // that are needed only for this input do not run.
   PortSpec& when(SizeExpr isTrue) {
     optional = true;
     condition = std::move(isTrue);
@@ -243,7 +244,8 @@ class RecordContext;
 
 // One kernel of a pass, or one fill, clear or copy. Which resources a kernel reads and writes follows from its shader:
 // from the kind of each binding and from the qualifiers `readonly` and `writeonly`; without one of these, a storage
-// binding counts as both, so far as the port allows. The framework places the barriers between steps and times each.
+// binding counts as both, as far as the port allows. The framework places the barriers between steps and times each
+// step.
 struct StepSpec {
   enum class Action : uint8_t {
     Dispatch,    // a compute shader
@@ -282,8 +284,8 @@ struct StepSpec {
   // Whatever this step and the one before it do to the same resource may happen in any order.
   StepSpec& runTogether();
   StepSpec& define(std::string macro, SizeExpr value);
-  // A push constant from sizes and parameters. Constants with the name of a parameter, `frameIndex` and `seed` fill
-  // themselves.
+  // A push constant from sizes and parameters. Constants with the name of a parameter, `frameIndex` and `seed` are
+  // filled in automatically.
   StepSpec& constant(std::string constant, SizeExpr value);
   // A push constant from the frame: constant("exposure", [](const RecordContext& ctx) { return ...; })
   template <std::invocable<const RecordContext&> Function>
@@ -292,11 +294,11 @@ struct StepSpec {
   StepSpec& threads(SizeExpr x, SizeExpr y = 1, SizeExpr z = 1);
   StepSpec& over(std::string port);
   StepSpec& indirect(std::string buffer, uint64_t offset = 0);
-  // A full-screen step draws only the tiles whose texel of `mask` is not 0. The rest of its images keeps what an
-  // earlier step of the pass has written, and otherwise becomes 0. If `mask` is an input that is not wired, the step draws
-  // everything. `mask` is an image of the format r8 with a texel for each tile. Tiles are a power of two wide and high:
-  // 16 pixels if 100 pixels have 7 texels. This saves the work outside of them, which on a CPU device no branch in a
-  // shader does.
+  // A full-screen step draws only the tiles whose texel of `mask` is not 0. The rest of its images keeps the values
+  // that an earlier step of the pass has written, or else becomes 0. If `mask` is an input that is not wired, the step
+  // draws everything. `mask` is an image of the format r8 with a texel for each tile. The sides of tiles are powers of
+  // two: 16 pixels if 100 pixels have 7 texels. This saves the work outside the tiles, which a branch in a shader does
+  // not do on a CPU device.
   StepSpec& tiles(std::string mask);
 };
 
@@ -312,14 +314,14 @@ struct PassDeclaration {
   bool usesView = false;     // renders from a camera, which `view` in the graph file selects
   bool tracesRays = false;   // on the device: its shaders include rays/trace.glsl
   bool sideEffects = false;  // never culled
-  // Whether record() decides in each frame which steps run and in what order. A plan then knows the steps, but not what
-  // they wait for, which is found while they are recorded.
+  // Whether record() decides in each frame which steps run and in what order. A plan then contains the steps, but not
+  // what they wait for, which is determined while they are recorded.
   bool stepsByFrame = false;
   std::vector<PortSpec> ports;
   std::vector<ParameterSpec> parameters;
   std::vector<CounterSpec> counters;
   std::vector<StepSpec> steps;
-  // For a pass that is declared in a file: where "", "ports.NAME", "params.NAME" and "steps.NAME" stand in it.
+  // For a pass that is declared in a file: the locations of "", "ports.NAME", "params.NAME" and "steps.NAME" in it.
   std::shared_ptr<const std::map<std::string, SourceLocation>> places;
 
   PassDeclaration& view() {

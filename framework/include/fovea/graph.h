@@ -60,11 +60,11 @@ struct FrameResult {
 };
 
 // Loads a shared library whose FOVEA_PASS registrations add pass types to the process. Its shaders are looked up in a
-// folder `shaders` beside it. Throws Error(BadInput) if the file is no plug-in, or one for another version of fovea, or
-// if a declaration contradicts itself, and Error(Internal) if a declaration throws an exception.
+// folder `shaders` next to it. Throws Error(BadInput) if the file is not a plug-in, or is one for another version of
+// fovea, or if a declaration contradicts itself, and Error(Internal) if a declaration throws an exception.
 void loadPlugin(const std::filesystem::path& file);
 
-// Adds the passes that the files NAME.pass.json in a folder declare. Throws Error(BadInput) with every mistake.
+// Adds the passes declared by the files NAME.pass.json in a folder. Throws Error(BadInput) with every mistake.
 void addPasses(const std::filesystem::path& folder);
 
 }  // namespace fovea::graph

@@ -1,4 +1,4 @@
-// A pass consists of a declaration (plain data, fovea/declaration.h) and, where a list of steps cannot say it all, of
+// A pass consists of a declaration (plain data, fovea/declaration.h) and, where a list of steps is not enough, of
 // kernels that are built once per plan and commands that are recorded every frame.
 //
 // Functions whose signatures name types of namespace gpu are meant for the project's own passes; plug-ins do not need
@@ -51,8 +51,8 @@ struct KernelState;
 class Kernel {
  public:
   explicit operator bool() const { return state_ != nullptr; }
-  // Names the row of the timings that its commands count in; at first that is the name of its shader. Kernels that take
-  // turns in a loop should share one, because each change from row to row costs a timestamp.
+  // Names the row of the timings to which its commands count; by default that is the name of its shader. Kernels that
+  // alternate in a loop should share a row, because each change of row costs a timestamp.
   Kernel& called(const std::string& row);
 
  private:
@@ -76,7 +76,7 @@ struct GraphicsKernelDesc {
   float depthBiasConstant = 0, depthBiasSlope = 0;
 };
 
-// What a bound pass knows of its place in the graph. All look-ups use the names of the declaration.
+// What a bound pass knows about its place in the graph. All look-ups use the names of the declaration.
 class PassContext {
  public:
   PassContext(const BoundGraph& graph, const BoundPass& pass) : graph_(graph), bound_(pass) {}
@@ -168,8 +168,8 @@ struct Attachment {
   VkClearValue clear{};
 };
 
-// Passed to Pass::record() once per frame. Commands are ordered by what they read and write, as their shaders say, so a
-// pass needs no barriers between them.
+// Passed to Pass::record() once per frame. Commands are ordered by what their shaders read and write, so a pass needs
+// no barriers between them.
 class RecordContext : public PassContext {
  public:
   RecordContext(PassInstance& pass, VkCommandBuffer cmd, const scene::Frame& frame, uint64_t frameNumber);
@@ -201,8 +201,8 @@ class RecordContext : public PassContext {
   // Copies whole images of equal size and format without mips. Needs TransferRead on the source and TransferWrite on
   // the destination.
   void copy(std::string_view imageFrom, std::string_view imageTo);
-  // Everything recorded before is visible to everything after. Only for commands that a pass records by itself
-  // through cmd().
+  // Makes everything recorded before visible to everything after. Only for commands that a pass records itself through
+  // cmd().
   void barrier();
   // Sets a counter from the CPU. Shaders count through `uint counters[]` in set 0, in the order of declaration.
   void counter(std::string_view name, double value);
@@ -248,9 +248,9 @@ class HostContext : public PassContext {
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
   void counter(std::string_view name, double value);
-  // For passes that run long: reports the completed share of the work, from 0 to 1. Call it from time to time on the
-  // thread of execute(). If it returns false, nobody is waiting any longer: finish soon, with the outputs as good as
-  // they are by then.
+  // For long-running passes: reports the completed share of the work, from 0 to 1. Call it from time to time on the
+  // thread of execute(). If it returns false, nobody waits for the result any more: finish soon, with the outputs in
+  // their current state.
   bool progress(double share) const;
 
  private:
@@ -269,7 +269,8 @@ class Pass {
 
 // ---- Registration ----------------------------------------------------------------------------------------------
 
-// The mark that FOVEA_PASS (fovea/registration.h) gives to a pass: what it exchanges with the framework.
+// The mark that FOVEA_PASS (fovea/registration.h) gives to a pass: the sizes of the types that it exchanges with the
+// framework.
 constexpr Abi passAbi() {
   return makeAbi({sizeof(PassDeclaration), sizeof(PortSpec), sizeof(MemberSpec), sizeof(ResourceSpec),
                   sizeof(SizeExpr::Term), sizeof(StepSpec), sizeof(PassContext), sizeof(ParameterSpec),

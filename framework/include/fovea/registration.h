@@ -1,4 +1,4 @@
-// How a pass makes itself known, and how a plug-in says which version of fovea it was compiled for. fovea/pass.h
+// How a pass registers itself, and how a plug-in declares the version of fovea for which it was compiled. fovea/pass.h
 // includes this.
 #pragma once
 
@@ -15,7 +15,7 @@ constexpr std::string_view kVersion = "0.1.0";
 
 // FOVEA_PASS puts this mark into the section `fovea_abi` of a plug-in. loadPlugin() reads it from the file before any
 // code of the plug-in runs, because even static initialisers assume the layout of types that another version may have
-// changed. The section holds one mark a pass. For the same reason the layout of the mark itself never changes.
+// changed. The section holds one mark per pass. For the same reason the layout of the mark itself never changes.
 struct alignas(64) Abi {
   char text[64];  // "fovea 0.1.0 0123456789abcdef", then zeros
   constexpr bool operator==(const Abi&) const = default;

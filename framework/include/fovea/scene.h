@@ -1,6 +1,6 @@
-// A scene on the CPU, which loaders produce and all other parts read, and the frames that are rendered of it.
-// Coordinates are right-handed with Y up, in metres. Colours and reflectances are linear. Light units are those of
-// the glTF extension KHR_lights_punctual.
+// A scene on the CPU, which loaders produce and all other parts read, and the frames rendered from it. Coordinates are
+// right-handed with Y up, in metres. Colours and reflectances are linear. Light units are those of the glTF extension
+// KHR_lights_punctual.
 #pragma once
 
 #include <cstdint>
@@ -38,16 +38,16 @@ struct TextureUse {
   explicit operator bool() const { return texture != kNoIndex; }
 };
 
-// A surface as glTF 2.0 describes it. Factors are multiplied by their textures, of which the channels are named here;
-// textures of other things than colours are linear (Texture::srgb is false).
+// A surface as glTF 2.0 describes it. Factors are multiplied by their textures, whose channels are named here; textures
+// of quantities other than colours are linear (Texture::srgb is false).
 //
-// A diffuse material knows only some of this: it is Lambertian with reflectance rho = baseColor * (1 - meanMetallic()).
+// A diffuse material uses only some of this: it is Lambertian with reflectance rho = baseColor * (1 - meanMetallic()).
 struct Material {
   std::string name;
   glm::vec4 baseColor{1};
   TextureUse baseColorTexture;  // rgba
   float metallic = 0;           // 0: dielectric, 1: metal
-  // The mean of the metallic texture, through which a diffuse material sees it; 0 if the model says nothing of metal.
+  // The mean of the metallic texture, which diffuse materials use in its place; 0 if the model does not mention metal.
   float metallicMean = 1;
   glm::vec3 emission{0};  // radiance, W/(sr m^2): factor times KHR_materials_emissive_strength
   TextureUse emissionTexture;
@@ -138,7 +138,7 @@ struct Node {
   glm::vec3 scale{1};
   std::optional<glm::mat4> matrix;  // replaces the three members above if the file gives a matrix
   uint32_t mesh = kNoIndex, camera = kNoIndex, light = kNoIndex;
-  bool dynamic = false;          // moves: is an object of its own, drawn and voxelised anew every frame
+  bool dynamic = false;          // moves: is an object of its own, drawn and voxelised in every frame
   uint32_t skin = kNoIndex;      // skin of its mesh
   std::vector<float> weights{};  // weights of its mesh's morph targets; empty for those of the mesh
 };
@@ -275,14 +275,14 @@ struct Scene {
   float ipd = 0.064f;        // distance between the eyes (the views "left" and "right"), metres
   std::optional<Lens> lens;  // of these views; without one they have the camera's field of view
   float exposure = 1;        // display = sRGB(exposure * radiance)
-  // Where a ray hits nothing: light from all around, or else a radiance that is only seen.
+  // The background: an environment map, which lights the scene, or else a radiance that is only visible.
   std::shared_ptr<const EnvironmentMap> environmentMap;
   glm::vec3 environment{0};
-  // What graphs take `$scene.materials` for: `full`, all that the materials say, or else `diffuse`.
+  // The value of `$scene.materials` in graphs: `full`, all properties of the materials, or else `diffuse`.
   bool fullMaterials = false;
   uint64_t hash = 0;  // hash of all content, for caches and reports
-  // What a model does not say and load() has assumed: camera, exposure, background and full materials. An assumed floor
-  // is the last of the nodes; an assumed lamp, or the sun of an assumed sky, the last of the lights.
+  // What a model lacks and load() has assumed: camera, exposure, background and full materials. An assumed floor is the
+  // last node; an assumed lamp, or the sun of an assumed sky, is the last light.
   bool assumed = false, assumedFloor = false, assumedLamp = false;
   std::optional<Sky> assumedSky;
 };
@@ -331,7 +331,7 @@ struct Geometry {
   std::vector<Object> objects;
   uint32_t staticTriangles = 0;  // triangles [0, staticTriangles) never move
   // flatten() fills these. Whoever changes triangles, uvs, vertices that never move, or materials afterwards flattens
-  // again, or sets the hash of all that rays meet but moving vertices to 0, which stands for unknown.
+  // again, or sets the hash of all that rays hit but moving vertices to 0, which stands for unknown.
   uint64_t stillKey = 0;
   std::vector<uint32_t> emissive;  // numbers of the triangles whose material emits, ascending
   // The triangles that voxels and maps of secondary lights see if any part of the scene is coarser for them; static
@@ -373,8 +373,8 @@ struct View {
   glm::uvec2 size{0};        // pixels
   glm::vec2 gaze{0.5f};      // normalised image coordinates, origin top-left
   float verticalFov = 0.8f;  // radians, from the lower to the upper edge
-  // Where the view looks through its pixels in this frame and in the last one, in pixels from their centres. The
-  // matrices contain it, so that what is drawn at a pixel's centre is what lies there (scene::jitter).
+  // The position within its pixels that the view samples in this frame and in the last one, in pixels from their
+  // centres. The matrices contain it, so that drawing at a pixel's centre samples that position (scene::jitter).
   glm::vec2 jitter{0}, previousJitter{0};
   // World-space direction (not normalised) of the ray through image position p in pixels. Pixel centres are at +0.5.
   glm::vec3 rayDirection(glm::vec2 p) const;
@@ -430,7 +430,7 @@ struct LoadOptions {
 };
 
 // `nameOrFile` is the bare name of a built-in scene or scene file, or a .json, .gltf or .glb file. A model on its own
-// gets what a picture of it needs and it does not say, such as a camera, light and an exposure, with a warning. Throws
+// gets what a picture of it needs and it lacks, such as a camera, light and an exposure, with a warning. Throws
 // Error(BadInput) with file, place and remedy; for a missing model the message also says where to get it.
 Scene load(const std::string& nameOrFile, Diagnostics& warnings, const LoadOptions& options = {});
 

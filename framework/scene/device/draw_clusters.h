@@ -1,5 +1,5 @@
-// Clusters of neighbouring triangles of a draw run, each with a bounding sphere, so that what lies outside a view
-// is not drawn.
+// Clusters of neighbouring triangles of a draw run, each with a bounding sphere, so that clusters outside a view are
+// not drawn.
 #pragma once
 
 #include <cstdint>

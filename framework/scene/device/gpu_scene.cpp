@@ -205,8 +205,8 @@ constexpr VkDescriptorType kBindings[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 8 objects
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 9 last frame's positions
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,  // 10 environment map
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays meet
-    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 12 triangles that rays meet
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 11 nodes that rays traverse
+    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 12 triangles that rays hit
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,    // 13 light sources that rays are aimed at
 };
 constexpr uint32_t kBindingCount = uint32_t(std::size(kBindings));

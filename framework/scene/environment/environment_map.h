@@ -1,4 +1,4 @@
-// Light from all around a scene, from infinitely far away.
+// An environment map: light from all directions, from infinitely far away.
 #pragma once
 
 #include <cstdint>

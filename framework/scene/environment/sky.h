@@ -1,5 +1,5 @@
 // Clear daylight from formulas: A. J. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model for Daylight"
-// (SIGGRAPH 1999). Luminances are in kcd/m^2, illuminances in klx, as in the paper; what renders a scene scales them.
+// (SIGGRAPH 1999). Luminances are in kcd/m^2, illuminances in klx, as in the paper; the caller scales them.
 #pragma once
 
 #include <glm/glm.hpp>

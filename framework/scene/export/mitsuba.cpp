@@ -207,7 +207,8 @@ class MitsubaWriter {
   void emitter(const Light& light) {
     const glm::vec3 strength = light.color * light.intensity;
     if (light.range > 0 && light.type != LightType::Directional)
-      warn("lights", "light `" + light.name + "` has a range; Mitsuba has none: it shines on without end");
+      warn("lights",
+           "light `" + light.name + "` has a range, which Mitsuba does not support: there it is unlimited");
     line("<!-- " + escaped(light.name) + " -->");
     if (light.type == LightType::Directional)
       line(fmt::format("<emitter type=\"directional\"><vector name=\"direction\" value=\"{}\"/>{}</emitter>",

@@ -74,7 +74,7 @@ class CsvReader {
 
   void header(std::string_view text) {
     columns_ = cells(text);
-    // Text of a file that is something else is nobody's business.
+    // The content of a file of another kind must not be shown.
     if (std::find(columns_.begin(), columns_.end(), "t") == columns_.end()) {
       mistakeAt(1, "the file does not begin as a table of gazes, with a column `t`",
                 "begin it with t,x,y,valid");

@@ -295,12 +295,12 @@ class Parser {
 };
 
 void warnOfDarkness(const Scene& scene, Diagnostics& warnings) {
-  const bool shines = !scene.lights.empty() || scene.environment != glm::vec3(0) || scene.environmentMap ||
-                      std::any_of(scene.materials.begin(), scene.materials.end(),
-                                  [](const Material& m) { return m.emission != glm::vec3(0); });
-  if (!shines)
-    warnings.warning({scene.source, 0, 0}, "lights",
-                     "nothing in this scene shines: the picture will be black", "add `lights`");
+  const bool lit = !scene.lights.empty() || scene.environment != glm::vec3(0) || scene.environmentMap ||
+                   std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& m) { return m.emission != glm::vec3(0); });
+  if (!lit)
+    warnings.warning({scene.source, 0, 0}, "lights", "this scene has no light: the picture will be black",
+                     "add `lights`");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Chooses a camera by what it shows, with rays through the triangles.
+// Chooses a camera by the surfaces in its view, found by rays through the triangles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,8 +26,8 @@ constexpr uint32_t kDirections = 16;   // around such a spot
 constexpr uint32_t kBestSpots = 12;    // of which views are compared
 constexpr int kMoments = 12;           // of an animation that are looked at
 constexpr float kEyeHeight = 1.6f;     // m
-constexpr float kEnclosed = 0.75f;     // share of the rays around a spot that meet walls
-constexpr float kLeastHidden = 0.05f;  // of what is seen inside, for it to be worth going in
+constexpr float kEnclosed = 0.75f;     // share of the rays around a spot that hit walls
+constexpr float kLeastHidden = 0.05f;  // of the interior view, for an interior camera to be worthwhile
 constexpr float kInsideFov = 1.05f, kOutsideFov = 0.7f;  // radians, vertical
 
 struct Looker {
@@ -38,7 +38,7 @@ struct Looker {
   glm::vec3 size, centre;
   float diagonal;
 
-  // What a ray meets. front: whether it is a side that the material shows.
+  // What a ray hits. front: whether it is a side that the material shows.
   struct Met {
     bool there = false, front = false;
     float distance = 0;
@@ -62,9 +62,9 @@ struct Looker {
 // What a view shows.
 struct Shown {
   float surfaces = 0,
-        backs = 0;  // shares of its rays that meet something, and that meet the back of something
-  float median = 0, nearest = 0;  // m; distances to what is met
-  float close = 0;                // share of what is met that is far nearer than the median
+        backs = 0;                // shares of its rays that hit a surface, and that hit a back face
+  float median = 0, nearest = 0;  // m; distances to the hits
+  float close = 0;                // share of the hits that are far nearer than the median
   float planes = 0;               // evenness of the directions that surfaces face, from 0 to 1
   std::set<uint32_t> materials, triangles;
 };
@@ -293,7 +293,7 @@ std::string addFirstCamera(Scene& scene, const Geometry& geometry) {
   Candidate outside = fromOutside(in, eyes);
   std::set<uint32_t> materials, triangles;
   Candidate inside = fromInside(in, materials, triangles);
-  // What is a room shows its backs outside, or less of what it is made of; a box looks the same inside.
+  // A room shows back faces from outside, or fewer of its materials; a box looks the same from inside.
   const Shown& seen = outside.shown;
   const bool more = materials.size() != seen.materials.size() ? materials.size() > seen.materials.size()
                                                               : triangles.size() > seen.triangles.size();

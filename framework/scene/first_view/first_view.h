@@ -1,4 +1,4 @@
-// What a picture needs and the file of a model does not say: a camera, a floor, enough light, and an exposure.
+// What a picture needs and the file of a model lacks: a camera, a floor, enough light, and an exposure.
 #pragma once
 
 #include <string>
@@ -15,20 +15,20 @@ struct FirstView {
   std::string camera, floor, light, exposure;
 };
 
-// Adds a camera if the scene has none, a floor if little is seen from that camera, light if most of what it shows would
-// be dark, and the exposure with which that is neither dark nor burnt out.
+// Adds a camera if the scene has none, a floor if little is visible from that camera, light if most of the view would
+// be dark, and an exposure with which the view is neither dark nor overexposed.
 FirstView addFirstView(Scene& scene);
 
-// The parts of it. Each returns what it has added. `geometry` must be what flatten() made of the scene.
+// Its parts. Each returns what it has added. `geometry` must be the result of flatten() for the scene.
 
-// A camera at the height of an eye where walls stand all around, if more of the scene is seen there than from outside;
-// else one in front of the scene and above it, which shows the whole of it.
+// A camera at eye height inside surrounding walls, if it shows more of the scene than a view from outside; else one in
+// front of the scene and above it, which shows the whole scene.
 std::string addFirstCamera(Scene& scene, const Geometry& geometry);
-// A floor under what the first camera sees, if that fills less than half of its picture: the smallest with which three
-// fifths of it show something.
+// A floor under the surfaces that the first camera sees, if they fill less than half of its picture: the smallest floor
+// with which surfaces fill three fifths of it.
 std::string addFirstFloor(Scene& scene, const Geometry& geometry);
-// A sun and a sky; or, if no sun could reach what the first camera sees, a lamp above it. Nothing if at least half of
-// what it sees is lit.
+// A sun and a sky; or a lamp, if no sun could reach the surfaces that the first camera sees. Nothing if at least half
+// of them are lit.
 std::string addFirstLight(Scene& scene, const Geometry& geometry);
 // The exposure with which the first camera's picture has a mean display value of about 0.45 and hardly any pixel is
 // clipped, rounded to two digits. 1 if nothing is lit.

@@ -1,4 +1,4 @@
-// Puts a floor under things that would hang in the void.
+// Puts a floor under objects that would float in empty space.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,7 @@ std::string addFirstFloor(Scene& scene, const Geometry& geometry) {
   const View view = makeView(scene.cameras.at(0), {kSide, kSide}, geometry);
   uint32_t surfaces = 0;
   std::vector<float>
-      reaches;  // m; distances from the floor's centre at which rays through the void meet its plane
+      reaches;  // m; distances from the floor's centre at which rays through empty space hit its plane
   for (uint32_t y = 0; y < kSide; ++y)
     for (uint32_t x = 0; x < kSide; ++x) {
       const glm::vec3 direction = view.rayDirection(glm::vec2(x, y) + 0.5f);

@@ -17,14 +17,14 @@
 namespace fovea::scene {
 namespace {
 
-constexpr uint32_t kWidth = 48;          // of the picture, pixels
-constexpr uint32_t kGathered = 4;        // rays for further bounces at each of them
-constexpr float kDark = 0.02f;           // of the light of what is brightest: less is not seen beside it
-constexpr float kDisplay = 0.45f;        // mean display value
-constexpr float kClipped = 0.015f;       // most of the surfaces' pixels that may be clipped
-constexpr float kDisplayInDark = 0.27f;  // the same where most of the picture stays dark with that,
-constexpr float kClippedInDark = 0.04f;  // and more may be clipped
-constexpr float kLamplight = 3.0f;       // lux, at the median distance
+constexpr uint32_t kWidth = 48;                   // of the picture, pixels
+constexpr uint32_t kGathered = 4;                 // rays for further bounces at each of them
+constexpr float kDark = 0.02f;                    // of the brightest light: less is not visible beside it
+constexpr float kDisplay = 0.45f;                 // mean display value
+constexpr float kClipped = 0.015f;                // most of the surfaces' pixels that may be clipped
+constexpr float kDisplayInDark = 0.27f;           // the same where most of the picture stays dark with that,
+constexpr float kClippedInDark = 0.04f;           // and more may be clipped
+constexpr float kLamplight = 3.0f;                // lux, at the median distance
 const glm::vec3 kBackground(0.22f, 0.33f, 0.5f);  // where there is no sky, as displayed before sRGB
 
 struct Picture {

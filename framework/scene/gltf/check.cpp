@@ -1,5 +1,5 @@
-// Checks everything about a glTF document that its JSON reveals: types, indices, sizes and the node graph. Runs
-// before tinygltf sees the file, and reports each mistake with its line.
+// Checks everything about a glTF document that can be checked in its JSON: types, indices, sizes and the node graph.
+// Runs before tinygltf sees the file, and reports each mistake with its line.
 #include "framework/scene/gltf/check.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What full materials need on the device beyond the MaterialRecords. Private to framework/scene.
+// The data of full materials on the device beyond the MaterialRecords. Private to framework/scene.
 #pragma once
 
 #include <functional>

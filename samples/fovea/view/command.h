@@ -44,8 +44,8 @@ inline constexpr double kMaxSpeed = 16;
 inline constexpr double kMaxTime = 1e6;         // seconds
 inline constexpr uint32_t kMaxViewSize = 4096;  // pixels a side
 
-// Throws Error(BadInput) with every mistake; whatever a page or somebody else sends is refused whole if any part of it
-// is wrong.
+// Throws Error(BadInput) with every mistake; a command from a page or any other client is refused as a whole if any
+// part of it is wrong.
 Command parseCommand(std::string_view text);
 
 // Letters, digits, '_' and '-', at most 64, for the name of a file to write.

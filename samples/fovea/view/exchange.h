@@ -1,5 +1,5 @@
-// Where the thread that renders and the threads that answer pages meet. The former never waits for the latter: it
-// leaves the newest pictures and messages here and takes what was asked for.
+// The exchange between the thread that renders and the threads that answer pages. The former never waits for the
+// latter: it leaves the newest pictures and messages here and takes the requests.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@
 
 namespace fovea::view {
 
-// Where a count begins that has to go on rising when the program starts itself anew, since pages outlive that:
+// Start of a counter that has to keep rising when the program restarts itself, since pages outlive a restart:
 // microseconds since 1970.
 uint64_t risingNumber();
 
@@ -33,7 +33,7 @@ struct Shot {
   std::shared_ptr<const image::Metadata> metadata;  // of the frame, as `fovea render` writes it
   graph::OutputData data;
   std::string refusal;  // why there is no picture; empty if there is one
-  bool absent = false;  // there is none for now, for no fault of whoever asks
+  bool absent = false;  // there is none for now, through no fault of the client
 };
 using ShotPointer = std::shared_ptr<const Shot>;
 
@@ -44,9 +44,9 @@ class Exchange {
   // ---- for the thread that renders -----------------------------------------------------------------------------
 
   std::vector<Command> takeCommands();
-  // The sources of which somebody wants pictures, sorted. Those that nobody has asked for in three seconds drop out.
+  // The sources of which pictures are wanted, sorted. Those not requested for three seconds are dropped.
   std::vector<std::string> wanted();
-  // Whether somebody waits for a picture, having taken the last one.
+  // Whether a client waits for a picture, having taken the last one.
   bool hungry() const;
   // Whether a source is wanted of which there is no picture yet.
   bool lacking() const;

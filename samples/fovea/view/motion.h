@@ -1,4 +1,4 @@
-// Time, camera and gaze of a run that somebody steers: what the next frame shows.
+// Time, camera and gaze of an interactive run, which determine the next frame.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A run goes on in a new process image: when a plug-in has changed, the program starts itself anew, since the code of a
+// Continues a run in a new process image: when a plug-in has changed, the program restarts itself, since the code of a
 // plug-in cannot be replaced while objects of it exist. The address of the page stays the same.
 #pragma once
 
@@ -26,7 +26,7 @@ struct Resume {
 // plug-in that crashes does no harm here.
 std::string whyNotLoadable(const session::GraphOptions& options);
 
-// Starts the program anew with the arguments that it was started with. Throws Error(Internal) if the system refuses.
+// Restarts the program with its original arguments. Throws Error(Internal) if the system refuses.
 [[noreturn]] void startAnew(const Resume& resume);
 // What startAnew() was given, in the program that it has started. Takes it out of the environment.
 std::optional<Resume> takeResume();

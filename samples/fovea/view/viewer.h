@@ -1,5 +1,5 @@
-// The run behind `fovea view`: renders a graph over a scene for as long as somebody looks, follows what pages ask for,
-// and keeps the last good graph running when something is wrong.
+// The run behind `fovea view`: renders a graph over a scene for as long as a page is open, follows the requests of
+// pages, and keeps the last valid graph running when something is wrong.
 #pragma once
 
 #include <chrono>
@@ -44,7 +44,7 @@ class Viewer {
     double frameLimit = session::kFrameLimit;  // seconds; 0 for none
     // Frames that are rendered whether somebody looks or not, after which the run freezes; 0 for no such number.
     uint64_t frames = 0;
-    // Of a run that goes on here; what it changed of the settings is in the settings.
+    // Of a run that continues here; its changes of the settings are in the settings.
     std::optional<Resume> resume;
   };
   // Loads and builds everything. Throws as `fovea render` does for what it is given.
@@ -88,7 +88,8 @@ class Viewer {
   void watchFiles();
   void follow(const std::vector<Command>& commands);
   std::optional<Settings> changed(Settings settings, const Command& command) const;
-  // Writes beside the graph, never over another file, and returns what is to be said. Throws Error(CannotWrite, BadInput).
+  // Writes next to the graph, never over another file, and returns the message to show. Throws Error(CannotWrite,
+  // BadInput).
   Diagnostic save(const std::string& name) const;
   bool frameIsDue();
   void render();

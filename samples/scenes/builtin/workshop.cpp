@@ -1,7 +1,7 @@
-// The yard of a workshop at night and its office behind it, for choosing what treats surfaces that shine. In the yard
-// lamps of very different size shine: bulbs close to a wall and under a shelf, a tube along a wall, a sign, two globes
-// that hang behind bars, and small lights in the ground. The office has one panel in its ceiling, and a lamp that
-// lights a small patch of the ceiling above it.
+// The yard of a workshop at night and its office behind it, for choosing parameters that concern emissive surfaces. The
+// yard has lamps of very different size: bulbs close to a wall and under a shelf, a tube along a wall, a sign, two
+// globes that hang behind bars, and small lights in the ground. The office has one panel in its ceiling, and a lamp
+// that lights a small patch of the ceiling above it.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -22,7 +22,7 @@ constexpr float kThick = 0.25f;                                            // of
 
 struct Palette {
   uint32_t brick, render, concrete, planks, steel, dark, paint, white, cloth, terracotta, leaf, paper[3];
-  uint32_t bulb, tube, sign, globe, ground, panel;  // these shine
+  uint32_t bulb, tube, sign, globe, ground, panel;  // emissive
 };
 
 Palette makePalette(SceneBuilder& b) {
@@ -180,7 +180,7 @@ void addYard(MeshBuilder& m, const Palette& p) {
   }
 }
 
-// Everything that shines in the yard, with its mounts.
+// All emissive surfaces of the yard, with their mounts.
 void addLamps(MeshBuilder& m, const Palette& p) {
   // A caged bulb 11 cm from the brick wall, another one 9 cm under the shelf.
   const auto bulb = [&](glm::vec3 q, float radius) { m.add(p.bulb, sphere(radius, 20, 12), at(q)); };

@@ -1,5 +1,5 @@
 // A dark room at night. All light comes through one window, from a bright sign on the other side of the street and from
-// a street lamp, and what it meets first is a small part of the room.
+// a street lamp, and it first hits a small part of the room.
 #include "fovea/scene.h"
 #include "samples/scenes/builtin/modelling/furniture.h"
 #include "samples/scenes/builtin/modelling/plants.h"

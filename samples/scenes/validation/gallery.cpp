@@ -1,5 +1,5 @@
-// A gallery of modern art without any lamp: all light comes from panels in the ceiling that glow. White walls, one red
-// and one blue partition, smooth sculptures on plinths, a padded bench, and a mobile that turns in the air.
+// A gallery of modern art without punctual lights: all light comes from emissive panels in the ceiling. White walls,
+// one red and one blue partition, smooth sculptures on plinths, a padded bench, and a mobile that turns in the air.
 #include <cmath>
 
 #include "fovea/scene.h"

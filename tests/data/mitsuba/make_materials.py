@@ -1,6 +1,6 @@
-"""Writes NAME.gltf and NAME.json into the folder materials, one for each part of a full material: a ball and a
-plate of it on a floor, under a sun, a bulb and a lamp that shines. Only the plate shines, because Mitsuba takes the
-cosine at an emitter from its interpolated normal."""
+"""Writes NAME.gltf and NAME.json into the folder materials, one for each feature of a full material: a ball and a
+plate of it on a floor, under a sun, a bulb and an emissive lamp. Only the plate, not the ball, is emissive, as Mitsuba
+takes the cosine at an emitter from its interpolated normal."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-// The parameters that somebody has changed while a graph runs, and how to keep them.
+// The parameters that were changed while a graph runs, and how to save them.
 #pragma once
 
 #include <filesystem>

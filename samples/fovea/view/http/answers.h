@@ -1,5 +1,5 @@
-// What pages are answered, out of an Exchange. Nothing here needs a socket, so that tests and fuzzers reach all of it;
-// only the stream of events, which never ends, is the server's own.
+// The answers to pages, from an Exchange. Nothing here needs a socket, so that tests and fuzzers reach all of it; only
+// the stream of events, which never ends, is the server's own.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// Which requests the viewer answers: checks of what a browser sends, before anything is served. Nothing here needs a
-// socket, so that tests and fuzzers can reach all of it.
+// Checks of the requests that a browser sends, before anything is served. Nothing here needs a socket, so that tests
+// and fuzzers can reach all of it.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Access {
 struct Verdict {
   int status = 200;    // of HTTP; 200 if the request may be answered
   std::string name;    // what it asks for: the target without the token, "" for the page itself
-  std::string reason;  // for whoever sent a request that is refused
+  std::string reason;  // for the sender of a request that is refused
 };
 
 // Refuses a wrong token (404, as if nothing were there), a Host that is neither an IP address, `localhost` nor

@@ -1,4 +1,4 @@
-// Two pictures of one moment: the mean of many frames, the difference of two pictures, and how large it is.
+// Comparison of two pictures of one moment: the mean of many frames, the difference of two pictures, and its size.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The numbers in a resource that was read back, and what can be said about them.
+// The numbers in a resource that was read back, and their statistics.
 #pragma once
 
 #include <array>
