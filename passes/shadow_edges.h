@@ -3,7 +3,6 @@
 
 #include "fovea/pass.h"
 #include "passes/acuity.h"
-#include "passes/materials.h"
 
 namespace fovea::passes {
 
@@ -12,7 +11,6 @@ inline void declareShadowEdges(graph::PassDeclaration& d, graph::Usage usage) {
   d.inout("direct", graph::image2D(VK_FORMAT_R16G16B16A16_SFLOAT), usage,
           "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
           "where rays decide");
-  declareMaterials(d, "`full` takes everything that glTF says of them");
   declarePeriphery(
       d,
       "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves "

@@ -24,8 +24,7 @@ void checkSize(const graph::PassContext& ctx, const std::string& pass, const std
 void checkSameSize(const graph::PassContext& ctx, const std::string& pass, const std::string& port,
                    const std::string& other) {
   const VkExtent3D size = ctx.extent(other);
-  checkSize(ctx, pass, port, {size.width, size.height}, "`" + other + "`",
-            "give pass `" + pass + "` and the one that makes `" + port + "` the same `materials`");
+  checkSize(ctx, pass, port, {size.width, size.height}, "`" + other + "`", "wire both to passes of one view");
 }
 
 }  // namespace fovea::passes

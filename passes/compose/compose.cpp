@@ -40,7 +40,6 @@ class Compose : public Pass {
         "indirect", picture, Usage::ColorAttachment,
         "rgb: indirect radiance towards the eye, rho E / pi and what glossy surfaces reflect; background 0");
     d.output("radiance", picture, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
-    declareMaterials(d, "`full` adds what glossy surfaces reflect");
     d.fullscreen("compose/compose.frag", {"indirect", "radiance"})
         .define("HAS_DIRECT", wired("direct"))
         .define("GLOSS", fullMaterials() * (SizeExpr(2) - wired("gloss")))

@@ -239,7 +239,6 @@ class ContactRaysHost : public Pass {
     d.parameter("longer", real(4, 1, 1000),
                 "length of a running mean of `light`, in lengths of that elsewhere, for pass "
                 "temporal-accumulation");
-    declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
     d.counter("pixels", "pixels where surfaces meet");
     d.counter("rays", "rays traced towards VPLs");
     return d;

@@ -1,7 +1,6 @@
 #include "passes/eye-paths-host/eye_path_ports.h"
 
 #include "passes/bundles.h"
-#include "passes/materials.h"
 
 namespace fovea::passes {
 
@@ -23,7 +22,6 @@ void declareEyePaths(PassDeclaration& d, Usage write, Lifetime paths) {
               "region in which the eye paths start, as in pass candidates");
   d.parameter("image_share", real(0.4, 0, 1),
               "share of starts in the whole image for region `mixed`, rounded to 64ths");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("points", integer(1024, 1, 65536),
               "number of screen points, the same as in pass vpl-intensity");
   d.parameter("paths", integer(8192, 64, 65536), "number of eye paths");
@@ -47,7 +45,6 @@ void declareEyePaths(PassDeclaration& d, Usage write, Lifetime paths) {
               "frames in which all paths are traced anew, those of a share of the points in each frame; "
               "the others keep the light they found unless their start is new; of them, twice as large a "
               "share is traced all the same as the light of the former has changed suddenly");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
 }
 
 }  // namespace fovea::passes

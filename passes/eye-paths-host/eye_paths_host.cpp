@@ -41,7 +41,7 @@ class EyePathsHost : public Pass {
                       : region == "image" ? scene::kRegionImage
                                           : scene::kRegionMixed;
     settings.imageShare64ths = scene::imageShare64ths(p.real("image_share"));
-    settings.foveaRadius = float(p.real("fovea_radius"));
+    settings.foveaRadius = ctx.view().foveaRadius;
     settings.points = uint32_t(p.integer("points"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.emission = p.flag("emission");

@@ -54,10 +54,6 @@ class GBuffer : public Pass {
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
-    declareMaterials(
-        d,
-        "`full` takes everything that glTF says of them, with normal maps, what they reflect beside "
-        "their diffuse layer, and what stands behind glass and alphaMode BLEND, at random pixels");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
     std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
                                        "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};

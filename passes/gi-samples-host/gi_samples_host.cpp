@@ -118,7 +118,7 @@ class GiSamplesHost : public Pass {
     const glm::uvec2 size = ctx.view().size;
     const uint32_t inside = uint32_t(p.integer("spacing")), turn = uint32_t(ctx.frameNumber()),
                    outside = std::max(inside, uint32_t(p.integer("outside_spacing")));
-    const scene::Fovea fovea = scene::makeFovea(ctx.view().gaze, size, float(p.real("fovea_radius")));
+    const scene::Fovea fovea = scene::makeFovea(ctx.view().gaze, size, ctx.view().foveaRadius);
     const auto rays = scene::RayScene::cached(*frame.scene, *frame.geometry, passingOf(p));
     const Sampler sampler(frame, ctx.view(), *rays, fullMaterials(p), uint32_t(p.integer("depth")),
                           uint32_t(p.integer("paths")), turn);

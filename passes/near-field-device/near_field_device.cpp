@@ -81,7 +81,11 @@ class NearFieldDevice : public Pass {
         .constant("share", [](const RecordContext& ctx) { return float(ctx.parameters().real("share")); })
         .constant("saccade", [](const RecordContext& ctx) { return ctx.frame().saccade; })
         .constant("isFirst", [](const RecordContext& ctx) { return uint32_t(ctx.firstFrame()); });
-    withRays("near-field-device/tiles.comp").define("MAP_ALONE", is("light", "map")).over("tiles");
+    withRays("near-field-device/tiles.comp")
+        .define("MAP_ALONE", is("light", "map"))
+        .constant("foveaRadius",
+                  [](const RecordContext& ctx) { return nearFieldFovea(ctx.view(), ctx.parameters()); })
+        .over("tiles");
     withRays("near-field-device/trace.comp")
         .define("MAP_ALONE", is("light", "map"))
         .define("GLOSS", fullMaterials())

@@ -50,7 +50,7 @@ class NearFieldHost : public Pass {
     const auto samples = ctx.outputAs<uint64_t>("samples");
     image_.resize(samples.size());
     NearFieldSettings settings;
-    settings.foveaRadius = float(p.real("fovea_radius"));
+    settings.foveaRadius = nearFieldFovea(ctx.view(), p);
     settings.spacing = uint32_t(p.integer("spacing"));
     settings.bounces = uint32_t(p.integer("bounces"));
     settings.emitterPoints = uint32_t(p.integer("emitter_points"));

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "fovea/error.h"
+#include "framework/scene/frame.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
 #include "passes/sizes.h"
@@ -31,8 +32,7 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
            "with full materials, rgb: at the same pixels, the mean of the same light under the lobe of the "
            "surface, W/(sr m^2); a: as in `samples`; otherwise one undefined texel");
   d.output("spread", spreadBuffer(), write, "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
+  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, as inside it, 4 or 8");
   d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
   d.parameter("share", real(50, 0.01, 1e6),
               "total area of all discs, in squares of the mean distance between visible surfaces and the "
@@ -51,11 +51,15 @@ void declareNearField(PassDeclaration& d, Usage read, Usage write) {
       "one; for a map there are as many cosine-weighted ones beside them");
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
   d.counter("rays", kRaysDoc);
   d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
   d.counter("gathered",
             "those of them at whose ends light of further bounces was gathered rather than known");
+}
+
+float nearFieldFovea(const scene::View& view, const Parameters& parameters) {
+  constexpr float kEverywhere = 4;
+  return parameters.integer("spacing") == 2 ? kEverywhere : view.foveaRadius;
 }
 
 void checkNearField(const PassContext& ctx, const std::string& pass) {

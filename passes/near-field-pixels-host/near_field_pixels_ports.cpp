@@ -4,7 +4,6 @@
 
 #include "fovea/error.h"
 #include "passes/bundles.h"
-#include "passes/materials.h"
 
 namespace fovea::passes {
 
@@ -22,7 +21,6 @@ void declareNearFieldPixels(PassDeclaration& d, std::vector<MemberSpec> mask, Us
   d.parameter(
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
   d.counter("rays", kRaysDoc);
   d.counter("pixels", "pixels that got rays");
 }

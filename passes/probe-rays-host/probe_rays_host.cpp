@@ -38,7 +38,7 @@ class ProbeRaysHost : public Pass {
     settings.bias = float(p.real("bias"));
     settings.feedback = p.flag("feedback");
     settings.outsideShare = uint32_t(p.integer("outside_share"));
-    settings.foveaRadius = float(p.real("fovea_radius"));
+    settings.foveaRadius = ctx.view().foveaRadius;
     settings.fullMaterials = fullMaterials(p);
     std::ranges::fill(hits, glm::vec4(0));
     probeDirections(frame.seed, uint32_t(frame.index), directions);

@@ -18,7 +18,6 @@ class ReflectionsDevice : public Pass {
                       "it, with rays that are traced on the device");
     d.rays().recorded();
     declareReflections(d, Usage::StorageRead, Usage::StorageWrite);
-    d.parameter("materials", choice("full", {"full"}), "what surfaces are: diffuse ones are no mirrors");
     d.scratch("traced",
               image2D(VK_FORMAT_R32G32B32A32_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
               kReadWrite,

@@ -2,7 +2,6 @@
 
 #include "fovea/error.h"
 #include "passes/bundles.h"
-#include "passes/materials.h"
 #include "shaders/common/records/reservoir.h"
 
 namespace fovea::passes {
@@ -30,7 +29,6 @@ void declareReservoirsVisibility(PassDeclaration& d, Usage images, Usage lists, 
       "whether the sources are of the previous frame. Those on things that move are then taken to see "
       "what the pixel sees: where they were, something else may be by now, and rays from there would end "
       "at once");
-  declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
   d.counter("rays", "rays traced towards samples");
   d.counter("hidden", "rays that did not reach their sample");
 }

@@ -58,8 +58,9 @@ class Usage(CliTest):
         self.fails(BAD_INPUT, *DIRECT, "--gaze-trace", "g.csv", says=["g.csv:3", "g.csv:4"])
 
     def test_fovea_degrees(self):
-        self.fails(USAGE, *DIRECT, "--fovea-degrees", "0", says=["--fovea-degrees"])
-        self.fails(USAGE, *DIRECT, "--fovea-degrees", "10", says=["direct", "no fovea"])
+        self.fails(USAGE, *DIRECT, "--fovea-degrees", "61", says=["--fovea-degrees", "0 to 60"])
+        self.fails(USAGE, *DIRECT, "--materials", "shiny", says=["--materials", "full"])
+        self.fails(BAD_INPUT, *DIRECT, "--set", "materials=full", says=["belongs to the frame", "view.materials=full"])
 
     def test_output_names(self):
         self.fails(USAGE, *DIRECT, "-o", "picture", says=["picture", "png"])
@@ -180,8 +181,8 @@ class Inputs(CliTest):
     def test_rays_on_the_device_wait_for_no_pass_on_the_cpu(self):
         for graph in "foveal", "foveal_stereo", "foveal_view", "ours", "stereo":
             for materials in "diffuse", "full":
-                plan = json.loads(self.succeeds("check", graph, "--plan", "json", "--set", "rays=device", "--set",
-                                                f"materials={materials}").stdout)
+                plan = json.loads(self.succeeds("check", graph, "--plan", "json", "--set", "rays=device", "--materials",
+                                                materials).stdout)
                 passes = [p for level in plan["levels"] for p in level["passes"]]
                 self.assertEqual([p["name"] for p in passes if p["host"]], [], (graph, materials))
 

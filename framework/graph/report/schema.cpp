@@ -93,6 +93,15 @@ Json typeSchema(const PassDeclaration& d) {
           {"properties", {{"inputs", std::move(inputs)}, {"params", std::move(params)}}}};
 }
 
+Json viewSchema() {
+  Json properties = Json::object();
+  for (const ParameterSpec& spec : viewParameters()) properties[spec.name] = parameterSchema(spec);
+  return {{"type", Json::array({"object", "null"})},
+          {"description", "What belongs to the frame; also set with options, such as --materials"},
+          {"additionalProperties", false},
+          {"properties", std::move(properties)}};
+}
+
 Json inputSchema() {
   Json formats = Json::array();
   for (const gpu::FormatInfo& info : gpu::formats()) formats.push_back(info.name);
@@ -165,6 +174,7 @@ std::string generateSchema(const Registry& registry) {
        {{"type", Json::array({"object", "null"})},
         {"description", "Used as \"$name\", set with --set name=value"},
         {"additionalProperties", {{"type", Json::array({"boolean", "number", "string", "null"})}}}}},
+      {"view", viewSchema()},
       {"inputs", {{"type", Json::array({"object", "null"})}, {"additionalProperties", inputSchema()}}},
       {"passes", {{"type", "object"}, {"additionalProperties", std::move(pass)}}},
       {"outputs",

@@ -220,6 +220,8 @@ std::string extendingGraph(const std::string& base, const Changes& changes, cons
     if (name.find('.') == std::string::npos)
       childOf(childOf(graph, "parameters"), name) =
           valueFor(name, text, parameters ? parameters->find(name) : nullptr);
+    else if (const ParameterSpec* ofView = graph::findParameter({}, name))
+      childOf(childOf(graph, "view"), ofView->name) = typed(name, text, typeOf(*ofView));
     else
       addInner(graph, name, text, documents, bound);
   }
