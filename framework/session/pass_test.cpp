@@ -9,6 +9,7 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/compile.h"
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
@@ -127,7 +128,7 @@ std::string PassTest::Impl::graphText() const {
   }
   for (const auto& [name, value] : params) append(paramText, quoted(name) + ": " + value);
   for (const auto& [name, value] : view) append(viewText, quoted(name) + ": " + value);
-  return "{\"view\": {" + viewText +
+  return "{\"version\": " + std::to_string(graph::kGraphVersion) + ", \"view\": {" + viewText +
          "}, \"inputs\": {" + inputText + "}, \"passes\": {\"test\": {\"type\": " + quoted(type) +
          ", \"inputs\": {" + wires + "}, \"params\": {" + paramText + "}}}, \"outputs\": {" + outputs + "}}";
 }

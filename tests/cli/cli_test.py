@@ -321,6 +321,20 @@ class Lists(CliTest):
         self.assertEqual(json.loads(stored.read_text()), json.loads(self.succeeds("schema").stdout),
                          "graphs/fovea-graph.schema.json is out of date: write `fovea schema` into it")
 
+    def test_migrate(self):
+        old = '{\n  "extends": "direct.json",\n  "parameters": { "materials": "full" }\n}\n'
+        new = '{\n  "version": 2,\n  "extends": "direct.json",\n  "view": { "materials": "full" }\n}\n'
+        self.write("old.json", old)
+        self.assertIn("old.json:3:", self.succeeds("check", "old.json").stderr)
+        self.assertIn("fovea migrate old.json", self.succeeds("check", "old.json").stderr)
+        result = self.call("migrate", "--check", "old.json")
+        self.assertEqual((result.returncode, (self.folder / "old.json").read_text()), (BAD_INPUT, old))
+        self.assertIn("old.json:3:", self.succeeds("migrate", "old.json").stdout)
+        self.assertEqual((self.folder / "old.json").read_text(), new)
+        self.assertEqual(self.succeeds("migrate", "--check", "old.json").stdout, "")
+        self.assertEqual(self.succeeds("check", "old.json").stderr, "")
+        self.fails(BAD_INPUT, "migrate", "none.json", says=["none.json"])
+
     def test_check(self):
         for path in self.graphs():
             name = str(path.relative_to(SOURCE / "graphs").with_suffix(""))

@@ -386,6 +386,7 @@ void expandScope(Expansion& all, Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, all.diagnostics);
   reader.text("$schema");
   reader.find("extends");
+  reader.find("version");  // read by migrateLoaded
   const std::string description = reader.text("description");
   if (!scope.parent) all.description.description = description;
   reader.object("parameters");  // read by readParameters

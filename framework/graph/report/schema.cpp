@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/gpu/format.h"
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/validate.h"
 
 namespace fovea::graph {
@@ -167,6 +168,9 @@ std::string generateSchema(const Registry& registry) {
               {"additionalProperties", false}};
   schema["properties"] = {
       {"$schema", {{"type", "string"}}},
+      {"version",
+       {{"const", kGraphVersion},
+        {"description", "Of this format; `fovea migrate` rewrites files of earlier ones"}}},
       {"description", orNull("string")},
       {"extends",
        {{"type", "string"}, {"description", "A graph file that this one changes (RFC 7396); null removes"}}},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/registry.h"
 
 namespace fovea::view {
@@ -77,6 +78,13 @@ Value textValue(std::string text) {
   Value value;
   value.type = Value::Type::String;
   value.string = std::move(text);
+  return value;
+}
+
+Value wholeValue(int64_t number) {
+  Value value;
+  value.type = Value::Type::Int;
+  value.integer = number;
   return value;
 }
 
@@ -214,6 +222,7 @@ std::string extendingGraph(const std::string& base, const Changes& changes, cons
                            const graph::BoundGraph& bound) {
   Value graph = objectValue();
   childOf(graph, "$schema") = textValue("fovea-graph.schema.json");
+  childOf(graph, "version") = wholeValue(graph::kGraphVersion);
   childOf(graph, "extends") = textValue(base);
   const Value* parameters = documents.graph.find("parameters");
   for (const auto& [name, text] : changes) {
