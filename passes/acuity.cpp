@@ -15,24 +15,20 @@ constexpr float kSmallestPeriod = 1.0f / 48, kPeriodSlope = 0.022f;
 
 void declarePeriphery(graph::PassDeclaration& d, const char* what) {
   d.parameter("periphery", graph::integer(1, 1, 2), what);
-  d.parameter("fovea_radius", graph::real(0.25, 0.001, 4, "image widths"),
-              "radius around the gaze within which no pixel is skipped, whatever `periphery` is");
-  d.parameter("pixels_per_degree", graph::real(0, 0, 1000),
-              "pixels of the picture per degree of visual angle, from which `periphery` derives what the eye "
-              "resolves; 0 means that the picture is viewed from its centre of perspective");
 }
 
 Square fineSquare(const scene::View& view, const graph::Parameters& p, int tile) {
   if (p.integer("periphery") == 1) return Square{}.grown(1 << 20);
-  return fullDensity(view, float(p.real("fovea_radius")), float(p.real("pixels_per_degree")), tile);
+  return fullDensity(view, tile);
 }
 
-Square fullDensity(const scene::View& view, float foveaRadius, float pixelsPerDegree, int tile) {
+Square fullDensity(const scene::View& view, int tile) {
   const glm::vec2 size(view.size);
-  const float density = pixelsPerDegree > 0 ? pixelsPerDegree : size.y / glm::degrees(view.verticalFov);
+  const float density =
+      view.pixelsPerDegree > 0 ? view.pixelsPerDegree : size.y / glm::degrees(view.verticalFov);
   const float eccentricity = (4 / density - kSmallestPeriod) / kPeriodSlope;  // degrees
   // Coordinates far outside would not fit into an integer.
-  const float radius = std::min(std::max(foveaRadius * size.x, eccentricity * density), 1e6f);
+  const float radius = std::min(std::max(view.foveaRadius * size.x, eccentricity * density), 1e6f);
   const glm::vec2 gaze = glm::clamp(view.gaze * size, -1e6f, 1e6f), tiles(static_cast<float>(tile));
   return {glm::ivec2(glm::floor((gaze - radius) / tiles)) * tile,
           glm::ivec2(glm::ceil((gaze + radius) / tiles)) * tile};

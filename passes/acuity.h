@@ -23,7 +23,7 @@ struct Square {
   glm::ivec4 corners() const { return {low, high}; }
 };
 
-// Adds what fullDensity() needs to the parameters of a pass. `what` says what the pass does with `periphery` 2.
+// Adds the parameter `periphery` to a pass. `what` says what the pass does with 2.
 void declarePeriphery(graph::PassDeclaration& d, const char* what);
 // The square of a view for these parameters; with `periphery` 1 it contains any picture.
 Square fineSquare(const scene::View& view, const graph::Parameters& parameters, int tile);
@@ -31,7 +31,6 @@ Square fineSquare(const scene::View& view, const graph::Parameters& parameters, 
 // The square around the gaze outside which one sample per 2 x 2 pixels is enough: it contains the fovea and all pixels
 // at an eccentricity where the smallest period that the eye resolves is less than 4 pixels. Its corners are multiples
 // of `tile` and may lie outside the picture.
-// foveaRadius: image widths. pixelsPerDegree: of what the eye sees; if 0, that of the view itself.
-Square fullDensity(const scene::View& view, float foveaRadius, float pixelsPerDegree, int tile);
+Square fullDensity(const scene::View& view, int tile);
 
 }  // namespace fovea::passes

@@ -1,5 +1,7 @@
 #include "passes/bundles.h"
 
+#include "passes/materials.h"
+
 #include "fovea/error.h"
 #include "shaders/records/eye_paths.h"
 #include "shaders/records/shadow.h"
@@ -48,7 +50,7 @@ ResourceSpec changeBuffer() { return buffer("LightChange", kTexel); }
 // ---- Bundles ---------------------------------------------------------------------------------------------------
 
 std::vector<MemberSpec> gbufferOutput() {
-  const SizeExpr full = parameter("materials");
+  const SizeExpr full = fullMaterials();
   return {
       member("position", image2D(VK_FORMAT_R32G32B32A32_SFLOAT), Usage::ColorAttachment,
              "xyz: world space, m; w: distance from the eye, m, 0 in the background"),

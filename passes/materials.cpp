@@ -7,18 +7,19 @@ namespace fovea::passes {
 
 using namespace graph;
 
-void declareMaterials(PassDeclaration& d, const std::string& what) {
-  d.parameter("materials", choice("diffuse", {"diffuse", "full"}),
-              "materials of surfaces: `diffuse` treats all as Lambertian and metals as black; " + what);
-}
+namespace {
 
-bool fullMaterials(const Parameters& parameters) { return parameters.text("materials") == "full"; }
+constexpr const char* kMaterials = "view.materials";
+
+}  // namespace
+
+bool fullMaterials(const Parameters& parameters) { return parameters.text(kMaterials) == "full"; }
 
 scene::Passing passingOf(const Parameters& parameters) {
   return fullMaterials(parameters) ? scene::Passing::Met : scene::Passing::Never;
 }
 
-SizeExpr fullMaterials() { return parameter("materials"); }
+SizeExpr fullMaterials() { return parameter(kMaterials); }
 
 void checkMaterials(const PassContext& ctx) {
   const VkExtent3D specular = ctx.extent("gbuffer.specular"), normal = ctx.extent("gbuffer.normal");
@@ -26,7 +27,7 @@ void checkMaterials(const PassContext& ctx) {
       (specular.width == normal.width && specular.height == normal.height))
     return;
   throw Error(ExitCode::BadInput, "materials are `full`, but those of the G-buffer are not",
-              "give both passes the same `materials`");
+              "wire the G-buffer that pass gbuffer makes");
 }
 
 }  // namespace fovea::passes

@@ -1,4 +1,4 @@
-// The parameter `materials` of passes that support full materials.
+// What passes know of the materials of the frame (`view.materials`): whether surfaces are diffuse, or all that glTF says.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,12 @@ enum class Passing : uint8_t;  // framework/scene/rays/ray_scene.h
 
 namespace fovea::passes {
 
-// what: what the pass does with full materials.
-void declareMaterials(graph::PassDeclaration& d, const std::string& what);
 bool fullMaterials(const graph::Parameters& parameters);
 // How rays on the host hit surfaces.
 scene::Passing passingOf(const graph::Parameters& parameters);
 // 0 or 1.
 graph::SizeExpr fullMaterials();
-// Throws Error(BadInput) if the pass asks for full materials, but the one that made its input `gbuffer` did not.
+// Throws Error(BadInput) if materials are full, but the input `gbuffer` does not hold them, as it is no pass's.
 void checkMaterials(const graph::PassContext& ctx);
 
 }  // namespace fovea::passes

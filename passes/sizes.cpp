@@ -23,8 +23,7 @@ void checkSize(const graph::PassContext& ctx, const std::string& port, glm::uvec
 
 void checkSameSize(const graph::PassContext& ctx, const std::string& port, const std::string& other) {
   const VkExtent3D size = ctx.extent(other);
-  checkSize(ctx, port, {size.width, size.height}, "`" + other + "`",
-            "give this pass and the one that makes `" + port + "` the same `materials`");
+  checkSize(ctx, port, {size.width, size.height}, "`" + other + "`", "wire both to passes of one view");
 }
 
 }  // namespace fovea::passes

@@ -112,7 +112,7 @@ def main():
                 theirs, covered = render_cycles(next(folder.glob("*.gl*")), folder / "cycles.exr", options)
             run(options.fovea, "render", "reference", "--scene", exported, "--size", options.size,
                 "--set", "filter=box", "--set", f"depth={options.depth}", "--set", f"spp={options.spp}",
-                "--set", "materials=full", "-o", f"radiance={folder / 'ours.pfm'}")
+                "--materials", "full", "-o", f"radiance={folder / 'ours.pfm'}")
             ours = read_pfm(folder / "ours.pfm")
         where = covered > 0.999
         difference = ours[where].mean(0) / theirs[where].mean(0) - 1

@@ -145,7 +145,7 @@ def main():
             picture = pathlib.Path(folder) / "ours.exr"
             run(options.fovea, "render", "reference", "--scene", scene, "--size", options.size, "--set", "filter=box",
                 "--set", "sampling=independent", "--set", f"depth={options.depth}", "--set",
-                f"spp={options.batches * options.spp}", "--set", f"materials={options.materials}", "--first",
+                f"spp={options.batches * options.spp}", "--materials", options.materials, "--first",
                 options.frame, "-o", picture)
             ours = read_layers(picture)
         agree = compare(name, mean, variance, ours, options) and agree

@@ -106,7 +106,11 @@ void addSecondEye(Json& time) {
 // All frames use the same random numbers: remaining noise stands still as far as the picture does, and less of it is
 // in the changes between frames.
 std::vector<std::pair<std::string, std::string>> referenceParameters(const Job& job) {
-  return {{"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}, {"per_frame", "false"}};
+  std::vector<std::pair<std::string, std::string>> set = {
+      {"spp", std::to_string(job.spp)}, {"depth", std::to_string(job.depth)}, {"per_frame", "false"}};
+  for (const auto& [name, value] : job.set)
+    if (name == "view.materials") set.emplace_back(name, value);
+  return set;
 }
 
 }  // namespace
@@ -203,6 +207,7 @@ Json BenchRunner::referenceParts(const Job& job) {
     if (pass.declaration->kind != graph::PassKind::Host) continue;
     Hasher parameters;
     for (const graph::Value& value : pass.parameters.values()) parameters.add(value);
+    parameters.add(bound.view.text("materials"));
     parts[pass.declaration->type] = passCode(pass.declaration->type);
     parts["parameters of " + pass.name] = session::formatHash(parameters.value());
   }
@@ -218,13 +223,11 @@ image::File BenchRunner::toFile(const session::GraphRun& run, graph::FrameResult
   }
   const scene::Frame shown = run.frame(result.frame);
   const double exposure = session::parameterOr(run.graph(), "exposure", 0);  // of tonemap; 0: the scene's
-  file.metadata = {
-      {"gaze", fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y)},
-      {"fovea_radius",
-       fmt::format("{}", float(session::parameterOr(run.graph(), "fovea_radius", session::kFoveaRadius)))},
-      {"exposure", fmt::format("{}", float(exposure > 0 ? exposure : shown.exposure))},
-      {"scene", sceneName_},
-      {"scene_hash", session::formatHash(scene_.hash)}};
+  file.metadata = {{"gaze", fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y)},
+                   {"fovea_radius", fmt::format("{}", shown.views[0].foveaRadius)},
+                   {"exposure", fmt::format("{}", float(exposure > 0 ? exposure : shown.exposure))},
+                   {"scene", sceneName_},
+                   {"scene_hash", session::formatHash(scene_.hash)}};
   return file;
 }
 

@@ -6,6 +6,7 @@
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/motion/motion.h"
+#include "framework/shader_twins/fovea.h"
 
 namespace fovea::session {
 
@@ -37,24 +38,6 @@ image::Image toImage(const graph::OutputData& output) {
 }
 
 namespace {
-
-// Parameter of a pass with a view: how many places in its pixels the view takes in turn, one a frame.
-constexpr const char* kJitterParameter = "jitter";
-
-// Parameter of a pass that knows full materials, and its value if it asks for them.
-constexpr const char* kMaterialsParameter = "materials";
-const graph::Value kFullMaterials = std::string("full");
-
-// Whether the scene on the device has to have them.
-bool wantsFullMaterials(const graph::Plan& plan) {
-  const std::vector<graph::BoundPass>& passes = plan.graph->passes;
-  for (size_t i = 0; i < passes.size(); ++i) {
-    if (!plan.passLive[i] || passes[i].declaration->kind == graph::PassKind::Host) continue;
-    const graph::Value* value = passes[i].parameters.find(kMaterialsParameter);
-    if (value && *value == kFullMaterials) return true;
-  }
-  return false;
-}
 
 // Where the scene has to have what rays meet. A pass that traces rays in none of its declared steps does so in kernels
 // of its own, on the device.
@@ -114,7 +97,7 @@ GraphRun::GraphRun(gpu::Device& device, const graph::Description& description, c
 void GraphRun::prepare(GraphRun* before, bool keepContents) {
   inFlight_ = options_.framesInFlight > 0 ? options_.framesInFlight : device_.isCpu() ? 1 : 2;
   if (before && (&before->scene_ != &scene_ || before->inFlight_ != inFlight_)) before = nullptr;
-  const bool full = wantsFullMaterials(*plan_);
+  const bool full = graph().view.text("materials") == "full";
   const scene::RaysWanted rays = raysOf(*plan_);
   const bool sameScene =
       before && before->gpuScene_->fullMaterials() == full && before->gpuScene_->rays() == rays;
@@ -138,15 +121,16 @@ scene::Frame GraphRun::frame(const scene::Moment& moment) const {
   const uint64_t index = moment.index;
   scene::Frame f = scene::makeFrame(scene_, geometry_, options_.size, moment, options_.seed);
   f.gpu = gpuScene_.get();
-  for (size_t i = 0; i < graph().passes.size(); ++i) {
-    const graph::BoundPass& pass = graph().passes[i];
-    if (!plan_->passLive[i] || !pass.declaration->usesView || !pass.parameters.find(kJitterParameter))
-      continue;
-    const auto places = uint32_t(pass.parameters.integer(kJitterParameter));
-    const glm::vec2 now = scene::jitterAt(index, places);
-    for (scene::View& view : f.views)
-      if (view.name == graph().views[pass.view])
-        scene::jitter(view, now, f.cameraCut ? now : scene::jitterAt(index - 1, places));
+  const graph::Parameters& set = graph().view;
+  const float angle = glm::radians(float(set.real("fovea_degrees")));
+  const auto places = uint32_t(set.integer("jitter"));
+  const glm::vec2 now = scene::jitterAt(index, places);
+  const glm::vec2 before = f.cameraCut ? now : scene::jitterAt(index - 1, places);
+  for (scene::View& view : f.views) {
+    view.foveaRadius =
+        angle > 0 ? scene::foveaRadiusOfAngle(angle, view.viewToClip) : float(set.real("fovea_radius"));
+    view.pixelsPerDegree = float(set.real("pixels_per_degree"));
+    scene::jitter(view, now, before);
   }
   return f;
 }

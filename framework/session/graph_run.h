@@ -32,8 +32,8 @@ graph::Environment sceneEnvironment(const gpu::Device* device, const scene::Scen
                                     const scene::Geometry& geometry, glm::uvec2 size,
                                     RaysOn rays = RaysOn::Auto);
 
-// The value of a parameter, or `otherwise` if no pass of the graph has it. If several passes have
-// it, the last one decides.
+// The value of a parameter such as tonemap's `exposure`, or `otherwise` if no pass of the graph has it. If several passes
+// have it, the last one decides.
 double parameterOr(const graph::BoundGraph& graph, const char* name, double otherwise);
 
 // Texels of a colour or depth format as an image of floats. Throws Error(Internal) for integer formats.
@@ -69,8 +69,7 @@ class GraphRun {
   const std::shared_ptr<const graph::Plan>& plan() const { return plan_; }
   const graph::BoundGraph& graph() const { return *plan_->graph; }
   const std::vector<std::string>& readback() const { return readback_; }
-  // Frame `index` of the scene. A view is jittered (scene::jitterAt) if a pass that runs looks through it and has a
-  // parameter `jitter`, the number of places that take turns; otherwise every view looks through the pixels' centres.
+  // Frame `index` of the scene, whose views have the fovea and the jitter (scene::jitterAt) that the graph's view sets.
   scene::Frame frame(uint64_t index) const;
   scene::Frame frame(const scene::Moment& moment) const;
   // To be called after prepare(). Moves the geometry if a pass reads it, then submits the frame.

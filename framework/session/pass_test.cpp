@@ -9,6 +9,7 @@
 #include "framework/gpu/device.h"
 #include "framework/gpu/format.h"
 #include "framework/graph/compile/compile.h"
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/registry.h"
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
@@ -28,6 +29,12 @@ struct InputData {
 };
 
 std::string quoted(const std::string& s) { return '"' + s + '"'; }
+
+std::string numberText(double value) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.17g", value);
+  return text;
+}
 
 std::string describe(const InputData& input) {
   const graph::ResourceDesc& d = input.desc;
@@ -78,7 +85,8 @@ scene::Scene defaultScene() {
 struct PassTest::Impl {
   std::string type;
   const graph::PassDeclaration* declaration = nullptr;
-  std::vector<std::pair<std::string, std::string>> params;  // value as JSON
+  std::map<std::string, std::string> params;  // values as JSON
+  std::map<std::string, std::string> view = {{"materials", "\"diffuse\""}};
   glm::uvec2 size{64, 64};
   uint32_t seed = 1;
   session::RaysOn rays = session::RaysOn::Auto;
@@ -97,7 +105,7 @@ struct PassTest::Impl {
 };
 
 std::string PassTest::Impl::graphText() const {
-  std::string inputText, wires, outputs, paramText;
+  std::string inputText, wires, outputs, paramText, viewText;
   auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
   for (const graph::PortSpec& port : declaration->ports) {
     if (port.direction == graph::Direction::Input || port.direction == graph::Direction::InOut) {
@@ -120,7 +128,9 @@ std::string PassTest::Impl::graphText() const {
       append(outputs, quoted(port.name) + ": " + quoted("test." + port.name));
   }
   for (const auto& [name, value] : params) append(paramText, quoted(name) + ": " + value);
-  return "{\"inputs\": {" + inputText + "}, \"passes\": {\"test\": {\"type\": " + quoted(type) +
+  for (const auto& [name, value] : view) append(viewText, quoted(name) + ": " + value);
+  return "{\"version\": " + std::to_string(graph::kGraphVersion) + ", \"view\": {" + viewText +
+         "}, \"inputs\": {" + inputText + "}, \"passes\": {\"test\": {\"type\": " + quoted(type) +
          ", \"inputs\": {" + wires + "}, \"params\": {" + paramText + "}}}, \"outputs\": {" + outputs + "}}";
 }
 
@@ -152,21 +162,31 @@ PassTest::PassTest(std::string type) : impl_(std::make_unique<Impl>()) {
 PassTest::~PassTest() = default;
 
 PassTest& PassTest::param(const std::string& name, bool value) {
-  impl_->params.emplace_back(name, value ? "true" : "false");
+  impl_->params[name] = value ? "true" : "false";
   return *this;
 }
 PassTest& PassTest::param(const std::string& name, int value) {
-  impl_->params.emplace_back(name, std::to_string(value));
+  impl_->params[name] = std::to_string(value);
   return *this;
 }
 PassTest& PassTest::param(const std::string& name, double value) {
-  char text[40];
-  std::snprintf(text, sizeof(text), "%.17g", value);
-  impl_->params.emplace_back(name, text);
+  impl_->params[name] = numberText(value);
   return *this;
 }
 PassTest& PassTest::param(const std::string& name, const char* value) {
-  impl_->params.emplace_back(name, quoted(value));
+  impl_->params[name] = quoted(value);
+  return *this;
+}
+PassTest& PassTest::view(const std::string& name, int value) {
+  impl_->view[name] = std::to_string(value);
+  return *this;
+}
+PassTest& PassTest::view(const std::string& name, double value) {
+  impl_->view[name] = numberText(value);
+  return *this;
+}
+PassTest& PassTest::view(const std::string& name, const char* value) {
+  impl_->view[name] = quoted(value);
   return *this;
 }
 PassTest& PassTest::viewSize(uint32_t width, uint32_t height) {

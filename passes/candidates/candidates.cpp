@@ -37,8 +37,6 @@ class Candidates : public Pass {
                 "the fovea");
     d.parameter("image_share", real(0.4, 0, 1),
                 "share of the whole image for region `mixed`, rounded to 64ths");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
-                "radius of the fovea, the disc around the gaze");
     d.parameter("per_frame", flag(true),
                 "whether each frame uses new random numbers; if false, all frames use the same ones");
     d.parameter("second_view", text("right"),

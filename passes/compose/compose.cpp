@@ -38,7 +38,6 @@ class Compose : public Pass {
     d.output("indirect", picture, Usage::ColorAttachment,
              "rgb: indirect radiance towards the eye, rho E / pi and glossy reflections; background 0");
     d.output("radiance", picture, Usage::ColorAttachment, "rgb: `direct` (if wired) plus `indirect`");
-    declareMaterials(d, "`full` adds what glossy surfaces reflect");
     d.fullscreen("compose/compose.frag", {"indirect", "radiance"})
         .define("HAS_DIRECT", wired("direct"))
         .define("GLOSS", fullMaterials() * (SizeExpr(2) - wired("gloss")))

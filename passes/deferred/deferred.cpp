@@ -201,7 +201,6 @@ class Deferred : public Pass {
         d,
         "outside the fovea, where the eye resolves no more than every second pixel, one pixel of each "
         "square of this width is shaded, and the filter interpolates; 1 shades all pixels");
-    declareMaterials(d, "`full` also finds the light that glossy surfaces reflect");
     d.parameter("filter_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
     d.parameter("filter_plane", real(0.005, 1e-6, 1),

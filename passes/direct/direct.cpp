@@ -37,7 +37,6 @@ class Direct : public Pass {
     d.parameter("filter", choice("bilinear", {"none", "bilinear", "pcf"}),
                 "shadow filter: `none` makes one comparison (jagged edges), `bilinear` interpolates four, "
                 "`pcf` averages 3x3 bilinear ones (softer edges)");
-    declareMaterials(d, "`full` lights all that the surface reflects");
     const auto shade = [&](const char* name, int kind) {
       d.fullscreen("direct/direct.frag", {"direct"})
           .called(name)

@@ -37,7 +37,6 @@ class Emit : public Pass {
     d.parameter("averaged_frames", integer(1, 1, 65536),
                 "number of frames averaged into the final image; each VPL's area (kernel `disc`) is divided "
                 "by it, as if all VPLs were in one frame");
-    declareMaterials(d, "`full` lets metals keep their colour");
     d.counter("paths", "light paths that contribute");
     d.counter("rays", "rays traced");
     d.counter("vpls", "slots filled");

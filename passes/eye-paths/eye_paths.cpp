@@ -4,7 +4,6 @@
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
-#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {
@@ -29,7 +28,6 @@ void declarePorts(PassDeclaration& d) {
               "region in which the eye paths start, as in pass candidates");
   d.parameter("image_share", real(0.4, 0, 1),
               "share of starts in the whole image for region `mixed`, rounded to 64ths");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("points", integer(1024, 1, 65536),
               "number of screen points, the same as in pass vpl-intensity");
   d.parameter("paths", integer(8192, 64, 65536), "number of eye paths");
@@ -53,7 +51,6 @@ void declarePorts(PassDeclaration& d) {
               "frames in which all paths are traced anew, those of a share of the points in each frame; "
               "the others keep the light they found unless their start is new; of them, twice as large a "
               "share is traced all the same as the light of the former has changed suddenly");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
 }
 
 // Frames in which all starts are renewed.

@@ -53,9 +53,6 @@ class GBuffer : public Pass {
     d.parameter(
         "cull", choice("auto", {"auto", "none"}),
         "back faces: `auto` hides those of single-sided materials, as glTF specifies, `none` shows all");
-    declareMaterials(d,
-                     "`full` has all glTF properties, with normal maps, glossy reflection, and stochastic "
-                     "transparency of glass and alphaMode BLEND");
     d.counter("triangles", "triangles drawn, which are those that may be in view");
     std::vector<std::string> images = {"gbuffer.position", "gbuffer.normal",   "gbuffer.face",
                                        "gbuffer.albedo",   "gbuffer.emission", "gbuffer.id"};

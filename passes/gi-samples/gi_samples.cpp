@@ -20,9 +20,7 @@ void declarePorts(PassDeclaration& d) {
               "1: every pixel gets a sample; 2: in each frame one of each block of 2 x 2 pixels, in turn");
   d.parameter("outside_spacing", integer(1, 1, 2),
               "spacing outside of the fovea; `spacing` if that is larger");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("paths", integer(1, 1, 64), "paths that are traced for a sample, of which one is chosen");
-  declareMaterials(d, "`full` lets metals keep their colour");
   d.counter("rays", kRaysDoc);
   d.counter("samples", "pixels that show a surface and got a sample");
 }

@@ -25,7 +25,6 @@ void declarePorts(PassDeclaration& d) {
   d.parameter(
       "bounces", integer(2, 1, 64),
       "reflections of the light before it reaches the visible surface; 2 matches a path tracer of depth 4");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
   d.counter("rays", kRaysDoc);
   d.counter("pixels", "pixels that got rays");
 }

@@ -36,8 +36,7 @@ void declarePorts(PassDeclaration& d) {
            "with full materials, rgb: at the same pixels, the mean of the same light under the lobe of the "
            "surface, W/(sr m^2); a: as in `samples`; otherwise one undefined texel");
   d.output("spread", spreadBuffer(), write, "x: least area of a VPL's disc, m^2, for pass vpl-intensity");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
-  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, 4 or 8");
+  d.parameter("spacing", integer(4, 2, 8), "spacing of the rays outside the fovea: 2, as inside it, 4 or 8");
   d.parameter("vpls", integer(1000, 1, 1 << 20), "number of VPLs");
   d.parameter("share", real(50, 0.01, 1e6),
               "total area of all discs, in squares of the mean distance between visible surfaces and the "
@@ -56,7 +55,6 @@ void declarePorts(PassDeclaration& d) {
       "one; for a map there are as many cosine-weighted ones beside them");
   d.parameter("light", choice("all", {"none", "map", "all"}),
               "`map` brings the light of the scene's environment map alone, `none` nothing");
-  declareMaterials(d, "`full` lets surfaces send light where their materials reflect it");
   d.counter("rays", kRaysDoc);
   d.counter("shaded", "rays from visible surfaces at whose ends the light was evaluated");
   d.counter("gathered",
@@ -78,6 +76,12 @@ void checkGBufferSize(const PassContext& ctx, glm::uvec2 view) {
 }
 
 constexpr Usage kReadWrite = Usage::StorageRead | Usage::StorageWrite;
+
+// Image widths. With a `spacing` of 2, all of the picture is like the fovea.
+float foveaRadius(const RecordContext& ctx) {
+  constexpr float kEverywhere = 4;
+  return ctx.parameters().integer("spacing") == 2 ? kEverywhere : ctx.view().foveaRadius;
+}
 
 class NearField : public Pass {
  public:
@@ -148,7 +152,10 @@ class NearField : public Pass {
         .constant("share", [](const RecordContext& ctx) { return float(ctx.parameters().real("share")); })
         .constant("saccade", [](const RecordContext& ctx) { return ctx.frame().saccade; })
         .constant("isFirst", [](const RecordContext& ctx) { return uint32_t(ctx.firstFrame()); });
-    withRays("near-field/tiles.comp").define("MAP_ALONE", is("light", "map")).over("tiles");
+    withRays("near-field/tiles.comp")
+        .define("MAP_ALONE", is("light", "map"))
+        .constant("foveaRadius", [](const RecordContext& ctx) { return foveaRadius(ctx); })
+        .over("tiles");
     withRays("near-field/trace.comp")
         .define("MAP_ALONE", is("light", "map"))
         .define("GLOSS", fullMaterials())

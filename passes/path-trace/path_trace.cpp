@@ -2,6 +2,7 @@
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
+#include "passes/materials.h"
 #include "passes/path-trace/path_tracer.h"
 
 namespace fovea::path_trace {
@@ -31,10 +32,6 @@ class PathTrace : public Pass {
         "depth", integer(4, 1, 64),
         "edges of the longest path: 1 is emission, 2 direct light, each further edge one indirect bounce");
     d.parameter("spp", integer(2000, 2, 1 << 24), "samples per pixel");
-    d.parameter(
-        "materials", choice("diffuse", {"diffuse", "full"}),
-        "`diffuse`: every surface is Lambertian with reflectance base colour times (1 - metallic); `full`: "
-        "everything that glTF says of it");
     d.parameter("sampling", choice("low-discrepancy", {"low-discrepancy", "independent"}),
                 "random numbers: `low-discrepancy` uses Owen-scrambled Sobol' points, for images; "
                 "`independent` is for statistics");
@@ -61,7 +58,7 @@ class PathTrace : public Pass {
     settings.threads = uint32_t(p.integer("threads"));
     settings.independent = p.text("sampling") == "independent";
     settings.box = p.text("filter") == "box";
-    settings.full = p.text("materials") == "full";
+    settings.full = fullMaterials(p);
     settings.seed = hashCombine(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u);
     settings.progress = [&](double share) { return ctx.progress(share); };
     const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),

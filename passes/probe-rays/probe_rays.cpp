@@ -35,14 +35,12 @@ void declarePorts(PassDeclaration& d) {
   d.parameter("rays", integer(128, 8, 512), "rays of each probe; of one inside geometry a quarter of them");
   d.parameter("outside_share", integer(1, 1, 16),
               "probes that light nothing in the fovea trace one of so many of their rays");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("bias", real(0.25, 0, 2, "spacings of the grid"),
               "how far points are moved off their surface where probes light them, as in pass probe-sample");
   d.parameter(
       "feedback", flag(true),
       "whether surfaces that rays meet reflect the light that `probes` knows; if not, they reflect only "
       "that of lights and of surfaces that shine, and the probes hold one bounce");
-  declareMaterials(d, "`full` lets metals keep their colour");
   d.counter("rays", kRaysDoc);
   d.counter("probes", "probes in the grid");
   d.counter("inside", "probes inside geometry, which light nothing");

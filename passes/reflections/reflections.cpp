@@ -45,7 +45,6 @@ class Reflections : public Pass {
                       "of pixels and frame: VPLs would show as blurred discs there");
     d.rays().recorded();
     declarePorts(d);
-    d.parameter("materials", choice("full", {"full"}), "what surfaces are: diffuse ones are no mirrors");
     d.scratch("traced",
               image2D(VK_FORMAT_R32G32B32A32_SFLOAT, ceilDiv(viewWidth(), 2), ceilDiv(viewHeight(), 2)),
               kReadWrite,

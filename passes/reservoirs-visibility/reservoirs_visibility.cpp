@@ -32,7 +32,6 @@ void declarePorts(PassDeclaration& d) {
       "whether the sources are of the previous frame. Those on things that move are then taken to see "
       "what the pixel sees: where they were, something else may be by now, and rays from there would end "
       "at once");
-  declareMaterials(d, "`full` lets rays pass glass and alphaMode BLEND");
   d.counter("rays", "rays traced towards samples");
   d.counter("hidden", "rays that did not reach their sample");
 }

@@ -27,7 +27,6 @@ class ShadowRays : public Pass {
     d.inout("direct", image2D(VK_FORMAT_R16G16B16A16_SFLOAT), Usage::StorageRead | Usage::StorageWrite,
             "rgb: radiance towards the eye, W/(sr m^2); a: 0 where the shadow map is in doubt; becomes 1 "
             "where rays decide");
-    declareMaterials(d, "`full` takes everything that glTF says of them");
     declarePeriphery(
         d,
         "1 traces all pixels in doubt; 2 leaves out those outside the fovea where the eye resolves "

@@ -58,11 +58,11 @@ class TemporalAccumulation : public Pass {
     d.output("mean", image2D(VK_FORMAT_R16G16B16A16_SFLOAT, width, height), Usage::ColorAttachment,
              "rgb: mean of the samples, in their unit; a: number of samples in it");
     d.output("gloss_mean",
-             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(fullMaterials() * width, 1),
-                     max(fullMaterials() * height, 1)),
+             image2D(VK_FORMAT_R16G16B16A16_SFLOAT, max(wired("gloss") * width, 1),
+                     max(wired("gloss") * height, 1)),
              Usage::ColorAttachment,
-             "rgb: mean of `gloss`, in its unit; a: as in `mean`; undefined if that is not wired; a single "
-             "texel unless materials are full");
+             "rgb: mean of `gloss`, in its unit; a: as in `mean`; a single undefined texel if that is not "
+             "wired");
     d.parameter("frames", real(16, 1, 1000),
                 "length of the mean: each sample has at least the weight of one in this many; for blocks "
                 "wider than a texel of `samples`, which change all at once, the length is multiplied by the "
@@ -79,7 +79,6 @@ class TemporalAccumulation : public Pass {
                 "the pixel's distance from the eye");
     d.parameter("normal_angle", real(25, 1, 90, "degrees"),
                 "least angle between normals of different surfaces");
-    declareMaterials(d, "with `full` there may be `gloss`");
     // Samples are for blocks if a texel of them covers several pixels.
     const SizeExpr blocks = min(ceilDiv(widthOf("mean"), widthOf("samples")) - 1, 1), gloss = wired("gloss");
     const auto accumulate = [&](const char* name, std::vector<std::string> means) -> StepSpec& {

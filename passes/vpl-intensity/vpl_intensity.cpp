@@ -66,7 +66,6 @@ PassDeclaration declareIntensity(const char* type, const char* doc) {
             "1 if the brick contains surface (for `area`: surface to assign)");
   d.parameter("region", choice("fovea", {"fovea", "image", "mixed"}),
               "region in which the eye paths start, as in pass candidates; `area` starts none");
-  d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea");
   d.parameter("points", integer(2048, 64, 4096),
               "screen points over which a density is averaged; `area` needs none");
   d.counter("alive", "slots that hold a VPL");

@@ -25,8 +25,6 @@ class WeightMap : public Pass {
     d.parameter("region", choice("fovea", {"fovea", "image"}),
                 "region of full weight: the disc around the gaze, outside which weights fall off, or the "
                 "whole image");
-    d.parameter("fovea_radius", real(0.25, 0.001, 4, "image widths"),
-                "radius r_f of the fovea: the weight is 1 inside and r_f / r at distance r from the gaze");
     d.parameter("spacing", integer(1, 1, 16),
                 "one pixel in each square of this width is used; above 1, sides that are smaller on the "
                 "screen may be missed");

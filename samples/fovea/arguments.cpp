@@ -1,6 +1,9 @@
 #include "samples/fovea/arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include <map>
 
@@ -38,6 +41,49 @@ void addRaysOption(CLI::App& command, session::RaysOn& rays) {
       ->check(CLI::IsMember({"auto", "host", "device"}));
 }
 
+using Type = graph::ParameterSpec::Type;
+
+CLI::Validator valuesOf(const graph::ParameterSpec& spec) {
+  if (spec.type == Type::Choice) return CLI::IsMember(spec.choices).description("");
+  if (spec.type == Type::Int) return CLI::Range(int64_t(spec.min), int64_t(spec.max)).description("");
+  return numberBetween(spec.min, spec.max);
+}
+
+std::string valueName(const graph::ParameterSpec& spec) {
+  if (spec.type == Type::Choice) return fmt::format("{}", fmt::join(spec.choices, "|"));
+  return spec.type == Type::Int ? "N" : "X";
+}
+
+// Breaks a text into lines as long as those of the other options' help.
+std::string wrapped(std::string text) {
+  constexpr size_t kWidth = 80;
+  for (size_t begin = 0; text.size() - begin > kWidth;) {
+    const size_t space = text.rfind(' ', begin + kWidth);
+    if (space == std::string::npos || space <= begin) break;
+    text[space] = '\n';
+    begin = space + 1;
+  }
+  return text;
+}
+
+// What belongs to the frame: --fovea-radius 0.2 stands for --set view.fovea_radius=0.2.
+void addViewOptions(CLI::App& command, std::vector<std::string>& set) {
+  for (const graph::ParameterSpec& spec : graph::viewParameters()) {
+    std::string option = "--" + spec.name;
+    std::ranges::replace(option, '_', '-');
+    const std::string doc = spec.unit.empty() ? spec.doc : fmt::format("{} [{}]", spec.doc, spec.unit);
+    command
+        .add_option_function<std::string>(
+            option,
+            [&set, name = spec.name](const std::string& value) {
+              set.push_back(fmt::format("view.{}={}", name, value));
+            },
+            wrapped(doc))
+        ->type_name(valueName(spec))
+        ->check(valuesOf(spec));
+  }
+}
+
 }  // namespace
 
 void addGraphOptions(CLI::App& command, GraphOptions& options) {
@@ -47,6 +93,7 @@ void addGraphOptions(CLI::App& command, GraphOptions& options) {
   addList(command, "--set", options.set,
           "Override a graph parameter (vpl_count=500) or a pass's (deferred.kernel=disc)")
       ->type_name("NAME=VALUE");
+  addViewOptions(command, options.set);
   addPluginOption(command, options.plugins);
   addPassesOption(command, options.passes);
   addRaysOption(command, options.rays);

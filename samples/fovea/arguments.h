@@ -14,7 +14,7 @@ using namespace session;  // NOLINT(google-build-using-namespace): the program i
 
 void addPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void addPassesOption(CLI::App& command, std::vector<std::string>& folders);
-// GRAPH, --set, --plugin, --passes, --rays
+// GRAPH, --set, --plugin, --passes, --rays, and an option for each of graph::viewParameters(), such as --fovea-radius
 void addGraphOptions(CLI::App& command, GraphOptions& options);
 // --device, --without
 void addDeviceOptions(CLI::App& command, std::string& device, std::vector<std::string>& without);

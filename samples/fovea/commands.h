@@ -13,6 +13,7 @@ using Action = std::function<ExitCode()>;
 
 void addRender(CLI::App& program, Action& action);
 void addCheck(CLI::App& program, Action& action);
+void addMigrate(CLI::App& program, Action& action);
 void addPasses(CLI::App& program, Action& action);
 void addSchema(CLI::App& program, Action& action);
 void addDevices(CLI::App& program, Action& action);

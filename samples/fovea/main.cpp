@@ -74,6 +74,7 @@ ExitCode parseAndRun(int argc, char** argv) {
   addRender(program, action);
   addView(program, action);
   addCheck(program, action);
+  addMigrate(program, action);
   addPasses(program, action);
   addSchema(program, action);
   addDevices(program, action);

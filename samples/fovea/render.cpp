@@ -34,7 +34,7 @@ constexpr double kSlowFrameMs = 500;
 struct RenderOptions {
   GraphOptions graph;
   std::string scene, environment, size = "1024x1024", gaze, gazeTrace, lens, device, timings, trace;
-  double gazeGapMs = 1000 * scene::kGazeGap, foveaDegrees = 0, frameLimit = kFrameLimit;
+  double gazeGapMs = 1000 * scene::kGazeGap, frameLimit = kFrameLimit;
   std::vector<std::string> outputs, without;
   uint32_t first = 0, frames = 1, warmup = 0, seed = 1;
   bool quiet = false, validation = false, showFovea = false;
@@ -63,7 +63,6 @@ class Render {
   void checkOutputNames() const;
   void chooseOutputs();
   void loadInputs();
-  void useFoveaAngle(const graph::BoundGraph& bound);
   void buildPlan();
   void buildExecutor();
   void renderFrames();
@@ -157,27 +156,9 @@ void Render::loadInputs() {
   if (!options_.gazeTrace.empty()) scene_.gaze = std::move(trace);
   if (gaze_) scene_.gaze = {{0, *gaze_, true, {}, {}}};
   scene_.gazeGap = 0.001 * options_.gazeGapMs;
-  if (options_.foveaDegrees > 0) useFoveaAngle(bound);
   chooseOutputs();
   checkOutputNames();
   stopIfInterrupted();
-}
-
-// Passes take the radius in image widths, so the angle is converted for their view in the first frame.
-void Render::useFoveaAngle(const graph::BoundGraph& bound) {
-  const scene::Frame first = scene::makeFrame(scene_, geometry_, size_, 0, 0);
-  const float angle = glm::radians(float(options_.foveaDegrees));
-  GraphOptions changed = options_.graph;
-  for (const graph::BoundPass& pass : bound.passes)
-    if (pass.parameters.find("fovea_radius"))
-      changed.set.push_back(
-          fmt::format("{}.fovea_radius={:.6f}", pass.name,
-                      scene::foveaRadiusOfAngle(angle, first.findView(bound.views[pass.view])->viewToClip)));
-  if (changed.set.size() == options_.graph.set.size())
-    throw Error(ExitCode::Usage,
-                "graph " + description_.name + " has no fovea that --fovea-degrees could size");
-  Diagnostics known = messages_;
-  description_ = loadGraph(changed, known);
 }
 
 void Render::buildPlan() {
@@ -230,9 +211,8 @@ void Render::showFovea() {
           eye = graph.views[pass.view];
   outputs_->setOverlay([this, eye](image::Image& picture, uint64_t index) {
     const scene::Frame shown = run_->frame(index);
-    const scene::Fovea fovea =
-        scene::makeFovea(shown.findView(eye)->gaze, {picture.width, picture.height},
-                         float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
+    const scene::View& view = *shown.findView(eye);
+    const scene::Fovea fovea = scene::makeFovea(view.gaze, {picture.width, picture.height}, view.foveaRadius);
     image::drawFovea(picture, {fovea.centre.x, fovea.centre.y, fovea.radius});
   });
 }
@@ -252,8 +232,7 @@ image::Metadata Render::metadata(uint64_t index) const {
                           {"seed", std::to_string(info_.seed)},
                           {"size", fmt::format("{}x{}", size_.x, size_.y)}};
   data["gaze"] = fmt::format("{},{}", shown.views[0].gaze.x, shown.views[0].gaze.y);
-  data["fovea_radius"] =
-      fmt::format("{}", float(session::parameterOr(run_->graph(), "fovea_radius", kFoveaRadius)));
+  data["fovea_radius"] = fmt::format("{}", shown.views[0].foveaRadius);
   const float exposure =
       float(session::parameterOr(run_->graph(), "exposure", 0));  // of tonemap; 0 means the scene's
   data["exposure"] = fmt::format("{}", exposure > 0 ? exposure : shown.exposure);
@@ -408,13 +387,6 @@ void addRender(CLI::App& program, Action& action) {
       ->type_name("MS")
       ->needs(trace)
       ->check(CLI::Range(0.0, 10000.0).description(""));
-  command
-      ->add_option(
-          "--fovea-degrees", options->foveaDegrees,
-          "Foveal radius as an angle from the line of sight, by the field of view of the\nfirst frame's "
-          "camera; default: the graph's fovea_radius, in image widths")
-      ->type_name("DEG")
-      ->check(CLI::Range(0.1, 60.0).description(""));
   command
       ->add_option(
           "--lens", options->lens,

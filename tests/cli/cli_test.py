@@ -58,8 +58,9 @@ class Usage(CliTest):
         self.fails(BAD_INPUT, *DIRECT, "--gaze-trace", "g.csv", says=["g.csv:3", "g.csv:4"])
 
     def test_fovea_degrees(self):
-        self.fails(USAGE, *DIRECT, "--fovea-degrees", "0", says=["--fovea-degrees"])
-        self.fails(USAGE, *DIRECT, "--fovea-degrees", "10", says=["direct", "no fovea"])
+        self.fails(USAGE, *DIRECT, "--fovea-degrees", "61", says=["--fovea-degrees", "0 to 60"])
+        self.fails(USAGE, *DIRECT, "--materials", "shiny", says=["--materials", "full"])
+        self.fails(BAD_INPUT, *DIRECT, "--set", "materials=full", says=["belongs to the frame", "view.materials=full"])
 
     def test_output_names(self):
         self.fails(USAGE, *DIRECT, "-o", "picture", says=["picture", "png"])
@@ -180,8 +181,8 @@ class Inputs(CliTest):
     def test_rays_on_the_device_wait_for_no_pass_on_the_cpu(self):
         for graph in "foveal", "foveal_stereo", "foveal_view", "ours", "stereo":
             for materials in "diffuse", "full":
-                plan = json.loads(self.succeeds("check", graph, "--plan", "json", "--set", "rays=device", "--set",
-                                                f"materials={materials}").stdout)
+                plan = json.loads(self.succeeds("check", graph, "--plan", "json", "--set", "rays=device", "--materials",
+                                                materials).stdout)
                 passes = [p for level in plan["levels"] for p in level["passes"]]
                 self.assertEqual([p["name"] for p in passes if p["host"]], [], (graph, materials))
 
@@ -319,6 +320,20 @@ class Lists(CliTest):
         stored = SOURCE / "graphs/fovea-graph.schema.json"
         self.assertEqual(json.loads(stored.read_text()), json.loads(self.succeeds("schema").stdout),
                          "graphs/fovea-graph.schema.json is out of date: write `fovea schema` into it")
+
+    def test_migrate(self):
+        old = '{\n  "extends": "direct.json",\n  "parameters": { "materials": "full" }\n}\n'
+        new = '{\n  "version": 2,\n  "extends": "direct.json",\n  "view": { "materials": "full" }\n}\n'
+        self.write("old.json", old)
+        self.assertIn("old.json:3:", self.succeeds("check", "old.json").stderr)
+        self.assertIn("fovea migrate old.json", self.succeeds("check", "old.json").stderr)
+        result = self.call("migrate", "--check", "old.json")
+        self.assertEqual((result.returncode, (self.folder / "old.json").read_text()), (BAD_INPUT, old))
+        self.assertIn("old.json:3:", self.succeeds("migrate", "old.json").stdout)
+        self.assertEqual((self.folder / "old.json").read_text(), new)
+        self.assertEqual(self.succeeds("migrate", "--check", "old.json").stdout, "")
+        self.assertEqual(self.succeeds("check", "old.json").stderr, "")
+        self.fails(BAD_INPUT, "migrate", "none.json", says=["none.json"])
 
     def test_check(self):
         for path in self.graphs():

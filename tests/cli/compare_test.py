@@ -68,7 +68,7 @@ class Compare(CompareTest):
     def test_rendered(self):
         """Metadata and layers of the program's own files."""
         reference = ["render", "reference", "--scene", "cornellbox", "--size", "32x32", "--set", "spp=8"]
-        self.succeeds("render", "ours", "--scene", "cornellbox", "--size", "32x32", "--set", "fovea_radius=0.2", "--set",
+        self.succeeds("render", "ours", "--scene", "cornellbox", "--size", "32x32", "--fovea-radius", "0.2", "--set",
                       "vpl_count=16", "--set", "map_size=16", "-o", "a.exr", "-o", "a.png", "--gaze", "0.25,0.75")
         self.succeeds(*reference, "-o", "g.exr")
         m = self.json("compare", "a.exr", "g.exr")

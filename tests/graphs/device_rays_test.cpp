@@ -51,7 +51,7 @@ double meanDifference(const std::vector<float>& a, const std::vector<float>& b) 
 TEST_P(DeviceRaysInGraphs, GiveThePicturesOfTheHost) {
   const scene::Scene scene = movingScene();
   const auto render = [&](const char* name, std::vector<std::string> set, uint32_t seed = 1) {
-    set.push_back(std::string("materials=") + GetParam());
+    set.push_back(std::string("view.materials=") + GetParam());
     set.push_back("vpl_count=200");
     return runGraph(name, scene, {.size = {96, 72}, .frames = 4, .seed = seed, .set = std::move(set)});
   };

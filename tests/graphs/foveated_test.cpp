@@ -137,7 +137,7 @@ TEST(Foveated, ResizeForgetsTheList) {
 
 TEST(Foveated, GazeThatJumpsTakesTheListAlong) {
   const scene::Scene s = scene::builtin("cornellbox");
-  GraphRunOptions options = small({"fovea_radius=0.15"}, 16);
+  GraphRunOptions options = small({"view.fovea_radius=0.15"}, 16);
   options.beforeFrame = [](scene::Frame& frame) {
     for (scene::View& v : frame.views)
       v.gaze = frame.index < 8 ? glm::vec2(0.2f, 0.8f) : glm::vec2(0.8f, 0.3f);
@@ -215,7 +215,7 @@ TEST(Foveated, DegenerateInput) {
       {"empty scene", &empty, {}, {0.5f, 0.5f}, true},
       {"no light", &dark, {}, {0.5f, 0.5f}, true},
       {"fovea outside", &box, {}, {3.0f, -2.0f}, false},
-      {"fovea over all", &box, {"fovea_radius=2"}, {0.5f, 0.5f}, false},
+      {"fovea over all", &box, {"view.fovea_radius=2"}, {0.5f, 0.5f}, false},
       {"fewer voxels than VPLs", &dot, {"vpl_count=256", "attempts=512"}, {0.5f, 0.5f}, true},
       {"coarsest voxels", &box, {"voxels=8"}, {0.5f, 0.5f}, false},
       {"one VPL", &box, {"vpl_count=1", "attempts=64"}, {0.5f, 0.5f}, false},
@@ -456,7 +456,7 @@ TEST(Foveated, ReflectionsAreFollowedInTheirTiles) {
   for (scene::Material& m : s.materials)
     if (m.name == "blue" || m.name == "yellow") m.metallic = 1, m.roughness = 0.2f;
   const auto render = [&](const std::string& graph) {
-    return runGraph(graph, s, small({"materials=full"}, 6)).outputs;
+    return runGraph(graph, s, small({"view.materials=full"}, 6)).outputs;
   };
   const auto tiled = render(changedFoveal("with_tiles.json", R"("outputs": {"tiles": "mirrors.tiles"})"));
   EXPECT_EQ(tiled.at("radiance").bytes, render(foveatedWithoutTiles()).at("radiance").bytes);

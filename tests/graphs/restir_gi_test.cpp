@@ -171,7 +171,7 @@ TEST(RestirGi, RepeatsBitForBitWhileThingsMove) {
   GraphRunOptions options;
   options.size = {41, 33};
   options.frames = 6;
-  options.set = {"permutation=true", "materials=full", "shadow_map_size=256"};
+  options.set = {"permutation=true", "view.materials=full", "shadow_map_size=256"};
   const GraphRun a = runGraph(kGraph, s, options), b = runGraph(kGraph, s, options);
   EXPECT_EQ(a.outputs.at("radiance").bytes, b.outputs.at("radiance").bytes);
   for (const float v : toFloats(a.outputs.at("radiance"))) ASSERT_TRUE(std::isfinite(v));

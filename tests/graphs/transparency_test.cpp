@@ -48,7 +48,7 @@ scene::Scene under(const scene::Material& material) {
 double meanDirect(const scene::Scene& s, const char* materials) {
   GraphRunOptions o;
   o.size = {64, 64};
-  o.set = {std::string("materials=") + materials, "shadow_map_size=256"};
+  o.set = {std::string("view.materials=") + materials, "shadow_map_size=256"};
   o.outputs = {"radiance"};
   const std::vector<float> image = toFloats(runGraph("direct", s, o).outputs.at("radiance"));
   double sum = 0;
@@ -115,9 +115,9 @@ TEST(Transparency, MeansOverFramesAreThoseOfThePathTracer) {
   GraphRunOptions o;
   o.size = glm::uvec2(kSide);
   o.outputs = {"direct"};
-  o.set = {"materials=full", "spp=2"};
+  o.set = {"view.materials=full", "spp=2"};
   const auto want = toFloats(runGraph("reference", s, o).outputs.at("direct"));
-  o.set = {"materials=full", "shadow_map_size=512"};
+  o.set = {"view.materials=full", "shadow_map_size=512"};
   o.frames = 32;
   o.everyFrame = true;
   std::vector<float> got(want.size());
@@ -142,7 +142,7 @@ TEST(Transparency, TheSmoothedPictureIsThatOfThePathTracer) {
     GraphRunOptions o;
     o.size = glm::uvec2(kSide);
     o.outputs = {"radiance"};
-    o.set = {"materials=full", "spp=64"};
+    o.set = {"view.materials=full", "spp=64"};
     const auto want = toFloats(runGraph("reference", s, o).outputs.at("radiance"));
     o.set = {"shadow_map_size=512"};
     o.frames = 24 + kFrames;

@@ -54,7 +54,7 @@ TEST(Without, TheSamePictures) {
   const scene::Scene scene = sceneToDraw();
   for (const std::string& feature : gpu::dispensableFeatures()) {
     SCOPED_TRACE(feature);
-    expectTheSame("direct", scene, {feature}, {"materials=full"});
+    expectTheSame("direct", scene, {feature}, {"view.materials=full"});
   }
   for (const char* rays : {"rays=host", "rays=device"})
     expectTheSame("foveal", scene, gpu::dispensableFeatures(), {"vpl_count=32", rays});

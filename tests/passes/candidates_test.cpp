@@ -172,7 +172,7 @@ TEST_P(Replay, EveryCandidateIsTheCpus) {
   constexpr int kCount = 3000;
   const glm::vec2 gaze(0.4f, 0.55f);
   PassTest test("candidates");
-  test.scene(s).viewSize(48, 36).seed(9).param("count", kCount).param("fovea_radius", 0.3);
+  test.scene(s).viewSize(48, 36).seed(9).param("count", kCount).view("fovea_radius", 0.3);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
   image.wire(test);
   setVoxels(test, voxels);
@@ -318,7 +318,7 @@ TEST_P(Pixels, AreUniformOverTheRegion) {
   constexpr int kCount = 30000;
   PassTest test("candidates");
   test.scene(chambers.scene).viewSize(uint32_t(kSize.x), uint32_t(kSize.y));
-  test.param("count", kCount).param("region", c.region).param("fovea_radius", c.radius);
+  test.param("count", kCount).param("region", c.region).view("fovea_radius", c.radius);
   test.param("image_share", 0.25);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = c.gaze; });
   chambers.image.wire(test);
@@ -358,7 +358,7 @@ TEST(Candidates, TwoEyesTakeTurns) {
   test.scene(chambers.scene)
       .viewSize(uint32_t(kSize.x), uint32_t(kSize.y))
       .param("count", 2000)
-      .param("fovea_radius", 0.1);
+      .view("fovea_radius", 0.1);
   test.beforeFrame([&](PassTest&, scene::Frame& frame) {
     for (scene::View& view : frame.views) view.gaze = gazes[view.name == "right"];
   });
@@ -450,7 +450,7 @@ TEST(Candidates, OnlyTheFoveaCounts) {
   test.scene(chambers.scene)
       .viewSize(uint32_t(kSize.x), uint32_t(kSize.y))
       .param("count", 300)
-      .param("fovea_radius", 0.2);
+      .view("fovea_radius", 0.2);
   chambers.image.wire(test);
   setVoxels(test, chambers.voxels);
   test.run();

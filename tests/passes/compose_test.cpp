@@ -65,7 +65,7 @@ TEST(Compose, GlossySurfacesReflectOnTopOfTheirDiffuseLayer) {
     s.materials.emplace_back();
     s.cameras.emplace_back();
     s.cameras[0].position = eye;
-    test.scene(s).param("materials", "full");
+    test.scene(s).view("materials", "full");
     test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(directAt));
     if (wired) test.image("gloss", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(albedoAt));
     test.run();
@@ -102,7 +102,7 @@ TEST(Compose, SmoothSurfacesReflectWhatRaysFind) {
     s.materials.emplace_back();
     s.cameras.emplace_back();
     s.cameras[0].position = {0, 1000, 0};
-    test.scene(s).param("materials", "full");
+    test.scene(s).view("materials", "full");
     std::vector<uint16_t> traced = image(directAt);
     traced[4 * 4 + 3] = 0;  // a pixel without a ray
     test.image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, image(irradianceAt));

@@ -32,7 +32,7 @@ bool inContact(const GBuffer& seen, int x, int y, float reach, int widest) {
 
 std::vector<glm::uvec2> find(const GBuffer& seen, double reach, double width, double foveaRadius = 2) {
   PassTest test("contacts");
-  test.param("fovea_radius", foveaRadius).param("width", width).param("rise", double(kRise));
+  test.view("fovea_radius", foveaRadius).param("width", width).param("rise", double(kRise));
   test.param("reach", reach / std::sqrt(kArea / glm::pi<double>()));
   seen.wire(test);
   test.buffer("spread", std::vector<glm::vec4>{{kArea, 0, 0, 0}}, "VplSpread");

@@ -53,7 +53,7 @@ Output run(const GBuffer& g, const std::vector<Vpl>& vpls, int interleave, bool 
     if (value >= 0)
       test.image(port, VK_FORMAT_R16G16B16A16_SFLOAT, uint32_t(g.width), uint32_t(g.height), 1,
                  std::vector<uint64_t>(g.pixels.size(), glm::packHalf4x16(glm::vec4(glm::vec3(value), 1))));
-  test.scene(seenFrom(kEye)).param("materials", "full").param("kernel", disc ? "disc" : "clamp");
+  test.scene(seenFrom(kEye)).view("materials", "full").param("kernel", disc ? "disc" : "clamp");
   test.buffer("vpls", vpls, "Vpl").param("interleave", interleave);
   test.run();
   return {test.floats("irradiance"), test.floats("gloss"), test.floats("indirect")};

@@ -10,7 +10,7 @@ namespace {
 
 // A fovea of 8 pixels around the gaze, in a picture so large that the eye resolves little outside.
 void setFovea(PassTest& test, const GBuffer& g, glm::vec2 gaze) {
-  test.param("periphery", 2).param("pixels_per_degree", 200.0).param("fovea_radius", 8.0 / g.width);
+  test.param("periphery", 2).view("pixels_per_degree", 200.0).view("fovea_radius", 8.0 / g.width);
   test.beforeFrame([gaze](PassTest&, scene::Frame& f) { f.views[0].gaze = gaze; });
 }
 

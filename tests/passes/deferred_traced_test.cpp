@@ -33,7 +33,7 @@ std::vector<uint64_t> irradiance(const GBuffer& g, bool traced, bool nearField, 
   if (traced) wire("traced", image(g, [&](uint32_t i) { return tracedAt(g, i); }));
   if (nearField) wire("near_field", image(g, nearFieldAt));
   test.buffer("vpls", randomVpls(100), "Vpl");
-  test.param("periphery", periphery).param("pixels_per_degree", 200.0).param("fovea_radius", 8.0 / g.width);
+  test.param("periphery", periphery).view("pixels_per_degree", 200.0).view("fovea_radius", 8.0 / g.width);
   test.run();
   return test.values<uint64_t>("irradiance");
 }

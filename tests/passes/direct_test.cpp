@@ -189,7 +189,7 @@ std::vector<float> shade(const std::vector<scene::Light>& lights, const std::vec
     }
   PassTest test("direct");
   test.param("filter", filter).viewSize(kWidth, kHeight).scene(lit(lights));
-  test.param("materials", full ? "full" : "diffuse");
+  test.view("materials", full ? "full" : "diffuse");
   test.image("gbuffer.position", VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight, 1, position);
   test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, kWidth, kHeight, 1, halves(normal));
   test.image("gbuffer.face", VK_FORMAT_R16G16_SNORM, kWidth, kHeight, 1, snorms(face));
@@ -320,7 +320,7 @@ TEST(DirectFull, EachLightTypeEqualsTheBsdf) {
 
 TEST(DirectFull, TheGBufferHasToBeFullAsWell) {
   PassTest test("direct");
-  test.param("materials", "full").viewSize(8, 8).scene(lit({sun({0, -1, 0})}));
+  test.view("materials", "full").viewSize(8, 8).scene(lit({sun({0, -1, 0})}));
   GBuffer(8, 8, [](int, int) { return SurfacePixel{}; }).wire(test);
   test.image("gbuffer.emission", VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, 1, std::vector<uint16_t>(256));
   test.image("maps.depth", VK_FORMAT_D32_SFLOAT, 8, 8, 1, std::vector<float>(64));

@@ -122,7 +122,7 @@ TEST(Emit, MetalsReflectTheirColourIfMaterialsAreFull) {
   s.lights = {pointLight({0.5f, 0, 0}, glm::vec3(1))};
   PassTest black("emit"), gold("emit");
   EXPECT_EQ(filled(emitted(black.param("count", 256).param("bounces", 1), s)), 0);
-  gold.param("count", 256).param("bounces", 1).param("materials", "full");
+  gold.param("count", 256).param("bounces", 1).view("materials", "full");
   expectFlux(emitted(gold, s), 4 * kPi * glm::dvec3(0.9, 0.6, 0.3), 1e-4);
 }
 

@@ -25,7 +25,7 @@ struct Result {
 Result run(const char* type, const std::string& materials, bool emission, uint32_t frames) {
   PassTest test(type);
   test.viewSize(48, 32).scene(sceneOfEverything(materials == "glass"));
-  test.param("materials", materials == "diffuse" ? "diffuse" : "full")
+  test.view("materials", materials == "diffuse" ? "diffuse" : "full")
       .param("emission", emission)
       .param("region", "mixed");
   test.param("points", 300)

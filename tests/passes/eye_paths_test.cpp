@@ -340,7 +340,7 @@ TEST(EyePaths, StartsMoveOnInTurns) {
   passes::traceEyePaths(frame, frame.views[0], *look.rays, settings, {starts, after});
   for (uint32_t moved = 0; moved <= 4; ++moved) {
     PassTest test("eye-paths-host");
-    test.param("paths", 500).param("points", 100).param("renew_frames", 4).param("fovea_radius", 0.1);
+    test.param("paths", 500).param("points", 100).param("renew_frames", 4).view("fovea_radius", 0.1);
     test.viewSize(32, 32).scene(look.scene);
     test.beforeFrame([](PassTest&, scene::Frame& f) {
       f.views[0].gaze = f.index < 3 ? glm::vec2(0.5f) : glm::vec2(0.12f, 0.8f);

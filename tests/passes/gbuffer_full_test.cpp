@@ -73,7 +73,7 @@ struct Difference {
 // The largest differences from the CPU. What is seen at the outermost pixels of a panel may be another surface.
 Difference compare(const scene::Scene& s, int& compared) {
   PassTest test("gbuffer");
-  test.scene(s).viewSize(kWidth, kHeight).param("materials", "full");
+  test.scene(s).viewSize(kWidth, kHeight).view("materials", "full");
   test.run();
   const auto position = test.floats("gbuffer.position"), normal = test.floats("gbuffer.normal"),
              albedo = test.floats("gbuffer.albedo"), specular = test.floats("gbuffer.specular"),
@@ -197,7 +197,7 @@ TEST(GBufferFull, ACoatReflectsAndDims) {
   list[1].clearcoat = 1;
   list[1].clearcoatRoughness = 0.1f;
   PassTest test("gbuffer");
-  test.scene(panels(list)).viewSize(kWidth, kHeight).param("materials", "full");
+  test.scene(panels(list)).viewSize(kWidth, kHeight).view("materials", "full");
   test.run();
   const auto albedo = test.floats("gbuffer.albedo"), specular = test.floats("gbuffer.specular");
   const size_t bare = 4 * (27 * kWidth + 22), coated = 4 * (27 * kWidth + 50);
@@ -227,7 +227,7 @@ TEST(GBufferFull, WhatLetsLightThroughIsSeenAtSomePixels) {
   scene::Scene s = panels(list);
   const auto idsOf = [&](uint32_t frames) {
     PassTest test("gbuffer");
-    test.scene(s).viewSize(kWidth, kHeight).param("materials", "full");
+    test.scene(s).viewSize(kWidth, kHeight).view("materials", "full");
     test.run(frames);
     return std::tuple(test.values<uint32_t>("gbuffer.id"), test.floats("gbuffer.normal"), test.lastFrame());
   };
@@ -279,7 +279,7 @@ TEST(GBufferFull, WhatIsSolidIsNotMarked) {
   for (scene::Material& m : list) m.masked = m.blended = true;
   list[1].baseColor.a = 0.5f;
   PassTest test("gbuffer");
-  test.scene(panels(list)).viewSize(kWidth, kHeight).param("materials", "full");
+  test.scene(panels(list)).viewSize(kWidth, kHeight).view("materials", "full");
   test.run();
   const auto ids = test.values<uint32_t>("gbuffer.id");
   const auto normals = test.floats("gbuffer.normal");
@@ -295,7 +295,7 @@ TEST(GBufferFull, WhatIsSolidIsNotMarked) {
 
   for (scene::Material& m : list) m.baseColor.a = 0;  // nothing is there
   PassTest clear("gbuffer");
-  clear.scene(panels(list)).viewSize(kWidth, kHeight).param("materials", "full");
+  clear.scene(panels(list)).viewSize(kWidth, kHeight).view("materials", "full");
   clear.run();
   const auto nothing = clear.floats("gbuffer.normal");
   for (size_t i = 0; i < ids.size(); ++i) EXPECT_FALSE(nothing[4 * i + 3] < 0) << i;

@@ -232,7 +232,7 @@ TEST_P(GiSamples, OutsideOfTheFoveaBlocksTakeTurns) {
   for (uint32_t n = 1; n <= 4; ++n) {
     PassTest test(GiSamples::GetParam());
     test.viewSize(uint32_t(kSize.x), uint32_t(kSize.y)).scene(room.scene);
-    test.param("depth", 3).param("outside_spacing", 2).param("fovea_radius", 0.25);
+    test.param("depth", 3).param("outside_spacing", 2).view("fovea_radius", 0.25);
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
     test.run(n);
     const auto frame = test.values<Reservoir>("reservoirs");

@@ -25,10 +25,7 @@ Result run(const char* type, const std::string& what, uint32_t frames) {
   PassTest test(type);
   test.viewSize(kWidth, kHeight).scene(sceneOfEverything(what == "glass"));
   const char* materials = what == "diffuse" ? "diffuse" : "full";
-  test.param("materials", materials)
-      .param("spacing", 8)
-      .param("first_samples", 3)
-      .param("saccade_samples", 3);
+  test.view("materials", materials).param("spacing", 8).param("first_samples", 3).param("saccade_samples", 3);
   test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
   if (what != "diffuse") {  // normals and roughnesses that vary
     std::vector<uint64_t> normal, specular;

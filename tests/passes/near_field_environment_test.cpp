@@ -91,7 +91,7 @@ glm::dvec3 lightOf(PassTest& test, uint32_t frames) {
 TEST_P(NearFieldMaps, LightsWhatIsAlone) {
   const Map map = skyWithSun();
   PassTest test(GetParam());
-  test.viewSize(16, 16).scene(floorUnder(map, 0.5f)).param("fovea_radius", 2.0).param("first_samples", 1024);
+  test.viewSize(16, 16).scene(floorUnder(map, 0.5f)).view("fovea_radius", 2.0).param("first_samples", 1024);
   const glm::dvec3 want = irradianceFrom(*map, {0, 1, 0}) / glm::pi<double>();
   for (const uint32_t frames : {1, 2}) {  // the second has a ray a sample
     const glm::dvec3 mean = lightOf(test, frames);
@@ -107,7 +107,7 @@ TEST_P(NearFieldMaps, SharesRaysWithSurfacesThatShine) {
   s.materials[panel].emission = {0, 1, 0};
   addQuad(s, panel, {-400, 0, -2}, {800, 0, 0}, {0, 800, 0});
   PassTest test(GetParam());
-  test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
+  test.viewSize(16, 16).scene(s).view("fovea_radius", 2.0).param("first_samples", 1024);
   const glm::dvec3 mean = lightOf(test, 1);
   EXPECT_NEAR(mean.r, 0.5, 0.01);  // each fills half of the hemisphere
   EXPECT_NEAR(mean.g, 0.5, 0.01);
@@ -122,7 +122,7 @@ TEST_P(NearFieldMaps, ComesAlone) {
   addQuad(s, panel, {-50, 0, -2}, {100, 0, 0}, {0, 50, 0});
   s.lights = {pointLight({0, 2, 0}, glm::vec3(100))};
   PassTest test(GetParam());
-  test.viewSize(16, 16).scene(s).param("fovea_radius", 2.0).param("first_samples", 1024);
+  test.viewSize(16, 16).scene(s).view("fovea_radius", 2.0).param("first_samples", 1024);
   test.param("light", "map");
   const glm::dvec3 mean = lightOf(test, 1);  // the panel hides a half or less
   EXPECT_GT(mean.r, 0.5);

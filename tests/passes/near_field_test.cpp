@@ -399,7 +399,7 @@ TEST_P(NearFieldPasses, MoreRaysForChangedLight) {
   const auto after = [&](float ageing) {
     PassTest test(GetParam());
     test.viewSize(16, 16).scene(look.room.scene).param("saccade_samples", 5).param("vpls", 10);
-    test.param("fovea_radius", 2.0).param("first_samples", 1024);  // which fill the cache
+    test.view("fovea_radius", 2.0).param("first_samples", 1024);  // which fill the cache
     test.buffer("change", std::vector<glm::vec4>{glm::vec4(0)}, "LightChange");
     test.beforeFrame([ageing](PassTest& t, scene::Frame& f) {
       if (f.index == 1)
@@ -421,7 +421,7 @@ TEST_P(NearFieldPasses, DiscsAreAsLargeAsDistancesSay) {
   for (const Seen& seen : look.room.pixels) length += look.part(seen, 1, 64).second / 256;
   for (const int vpls : {100, 1000}) {
     PassTest test(GetParam());
-    test.viewSize(16, 16).scene(look.room.scene).param("vpls", vpls).param("fovea_radius", 2.0);
+    test.viewSize(16, 16).scene(look.room.scene).param("vpls", vpls).view("fovea_radius", 2.0);
     test.run(3);
     const double want = 50 * length * length / vpls;
     EXPECT_NEAR(test.values<glm::vec4>("spread")[0].x, want, 0.1 * want);
@@ -449,7 +449,7 @@ TEST_P(NearFieldPasses, RefusesAnotherGBuffer) {
                {16, 1, "those of the G-buffer are not"}};
   for (const auto& [normal, specular, says] : cases) {
     PassTest test(GetParam());
-    test.viewSize(16, 16).scene(shiningRoom(false)).param("materials", "full");
+    test.viewSize(16, 16).scene(shiningRoom(false)).view("materials", "full");
     test.image("gbuffer.normal", VK_FORMAT_R16G16B16A16_SFLOAT, normal, normal, 1,
                std::vector<uint64_t>(normal * normal));
     test.image("gbuffer.specular", VK_FORMAT_R16G16B16A16_SFLOAT, specular, specular, 1,

@@ -311,11 +311,11 @@ TEST(PathTraceFull, IsAParameterOfThePass) {
   s.materials[0].metallic = 1;
   s.lights = {sun({0, -1, 0}, glm::vec3(5))};
   PassTest test("path-trace");
-  test.scene(s).viewSize(9, 9).param("spp", 2).param("materials", "diffuse");
+  test.scene(s).viewSize(9, 9).param("spp", 2).view("materials", "diffuse");
   test.run();
   EXPECT_EQ(test.values<glm::vec4>("radiance")[40], glm::vec4(0, 0, 0, 1));
   PassTest shiny("path-trace");
-  shiny.scene(s).viewSize(9, 9).param("spp", 2).param("materials", "full");
+  shiny.scene(s).viewSize(9, 9).param("spp", 2).view("materials", "full");
   shiny.run();
   EXPECT_GT(shiny.values<glm::vec4>("radiance")[40].r, 0.5f);
 }

@@ -181,7 +181,7 @@ TEST_P(ProbeRays, OutsideOfTheFoveaProbesTraceFewer) {
   for (const float radius : {0.05f, 0.2f}) {
     PassTest test(ProbeRays::GetParam());
     test.scene(s).viewSize(128, 64).param("probes", 8).param("rays", kRays);
-    test.param("outside_share", 4).param("fovea_radius", radius);
+    test.param("outside_share", 4).view("fovea_radius", radius);
     test.beforeFrame([&](PassTest&, scene::Frame& frame) { frame.views[0].gaze = gaze; });
     evenProbes(glm::vec3(1), 512).wire(test, "probes");
     test.run();

@@ -40,6 +40,7 @@ std::vector<glm::uvec4> mirrorsOf(const std::vector<Seen>& pixels, float roughne
 }
 
 PassTest& wire(PassTest& test, const Room& room, const std::vector<glm::uvec4>& texels) {
+  test.view("materials", "full");  // diffuse surfaces are no mirrors
   test.viewSize(uint32_t(room.size.x), uint32_t(room.size.y)).scene(room.scene);
   test.image("mirrors", VK_FORMAT_R32G32B32A32_UINT, uint32_t(room.size.x) / 2, uint32_t(room.size.y) / 2, 1,
              texels);

@@ -131,7 +131,7 @@ TEST(ShadowRaysHost, FullMaterialsAreThoseOfTheBsdf) {
   room.scene.materials[0].roughness = 0.4f;
   room.scene.materials[0].clearcoat = 0.5f;
   PassTest test("shadow-rays-host");
-  test.viewSize(kSize.x, kSize.y).scene(room.scene).param("materials", "full");
+  test.viewSize(kSize.x, kSize.y).scene(room.scene).view("materials", "full");
   test.image("direct", VK_FORMAT_R16G16B16A16_SFLOAT, kSize.x, kSize.y, 1,
              std::vector<uint64_t>(room.pixels.size(), glm::packHalf4x16({1, 2, 3, 0})));
   test.run();
@@ -169,7 +169,7 @@ TEST_P(ShadowRays, LeavesThePeripheryOut) {
   const uint64_t doubt = glm::packHalf4x16({1, 2, 3, 0});
   PassTest test(GetParam());
   wire(test, room, onDevice(), std::vector<uint64_t>(room.pixels.size(), doubt));
-  test.param("periphery", 2).param("fovea_radius", 0.1).param("pixels_per_degree", 200.0);
+  test.param("periphery", 2).view("fovea_radius", 0.1).view("pixels_per_degree", 200.0);
   test.run();
   const auto after = test.values<uint64_t>("direct");
   for (int y = 0; y < kSize.y; ++y)

@@ -340,7 +340,7 @@ TEST(TemporalAccumulation, GlossHasTheSameMean) {
       return image;
     };
     PassTest test("temporal-accumulation");
-    test.param("frames", 8.0).param("first_samples", 1).param("materials", "full");
+    test.param("frames", 8.0).param("first_samples", 1).view("materials", "full");
     eye.seen.wire(test);
     test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
     const auto wire = [&](const char* port, int width, const std::vector<glm::vec4>& values) {
@@ -373,7 +373,7 @@ TEST(TemporalAccumulation, GlossNeedsAHistoryAndItsSize) {
                {kSize / 2, {1, 1}, "`gloss_history` has 1x1 pixels, `mean` has"}};
   for (const auto& [gloss, glossHistory, says] : cases) {
     PassTest test("temporal-accumulation");
-    test.param("materials", "full");
+    test.view("materials", "full");
     eye.seen.wire(test);
     test.image("origin", VK_FORMAT_R32_UINT, uint32_t(kSize.x), uint32_t(kSize.y), 1, ownPlaces());
     const auto wire = [&](const char* port, glm::ivec2 size) {

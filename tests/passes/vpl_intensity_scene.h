@@ -108,7 +108,7 @@ inline void wire(PassTest& test, const Inputs& in, const char* strategy, const W
   test.param("region", settings.region == scene::kRegionMixed   ? "mixed"
                        : settings.region == scene::kRegionImage ? "image"
                                                                 : "fovea");
-  test.param("fovea_radius", double(settings.foveaRadius));
+  test.view("fovea_radius", double(settings.foveaRadius));
   if (chosen != "area")
     test.param("image_share", settings.imageShare)
         .param("points", int(settings.points))

@@ -160,7 +160,7 @@ TEST(WeightMap, EqualsTheReference) {
   for (const auto [size, spacing] :
        {Case{{101, 77}, 1}, Case{{64, 64}, 1}, Case{{3, 2}, 1}, Case{{203, 154}, 2}, Case{{3, 2}, 16}}) {
     PassTest test("weight-map");
-    test.scene(s).param("fovea_radius", 0.2).param("spacing", spacing);
+    test.scene(s).view("fovea_radius", 0.2).param("spacing", spacing);
     setVoxels(test, voxels);
     const Picture picture = randomPicture(size.x, size.y, voxels);
     picture.wire(test);

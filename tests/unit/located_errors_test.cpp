@@ -49,9 +49,9 @@ const Mistake kMistakes[] = {
   "output": {"o": "a"}, "outputs": {"o": "a"}})",
      "g.json:2:3: error: unknown key `output` (at output)\n  -> did you mean `outputs`?"},
     {"UnknownKeyFarFromAny", R"({"passes": {"a": {"type": "source"}}, "x": 1, "outputs": {"o": "a"}})",
-     "g.json:1:39: error: unknown key `x` (at x)\n  -> known here: $schema, extends, description, "
+     "g.json:1:39: error: unknown key `x` (at x)\n  -> known here: $schema, extends, version, description, "
      "parameters, "
-     "inputs, outputs, passes"},
+     "inputs, view, outputs, passes"},
     {"UnknownKeyOfAPass", R"({"passes": {"a": {"type": "source", "parms": {}}}, "outputs": {"o": "a"}})",
      "g.json:1:37: error: unknown key `parms` (at passes.a.parms)\n  -> did you mean `params`?"},
     {"PassesIsAList", R"({"passes": ["a"], "outputs": {}})",
@@ -73,7 +73,7 @@ const Mistake kMistakes[] = {
     {"BadPassName",
      R"({"passes": {"a.b": {"type": "source"}, "c": {"type": "source"}}, "outputs": {"o": "c"}})",
      "g.json:1:13: error: `a.b` is no name for a pass (at passes.a.b)\n  -> letters, digits, _ and -; "
-     "`inputs` means the graph's own inputs"},
+     "`inputs` means the graph's own inputs, `view` what belongs to the frame"},
     {"NullWithoutABase", R"({"passes": {"a": {"type": "source"}, "b": null}, "outputs": {"o": "a"}})",
      "g.json:1:43: error: expected an object, found null (at passes.b)"},
     // ---- parameters

@@ -97,7 +97,8 @@ std::string fromEnvironment(const Binding& b, const std::string& text) {
   return text;
 }
 
-void readParameter(Binding& b, uint32_t pass, const ParameterSpec& spec, const ParameterDescription& given,
+// path: of the value in its document.
+void readParameter(Binding& b, std::string path, const ParameterSpec& spec, const ParameterDescription& given,
                    Value& out) {
   json::Value value = *given.value;
   if (given.fromEnvironment) value.string = fromEnvironment(b, value.string);
@@ -111,32 +112,49 @@ void readParameter(Binding& b, uint32_t pass, const ParameterSpec& spec, const P
   }
   std::string nearest;
   if (spec.type == Type::Choice && value.isString()) nearest = nearestName(value.string, spec.choices);
-  report(b, *given.where, passPath(b, pass, "params." + spec.name),
+  report(b, *given.where, std::move(path),
          fmt::format("parameter `{}`: expected {}, found {}", spec.name, describeExpected(spec),
                      describeGiven(value)),
          nearest.empty() ? nearest : fmt::format("did you mean `{}`?", nearest));
 }
 
-void bindParameters(Binding& b, uint32_t p, std::vector<Value>& values) {
-  BoundPass& pass = b.graph.passes[p];
-  const PassDescription& from = b.description.passes[p];
-  const std::vector<ParameterSpec>& specs = pass.declaration->parameters;
+// Values of all `specs`: the given ones, or else the defaults. owner: who has these parameters, for messages; path: of
+// their object in its document.
+Parameters bindParameters(Binding& b, const std::string& owner, const std::string& path,
+                          const std::vector<ParameterSpec>& specs,
+                          std::span<const ParameterDescription> given, std::vector<Value>& values) {
   const size_t first = values.size();
-  pass.parameters = Parameters(&specs, &values, first);
   for (const ParameterSpec& spec : specs) values.push_back(spec.defaultValue);
-  for (uint32_t i = 0; i < from.parameterCount; ++i) {
-    const ParameterDescription& given = b.description.parameters[from.firstParameter + i];
-    const std::string& name = given.given->key;
+  for (const ParameterDescription& one : given) {
+    const std::string& name = one.given->key;
+    const std::string place = json::joinPath(path, name);
     const auto spec =
         std::find_if(specs.begin(), specs.end(), [&](const ParameterSpec& s) { return s.name == name; });
     if (spec != specs.end()) {
-      readParameter(b, p, *spec, given, values[first + (spec - specs.begin())]);
+      readParameter(b, place, *spec, one, values[first + static_cast<size_t>(spec - specs.begin())]);
       continue;
     }
     std::vector<std::string> names;
     for (const ParameterSpec& s : specs) names.push_back(s.name);
-    report(b, given.given->keyWhere, passPath(b, p, json::joinPath("params", name)),
-           fmt::format("`{}` has no parameter `{}`", pass.declaration->type, name), remedyFor(name, names));
+    report(b, one.given->keyWhere, place, fmt::format("{} has no parameter `{}`", owner, name),
+           findParameter(viewParameters(), name)
+               ? fmt::format("it belongs to the frame: set `{}` in \"view\" of the graph, or --set view.{}",
+                             name, name)
+               : remedyFor(name, names));
+  }
+  return {&specs, &values, first};
+}
+
+// What belongs to the frame. Its materials are those of the scene unless the graph or the run decides.
+void bindViewParameters(Binding& b, std::vector<Value>& values) {
+  b.graph.view = bindParameters(b, "the view", "view", viewParameters(), b.description.view, values);
+  const auto& given = b.description.view;
+  for (size_t i = 0; i < viewParameters().size(); ++i) {
+    const std::string& name = viewParameters()[i].name;
+    if (std::any_of(given.begin(), given.end(), [&](const auto& g) { return g.given->key == name; }))
+      continue;
+    for (const auto& [text, value] : b.environment.texts)
+      if (text == "scene." + name) values[i] = value;
   }
 }
 
@@ -206,6 +224,7 @@ void declarePasses(Binding& b, std::vector<Value>& values) {
   const auto count = static_cast<uint32_t>(b.description.passes.size());
   b.graph.passes.resize(count);
   values.reserve(b.description.parameters.size() + count);  // estimate: one default per pass
+  bindViewParameters(b, values);
   b.ports.reserve(b.description.wires.size() + 2 * count);  // estimate: all inputs wired, two outputs each
   bool effects = false;
   for (uint32_t p = 0; p < count; ++p) {
@@ -215,7 +234,11 @@ void declarePasses(Binding& b, std::vector<Value>& values) {
     b.firstPort.push_back(static_cast<uint32_t>(b.ports.size()));
     if (!pass.declaration) continue;
     if (b.description.passes[p].view) bindView(b, p);
-    bindParameters(b, p, values);
+    const PassDescription& from = b.description.passes[p];
+    pass.parameters = bindParameters(
+        b, fmt::format("`{}`", pass.declaration->type), passPath(b, p, "params"),
+        pass.declaration->parameters,
+        std::span(b.description.parameters).subspan(from.firstParameter, from.parameterCount), values);
     uint16_t index = 0;
     for (const PortSpec& spec : pass.declaration->ports) b.ports.push_back({&spec, p, index++});
     effects |= pass.declaration->sideEffects;
@@ -408,6 +431,7 @@ uint64_t graphHash(const BoundGraph& graph) {
   }
   for (const BoundOutput& o : graph.outputs) h.add(o.name), h.add(o.resource);
   for (const std::string& view : graph.views) h.add(view);
+  for (const Value& value : graph.view.values()) h.add(value);
   return h.value();
 }
 

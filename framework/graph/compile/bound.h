@@ -70,6 +70,7 @@ struct BoundOutput {
 struct BoundGraph {
   std::string name, description;
   std::vector<std::string> views;  // views used by a pass; [0] is "main" by default
+  Parameters view;                 // the values of viewParameters()
   std::vector<BoundPass> passes;   // declaration order
   // Storage of the parameters and accesses of `passes`, whose copies share it.
   std::shared_ptr<const std::vector<Value>> values;

@@ -12,6 +12,7 @@
 #include "framework/graph/compile/barriers.h"
 #include "framework/graph/compile/expand.h"
 #include "framework/graph/compile/schedule.h"
+#include "framework/graph/migrate/migrate.h"
 
 namespace fovea::graph {
 namespace {
@@ -66,14 +67,15 @@ uint64_t bytesKept(const BoundGraph& graph, const std::vector<MemoryNeed>& needs
 
 Description load(const std::string& nameOrPath, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
-  return resolve(std::make_shared<const json::Value>(detail::readGraphFile(file)), file, options,
+  return resolve(std::make_shared<const json::Value>(detail::readGraphFile(file, diagnostics)), file, options,
                  diagnostics);
 }
 
 Description loadText(std::string_view text, const std::filesystem::path& file, const LoadOptions& options,
                      Diagnostics& diagnostics) {
-  return resolve(std::make_shared<const json::Value>(json::parse(text, file.string())), file, options,
-                 diagnostics);
+  json::Value document = json::parse(text, file.string());
+  migrateLoaded(document, diagnostics);
+  return resolve(std::make_shared<const json::Value>(std::move(document)), file, options, diagnostics);
 }
 
 Plan compile(std::shared_ptr<const BoundGraph> graph, const CompileOptions& options) {

@@ -42,9 +42,10 @@ struct Scope {
   Input* findInput(std::string_view name);
 };
 
-// Reads a graph file of at most kMaxGraphBytes. Throws Error(BadInput).
+// Reads a graph file of at most kMaxGraphBytes and brings it to the newest version. Throws Error(BadInput) if it is no
+// JSON.
 inline constexpr uint64_t kMaxGraphBytes = uint64_t(8) << 20;  // kMaxPasses of 800 bytes each
-json::Value readGraphFile(const std::filesystem::path& file);
+json::Value readGraphFile(const std::filesystem::path& file, Diagnostics& diagnostics);
 
 struct Expansion {
   struct PendingOverride {
@@ -80,6 +81,9 @@ inline void report(Expansion& all, const Scope& scope, const json::Value& value,
   report(all, scope, value.where, value, std::move(message), std::move(remedy));
 }
 std::string nearestRemedy(std::string_view word, const std::vector<std::string>& names);
+
+// The target of overrides of what belongs to the frame: "view.materials".
+inline constexpr std::string_view kViewTarget = "view";
 
 // Names of passes, parameters and inputs consist of letters, digits, _ and -.
 bool isName(std::string_view name);

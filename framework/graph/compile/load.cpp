@@ -5,6 +5,7 @@
 
 #include "framework/graph/compile/compile.h"
 #include "framework/graph/compile/expand.h"
+#include "framework/graph/migrate/migrate.h"
 
 namespace fovea::graph {
 namespace {
@@ -99,7 +100,7 @@ Document mergeChain(Document document, const std::filesystem::path& file, const 
                    "a base must not extend what extends it");
   Document extended;
   try {
-    extended = std::make_shared<const json::Value>(detail::readGraphFile(base));
+    extended = std::make_shared<const json::Value>(detail::readGraphFile(base, diagnostics));
   } catch (const Error& error) {
     for (const Diagnostic& d : error.diagnostics()) diagnostics.add(d);
     return document;
@@ -172,7 +173,7 @@ std::filesystem::path findGraph(const std::string& nameOrPath,
                                : fmt::format("it is no file, and not in {}", fmt::join(looked, ", ")));
 }
 
-json::Value detail::readGraphFile(const std::filesystem::path& file) {
+json::Value detail::readGraphFile(const std::filesystem::path& file, Diagnostics& diagnostics) {
   std::error_code unknown;
   const uintmax_t bytes = std::filesystem::file_size(file, unknown);
   if (!unknown && bytes > kMaxGraphBytes)
@@ -180,14 +181,16 @@ json::Value detail::readGraphFile(const std::filesystem::path& file) {
         ExitCode::BadInput,
         fmt::format("{} has {} bytes; a graph file may have {}", file.string(), bytes, kMaxGraphBytes),
         "make sub-graphs of parts that repeat");
-  return json::parseFile(file);
+  json::Value document = json::parseFile(file);
+  migrateLoaded(document, diagnostics);
+  return document;
 }
 
 json::Value loadMerged(const std::string& nameOrPath, const LoadOptions& options) {
   const std::filesystem::path file = findGraph(nameOrPath, options.searchPaths);
   Diagnostics diagnostics;
-  json::Value merged = *mergeExtends(std::make_shared<const json::Value>(detail::readGraphFile(file)), file,
-                                     options, diagnostics);
+  auto document = std::make_shared<const json::Value>(detail::readGraphFile(file, diagnostics));
+  json::Value merged = *mergeExtends(std::move(document), file, options, diagnostics);
   diagnostics.throwIfErrors();
   std::erase_if(merged.members, [](const json::Member& member) { return member.key == "extends"; });
   return merged;

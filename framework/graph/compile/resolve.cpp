@@ -267,7 +267,7 @@ std::shared_ptr<const json::Value> instanceDocument(Expansion& all, const Scope&
     return nullptr;
   }
   try {
-    auto document = std::make_shared<const json::Value>(detail::readGraphFile(file));
+    auto document = std::make_shared<const json::Value>(detail::readGraphFile(file, all.diagnostics));
     return mergeExtends(std::move(document), file, all.options, all.diagnostics);
   } catch (const Error& e) {
     for (const Diagnostic& d : e.diagnostics()) all.diagnostics.add(d);
@@ -305,26 +305,33 @@ void expandInstance(Expansion& all, Scope& parent, const Member& member, const j
 
 // ---- Passes ------------------------------------------------------------------------------------------
 
-void readPassParameters(Expansion& all, Scope& scope, PassDescription& pass, const json::Value* params) {
-  std::vector<ParameterDescription>& list = all.description.parameters;
-  pass.firstParameter = static_cast<uint32_t>(list.size());
-  if (params) {
-    for (const Member& param : params->members) {
-      ParameterDescription value{&param};
-      if (readScalar(all, scope, param.value, value)) list.push_back(value);
+// Appends to `list` the values of an object, or those that overrides of `target` put in their place or beside them.
+void readValues(Expansion& all, Scope& scope, std::vector<ParameterDescription>& list,
+                const json::Value* values, std::string_view target) {
+  const auto first = static_cast<ptrdiff_t>(list.size());
+  if (values) {
+    for (const Member& member : values->members) {
+      ParameterDescription value{&member};
+      if (readScalar(all, scope, member.value, value)) list.push_back(value);
     }
   }
   for (Expansion::PendingOverride& o : all.overrides) {
-    if (o.target != pass.name) continue;
+    if (o.target != target) continue;
     o.used = true;
     const ParameterDescription value = readOverride(all, o, nullptr);
-    const auto at = std::find_if(list.begin() + pass.firstParameter, list.end(),
+    const auto at = std::find_if(list.begin() + first, list.end(),
                                  [&](const ParameterDescription& p) { return p.given->key == o.name; });
     if (at != list.end())
       *at = value;
     else
       list.push_back(value);
   }
+}
+
+void readPassParameters(Expansion& all, Scope& scope, PassDescription& pass, const json::Value* params) {
+  std::vector<ParameterDescription>& list = all.description.parameters;
+  pass.firstParameter = static_cast<uint32_t>(list.size());
+  readValues(all, scope, list, params, pass.name);
   pass.parameterCount = static_cast<uint32_t>(list.size()) - pass.firstParameter;
 }
 
@@ -334,10 +341,11 @@ void expandPass(Expansion& all, Scope& scope, const Member& member) {
     all.full = true;
     return report(all, scope, member.keyWhere, member.value, fmt::format("more than {} passes", kMaxPasses));
   }
-  if (!isName(member.key) || member.key == "inputs")
-    return report(all, scope, member.keyWhere, member.value,
-                  fmt::format("`{}` is no name for a pass", member.key),
-                  "letters, digits, _ and -; `inputs` means the graph's own inputs");
+  if (!isName(member.key) || member.key == "inputs" || member.key == kViewTarget)
+    return report(
+        all, scope, member.keyWhere, member.value, fmt::format("`{}` is no name for a pass", member.key),
+        "letters, digits, _ and -; `inputs` means the graph's own inputs, `view` what belongs to the "
+        "frame");
   json::ObjectReader reader(member.value, "passes", member.key, all.diagnostics);
   if (!member.value.isObject()) return;
   reader.text("comment");
@@ -378,11 +386,18 @@ void expandScope(Expansion& all, Scope& scope) {
   json::ObjectReader reader(*scope.document, {}, all.diagnostics);
   reader.text("$schema");
   reader.find("extends");
+  reader.find("version");  // read by migrateLoaded
   const std::string description = reader.text("description");
   if (!scope.parent) all.description.description = description;
   reader.object("parameters");  // read by readParameters
   reader.object("inputs");      // read by readRootInputs or readInputs
-  reader.object("outputs");     // read with the wires
+  const json::Value* view = reader.object("view");
+  if (!scope.parent)
+    readValues(all, scope, all.description.view, view, kViewTarget);
+  else if (view)
+    report(all, scope, *view, "a sub-graph cannot set what belongs to the frame",
+           "set it in the graph that runs");
+  reader.object("outputs");  // read with the wires
   if (const json::Value* passes = reader.object("passes")) {
     const size_t count = all.description.passes.size() + passes->members.size();
     all.description.passes.reserve(count);
@@ -400,8 +415,17 @@ void reportUnusedOverride(Expansion& all, const Expansion::PendingOverride& o) {
     for (const Scope::Parameter& p : scope.parameters)
       names.push_back(scope.prefix.empty() ? p.declared->key
                                            : fmt::format("{}.{}", nameOf(scope), p.declared->key));
-  for (const PassDescription& pass : all.description.passes) targets.push_back(pass.name);
+  const auto& given = all.description.parameters;
+  for (const PassDescription& pass : all.description.passes) {
+    targets.push_back(pass.name);
+    for (uint32_t i = 0; i < pass.parameterCount; ++i)
+      if (given[pass.firstParameter + i].given->key == o.name) names = {pass.name + "." + o.name};
+  }
   const std::string nearest = o.target.empty() ? std::string() : nearestName(o.target, targets);
+  if (o.target.empty() && findParameter(viewParameters(), o.name))
+    return all.diagnostics.error({asTyped(*o.source), 0, 0}, {},
+                                 fmt::format("`{}` belongs to the frame, not to the graph", o.name),
+                                 fmt::format("give --set view.{}={}", o.name, o.source->value));
   all.diagnostics.error({asTyped(*o.source), 0, 0}, {},
                         o.target.empty() ? fmt::format("the graph has no parameter `{}`", o.name)
                                          : fmt::format("the graph has no pass `{}`", o.target),

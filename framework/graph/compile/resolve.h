@@ -75,6 +75,7 @@ struct Description {
   std::vector<PassDescription> passes;  // declaration order, sub-graphs expanded in place
   std::vector<WireDescription> wires;
   std::vector<ParameterDescription> parameters;
+  std::vector<ParameterDescription> view;  // given values of viewParameters()
   std::vector<WireDescription> outputs;
   std::vector<ExternalDescription> externals;
   // What the above refers to: the documents, and values that are in no document, such as those of overrides.

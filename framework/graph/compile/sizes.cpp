@@ -91,6 +91,10 @@ std::optional<int64_t> evaluateTerm(Sizes& sizes, uint32_t p, const SizeExpr::Te
       for (const auto& [name, value] : sizes.b.environment.quantities)
         if (name == term.name) quantity = std::max<int64_t>(1, value);
       return quantity;
+    case Op::Wired:
+      for (const Port& port : sizes.b.portsOf(p))
+        if (port.spec->name == term.name) return port.wire != nullptr;
+      return 0;
     default:
       return sizeOfPort(sizes, p, term, depth, why);
   }

@@ -51,6 +51,35 @@ ParameterSpec text(std::string defaultValue) {
   return spec;
 }
 
+const std::vector<ParameterSpec>& viewParameters() {
+  static const std::vector<ParameterSpec> specs = [] {
+    std::vector<ParameterSpec> list;
+    const auto add = [&](const char* name, ParameterSpec spec, const char* doc) {
+      spec.name = name;
+      spec.doc = doc;
+      list.push_back(std::move(spec));
+    };
+    add("materials", choice("diffuse", {"diffuse", "full"}),
+        "what surfaces are: `diffuse` takes all for Lambertian and metals for black, `full` is everything "
+        "that "
+        "glTF says of them; if not given, what the scene says");
+    add("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea around the gaze");
+    add("fovea_degrees", real(0, 0, 60, "degrees"),
+        "radius of the fovea as an angle from the line of sight, by the field of view of each view; above 0 "
+        "it "
+        "takes the place of `fovea_radius`");
+    add("pixels_per_degree", real(0, 0, 1000),
+        "pixels of the picture in a degree of what the eye sees, by which passes know what it resolves; 0 "
+        "means "
+        "that the picture is seen from where its perspective is right");
+    add("jitter", integer(0, 0, 64),
+        "places in its pixels through which each view looks in turn, one a frame, for pass antialias; 0: the "
+        "centres");
+    return list;
+  }();
+  return specs;
+}
+
 namespace {
 
 [[noreturn]] void wrongParameter(std::string_view name, std::string_view wanted, bool known) {
@@ -60,11 +89,23 @@ namespace {
 
 }  // namespace
 
-const Value* Parameters::find(std::string_view name) const {
-  const std::span<const Value> all = values();
-  for (size_t i = 0; i < all.size(); ++i)
-    if ((*specs_)[i].name == name) return &all[i];
+const ParameterSpec* findParameter(const std::vector<ParameterSpec>& own, std::string_view name) {
+  const bool ofView = name.starts_with(kViewPrefix);
+  if (ofView) name.remove_prefix(kViewPrefix.size());
+  for (const ParameterSpec& spec : ofView ? viewParameters() : own)
+    if (spec.name == name) return &spec;
   return nullptr;
+}
+
+const ParameterSpec* Parameters::findSpec(std::string_view name) const {
+  return specs_ ? findParameter(*specs_, name) : nullptr;
+}
+
+const Value* Parameters::find(std::string_view name) const {
+  const ParameterSpec* spec = findSpec(name);
+  if (!spec) return nullptr;
+  return name.starts_with(kViewPrefix) ? &(*all_)[static_cast<size_t>(spec - viewParameters().data())]
+                                       : &(*all_)[first_ + static_cast<size_t>(spec - specs_->data())];
 }
 
 int64_t Parameters::integer(std::string_view name) const {

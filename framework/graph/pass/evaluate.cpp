@@ -11,10 +11,8 @@ std::optional<int64_t> wholeNumber(const Parameters& parameters, std::string_vie
   if (const bool* flag = std::get_if<bool>(value)) return *flag;
   const std::string* chosen = std::get_if<std::string>(value);
   if (!chosen) return std::nullopt;
-  for (const ParameterSpec& spec : parameters.specs())
-    if (spec.name == name)
-      return std::find(spec.choices.begin(), spec.choices.end(), *chosen) - spec.choices.begin();
-  return 0;
+  const std::vector<std::string>& choices = parameters.findSpec(name)->choices;
+  return std::find(choices.begin(), choices.end(), *chosen) - choices.begin();
 }
 
 bool holds(const SizeExpr& condition, const Parameters& parameters) {

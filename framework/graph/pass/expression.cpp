@@ -141,6 +141,7 @@ class Parser {
     if (name == "view.width") return viewWidth();
     if (name == "view.height") return viewHeight();
     if (name.starts_with("scene.")) return environment(name);
+    if (name.starts_with(kViewPrefix)) return parameter(name);
     const size_t dot = name.rfind('.');
     if (dot == std::string::npos) return parameter(name);
     const std::string port = name.substr(0, dot), what = name.substr(dot + 1);

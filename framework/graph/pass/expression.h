@@ -15,7 +15,7 @@ struct ExpressionError {
 };
 
 // Grammar, weakest first:  a || b   a && b   name == choice, name != choice   a + b, a - b   a * b, a / b (rounds up)
-// !a   number, parameter, view.width, view.height, scene.NAME, PORT.width (height, layers, count), min(a, b),
+// !a   number, parameter, view.width, view.height, view.PARAMETER, scene.NAME, PORT.width (height, layers, count), min(a, b),
 // max(a, b), wired(PORT), read(PORT), (a). Returns 1 and fills `error` if the text is no expression.
 SizeExpr parseExpression(std::string_view text, ExpressionError& error);
 

@@ -144,11 +144,9 @@ class Validator {
   // The parameter, if it is one that expressions can use.
   const ParameterSpec* countable(const std::string& name) const {
     using Type = ParameterSpec::Type;
-    const auto p = std::find_if(d_.parameters.begin(), d_.parameters.end(),
-                                [&](const ParameterSpec& s) { return s.name == name; });
-    const bool counts = p != d_.parameters.end() &&
-                        (p->type == Type::Int || p->type == Type::Choice || p->type == Type::Bool);
-    return counts ? &*p : nullptr;
+    const ParameterSpec* p = findParameter(d_.parameters, name);
+    const bool counts = p && (p->type == Type::Int || p->type == Type::Choice || p->type == Type::Bool);
+    return counts ? p : nullptr;
   }
 
   void checkCondition(const PortSpec& port) {
@@ -175,7 +173,11 @@ class Validator {
               size.print(), term.name));
       } else if (term.op >= Op::PortWidth && term.op <= Op::PortCount) {
         checkSizePort(size, term, path);
-      } else if (term.op >= Op::Wired && term.op <= Op::ParameterIs) {
+      } else if (term.op == Op::Wired) {
+        if (!d_.findPort(term.name))
+          wrong(fmt::format("port `{}`: size `{}` is over `{}`, which is no port", path, size.print(),
+                            term.name));
+      } else if (term.op == Op::Read || term.op == Op::ParameterIs) {
         wrong(fmt::format("port `{}`: size `{}` is over a condition, which only steps know", path,
                           size.print()));
       }

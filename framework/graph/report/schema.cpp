@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/gpu/format.h"
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/validate.h"
 
 namespace fovea::graph {
@@ -93,6 +94,15 @@ Json typeSchema(const PassDeclaration& d) {
           {"properties", {{"inputs", std::move(inputs)}, {"params", std::move(params)}}}};
 }
 
+Json viewSchema() {
+  Json properties = Json::object();
+  for (const ParameterSpec& spec : viewParameters()) properties[spec.name] = parameterSchema(spec);
+  return {{"type", Json::array({"object", "null"})},
+          {"description", "What belongs to the frame; also set with options, such as --materials"},
+          {"additionalProperties", false},
+          {"properties", std::move(properties)}};
+}
+
 Json inputSchema() {
   Json formats = Json::array();
   for (const gpu::FormatInfo& info : gpu::formats()) formats.push_back(info.name);
@@ -158,6 +168,9 @@ std::string generateSchema(const Registry& registry) {
               {"additionalProperties", false}};
   schema["properties"] = {
       {"$schema", {{"type", "string"}}},
+      {"version",
+       {{"const", kGraphVersion},
+        {"description", "Of this format; `fovea migrate` rewrites files of earlier ones"}}},
       {"description", orNull("string")},
       {"extends",
        {{"type", "string"}, {"description", "A graph file that this one changes (RFC 7396); null removes"}}},
@@ -165,6 +178,7 @@ std::string generateSchema(const Registry& registry) {
        {{"type", Json::array({"object", "null"})},
         {"description", "Used as \"$name\", set with --set name=value"},
         {"additionalProperties", {{"type", Json::array({"boolean", "number", "string", "null"})}}}}},
+      {"view", viewSchema()},
       {"inputs", {{"type", Json::array({"object", "null"})}, {"additionalProperties", inputSchema()}}},
       {"passes", {{"type", "object"}, {"additionalProperties", std::move(pass)}}},
       {"outputs",

@@ -57,10 +57,15 @@ bool sameShape(const ResourceDesc& a, const ResourceDesc& b) {
          a.count == b.count;
 }
 
-// Whether nothing about a pass has changed: its parameters, and what its ports are wired to.
+bool sameValues(const Parameters& a, const Parameters& b) {
+  return std::ranges::equal(a.values(), b.values());
+}
+
+// Whether nothing about a pass has changed: its parameters and those of the view, and what its ports are wired to.
 bool sameInstance(const PassInstance& a, const PassInstance& b) {
-  const auto x = a.bound->parameters.values(), y = b.bound->parameters.values();
-  return a.bound->declaration == b.bound->declaration && std::equal(x.begin(), x.end(), y.begin(), y.end()) &&
+  return a.bound->declaration == b.bound->declaration &&
+         sameValues(a.bound->parameters, b.bound->parameters) &&
+         sameValues(a.state->plan->graph->view, b.state->plan->graph->view) &&
          std::equal(a.bound->accesses.begin(), a.bound->accesses.end(), b.bound->accesses.begin(),
                     b.bound->accesses.end(), [&](const Access& m, const Access& n) {
                       return m.port == n.port && m.member == n.member && sameShape(a.desc(m), b.desc(n));

@@ -1,6 +1,7 @@
 // Commands: one dispatch or draw, from its constants and bindings to the barrier before it.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "fovea/error.h"
@@ -15,12 +16,8 @@ namespace {
 uint32_t parameterWord(const PassInstance& pass, const KernelConstant& constant) {
   const ParameterSpec& spec = pass.bound->declaration->parameters[constant.parameter];
   const Parameters& p = pass.bound->parameters;
-  if (constant.reflected.type == gpu::ReflectedMember::Type::Float) {
-    const float value = static_cast<float>(p.real(spec.name));
-    uint32_t word;
-    std::memcpy(&word, &value, sizeof(word));
-    return word;
-  }
+  if (constant.reflected.type == gpu::ReflectedMember::Type::Float)
+    return std::bit_cast<uint32_t>(static_cast<float>(p.real(spec.name)));
   switch (spec.type) {
     case ParameterSpec::Type::Bool:
       return p.flag(spec.name) ? 1u : 0u;
@@ -55,6 +52,9 @@ Commands::Commands(RecordContext& context, KernelState& kernel) : context_(conte
         break;
       case KernelConstant::Source::Seed:
         word = context_.frame_.seed;
+        break;
+      case KernelConstant::Source::FoveaRadius:
+        word = std::bit_cast<uint32_t>(context_.view().foveaRadius);
         break;
     }
     std::memcpy(constants_ + c.reflected.offset, &word, sizeof(word));

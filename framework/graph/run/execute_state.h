@@ -91,7 +91,7 @@ using Label = uint32_t;  // PassInstance::labels
 
 struct KernelConstant {
   gpu::ReflectedMember reflected;
-  enum class Source { Manual, Parameter, FrameIndex, Seed } source = Source::Manual;
+  enum class Source { Manual, Parameter, FrameIndex, Seed, FoveaRadius } source = Source::Manual;
   uint32_t parameter = kNone;
 };
 

@@ -133,6 +133,7 @@ KernelConstant resolveConstant(const PassInstance& pass, const gpu::ReflectedMem
   constant.reflected = c;
   if (c.name == "frameIndex") constant.source = KernelConstant::Source::FrameIndex;
   if (c.name == "seed") constant.source = KernelConstant::Source::Seed;
+  if (c.name == "foveaRadius") constant.source = KernelConstant::Source::FoveaRadius;
   const auto& specs = pass.bound->declaration->parameters;
   for (uint32_t i = 0; i < specs.size(); ++i) {
     if (shaderName(specs[i].name) != c.name || specs[i].type == ParameterSpec::Type::Text) continue;

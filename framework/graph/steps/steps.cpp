@@ -173,7 +173,7 @@ void checkBindings(const BoundPass& pass, const StepSpec& step, const gpu::Compi
 // A pass that is declared in a file has no code that could set a push constant.
 void checkConstants(const BoundPass& pass, const StepSpec& step, const gpu::CompiledShader& shader) {
   if (!pass.declaration->places) return;
-  std::vector<std::string> given = {"frameIndex", "seed"}, found;
+  std::vector<std::string> given = {"frameIndex", "seed", "foveaRadius"}, found;
   for (const ParameterSpec& parameter : pass.declaration->parameters)
     if (parameter.type != ParameterSpec::Type::Text) given.push_back(shaderName(parameter.name));
   for (const auto& [name, value] : step.constants) given.push_back(name);

@@ -46,13 +46,22 @@ ParameterSpec flag(bool defaultValue);
 ParameterSpec choice(std::string defaultValue, std::vector<std::string> choices);
 ParameterSpec text(std::string defaultValue);
 
-// The parameter values of one pass instance, in the order of its declaration. Asking for an unknown name or for a
-// value of the wrong type is a defect of the pass and throws Error(Internal).
+// What belongs to the frame and not to one pass: materials, the fovea, the jitter of the views. A graph sets these once,
+// under `view`, or else the run does. Passes find them among their parameters, and expressions use them, under names such
+// as `view.materials`.
+const std::vector<ParameterSpec>& viewParameters();
+inline constexpr std::string_view kViewPrefix = "view.";
+// The parameter of this name among a pass's own or, with the prefix, those of the view. Null if there is none.
+const ParameterSpec* findParameter(const std::vector<ParameterSpec>& own, std::string_view name);
+
+// The parameter values of one pass instance, in the order of its declaration, and those of viewParameters(). Asking for
+// an unknown name or for a value of the wrong type is a defect of the pass and throws Error(Internal).
 class Parameters {
  public:
   Parameters() = default;
-  // Takes one value per entry of `specs` from `all`, starting at `first`. `all` holds the values of every pass of a
-  // graph and is owned by the graph, because thousands of small arrays would cost more than their contents.
+  // Takes one value per entry of `specs` from `all`, starting at `first`. `all` holds the values of viewParameters(), and
+  // then those of every pass of a graph. The graph owns it, because thousands of small arrays would cost more than their
+  // contents.
   Parameters(const std::vector<ParameterSpec>* specs, const std::vector<Value>* all, size_t first)
       : specs_(specs), all_(all), first_(first) {}
   int64_t integer(std::string_view name) const;
@@ -60,7 +69,7 @@ class Parameters {
   bool flag(std::string_view name) const;
   const std::string& text(std::string_view name) const;  // for both text and choice
   const Value* find(std::string_view name) const;
-  const std::vector<ParameterSpec>& specs() const { return *specs_; }
+  const ParameterSpec* findSpec(std::string_view name) const;
   std::span<const Value> values() const {
     return specs_ ? std::span<const Value>(*all_).subspan(first_, specs_->size()) : std::span<const Value>();
   }
@@ -73,8 +82,8 @@ class Parameters {
 
 // ---- Sizes -----------------------------------------------------------------------------------------------------
 
-// An integer expression over the size of the view, parameters and the sizes of input ports. It is evaluated when a
-// graph is bound. Steps may also depend on whether ports are wired or read and on the value of choices; conditions are
+// An integer expression over the size of the view, parameters (also `view.materials`) and the sizes of input ports. It
+// is evaluated when a graph is bound. Steps may also depend on whether ports are wired or read and on the value of choices; conditions are
 // 0 or 1.
 class SizeExpr {
  public:
@@ -132,8 +141,8 @@ SizeExpr countOf(std::string port);
 // "scene.lights", "scene.shadow_layers" or "scene.shadow_texels", the most texels that a shadow map may have on a side.
 // Each is at least 1.
 SizeExpr environment(std::string name);
+SizeExpr wired(std::string port);  // 1 if an optional input is wired, else 0
 // Conditions, for steps only.
-SizeExpr wired(std::string port);   // whether an optional input is wired
 SizeExpr isRead(std::string path);  // whether another pass or the next frame reads this output
 SizeExpr is(std::string parameter, std::string choice);  // whether a parameter has this choice
 SizeExpr operator!(const SizeExpr& a);
@@ -284,8 +293,8 @@ struct StepSpec {
   // Whatever this step and the one before it do to the same resource may happen in any order.
   StepSpec& runTogether();
   StepSpec& define(std::string macro, SizeExpr value);
-  // A push constant from sizes and parameters. Constants with the name of a parameter, `frameIndex` and `seed` are
-  // filled in automatically.
+  // A push constant from sizes and parameters. Constants with the name of a parameter, `frameIndex`, `seed` and
+  // `foveaRadius` are filled in automatically.
   StepSpec& constant(std::string constant, SizeExpr value);
   // A push constant from the frame: constant("exposure", [](const RecordContext& ctx) { return ...; })
   template <std::invocable<const RecordContext&> Function>

@@ -119,8 +119,8 @@ class PrepareContext : public PassContext {
 
 // One dispatch or draw under construction:
 //   ctx.use(kernel).constant("count", n).dispatchThreads(n);
-// Push constants that bear the name of a parameter (in camelCase), `frameIndex` and `seed` are filled in
-// automatically. A push constant that is left unset throws Error(Internal) naming it, an unresolved binding
+// Push constants that bear the name of a parameter (in camelCase), `frameIndex`, `seed` and `foveaRadius` (that of the
+// pass's view) are filled in automatically. A push constant that is left unset throws Error(Internal) naming it, an unresolved binding
 // throws Error(BadInput).
 class Commands {
  public:

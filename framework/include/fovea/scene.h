@@ -370,8 +370,11 @@ struct View {
   glm::mat4 worldToView{1}, viewToClip{1}, worldToClip{1}, clipToWorld{1};
   glm::mat4 previousWorldToClip{1};
   glm::vec3 eye{0};
-  glm::uvec2 size{0};        // pixels
-  glm::vec2 gaze{0.5f};      // normalised image coordinates, origin top-left
+  glm::uvec2 size{0};         // pixels
+  glm::vec2 gaze{0.5f};       // normalised image coordinates, origin top-left
+  float foveaRadius = 0.25f;  // around the gaze, in image widths
+  float pixelsPerDegree =
+      0;  // pixels in a degree of what the eye sees; 0: as the perspective of the view has it
   float verticalFov = 0.8f;  // radians, from the lower to the upper edge
   // The position within its pixels that the view samples in this frame and in the last one, in pixels from their
   // centres. The matrices contain it, so that drawing at a pixel's centre samples that position (scene::jitter).

@@ -26,6 +26,10 @@ class PassTest {
   PassTest& param(const std::string& name, int value);
   PassTest& param(const std::string& name, double value);
   PassTest& param(const std::string& name, const char* value);
+  // What belongs to the frame (graph::viewParameters()). Materials are diffuse unless set.
+  PassTest& view(const std::string& name, int value);
+  PassTest& view(const std::string& name, double value);
+  PassTest& view(const std::string& name, const char* value);
   PassTest& viewSize(uint32_t width, uint32_t height);
   PassTest& scene(scene::Scene scene);  // by default empty, with a default camera
   PassTest& seed(uint32_t seed);

@@ -28,7 +28,7 @@ struct Shot {
   uint64_t frame = 0;   // Frame::index
   float exposure = 1;   // of the graph or, if it has none, of the scene
   glm::vec2 gaze{0.5f};
-  float foveaRadius = 0;                            // in widths of the picture; 0 without a fovea
+  float foveaRadius = 0;                            // in widths of the picture
   uint32_t frames = 1;                              // of which this is the mean
   std::shared_ptr<const image::Metadata> metadata;  // of the frame, as `fovea render` writes it
   graph::OutputData data;

@@ -133,8 +133,7 @@ image::Metadata Viewer::metadata(const Build& build, const Shot& shot) const {
           {"seed", std::to_string(settings_.seed)},
           {"size", fmt::format("{}x{}", settings_.size.x, settings_.size.y)},
           {"gaze", fmt::format("{},{}", shot.gaze.x, shot.gaze.y)},
-          {"fovea_radius", fmt::format("{}", float(session::parameterOr(build.run->graph(), "fovea_radius",
-                                                                        session::kFoveaRadius)))},
+          {"fovea_radius", fmt::format("{}", shot.foveaRadius)},
           {"exposure", fmt::format("{}", shot.exposure)}};
 }
 
@@ -145,7 +144,7 @@ void Viewer::publish(const Build& build, const std::string& source, const graph:
   shot.frame = result.frame;
   shot.exposure = own > 0 ? float(own) : build.scene->scene.exposure;
   shot.gaze = seen_.moment.gazes[0];
-  shot.foveaRadius = float(session::parameterOr(build_->run->graph(), "fovea_radius", 0));
+  shot.foveaRadius = build.run->frame(seen_.moment).views[0].foveaRadius;
   shot.frames = frames;
   shot.metadata = std::make_shared<const image::Metadata>(metadata(build, shot));
   shot.data = std::move(data);
@@ -245,7 +244,7 @@ void Viewer::sendState() {
              {"graphs", graphNames(build_->file)},
              {"scenes", sceneNames()},
              {"set", overridesOf(build_->changes)},
-             {"fovea_radius", session::parameterOr(build_->run->graph(), "fovea_radius", 0)},
+             {"fovea_radius", build_->run->frame(0).views[0].foveaRadius},
              {"bounds", {vectorJson(geometry.boundsMin), vectorJson(geometry.boundsMax)}},
              {"messages", describeMessages(messages)}};
   exchange_.setState(textOf(state));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/graph/migrate/migrate.h"
 #include "framework/graph/pass/registry.h"
 
 namespace fovea::view {
@@ -77,6 +78,13 @@ Value textValue(std::string text) {
   Value value;
   value.type = Value::Type::String;
   value.string = std::move(text);
+  return value;
+}
+
+Value wholeValue(int64_t number) {
+  Value value;
+  value.type = Value::Type::Int;
+  value.integer = number;
   return value;
 }
 
@@ -214,12 +222,15 @@ std::string extendingGraph(const std::string& base, const Changes& changes, cons
                            const graph::BoundGraph& bound) {
   Value graph = objectValue();
   childOf(graph, "$schema") = textValue("fovea-graph.schema.json");
+  childOf(graph, "version") = wholeValue(graph::kGraphVersion);
   childOf(graph, "extends") = textValue(base);
   const Value* parameters = documents.graph.find("parameters");
   for (const auto& [name, text] : changes) {
     if (name.find('.') == std::string::npos)
       childOf(childOf(graph, "parameters"), name) =
           valueFor(name, text, parameters ? parameters->find(name) : nullptr);
+    else if (const ParameterSpec* ofView = graph::findParameter({}, name))
+      childOf(childOf(graph, "view"), ofView->name) = typed(name, text, typeOf(*ofView));
     else
       addInner(graph, name, text, documents, bound);
   }

@@ -208,6 +208,18 @@ Json edgesJson(const graph::Plan& plan) {
   return list;
 }
 
+Json viewJson(const graph::BoundGraph& bound, const Changes& changes) {
+  Json list = Json::array();
+  for (const ParameterSpec& spec : graph::viewParameters()) {
+    Json json = specJson(spec);
+    json["name"] = spec.name;
+    json["value"] = valueJson(*bound.view.find(spec.name));
+    json["changed"] = changes.contains(std::string(graph::kViewPrefix) + spec.name);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 // `prefix` is that of the names in `changes`: "right." for those of a sub-graph.
 Json graphParametersJson(const std::vector<GraphParameter>& parameters, const std::string& prefix,
                          const Changes& changes) {
@@ -238,6 +250,7 @@ Json subGraphsJson(const graph::Plan& plan, const graph::Description& descriptio
   for (const auto& [name, document] : documents.subGraphs)
     list.push_back(
         {{"name", name},
+         {"view", viewJson(*plan.graph, changes)},
          {"parameters", graphParametersJson(subGraphParameters(name, documents, description, *plan.graph),
                                             name + ".", changes)}});
   return list;

@@ -161,10 +161,14 @@ function draw() {
     later = true;
     return;
   }
-  const shown = graph.parameters.filter((p) => matches(`${p.name} ${p.doc}`));
+  const group = (legend, parameters, prefix) => {
+    const shown = parameters.filter((p) => matches(`${prefix}${p.name} ${p.doc}`));
+    return shown.length ? [element("fieldset", {}, element("legend", {}, legend),
+      ...shown.map((p) => parameterRow(p, prefix + p.name)))] : [];
+  };
   list.replaceChildren(
-    ...(shown.length ? [element("fieldset", {}, element("legend", {}, "of the graph"),
-        ...shown.map((p) => parameterRow(p, p.name)))] : []),
+    ...group("of the graph", graph.parameters, ""),
+    ...group("of the frame", graph.view, "view."),
     ...[["of its sub-graphs", graph.sub_graphs], ["of its passes", graph.passes]].flatMap(([legend, passes]) => {
       const groups = passes.map(passGroup).filter(Boolean);
       return groups.length ? [element("fieldset", {}, element("legend", {}, legend), ...groups)] : [];
