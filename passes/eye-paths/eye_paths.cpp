@@ -4,6 +4,7 @@
 #include "framework/scene/frame.h"
 #include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
+#include "passes/materials.h"
 
 namespace fovea::passes {
 namespace {

@@ -2,7 +2,6 @@
 #include "fovea/pass.h"
 #include "framework/base/random.h"
 #include "framework/scene/frame.h"
-#include "passes/materials.h"
 #include "passes/path-trace/path_tracer.h"
 
 namespace fovea::path_trace {
@@ -58,7 +57,7 @@ class PathTrace : public Pass {
     settings.threads = uint32_t(p.integer("threads"));
     settings.independent = p.text("sampling") == "independent";
     settings.box = p.text("filter") == "box";
-    settings.full = fullMaterials(p);
+    settings.full = p.text("view.materials") == "full";
     settings.seed = hashCombine(frame.seed, p.flag("per_frame") ? uint32_t(frame.index) : 0u);
     settings.progress = [&](double share) { return ctx.progress(share); };
     const PathTraceImages images{ctx.outputAs<glm::vec4>("radiance"), ctx.outputAs<glm::vec4>("direct"),

@@ -41,17 +41,17 @@ void addRaysOption(CLI::App& command, session::RaysOn& rays) {
       ->check(CLI::IsMember({"auto", "host", "device"}));
 }
 
-using Type = graph::ParameterSpec::Type;
+using ValueType = graph::ParameterSpec::Type;
 
 CLI::Validator valuesOf(const graph::ParameterSpec& spec) {
-  if (spec.type == Type::Choice) return CLI::IsMember(spec.choices).description("");
-  if (spec.type == Type::Int) return CLI::Range(int64_t(spec.min), int64_t(spec.max)).description("");
+  if (spec.type == ValueType::Choice) return CLI::IsMember(spec.choices).description("");
+  if (spec.type == ValueType::Int) return CLI::Range(int64_t(spec.min), int64_t(spec.max)).description("");
   return numberBetween(spec.min, spec.max);
 }
 
 std::string valueName(const graph::ParameterSpec& spec) {
-  if (spec.type == Type::Choice) return fmt::format("{}", fmt::join(spec.choices, "|"));
-  return spec.type == Type::Int ? "N" : "X";
+  if (spec.type == ValueType::Choice) return fmt::format("{}", fmt::join(spec.choices, "|"));
+  return spec.type == ValueType::Int ? "N" : "X";
 }
 
 // Breaks a text into lines as long as those of the other options' help.
