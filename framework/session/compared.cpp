@@ -10,7 +10,7 @@
 
 #include "fovea/error.h"
 #include "framework/session/inputs.h"
-#include "framework/shader_twins/fovea.h"
+#include "framework/scene/fovea.h"
 
 namespace fovea::session {
 namespace {

@@ -6,7 +6,7 @@
 #include "framework/graph/pass/registry.h"
 #include "framework/graph/report/report.h"
 #include "framework/scene/motion/motion.h"
-#include "framework/shader_twins/fovea.h"
+#include "framework/scene/fovea.h"
 
 namespace fovea::session {
 

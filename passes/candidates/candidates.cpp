@@ -2,8 +2,8 @@
 // passes/vpls.md, candidates).
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
+#include "passes/regions.h"
 
 namespace fovea::passes {
 namespace {
@@ -53,7 +53,7 @@ class Candidates : public Pass {
         .define("TRACED", wired("traced"))
         .constant("imageShare64ths",
                   [](const RecordContext& ctx) {
-                    return scene::imageShare64ths(ctx.parameters().real("image_share"));
+                    return imageShare64ths(ctx.parameters().real("image_share"));
                   })
         .constant("secondGaze",
                   [](const RecordContext& ctx) {

@@ -6,7 +6,7 @@
 
 #include "framework/base/low_discrepancy.h"
 #include "framework/scene/lights.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "framework/scene/rays/directions.h"
 
 namespace fovea::passes {
 namespace {

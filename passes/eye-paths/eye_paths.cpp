@@ -2,9 +2,9 @@
 #include "shaders/records/eye_paths.h"
 #include "fovea/pass.h"
 #include "framework/scene/frame.h"
-#include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
 #include "passes/materials.h"
+#include "passes/regions.h"
 
 namespace fovea::passes {
 namespace {
@@ -83,7 +83,7 @@ class EyePaths : public Pass {
         .define("RAY_PASSAGE", fullMaterials())
         .constant("imageShare64ths",
                   [](const RecordContext& ctx) {
-                    return scene::imageShare64ths(ctx.parameters().real("image_share"));
+                    return imageShare64ths(ctx.parameters().real("image_share"));
                   })
         .constant("renew", renewFrames)
         .constant("strayNow",

@@ -23,9 +23,9 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/motion.h"
 #include "framework/scene/motion/movers.h"
-#include "framework/shader_twins/paraboloid.h"
 #include "passes/bundles.h"
 #include "passes/shadow-atlas/records.h"
+#include "shaders/records/paraboloid.h"
 
 namespace fovea::passes {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "fovea/error.h"
 #include "fovea/pass.h"
-#include "framework/shader_twins/fovea.h"
 #include "passes/bundles.h"
+#include "passes/regions.h"
 #include "shaders/records/eye_paths.h"
 #include "passes/vpl-intensity/records.h"
 
@@ -106,7 +106,7 @@ StepSpec& addPoints(PassDeclaration& d) {
       .define("TRACED", 0)
       .constant("imageShare64ths",
                 [](const RecordContext& ctx) {
-                  return scene::imageShare64ths(ctx.parameters().real("image_share"));
+                  return imageShare64ths(ctx.parameters().real("image_share"));
                 })
       .threads(parameter("points"));
 }

@@ -18,7 +18,7 @@
 #include "framework/session/interrupt.h"
 #include "framework/session/progress.h"
 #include "framework/session/timings.h"
-#include "framework/shader_twins/fovea.h"
+#include "framework/scene/fovea.h"
 #include "samples/fovea/arguments.h"
 #include "samples/fovea/commands.h"
 #include "samples/fovea/outputs.h"

@@ -1,6 +1,7 @@
 // Light of probes at a point (Majercik et al., JCGT 2019, section 5, with the bias of Majercik et al., JCGT 2021,
 // section 3). ProbeField::light() in passes/probe-rays/probe_field.cpp is the same in C++: both must be changed
 // together.
+#include "device/language.glsl"
 #include "probes/layout.glsl"
 
 TEXTURE(texture2D, probesIrradiance);

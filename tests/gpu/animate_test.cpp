@@ -12,7 +12,7 @@
 #include "framework/scene/scene.h"
 #include "framework/scene/subdivision/subdivision.h"
 #include "framework/session/test_device.h"
-#include "framework/shader_twins/octahedral.h"
+#include "tests/references/octahedral.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/gpu/scene_queries.h"
 #include "tests/support/shapes.h"

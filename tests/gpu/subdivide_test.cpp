@@ -8,7 +8,7 @@
 #include "framework/gpu/resources.h"
 #include "framework/scene/device/subdivider.h"
 #include "framework/session/test_device.h"
-#include "framework/shader_twins/octahedral.h"
+#include "tests/references/octahedral.h"
 #include "tests/gpu/command_helpers.h"
 #include "tests/support/cages.h"
 

@@ -239,7 +239,8 @@ TEST(GazeJump, TheNewFoveaIsSoonGood) {
       }
     return sum / pixels;
   };
-  const double with = errorOf({}), without = errorOf({"saccade_samples=1", "eye-paths.saccade_renew_frames=8"});
+  const double with = errorOf({}),
+               without = errorOf({"saccade_samples=1", "eye-paths.saccade_renew_frames=8"});
   std::printf("error four frames after a jump: %.6f, without a saccade's share %.6f\n", with, without);
   EXPECT_LT(with, 0.9 * without);
 }

@@ -9,7 +9,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/movers.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "tests/references/voxel_grid.h"
 #include "places.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/graph_run.h"

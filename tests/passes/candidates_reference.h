@@ -11,9 +11,9 @@
 
 #include "fovea/test.h"
 #include "framework/base/random.h"
-#include "framework/shader_twins/fovea.h"
-#include "framework/shader_twins/paraboloid.h"
-#include "framework/shader_twins/voxel_trace.h"
+#include "tests/references/fovea.h"
+#include "tests/references/paraboloid.h"
+#include "tests/references/voxel_trace.h"
 #include "shaders/records/vpl.h"
 #include "tests/support/voxels.h"
 

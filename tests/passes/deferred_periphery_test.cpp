@@ -18,7 +18,9 @@ passes::Square fineSquare(const GBuffer& g, glm::vec2 gaze) {
   scene::View view;
   view.size = {g.width, g.height};
   view.gaze = gaze;
-  return passes::fullDensity(view, 8.0f / float(g.width), 200, 16);
+  view.foveaRadius = 8.0f / float(g.width);
+  view.pixelsPerDegree = 200;
+  return passes::fullDensity(view, 16);
 }
 
 bool isInside(const passes::Square& square, int x, int y) {
@@ -116,13 +118,17 @@ TEST(DeferredPeriphery, FollowsAcuity) {
   view.size = {1024, 1024};
   view.verticalFov = glm::radians(60.0f);
   view.gaze = {0.5f, 0.25f};
-  const passes::Square byEye = passes::fullDensity(view, 0.01f, 0, 1);
+  view.foveaRadius = 0.01f;
+  const passes::Square byEye = passes::fullDensity(view, 1);
   EXPECT_NEAR(512 - byEye.low.x, 165, 2);
   EXPECT_NEAR(byEye.high.y - 256, 165, 2);
-  const passes::Square byFovea = passes::fullDensity(view, 0.25f, 0, 16);
+  view.foveaRadius = 0.25f;
+  const passes::Square byFovea = passes::fullDensity(view, 16);
   EXPECT_EQ(byFovea.low, glm::ivec2(256, 0));
   EXPECT_EQ(byFovea.high, glm::ivec2(768, 512));
-  EXPECT_EQ(passes::fullDensity(view, 0.01f, 1000, 16).high, glm::ivec2(528, 272));
+  view.foveaRadius = 0.01f;
+  view.pixelsPerDegree = 1000;
+  EXPECT_EQ(passes::fullDensity(view, 16).high, glm::ivec2(528, 272));
 }
 
 }  // namespace

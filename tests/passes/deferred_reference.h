@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fovea/test.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "tests/references/paraboloid.h"
 #include "shaders/records/vpl.h"
 
 namespace fovea::test {

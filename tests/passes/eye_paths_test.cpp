@@ -6,7 +6,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "tests/references/paraboloid.h"
 #include "passes/eye-paths/eye_path_tracer.h"
 #include "passes/path-trace/directions.h"
 #include "shaders/records/rays.h"

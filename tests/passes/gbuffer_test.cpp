@@ -10,7 +10,7 @@
 #include "framework/scene/frame.h"
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/octahedral.h"
+#include "tests/references/octahedral.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/support/raster_grid.h"
 #include "tests/support/sky.h"

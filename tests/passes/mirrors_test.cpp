@@ -5,7 +5,7 @@
 #include <bit>
 #include <glm/gtc/packing.hpp>
 
-#include "framework/shader_twins/octahedral.h"
+#include "tests/references/octahedral.h"
 #include "passes/near-field/near_field_tracer.h"
 #include "tests/passes/deferred_reference.h"
 

@@ -8,8 +8,8 @@
 
 #include "fovea/test.h"
 #include "framework/scene/rays/ray_scene.h"
-#include "framework/shader_twins/paraboloid.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "tests/references/paraboloid.h"
+#include "tests/references/voxel_grid.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/shadow_view.h"

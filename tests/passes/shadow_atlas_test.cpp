@@ -16,7 +16,7 @@
 #include "framework/scene/load.h"
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "tests/references/paraboloid.h"
 #include "shaders/records/vpl.h"
 #include "tests/passes/ray_reference.h"
 #include "tests/passes/vpl_scene.h"

@@ -10,8 +10,8 @@
 
 #include "fovea/test.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/paraboloid.h"
-#include "framework/shader_twins/voxel_trace.h"
+#include "tests/references/paraboloid.h"
+#include "tests/references/voxel_trace.h"
 #include "shaders/records/hemisphere_rays.h"
 #include "tests/passes/shadow_view.h"
 #include "tests/support/voxels.h"

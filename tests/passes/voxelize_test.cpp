@@ -13,7 +13,7 @@
 #include "framework/scene/device/gpu_scene.h"
 #include "framework/scene/scene.h"
 #include "framework/session/test_device.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "tests/references/voxel_grid.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

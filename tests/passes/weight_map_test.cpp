@@ -9,7 +9,7 @@
 #include "fovea/test.h"
 #include "framework/base/random.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/fovea.h"
+#include "tests/references/fovea.h"
 #include "tests/support/shapes.h"
 #include "tests/support/voxels.h"
 

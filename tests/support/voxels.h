@@ -7,7 +7,7 @@
 
 #include "fovea/test.h"
 #include "framework/scene/scene.h"
-#include "framework/shader_twins/voxel_grid.h"
+#include "tests/references/voxel_grid.h"
 
 namespace fovea::test {
 

@@ -1,4 +1,4 @@
-#include "framework/shader_twins/fovea.h"
+#include "tests/references/fovea.h"
 
 #include <gtest/gtest.h>
 

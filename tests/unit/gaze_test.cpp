@@ -7,7 +7,7 @@
 
 #include "framework/scene/frame.h"
 #include "framework/scene/motion/motion.h"
-#include "framework/shader_twins/fovea.h"
+#include "tests/references/fovea.h"
 #include "scene_support.h"
 
 namespace fovea::scene {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "framework/shader_twins/paraboloid.h"
+#include "tests/references/paraboloid.h"
 #include "shaders/records/hemisphere_rays.h"
 
 namespace fovea::scene {

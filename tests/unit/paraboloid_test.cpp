@@ -1,4 +1,4 @@
-#include "framework/shader_twins/paraboloid.h"
+#include "tests/references/paraboloid.h"
 
 #include <gtest/gtest.h>
 

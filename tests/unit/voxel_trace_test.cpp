@@ -1,4 +1,4 @@
-#include "framework/shader_twins/voxel_trace.h"
+#include "tests/references/voxel_trace.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/shader_twins/paraboloid.h"
+#include "framework/scene/rays/directions.h"
 
 namespace fovea::scene {
 

@@ -11,7 +11,7 @@
 #include "framework/scene/materials/bounced.h"
 #include "framework/scene/materials/passage.h"
 #include "framework/scene/rays/visibility.h"
-#include "framework/shader_twins/paraboloid.h"
+#include "framework/scene/rays/directions.h"
 #include "shaders/records/rays.h"
 #include "shaders/records/scene.h"
 

@@ -1,5 +1,4 @@
-// The C++ version of shaders/voxels/voxel_trace.glsl, which explains the method; both must be changed together. It
-// traces rays through the voxels up to the first surface met.
+// Rays through the voxels, as a plain reference for shaders/voxels/voxel_trace.glsl, which explains the method.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "framework/shader_twins/voxel_grid.h"
+#include "tests/references/voxel_grid.h"
 #include "shaders/records/voxel.h"
 
 namespace fovea::scene {

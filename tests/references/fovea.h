@@ -1,5 +1,5 @@
-// The C++ version of shaders/sampling/fovea.glsl, which explains the formulas; both must be changed together. It
-// computes the fovea on the image plane, the weight of a pixel, and random pixels in the fovea.
+// The fovea on the image plane, the weight of a pixel, and random pixels in the fovea, as a plain reference for
+// shaders/sampling/fovea.glsl.
 #pragma once
 
 #include <cmath>
@@ -7,29 +7,17 @@
 #include <glm/glm.hpp>
 
 #include "framework/base/random.h"
+#include "framework/scene/fovea.h"
+#include "passes/regions.h"
 #include "shaders/records/fovea.h"
 
 namespace fovea::scene {
-
-// Radius, in image widths, of a fovea of `angle` radians from the line of sight in a view with the
-// projection `viewToClip` (View::viewToClip).
-inline float foveaRadiusOfAngle(float angle, const glm::mat4& viewToClip) {
-  return 0.5f * std::tan(angle) * viewToClip[0][0];
-}
-
-// gaze: in normalised image coordinates; imageSize: in pixels; foveaRadius: in image widths.
-inline Fovea makeFovea(glm::vec2 gaze, glm::vec2 imageSize, float foveaRadius) {
-  return {gaze * imageSize, foveaRadius * imageSize.x};
-}
 
 // Foveated weight of an image position: 1 inside r_f, r_f / r outside.
 inline float foveaWeight(const Fovea& fovea, glm::vec2 position) {
   const float r = glm::distance(position, fovea.centre);
   return r <= fovea.radius ? 1.0f : fovea.radius / r;
 }
-
-// The parameter `image_share` in 64ths, as the shaders take it.
-inline uint32_t imageShare64ths(double share) { return uint32_t(std::lround(64 * share)); }
 
 inline glm::vec2 streamPoint(uint32_t stream, uint32_t draw) {
   return {uniformFloat(hashCombine(stream, draw)), uniformFloat(hashCombine(stream, draw + 1u))};

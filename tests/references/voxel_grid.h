@@ -1,5 +1,4 @@
-// The C++ version of shaders/voxels/voxel.glsl: both must be changed together. It places the voxel grid in which
-// secondary lights are found.
+// The voxel grid in which VPLs are found, as a plain reference for shaders/voxels/voxel.glsl.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The C++ version of shaders/scene/octahedral.glsl: both must be changed together.
+// Octahedral unit vectors, as a plain reference for shaders/scene/octahedral.glsl.
 #pragma once
 
 #include <algorithm>
