@@ -66,15 +66,13 @@ const std::vector<ParameterSpec>& viewParameters() {
     add("fovea_radius", real(0.25, 0.001, 4, "image widths"), "radius of the fovea around the gaze");
     add("fovea_degrees", real(0, 0, 60, "degrees"),
         "radius of the fovea as an angle from the line of sight, by the field of view of each view; above 0 "
-        "it "
-        "takes the place of `fovea_radius`");
+        "it takes the place of `fovea_radius`");
     add("pixels_per_degree", real(0, 0, 1000),
         "pixels of the picture in a degree of what the eye sees, by which passes know what it resolves; 0 "
-        "means "
-        "that the picture is seen from where its perspective is right");
+        "means that the picture is seen from where its perspective is right");
     add("jitter", integer(0, 0, 64),
-        "places in its pixels through which each view looks in turn, one a frame, for pass antialias; 0: the "
-        "centres");
+        "places in its pixels through which each view looks in turn, one a frame, so that a mean over frames "
+        "has smooth edges; 0: the centres");
     return list;
   }();
   return specs;
