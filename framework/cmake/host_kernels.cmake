@@ -48,7 +48,7 @@ function(fovea_host_kernel target shader)
     configure_file(${PROJECT_SOURCE_DIR}/framework/cmake/host_kernel.cpp.in ${file} @ONLY)
     target_sources(${target} PRIVATE ${file})
     # Literals have no suffix in GLSL.
-    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
       COMPILE_OPTIONS "$<IF:$<CXX_COMPILER_ID:Clang>,SHELL:-Xclang -cl-single-precision-constant,-fsingle-precision-constant>;-fno-math-errno;-Wno-unused"
       INCLUDE_DIRECTORIES "${PROJECT_SOURCE_DIR}/shaders;${PROJECT_SOURCE_DIR}/passes")
   endforeach()

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "fovea/image.h"
-#include "framework/base/random.h"
 #include "framework/scene/environment/sky.h"
 #include "framework/scene/first_view/first_view.h"
-#include "framework/scene/rays/surface_tracer.h"
-#include "framework/scene/rays/visibility.h"
+#include "framework/scene/first_view/light_meter.h"
+#include "framework/scene/rays/ray_scene.h"
 
 namespace fovea::scene {
 namespace {
@@ -27,38 +26,12 @@ constexpr float kClippedInDark = 0.04f;           // and more may be clipped
 constexpr float kLamplight = 3.0f;                // lux, at the median distance
 const glm::vec3 kBackground(0.22f, 0.33f, 0.5f);  // where there is no sky, as displayed before sRGB
 
-struct Picture {
-  std::vector<glm::vec3> pixels;        // radiance, W/(sr m^2)
-  std::vector<TracedSurface> surfaces;  // what they show; there: false in the background
-};
+using Picture = std::vector<MeterPoint>;
+
+const LightMeter* meter = nullptr;
 
 Frame firstFrame(const Scene& scene, const Geometry& geometry) {
   return makeFrame(scene, geometry, {kWidth, kWidth}, 0, 1);
-}
-
-// The first camera's picture as a path tracer with few samples sees it, if the surfaces in it reflect indirect light as
-// diffuse ones of their colour, metals too.
-Picture trace(const Frame& frame, const RayScene& rays) {
-  const Scene& scene = *frame.scene;
-  const View& view = frame.views.front();
-  const SurfaceTracer tracer(frame, view, rays, true);
-  Picture picture;
-  uint64_t count = 0;
-  for (uint32_t y = 0; y < kWidth; ++y)
-    for (uint32_t x = 0; x < kWidth; ++x) {
-      const glm::vec3 direction = glm::normalize(view.rayDirection(glm::vec2(x, y) + 0.5f));
-      const TracedSurface seen = tracer.look(glm::vec2(x, y) + 0.5f, count);
-      picture.surfaces.push_back(seen);
-      if (!seen.there) {
-        picture.pixels.push_back(scene.environmentMap ? tracer.outside(direction).radiance
-                                                      : scene.environment);
-        continue;
-      }
-      picture.pixels.push_back(tracer.seen(seen, -direction, count) +
-                               tracer.reflectance(seen) *
-                                   tracer.gather(seen, 2, kGathered, randomStream(1, x, 0, y), count));
-    }
-  return picture;
 }
 
 float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b}); }
@@ -66,8 +39,8 @@ float brightest(glm::vec3 light) { return std::max({light.r, light.g, light.b});
 // Whether at least half of the surfaces are lit enough to be seen beside the brightest.
 bool isLit(const Picture& picture) {
   std::vector<float> light;
-  for (size_t i = 0; i < picture.pixels.size(); ++i)
-    if (picture.surfaces[i].there) light.push_back(brightest(picture.pixels[i]));
+  for (const MeterPoint& point : picture)
+    if (point.there > 0) light.push_back(brightest(point.radiance));
   if (light.empty()) return true;
   std::ranges::sort(light);
   const float bright = light[size_t(float(light.size()) * (1 - kClipped))];
@@ -75,22 +48,21 @@ bool isLit(const Picture& picture) {
 }
 
 // Share of the surfaces in the picture that a sun in this direction lights.
-float sunlit(const Picture& picture, const Frame& frame, const RayScene& rays, glm::vec3 towardsSun) {
+float sunlit(const Picture& picture, const Frame& frame, glm::vec3 towardsSun) {
   constexpr float kEnough = 0.5f;  // of the light, where glass stands before the sun
+  const std::vector<glm::vec4> shares = meter->sharesFrom(frame, picture, towardsSun);
   uint32_t surfaces = 0, lit = 0;
-  uint64_t count = 0;
-  for (const TracedSurface& s : picture.surfaces) {
-    if (!s.there) continue;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    if (!(picture[i].there > 0)) continue;
     ++surfaces;
-    lit += glm::dot(s.normal, towardsSun) > 0.1f &&
-           brightest(visibility(frame, rays, {s.origin, towardsSun}, count)) > kEnough;
+    lit += glm::dot(picture[i].normal, towardsSun) > 0.1f && brightest(shares[i]) > kEnough;
   }
   return surfaces > 0 ? float(lit) / float(surfaces) : 0;
 }
 
 // The sky whose sun leaves about half of the picture in shadow, of those that stand high enough and not behind the
 // scene. None if no sun reaches anything. Its ground looks like an assumed floor, which it continues.
-std::optional<Sky> findSky(const Picture& picture, const Frame& frame, const RayScene& rays) {
+std::optional<Sky> findSky(const Picture& picture, const Frame& frame) {
   const glm::vec3 right = frame.scene->cameras[0].orientation * glm::vec3(1, 0, 0);
   const float facing = std::atan2(-right.z, right.x);
   std::optional<Sky> best;
@@ -101,7 +73,7 @@ std::optional<Sky> findSky(const Picture& picture, const Frame& frame, const Ray
       sky.sunElevation = height;
       sky.sunAzimuth = std::remainder(facing + glm::pi<float>() + 0.35f * float(i), glm::two_pi<float>());
       sky.ground = glm::vec3(kGroundReflectance);
-      const float lit = sunlit(picture, frame, rays, towardsSun(sky)), balance = lit * (1.2f - lit);
+      const float lit = sunlit(picture, frame, towardsSun(sky)), balance = lit * (1.2f - lit);
       if (balance > most) most = balance, best = sky;
     }
   return best;
@@ -111,8 +83,8 @@ std::optional<Sky> findSky(const Picture& picture, const Frame& frame, const Ray
 void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
   const Camera& camera = scene.cameras[0];
   std::vector<float> distances;
-  for (const TracedSurface& s : picture.surfaces)
-    if (s.there) distances.push_back(glm::distance(s.position, camera.position));
+  for (const MeterPoint& point : picture)
+    if (point.there > 0) distances.push_back(glm::distance(point.position, camera.position));
   std::ranges::nth_element(distances, distances.begin() + ptrdiff_t(distances.size() / 2));
   const float far = distances[distances.size() / 2];
   const glm::vec3 ahead = camera.orientation * glm::vec3(0, 0, -1);
@@ -130,29 +102,28 @@ void addLamp(Scene& scene, const Picture& picture, const RayScene& rays) {
 
 }  // namespace
 
+void setLightMeter(const LightMeter& newMeter) { meter = &newMeter; }
+
 std::string addFirstLight(Scene& scene, const Geometry& geometry) {
   if (geometry.empty()) return {};
-  const auto rays = RayScene::cached(scene, geometry, Passing::Met);
   const Frame frame = firstFrame(scene, geometry);
-  const Picture picture = trace(frame, *rays);
+  const Picture picture = meter->picture(frame);
   if (isLit(picture)) return {};
-  if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame, *rays);
+  if (!scene.environmentMap) scene.assumedSky = findSky(picture, frame);
   if (scene.assumedSky) {
     addDaylight(scene, *scene.assumedSky);
     return "a sun and a sky";
   }
-  addLamp(scene, picture, *rays);
+  addLamp(scene, picture, *RayScene::cached(scene, geometry, Passing::Met));
   scene.assumedLamp = true;
   return "a lamp";
 }
 
 float firstExposure(const Scene& scene, const Geometry& geometry) {
   if (geometry.empty()) return 1;
-  const Picture picture =
-      trace(firstFrame(scene, geometry), *RayScene::cached(scene, geometry, Passing::Met));
   std::vector<glm::vec3> pixels;
-  for (size_t i = 0; i < picture.pixels.size(); ++i)
-    if (picture.surfaces[i].there) pixels.push_back(picture.pixels[i]);
+  for (const MeterPoint& point : meter->picture(firstFrame(scene, geometry)))
+    if (point.there > 0) pixels.push_back(point.radiance);
   if (pixels.empty()) return 1;
   std::ranges::sort(pixels, {}, brightest);
   const auto display = [&](float exposure) {
