@@ -25,6 +25,7 @@
 #include "shaders/records/gather_cache.h"
 #include "shaders/records/hemisphere_rays.h"
 #include "shaders/records/light_meter.h"
+#include "shaders/records/light_paths.h"
 #include "shaders/records/mirror.h"
 #include "shaders/records/near_field.h"
 #include "shaders/records/paraboloid.h"

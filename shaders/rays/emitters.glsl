@@ -38,6 +38,8 @@ Emitter emitterAt(uint place) {
   return Emitter(index, record.x != index, uintBitsToFloat(record.y) * area, area, radius2, centre, normal);
 }
 
+float powerOfSides(Emitter e) { return e.bothSides ? 2.0 * e.power : e.power; }
+
 // x: cosine of an angle from 0 to pi, y: its sine. The difference is no less than 0.
 vec2 angleOf(float cosine) { return vec2(cosine, sqrt(max(1.0 - cosine * cosine, 0.0))); }
 vec2 angleLess(vec2 a, vec2 b) {
@@ -98,6 +100,17 @@ struct EmitterPoint {
 
 CONSTANT EmitterPoint kNoEmitterPoint = EmitterPoint(kNoTriangle, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
+// A point of an emitter, on its front. u: uniform in [0, 1).
+EmitterPoint pointOn(Emitter e, vec2 u) {
+  float root = sqrt(u.x);
+  vec2 weights = vec2(root * (1.0 - u.y), root * u.y);
+  uvec4 triangle = sceneTriangle(e.triangle);
+  vec3 position = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z)) *
+                  vec3(1.0 - weights.x - weights.y, weights);
+  vec3 radiance = materialEmission(materialOf(triangle), uvAt(triangle, weights));
+  return EmitterPoint(e.triangle, position, e.normal, radiance, 1.0 / e.area);
+}
+
 // A point that may light the receiver. choice, u: uniform in [0, 1). The choice is rescaled after each decision, so one
 // number is enough.
 EmitterPoint sampleEmitters(Receiver r, float choice, vec2 u) {
@@ -124,16 +137,44 @@ EmitterPoint sampleEmitters(Receiver r, float choice, vec2 u) {
     reached += weight;
   }
   if (!(own > 0.0)) return p;
-  float root = sqrt(u.x);
-  vec2 weights = vec2(root * (1.0 - u.y), root * u.y);
-  uvec4 triangle = sceneTriangle(chosen.triangle);
-  p.triangle = chosen.triangle;
-  p.position = mat3(scenePosition(triangle.x), scenePosition(triangle.y), scenePosition(triangle.z)) *
-               vec3(1.0 - weights.x - weights.y, weights);
-  p.normal = dot(chosen.normal, r.position - chosen.centre) > 0.0 ? chosen.normal : -chosen.normal;
-  p.radiance = materialEmission(materialOf(triangle), uvAt(triangle, weights));
-  p.density = probability * own / (total * chosen.area);
+  p = pointOn(chosen, u);
+  if (!(dot(chosen.normal, r.position - chosen.centre) > 0.0)) p.normal = -p.normal;
+  p.density *= probability * own / total;
   return p;
+}
+
+// W / pi, mean of the channels.
+float emittersPower(uint node) {
+  return uintBitsToFloat(texelOf(rayEmitters, int(emitterHeader().y + 3u * node) + 2).x);
+}
+
+// An emitter in proportion to its power alone, of which a leaf knows both sides; there must be one that shines.
+// choice: as above.
+Emitter emitterByPower(float choice, OUT(float) probability) {
+  uvec2 range = uvec2(0u, emitterCount());
+  probability = 1.0;
+  for (uint node = 1u; !isEmitterLeaf(range);) {
+    float first = emittersPower(2u * node);
+    first /= first + emittersPower(2u * node + 1u);
+    bool second = choice >= first;
+    choice = second ? (choice - first) / (1.0 - first) : choice / first;
+    probability *= second ? 1.0 - first : first;
+    node = 2u * node + uint(second);
+    range = second ? uvec2(middleOf(range), range.y) : uvec2(range.x, middleOf(range));
+  }
+  float total = 0.0, reached = 0.0, own = 0.0;
+  for (uint i = range.x; i < range.y; ++i) total += powerOfSides(emitterAt(i));
+  Emitter chosen = emitterAt(range.x);
+  for (uint i = range.x; i < range.y && (own == 0.0 || choice * total >= reached); ++i) {
+    Emitter e = emitterAt(i);
+    float power = powerOfSides(e);
+    if (!(power > 0.0)) continue;
+    chosen = e;
+    own = power;
+    reached += power;
+  }
+  probability *= total > 0.0 ? own / total : 0.0;
+  return chosen;
 }
 
 // The place of a triangle in the order of the leaves, or the number of emitters if it is none.

@@ -24,8 +24,6 @@ vec3 irradianceAt(TracedSurface v) {
 // Radiance that leaves v, whose reflectance is rho, after one reflection of light from the scene's lights.
 vec3 diffuseLight(TracedSurface v, vec3 rho) { return rho / kPi * irradianceAt(v); }
 
-float meanChannel(vec3 colour) { return (colour.r + colour.g + colour.b) / 3.0; }
-
 #if RAY_PASSAGE
 
 // How a surface reflects light in one direction. Coats are a part of the lobe, unlike on the host.

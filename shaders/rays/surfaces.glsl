@@ -151,6 +151,7 @@ vec3 lightAlong(vec3 origin, vec3 direction, float distance_) {
 
 // ---- Light ---------------------------------------------------------------------------------------------------------
 
+float meanChannel(vec3 colour) { return (colour.r + colour.g + colour.b) / 3.0; }
 vec3 reflectance(TracedSurface v) { return v.brighter * vec3(materialReflectance(v.material, v.uv)); }
 vec3 emitted(TracedSurface v) {
   return emitterCount() == 0u ? vec3(0.0) : v.brighter * materialEmission(v.material, v.uv);

@@ -6,50 +6,13 @@
 #include <vector>
 
 #include "fovea/test.h"
-#include "framework/scene/frame.h"
-#include "framework/scene/rays/ray_scene.h"
 #include "framework/scene/scene.h"
-#include "passes/emit/light_paths.h"
 #include "shaders/records/vpl.h"
+#include "tests/passes/emitted_vpls.h"
 #include "tests/support/shapes.h"
 
 namespace fovea::test {
 namespace {
-
-using scene::Vpl;
-constexpr double kPi = glm::pi<double>();
-
-scene::Scene room(glm::vec3 rho, float halfSize = 2) {
-  scene::Scene s;
-  const uint32_t m = addMaterial(s, rho);
-  const uint32_t materials[6] = {m, m, m, m, m, m};
-  addRoom(s, materials, halfSize);
-  return s;
-}
-
-std::vector<Vpl> emitted(PassTest& test, const scene::Scene& s) {
-  test.viewSize(8, 8).scene(s);
-  test.run();
-  return test.values<Vpl>("vpls");
-}
-
-// Reflected flux of all VPLs in W: Phi = pi I for a diffuse emitter.
-glm::dvec3 totalFlux(const std::vector<Vpl>& vpls) {
-  glm::dvec3 sum(0);
-  for (const Vpl& v : vpls) sum += kPi * glm::dvec3(v.intensity);
-  return sum;
-}
-
-void expectFlux(const std::vector<Vpl>& vpls, glm::dvec3 expected, double tolerance) {
-  const glm::dvec3 sum = totalFlux(vpls);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], expected[c], tolerance * expected[c]) << "channel " << c;
-}
-
-int filled(const std::vector<Vpl>& vpls) {
-  int n = 0;
-  for (const Vpl& v : vpls) n += v.intensity != glm::vec3(0);
-  return n;
-}
 
 // ---- Energy -----------------------------------------------------------------------------------------------
 
@@ -133,26 +96,22 @@ TEST(Emit, StoppingWhenTheListIsFullIsUnbiased) {
   const double rho = 0.5;
   scene::Scene s = room(glm::vec3(float(rho)));
   s.lights = {pointLight({0.5f, 0, 0}, glm::vec3(1))};
-  const scene::Geometry g = flatten(s);
-  const scene::RayScene rays(s, g);
-  const scene::Frame frame = makeFrame(s, g, {8, 8}, 0, 0);
-  for (const uint32_t count : {3u, 5u}) {
-    constexpr int kRuns = 4000;
+  for (const int count : {3, 5}) {
+    constexpr int kFrames = 1500;
+    PassTest test("emit");
+    test.param("count", count).viewSize(8, 8).scene(s);
     double sum = 0, squares = 0;
-    for (uint32_t seed = 0; seed < kRuns; ++seed) {
-      passes::EmitSettings settings;
-      settings.count = count;
-      settings.bounces = 2;
-      settings.seed = seed;
-      const passes::EmitResult result = traceLightPaths(frame, rays, settings);
-      EXPECT_EQ(result.vpls.size(), count);
-      const double flux = totalFlux(result.vpls).x / (4 * kPi);
+    for (int frame = 0; frame < kFrames; ++frame) {
+      test.run();
+      const auto vpls = test.values<Vpl>("vpls");
+      EXPECT_EQ(filled(vpls), count);
+      const double flux = totalFlux(vpls).x / (4 * kPi);
       sum += flux;
       squares += flux * flux;
     }
-    const double mean = sum / kRuns, error = std::sqrt((squares / kRuns - mean * mean) / kRuns);
+    const double mean = sum / kFrames, error = std::sqrt((squares / kFrames - mean * mean) / kFrames);
     EXPECT_NEAR(mean, rho + rho * rho, 4 * error);
-    EXPECT_LT(error, 0.005);
+    EXPECT_LT(error, 0.009);
   }
 }
 

@@ -9,18 +9,19 @@
 #include <vector>
 
 #include "framework/gpu/shader/shader.h"
+#include "passes/manage/records.h"
+#include "passes/shadow-atlas/records.h"
+#include "passes/voxelize/records.h"
+#include "passes/vpl-intensity/records.h"
 #include "places.h"
 #include "shaders/records/eye_paths.h"
+#include "shaders/records/light_paths.h"
 #include "shaders/records/rays.h"
 #include "shaders/records/reservoir.h"
 #include "shaders/records/scene.h"
 #include "shaders/records/shadow.h"
 #include "shaders/records/voxel.h"
 #include "shaders/records/vpl.h"
-#include "passes/manage/records.h"
-#include "passes/shadow-atlas/records.h"
-#include "passes/voxelize/records.h"
-#include "passes/vpl-intensity/records.h"
 
 namespace fovea {
 namespace {
@@ -183,6 +184,15 @@ TEST(SharedRecords, EyePaths) {
   expectLayout(header, "EyePathEnd", sizeof(EyePathEnd),
                {AT(EyePathEnd, position), AT(EyePathEnd, kind), AT(EyePathEnd, normal),
                 AT(EyePathEnd, weight), AT(EyePathEnd, radiance), AT(EyePathEnd, unit)});
+}
+
+TEST(SharedRecords, LightPaths) {
+  using passes::LightPaths;
+  expectLayout(
+      "records/light_paths.h", "LightPaths", sizeof(LightPaths),
+      {AT(LightPaths, groupsX), AT(LightPaths, groupsY), AT(LightPaths, groupsZ), AT(LightPaths, first),
+       AT(LightPaths, count), AT(LightPaths, paths), AT(LightPaths, stored), AT(LightPaths, full),
+       AT(LightPaths, bounces), AT(LightPaths, lightPower), AT(LightPaths, power), AT(LightPaths, unused)});
 }
 
 TEST(SharedRecords, Rays) {

@@ -1,0 +1,9 @@
+// Paths are traced in rounds until the list of VPLs is full.
+#include "records/light_paths.h"
+
+// Work groups of a round.
+uvec2 groupsOf(uint paths) {
+  uint groups = (paths + kLightPathGroup - 1u) / kLightPathGroup;
+  uint rows = (groups + kLightPathColumns - 1u) / kLightPathColumns;
+  return uvec2(min(groups, kLightPathColumns), rows);
+}
