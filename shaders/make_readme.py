@@ -84,8 +84,7 @@ vec3 unshadowed(vec3 position, vec3 normal, vec3 reflectance) {
   return reflectance * sum;
 }
 """),
-    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find. The declaration of the pass has to "
-             "say `\"rays\": true`.", """\
+    "rays": ("Rays", "Rays through the triangles of the scene, and the light that they find, for passes that declare `rays`.", """\
 #define RAY_PASSAGE 0
 #include "rays/gather.glsl"
 
@@ -117,7 +116,7 @@ ivec2 pixelInFovea(uint invocation, float foveaRadius) {
   return regionSample(kRegionFovea, makeFovea(view.gaze, view.size, foveaRadius), ivec2(view.size), stream);
 }
 """),
-    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, and cones through their mips (pass `mipmap`).",
+    "voxels": ("Voxels", "The scene as voxels (pass `voxelize`), rays through them, cones through their mips (pass `mipmap`).",
                """\
 #include "scene/scene.glsl"
 #include "voxels/voxel_trace.glsl"
@@ -302,7 +301,7 @@ class Header:
     def wrapped(self, text):
         if len(text) <= WIDTH or "//" in text:
             return [text]
-        start = text.index("(") + 1
+        start = text.index("(") + 1 if "(" in text else 6
         lines, line = [], ""
         for word in text.split(", "):
             if line and len(line) + len(word) + 2 > WIDTH:
@@ -323,10 +322,9 @@ class Header:
             text = " ".join(re.sub(r"\s*//.*", "", line).strip() for line in lines)
             text = re.sub(r"^(SHARED_)?CONSTANT ", "const ", text)
             text = re.sub(r"(?<=\d)f\b", "", text)
-            if len(text) > WIDTH:
+            if len(text) > WIDTH and re.search(r"[({]", text):  # the value of a record or of a list
                 text = re.sub(r" = .*;$", ";", text)
-            text += "  " + comment.group(1) if comment else ""
-            lines = [text]
+            lines = self.wrapped(text + ("  " + comment.group(1) if comment else ""))
         self.lines += lines
         self.documented = self.documented or "//" in lines[-1]
 

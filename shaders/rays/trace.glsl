@@ -49,7 +49,7 @@ vec2 uvAt(uvec4 triangle, vec2 weights) {
          sceneUv(triangle.z) * weights.y;
 }
 
-// The nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the device through
+// trace() finds the nearest hit, or any if that suffices: on the host by Embree or the project's own tracer, on the device through
 // two trees of bounding boxes (rays/bvh.glsl).
 #ifdef __cplusplus
 RayHit trace(Ray ray, bool any) {
